@@ -39,6 +39,13 @@ impl ValidationTable {
         Ok((Self { motions, outputs, samples: samples.len(), values }, simulated))
     }
 
+    /// These samples, and then others, in the rows that both have reached.
+    pub fn with(&self, others: &Self) -> Self {
+        let lines = self.values.chunks_exact(self.samples).zip(others.values.chunks_exact(others.samples));
+        let values = lines.flat_map(|(own, others)| own.iter().chain(others).copied()).collect();
+        Self { samples: self.samples + others.samples, values, ..*self }
+    }
+
     /// One output's values in one row; NaN where it was not reached.
     pub fn at(&self, row: usize, output: usize) -> Vec<f64> {
         let first = (row * (self.motions + self.outputs) + self.motions + output) * self.samples;

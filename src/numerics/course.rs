@@ -10,11 +10,15 @@ use super::range::Range;
 const SLOWEST: f64 = 0.05;
 /// Fewest rows of a way.
 const ROWS: usize = 4;
+/// Fewest rows that are taken beside a way.
+const BEYOND: usize = 32;
 /// Places within a piece at which it has to rise.
 const LOOKS: usize = 4;
 /// Rows that a piece is made through, at either side, and its terms: a value and a rate of each.
 const BESIDE: usize = 2;
 const TERMS: usize = 4 * BESIDE;
+/// The last step of the search for a time, as a share of the piece.
+const CLOSE: f64 = 1e-7;
 /// Most steps of the search for a time.
 const STEPS: usize = 64;
 
@@ -25,7 +29,11 @@ pub struct Course {
     sign: f64,
     times: Vec<f64>,
     values: Vec<f64>,
+    /// Whether they never fall.
+    ascends: bool,
     pieces: Vec<Piece>,
+    /// Least and largest rate seen in each piece. (Apart from the pieces: each row looks at all of them.)
+    rates: Vec<(f64, f64)>,
 }
 
 /// Between two rows: the polynomial through the values and rates of these and of those beside them, in Newton's form.
@@ -33,8 +41,6 @@ pub struct Course {
 struct Piece {
     nodes: [f64; TERMS],
     differences: [f64; TERMS],
-    /// Least and largest rate seen.
-    rates: (f64, f64),
 }
 
 /// The part of a course on which it rises, beyond which it goes straight on.
@@ -61,15 +67,15 @@ impl Piece {
                 };
             }
         }
-        let mut piece = Self { nodes, differences, rates: (f64::INFINITY, 0.0) };
-        for look in 0..=LOOKS {
-            let share = look as f64 / LOOKS as f64;
-            let (_, rate) = piece.at(times[row] + share * (times[row + 1] - times[row]));
-            // Where it is NaN, it does not rise.
-            let (least, largest) = piece.rates;
-            piece.rates = (if rate >= least { least } else { rate }, largest.max(rate));
-        }
-        piece
+        Self { nodes, differences }
+    }
+
+    /// Least and largest rate seen between two times; where one is NaN, the piece does not rise.
+    fn rates(&self, (from, to): (f64, f64)) -> (f64, f64) {
+        let rate = |look: usize| self.at(from + look as f64 / LOOKS as f64 * (to - from)).1;
+        (0..=LOOKS).map(rate).fold((f64::INFINITY, 0.0), |(least, largest), rate| {
+            (if rate >= least { least } else { rate }, rate.max(largest))
+        })
     }
 
     /// Value and rate.
@@ -91,28 +97,42 @@ impl Course {
         }
         let sign = if values.last() < values.first() { -1.0 } else { 1.0 };
         values.iter_mut().chain(&mut rates).for_each(|value| *value *= sign);
-        let pieces = (0..times.len() - 1).map(|row| Piece::new(&times, &values, &rates, row)).collect();
-        Some(Self { sign, times, values, pieces })
+        let pieces: Vec<Piece> = (0..times.len() - 1).map(|row| Piece::new(&times, &values, &rates, row)).collect();
+        let rates = pieces.iter().enumerate().map(|(row, piece)| piece.rates((times[row], times[row + 1]))).collect();
+        let ascends = values.is_sorted();
+        Some(Self { sign, times, values, ascends, pieces, rates })
     }
 
-    /// The part about the places of some samples; `None` where the course does not pass all of them, rests, or turns back.
+    /// The row in which a value is first reached, and the last one before it that is not above another.
+    fn around(&self, low: f64, high: f64) -> Option<(usize, usize)> {
+        if self.ascends {
+            let end = self.values.partition_point(|&value| value < high);
+            let begin = self.values[..end].partition_point(|&value| value <= low).checked_sub(1)?;
+            return (end < self.values.len()).then_some((begin, end));
+        }
+        let end = self.values.iter().position(|&value| value >= high)?;
+        let begin = self.values[..=end].iter().rposition(|&value| value <= low)?;
+        Some((begin, end))
+    }
+
+    /// The part about the places of some samples, and as much again beside it as far as the course rises there; `None` where the course does not pass all of them, rests, or turns back.
     pub fn over(&self, range: Range) -> Option<Phase<'_>> {
         let (a, b) = (self.sign * range.lower, self.sign * range.upper);
         let (low, high) = (a.min(b), a.max(b));
-        let mut end = self.values.iter().position(|&value| value >= high)?;
-        let mut begin = self.values[..=end].iter().rposition(|&value| value <= low)?;
+        let (mut begin, mut end) = self.around(low, high)?;
         // Written so that NaN is nowhere.
         if !(low < high && begin < end) {
             return None;
         }
         let least = SLOWEST * (self.values[end] - self.values[begin]) / (self.times[end] - self.times[begin]);
-        let rises = |piece: &Piece| piece.rates.0 >= least;
-        if !self.pieces[begin..end].iter().all(rises) {
+        let rises = |rates: &(f64, f64)| rates.0 >= least;
+        if !self.rates[begin..end].iter().all(rises) {
             return None;
         }
-        begin -= self.pieces[..begin].iter().rev().take_while(|piece| rises(piece)).count();
-        end += self.pieces[end..].iter().take_while(|piece| rises(piece)).count();
-        let steepest = self.pieces[begin..end].iter().fold(0.0_f64, |most, piece| most.max(piece.rates.1));
+        let beside = (end - begin).max(BEYOND);
+        begin -= self.rates[..begin].iter().rev().take(beside).take_while(|rates| rises(rates)).count();
+        end += self.rates[end..].iter().take(beside).take_while(|rates| rises(rates)).count();
+        let steepest = self.rates[begin..end].iter().fold(0.0_f64, |most, rates| most.max(rates.1));
         (end >= begin + ROWS).then_some(Phase { course: self, begin, end, steepest })
     }
 }
@@ -127,9 +147,15 @@ impl Phase<'_> {
         (sign * (value + rate * (time - within)), sign * rate)
     }
 
+    /// Whether a time of the course lies on this part of it.
+    pub fn holds(&self, time: f64) -> bool {
+        let times = &self.course.times;
+        times[self.begin] <= time && time <= times[self.end]
+    }
+
     /// The time at which the course has a value.
     pub fn time(&self, value: f64) -> f64 {
-        let Course { sign, times, values, pieces } = self.course;
+        let Course { sign, times, values, pieces, .. } = self.course;
         let value = sign * value;
         let beyond = [(self.begin, value <= values[self.begin]), (self.end, value >= values[self.end])];
         if let Some((row, _)) = beyond.into_iter().find(|beyond| beyond.1) {
@@ -139,6 +165,7 @@ impl Phase<'_> {
         let row = values[self.begin + 1..self.end].partition_point(|&row| row <= value) + self.begin;
         let (mut low, mut high) = (times[row], times[row + 1]);
         let mut time = low + (high - low) * (value - values[row]) / (values[row + 1] - values[row]);
+        let settled = (CLOSE * (high - low)).max(2.0 * f64::EPSILON * time.abs());
         // Newton's method, within what is known to hold the time.
         for _ in 0..STEPS {
             let (at, rate) = pieces[row].at(time);
@@ -149,7 +176,8 @@ impl Phase<'_> {
             }
             let next = time - (at - value) / rate;
             let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
-            if (next - time).abs() <= 2.0 * f64::EPSILON * time.abs() {
+            // The next step is as small as the square of this one.
+            if (next - time).abs() <= settled {
                 return next;
             }
             time = next;
@@ -201,6 +229,19 @@ mod tests {
                 assert!(((ahead - value) / 1e-7 - rate).abs() < 1e-4 * rate.abs());
             }
         }
+    }
+
+    /// A time that was told of one part is the time of another part that holds it.
+    #[test]
+    fn times_do_not_depend_on_the_part() {
+        let course = course(20.0);
+        let [narrow, wide] =
+            [(9.0, 11.0), (4.0, 30.0)].map(|(lower, upper)| course.over(Range { lower, upper }).unwrap());
+        for value in (0..=20).map(|step| 9.0 + 0.1 * f64::from(step)) {
+            let time = narrow.time(value);
+            assert!(wide.holds(time) && wide.time(value).to_bits() == time.to_bits());
+        }
+        assert!(!narrow.holds(0.0) && !narrow.holds(f64::NAN));
     }
 
     #[test]

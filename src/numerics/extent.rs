@@ -37,6 +37,20 @@ impl Extent {
         Self { range, gap, places, spacing }
     }
 
+    /// Takes better ends from a search that went on from these.
+    pub fn improve(&mut self, further: Self) {
+        let is_better = [further.range.lower < self.range.lower, further.range.upper > self.range.upper];
+        self.range = Range {
+            lower: self.range.lower.min(further.range.lower),
+            upper: self.range.upper.max(further.range.upper),
+        };
+        for (end, (place, spacing)) in further.places.into_iter().zip(further.spacing).enumerate() {
+            if is_better[end] {
+                (self.places[end], self.spacing[end]) = (place, spacing);
+            }
+        }
+    }
+
     /// Takes in values at other points. What lies beyond the range had been missed.
     pub fn include(&mut self, points: &[Vec<f64>], values: &[f64]) {
         for (point, &value) in points.iter().zip(values) {

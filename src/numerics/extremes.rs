@@ -5,6 +5,8 @@
 //! a low-discrepancy sequence, which have nothing to do with the lattice, check the result: what they find beyond it makes the lattice
 //! finer, and where that cannot be, it is an error. Nothing depends on the functions' size or sign.
 
+use rustc_hash::FxHashMap;
+
 use super::extent::{Extent, NEAR};
 use super::lattice::Lattice;
 use super::peak::Peak;
@@ -116,10 +118,27 @@ fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])], lea
 
 /// Extremes of other functions, not far from those of similar ones.
 pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+    search_near(known, false, evaluate)
+}
+
+/// Extremes of functions of which some places near them are known. Those that are known at corners of the box are believed.
+pub fn extremes_from(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+    search_near(known, true, evaluate)
+}
+
+fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     let near = |(output, extent): (usize, &Extent)| {
         let width = extent.range.width();
         let settled = SETTLED * width;
-        let end = |end: usize| End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], settled);
+        let end = |end: usize| {
+            let limits = [settled, LEFT * width];
+            let near = End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], limits);
+            if corners_stay && extent.places[end].iter().all(|xi| xi.abs() == 1.0) {
+                let best = [extent.range.lower, extent.range.upper][end];
+                return End { best, gap: 0.0, found: true, ..near };
+            }
+            near
+        };
         Search { ends: [0, 1].map(end).into(), settled, output, omitted: [Vec::new(), Vec::new()] }
     };
     let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();
@@ -138,8 +157,9 @@ struct Search {
     omitted: [Vec<(usize, f64)>; 2],
 }
 
-/// Searches until all ends are found.
+/// Searches until all ends are found, or cannot become the best by what matters.
 fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
+    let mut tops: FxHashMap<(usize, bool), f64> = FxHashMap::default();
     for _ in 0..ROUNDS {
         let searched: Vec<usize> = (0..ends.len()).filter(|&end| !ends[end].found).collect();
         let around: Vec<Vec<Vec<f64>>> = searched.iter().map(|&end| ends[end].points()).collect();
@@ -153,6 +173,12 @@ fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
             let of_output = ends[end].output * points.len() + first;
             ends[end].refine(around, &values[of_output..][..around.len()]);
             first += around.len();
+            let top = tops.entry(ends[end].goal()).or_insert(f64::NEG_INFINITY);
+            *top = top.max(ends[end].height());
+        }
+        for &end in &searched {
+            let top = tops[&ends[end].goal()];
+            ends[end].give_up(top);
         }
     }
 }
@@ -162,10 +188,10 @@ impl Search {
     fn new((output, least): (usize, f64), lattice: &Lattice, values: &[f64]) -> Self {
         let range = Range::of(values);
         let settled = (SETTLED * range.width()).max(SETTLED_OF_LEAST * least);
-        let end = |place: usize, sign: f64| {
-            End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, settled)
-        };
         let mut search = Self { ends: Vec::new(), output, settled, omitted: [Vec::new(), Vec::new()] };
+        let limits = [settled, settled.max(LEFT * range.width())];
+        let end =
+            |place: usize, sign: f64| End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, limits);
         for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
             if range.lower.is_nan() {
                 search.ends.push(End { best: f64::NAN, found: true, ..end(0, sign) });
@@ -200,7 +226,7 @@ impl Search {
                 let taken = left.split_off(left.len().saturating_sub(CANDIDATES));
                 let sign = SIGNS[place];
                 let end = |(at, _): (usize, f64)| {
-                    End::near(self.output, (&lattice.point(at), &lattice.spacing(at)), sign, self.settled)
+                    End::near(self.output, (&lattice.point(at), &lattice.spacing(at)), sign, [self.settled, matters])
                 };
                 self.ends.extend(taken.into_iter().rev().map(end));
                 more = true;
@@ -215,7 +241,9 @@ impl Search {
             let omitted = omitted.last().map_or(f64::NEG_INFINITY, |&(_, height)| height);
             let ends = self.ends.iter().filter(|end| end.sign == sign);
             let best = ends.reduce(|a, b| if sign * b.best > sign * a.best { b } else { a })?;
-            Some((best, best.gap.max(omitted - sign * best.best)))
+            let given_up = self.ends.iter().filter(|end| end.sign == sign && end.given_up).map(End::promise);
+            let beside = given_up.fold(omitted, f64::max);
+            Some((best, best.gap.max(beside - best.height())))
         };
         let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], &self.omitted[end])))
         else {
@@ -237,6 +265,8 @@ struct End {
     sign: f64,
     /// The end is found when a step changes less than this.
     settled: f64,
+    /// What another end may be beyond the best by less than this is left.
+    matters: f64,
     /// Distances of the first neighbours.
     spacing: Vec<f64>,
     /// Where the peak is looked for, and where it is believed to be.
@@ -250,16 +280,55 @@ struct End {
     /// Whether the neighbours are nearer than those that were no better than the best.
     is_near: bool,
     found: bool,
+    /// Whether it was left though it may be the best by what does not matter.
+    given_up: bool,
 }
 
 impl End {
     /// Not far from a place, with neighbours at these distances.
-    fn near(output: usize, (xi, spacing): (&[f64], &[f64]), sign: f64, settled: f64) -> Self {
+    fn near(output: usize, (xi, spacing): (&[f64], &[f64]), sign: f64, [settled, matters]: [f64; 2]) -> Self {
         let spacing: Vec<f64> = spacing.iter().map(|spacing| spacing.min(NEAR)).collect();
         let around = Peak::new(xi.to_vec(), spacing.clone());
         let best = -sign * f64::INFINITY;
         let (xi, best_xi) = (xi.to_vec(), xi.to_vec());
-        Self { output, sign, settled, spacing, around, best_xi, xi, best, gap: f64::NAN, is_near: false, found: false }
+        Self {
+            output,
+            sign,
+            settled,
+            matters,
+            spacing,
+            around,
+            best_xi,
+            xi,
+            best,
+            gap: f64::NAN,
+            is_near: false,
+            found: false,
+            given_up: false,
+        }
+    }
+
+    /// What it is an end of.
+    fn goal(&self) -> (usize, bool) {
+        (self.output, self.sign > 0.0)
+    }
+
+    /// How high it is.
+    fn height(&self) -> f64 {
+        self.sign * self.best
+    }
+
+    /// How high it may become, if each round that is left brought what the last one did.
+    fn promise(&self) -> f64 {
+        self.height() + ROUNDS as f64 * self.gap
+    }
+
+    /// Leaves it where it cannot become better than the best by what matters.
+    fn give_up(&mut self, top: f64) {
+        // Written so that nothing follows from NaN. What gained nothing may have been led away from its peak.
+        if !self.found && self.gap > 0.0 && self.height() < top && self.promise() <= top + self.matters {
+            (self.found, self.given_up) = (true, self.promise() > top + self.settled);
+        }
     }
 
     /// Where the function is needed for the next step: around the peak, and on it.

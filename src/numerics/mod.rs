@@ -55,10 +55,10 @@ pub use error::{
     BandError, SAFETY_OF_SURROGATE, carries, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
 pub use extent::Extent;
-pub use extremes::{extremes, extremes_near};
+pub use extremes::{extremes, extremes_from, extremes_near};
 pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
-pub use range::{EMPTY, Range, union};
+pub use range::{EMPTY, Range, limits, union};
 pub use row_space::{RowSpace, combined, dot};
 pub use samples::{TensorGrid, corners, spread, step_validation, validation};
 pub use scan::ScanBounds;

@@ -1,13 +1,22 @@
 //! From the best point of a grid to the peak beside it: by the quadratic through a point and its neighbours, as far as those
 //! reach.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// How much nearer the next neighbours are.
 const NEARER: f64 = 0.25;
 /// How much further, and how far at most.
 const FURTHER: f64 = 2.0;
 const FURTHEST: f64 = 0.5;
+
+/// For so many axes all faces are looked at.
+const MOST_FACES: usize = 3;
+/// Most changes of faces for each axis.
+const CHANGES: usize = 8;
+/// What a direction that bends upwards is shifted by at first, as a share of the bends.
+const SHIFT: f64 = 1e-3;
+/// What a step gains less than, as a share of all gain, is none.
+const SETTLED: f64 = 1e-12;
 
 /// A point near a function's peak, and its neighbours within [−1, 1]^k.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,8 +55,7 @@ impl Peak {
 
     /// ξ of a place of the stencil.
     pub fn neighbour(&self, offsets: &[i8]) -> Vec<f64> {
-        let steps: Vec<f64> = offsets.iter().map(|&offset| f64::from(offset)).collect();
-        self.away(&steps)
+        self.away(offsets.iter().map(|&offset| f64::from(offset)))
     }
 
     /// Around the peak that was found: nearer neighbours, or further ones where it lies at the limit of their reach.
@@ -73,7 +81,7 @@ impl Peak {
     }
 
     /// ξ at steps of the spacing.
-    fn away(&self, steps: &[f64]) -> Vec<f64> {
+    fn away(&self, steps: impl Iterator<Item = f64>) -> Vec<f64> {
         let xi = self.center.iter().zip(&self.spacing).zip(steps);
         xi.map(|((center, spacing), step)| (center + step * spacing).clamp(-1.0, 1.0)).collect()
     }
@@ -93,31 +101,90 @@ impl Peak {
                 bend[(b, a)] = bend[(a, b)];
             }
         }
-        self.away(&best_step(&slope, &bend))
+        self.away(best_step(&slope, &bend).into_iter())
     }
 }
 
-/// Where sᵀd − ½ dᵀBd is largest for |dᵢ| ≤ 1: inside the box, or inside one of its faces, edges, … with a peak there.
+/// Where sᵀd − ½ dᵀBd is largest for |dᵢ| ≤ 1.
 fn best_step(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
+    if slope.len() <= MOST_FACES { best_of_faces(slope, bend) } else { along_faces(slope, bend) }
+}
+
+/// Looks inside the box, and inside all of its faces, edges, … with a peak there.
+fn best_of_faces(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
     let k = slope.len();
-    let mut best = (0.0, vec![0.0; k]);
+    let slope = Vector3::from_fn(|axis, _| slope.get(axis).copied().unwrap_or(0.0));
+    let bend = Matrix3::from_fn(|a, b| bend.get((a, b)).copied().unwrap_or(0.0));
+    let mut best = (0.0, Vector3::zeros());
     for face in 0..3_usize.pow(k as u32) {
-        // Along each axis: free, or at one of its ends.
+        // Along each axis: free, or at one of its ends. What the box has no axis for is at rest.
         let side = |axis: usize| face / 3_usize.pow(axis as u32) % 3;
-        let mut step = DVector::from_fn(k, |axis, _| [0.0, -1.0, 1.0][side(axis)]);
-        let free: Vec<usize> = (0..k).filter(|&axis| side(axis) == 0).collect();
-        let pull = slope - bend * &step;
-        let Some(peak) = DMatrix::from_fn(free.len(), free.len(), |a, b| bend[(free[a], free[b])]).cholesky() else {
-            continue;
+        let is_free = |axis: usize| axis < k && side(axis) == 0;
+        let mut step = Vector3::from_fn(|axis, _| if axis < k { [0.0, -1.0, 1.0][side(axis)] } else { 0.0 });
+        let pull = slope - bend * step;
+        let own = |a: usize, b: usize| {
+            if is_free(a) && is_free(b) { bend[(a, b)] } else { f64::from(u8::from(a == b)) }
         };
-        let along = peak.solve(&DVector::from_fn(free.len(), |place, _| pull[free[place]]));
-        free.iter().zip(along.iter()).for_each(|(&axis, &along)| step[axis] = along);
-        let gain = slope.dot(&step) - 0.5 * step.dot(&(bend * &step));
+        let Some(peak) = Matrix3::from_fn(own).cholesky() else { continue };
+        step += peak.solve(&Vector3::from_fn(|axis, _| if is_free(axis) { pull[axis] } else { 0.0 }));
+        let gain = slope.dot(&step) - 0.5 * step.dot(&(bend * step));
         if gain > best.0 && step.iter().all(|step| step.abs() <= 1.0) {
-            best = (gain, step.as_slice().to_vec());
+            best = (gain, step);
         }
     }
-    best.1
+    best.1.as_slice()[..k].to_vec()
+}
+
+/// Climbs from the middle, from face to face (an active-set method): the best where B is positive definite, else a local peak. Where a free
+/// direction bends upwards, it is followed to the next face.
+fn along_faces(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
+    let k = slope.len();
+    let mut step = DVector::zeros(k);
+    let mut held = vec![false; k];
+    for _ in 0..CHANGES * k {
+        let pull = slope - bend * &step;
+        let free: Vec<usize> = (0..k).filter(|&axis| !held[axis]).collect();
+        let way = way_up(&free, &pull, bend);
+        let gain = way.dot(&pull);
+        // Written so that NaN ends it too.
+        let rises = gain > SETTLED * slope.dot(&step).abs();
+        if rises {
+            let curvature = way.dot(&(bend * &way));
+            let reach = |axis: usize| (way[axis].signum() - step[axis]) / way[axis];
+            let moving = free.iter().copied().filter(|&axis| way[axis] != 0.0);
+            let Some(first) = moving.min_by(|&a, &b| reach(a).total_cmp(&reach(b))) else { break };
+            let most = reach(first);
+            let share = if curvature > 0.0 { most.min(gain / curvature) } else { most };
+            step += &way * share;
+            if share == most {
+                (step[first], held[first]) = (way[first].signum(), true);
+            }
+        } else {
+            let inwards = |&axis: &usize| held[axis] && pull[axis] * step[axis] < 0.0;
+            let pulled = (0..k).filter(inwards).max_by(|&a, &b| pull[a].abs().total_cmp(&pull[b].abs()));
+            let Some(pulled) = pulled else { break };
+            held[pulled] = false;
+        }
+    }
+    step.as_slice().to_vec()
+}
+
+/// From a place with this pull to the peak of the quadratic along the free axes, or up where it has none.
+fn way_up(free: &[usize], pull: &DVector<f64>, bend: &DMatrix<f64>) -> DVector<f64> {
+    let own = DMatrix::from_fn(free.len(), free.len(), |a, b| bend[(free[a], free[b])]);
+    let up = DVector::from_fn(free.len(), |place, _| pull[free[place]]);
+    let mut shift = 0.0;
+    let solved = loop {
+        let shifted = &own + DMatrix::identity(free.len(), free.len()) * shift;
+        match shifted.cholesky() {
+            Some(peak) => break peak.solve(&up),
+            None if shift < own.amax() * free.len() as f64 => shift = (4.0 * shift).max(SHIFT * own.amax()),
+            None => break up,
+        }
+    };
+    let mut way = DVector::zeros(pull.len());
+    free.iter().zip(solved.iter()).for_each(|(&axis, &along)| way[axis] = along);
+    way
 }
 
 #[cfg(test)]
@@ -147,6 +214,41 @@ mod tests {
     }
 
     proptest! {
+        /// Where the quadratic has one peak in the box, from face to face leads to it.
+        #[test]
+        fn faces_lead_to_the_best(
+            slope in prop::array::uniform3(-3.0..3.0_f64),
+            factor in prop::collection::vec(-1.0..1.0_f64, 9),
+        ) {
+            let factor = DMatrix::from_vec(3, 3, factor);
+            let bend = &factor * factor.transpose() + DMatrix::identity(3, 3) * 1e-3;
+            let slope = DVector::from_row_slice(&slope);
+            let gain = |step: Vec<f64>| {
+                let step = DVector::from_vec(step);
+                slope.dot(&step) - 0.5 * step.dot(&(&bend * &step))
+            };
+            let (found, best) = (along_faces(&slope, &bend), best_of_faces(&slope, &bend));
+            prop_assert!(found.iter().all(|step| step.abs() <= 1.0));
+            prop_assert!((gain(found) - gain(best)).abs() < 1e-9);
+        }
+
+        /// Whichever way it bends, no axis alone leads further up.
+        #[test]
+        fn no_axis_leads_further(
+            slope in prop::array::uniform5(-3.0..3.0_f64),
+            bends in prop::collection::vec(-1.0..1.0_f64, 25),
+        ) {
+            let bends = DMatrix::from_vec(5, 5, bends);
+            let (slope, bend) = (DVector::from_row_slice(&slope), &bends + bends.transpose());
+            let found = DVector::from_vec(along_faces(&slope, &bend));
+            let pull = &slope - &bend * &found;
+            for axis in 0..5 {
+                prop_assert!(found[axis].abs() <= 1.0);
+                let held = found[axis].abs() == 1.0 && pull[axis] * found[axis] >= 0.0;
+                prop_assert!(held || pull[axis].abs() < 1e-5, "{axis}: {found} {pull}");
+            }
+        }
+
         #[test]
         fn quadratics_are_met_in_one_step(
             center in prop::array::uniform3(-0.3..0.3_f64),

@@ -15,11 +15,11 @@ impl Range {
 
     /// Of values: from the least to the largest; unknown if there are none or one is NaN.
     pub fn of(values: &[f64]) -> Self {
-        let fold = |f: fn(f64, f64) -> f64| values.iter().copied().reduce(f).unwrap_or(f64::NAN);
-        if values.iter().any(|value| value.is_nan()) {
+        if values.is_empty() || values.iter().any(|value| value.is_nan()) {
             return Self::UNKNOWN;
         }
-        Self { lower: fold(f64::min), upper: fold(f64::max) }
+        let (lower, upper) = limits(values);
+        Self { lower, upper }
     }
 
     /// Upper less lower end.
@@ -79,6 +79,21 @@ pub fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
         outer(of_a - a.lower, of_b - b.lower, -range.lower).max(outer(-of_a - a.lower, -of_b - b.lower, -range.lower));
     let error = if of_a.is_nan() || of_b.is_nan() { f64::NAN } else { above.max(below) };
     (range, error)
+}
+
+/// Values that are looked at side by side.
+const LANES: usize = 16;
+
+/// Least and largest of some values; NaN does not count. (In lanes, which need not wait for each other.)
+pub fn limits(values: &[f64]) -> (f64, f64) {
+    let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    for values in values.chunks(LANES) {
+        for ((low, high), &value) in low.iter_mut().zip(&mut high).zip(values) {
+            *low = if value < *low { value } else { *low };
+            *high = if value > *high { value } else { *high };
+        }
+    }
+    (low.into_iter().fold(f64::INFINITY, f64::min), high.into_iter().fold(f64::NEG_INFINITY, f64::max))
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ use crate::numerics::{
 };
 use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
-use composition::{Composer, Row};
+use composition::{BLOCK, Composer, Row};
 use estimator::RangeEstimator;
 use range_search::{Previous, RangeSearch};
 use sensitivity::SensitivityAnalysis;
@@ -342,7 +342,7 @@ fn composed(
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };
-        match composer.rows(surrogate, domain, &times, (values, stride, &[]), true, look) {
+        match composer.rows(surrogate, domain, &times, (values, stride, &[]), (true, BLOCK), look) {
             Ok(found) => {
                 for (row, (estimates, row_kept)) in rows.zip(found) {
                     kept.iter_mut().for_each(|kept| kept.extend(row_kept.clone()));

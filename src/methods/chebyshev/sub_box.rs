@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use symdiff::math;
 
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
 use crate::methods::validation::ValidationTable;
-use crate::numerics::{Course, ParameterBox, SparseGrid};
+use crate::numerics::{Course, ParameterBox, Range, SparseGrid};
 
 /// Highest degree in a parameter, by the number of parameters: one costs a node each, many their products.
 const HIGHEST: [u8; 3] = [128, 48, 24];
@@ -36,14 +37,21 @@ pub(super) type Surpluses = FxHashMap<Vec<u8>, f64>;
 pub(super) struct SubBox<'r> {
     pub domain: ParameterBox,
     pub grid: SparseGrid,
-    /// Motions and outputs at the grid's nodes: so many of them, then row by row, line by line, node by node.
+    /// Values at the grid's nodes: so many of them, then row by row, line by line, node by node. Lines are those of the motion, the outputs,
+    /// and for each coordinate that turns the time at which its course is there (NaN where that was not told).
     pub nodes: Vec<(usize, Vec<f64>)>,
+    /// Number of these lines.
+    pub lines: usize,
     /// Hierarchical surplus of each index of the grid: the error of the surrogate before the index was added.
     pub surplus: Surpluses,
     /// Of coordinates that turn, by coordinate; none, or one for each.
     pub courses: Vec<Option<Course>>,
-    /// Values of the validation samples.
+    /// ξ of the validation samples,
+    pub points: Cow<'r, [Vec<f64>]>,
+    /// and their values.
     pub direct: Cow<'r, ValidationTable>,
+    /// Whether the corners at which outputs are least and largest are among them.
+    pub witnessed: bool,
     /// Largest error at those over the one that is allowed.
     pub error: f64,
     /// Estimates of all rows, by row and output, and what is kept of them, once nothing is to be added.
@@ -52,20 +60,42 @@ pub(super) struct SubBox<'r> {
 
 impl SubBox<'_> {
     /// Rows that all nodes have reached.
-    pub fn rows(&self, lines: usize) -> usize {
-        self.nodes.iter().map(|(count, values)| values.len() / (lines * count)).min().unwrap_or(0)
+    pub fn rows(&self) -> usize {
+        self.nodes.iter().map(|(count, values)| values.len() / (self.lines * count)).min().unwrap_or(0)
     }
 
-    /// Motions and outputs of all nodes: row by row, line by line, node by node.
-    pub fn motions(&self, lines: usize, rows: impl ExactSizeIterator<Item = usize>) -> Vec<f64> {
+    /// Adds nodes, given their motions and outputs: row by row, line by line, node by node.
+    pub fn add(&mut self, (count, values): (usize, Vec<f64>)) {
+        let turning = self.courses.iter().flatten().count();
+        let with_times = |row: &[f64]| {
+            let mut row = row.to_vec();
+            for (coordinate, course) in self.courses.iter().enumerate() {
+                let Some(course) = course else { continue };
+                let positions = &row[coordinate * count..][..count];
+                let phase = course.over(Range::of(positions));
+                let time = |&position: &f64| phase.as_ref().map_or(f64::NAN, |phase| phase.time(position));
+                let times: Vec<f64> = positions.iter().map(time).collect();
+                row.extend(times);
+            }
+            row
+        };
+        let values = match turning {
+            0 => values,
+            _ => values.par_chunks((self.lines - turning) * count).map(with_times).collect::<Vec<_>>().concat(),
+        };
+        self.nodes.push((count, values));
+    }
+
+    /// Values at all nodes: row by row, line by line, node by node.
+    pub fn values(&self, rows: impl ExactSizeIterator<Item = usize>) -> Vec<f64> {
         let nodes: usize = self.nodes.iter().map(|(count, _)| count).sum();
-        let mut motions = Vec::with_capacity(rows.len() * lines * nodes);
-        for line in rows.flat_map(|row| row * lines..(row + 1) * lines) {
+        let mut all = Vec::with_capacity(rows.len() * self.lines * nodes);
+        for line in rows.flat_map(|row| row * self.lines..(row + 1) * self.lines) {
             for (count, values) in &self.nodes {
-                motions.extend_from_slice(&values[line * count..][..*count]);
+                all.extend_from_slice(&values[line * count..][..*count]);
             }
         }
-        motions
+        all
     }
 
     /// Indices to be added next, generation by generation, at least `wanted` as far as there are any: of each generation those whose

@@ -17,7 +17,7 @@ pub(super) use phases::{courses, turning};
 use super::range_search::{Evaluate, Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
 use crate::numerics::{
-    Course, Extent, ParameterBox, Phase, Range, Surrogate, SurrogateWork, corners, largest, surrogate_error,
+    Course, Extent, ParameterBox, Phase, Range, Surrogate, SurrogateWork, corners, largest, limits, surrogate_error,
 };
 
 /// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
@@ -57,9 +57,9 @@ impl<'a> Composer<'a> {
         Self { ensemble, closures: Vec::new() }
     }
 
-    /// Applies `look` to rows, in parallel block by block (with the extremes of the row before in the same block), given the
-    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line), and courses of coordinates. Velocities are expanded where they
-    /// are asked for, or outputs need them.
+    /// Applies `look` to rows, in parallel block by block of so many (with the extremes of the row before in the same block), given the
+    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line), courses of coordinates, and, behind the outputs, times
+    /// of these. Velocities are expanded where they are asked for, or outputs need them.
     ///
     /// # Errors
     /// Where a closure cannot be compiled.
@@ -69,7 +69,7 @@ impl<'a> Composer<'a> {
         domain: &ParameterBox,
         times: &[f64],
         (motions, stride, courses): (&[f64], usize, &[Option<Course>]),
-        velocities: bool,
+        (velocities, together): (bool, usize),
         look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
     ) -> Result<Vec<T>, EnsembleError> {
         let coordinates = 2 * self.ensemble.scales().len() * surrogate.samples().len();
@@ -79,7 +79,7 @@ impl<'a> Composer<'a> {
         }
         let look_at_block = |(block, times): (usize, &[f64])| {
             let (mut work, mut previous) = (SurrogateWork::default(), Previous::default());
-            let first = block * BLOCK;
+            let first = block * together;
             let at = |(place, &time): (usize, &f64)| {
                 let row = first + place;
                 let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..stride]);
@@ -96,7 +96,7 @@ impl<'a> Composer<'a> {
             };
             times.iter().enumerate().map(at).collect::<Vec<T>>()
         };
-        let blocks: Vec<Vec<T>> = times.par_chunks(BLOCK).enumerate().map(look_at_block).collect();
+        let blocks: Vec<Vec<T>> = times.par_chunks(together).enumerate().map(look_at_block).collect();
         Ok(blocks.into_iter().flatten().collect())
     }
 
@@ -126,7 +126,7 @@ const CORNERS: usize = 256;
 
 /// Rows looked at one after the other, so that each can begin where the one before ended. Fixed, so that results do not depend
 /// on the number of threads.
-const BLOCK: usize = 16;
+pub(super) const BLOCK: usize = 16;
 
 /// One row of output.
 pub(super) struct Row<'r> {
@@ -144,8 +144,6 @@ pub(super) struct Row<'r> {
     at_samples: &'r [f64],
     /// Coordinates that are expanded as times of their courses.
     phases: Vec<(usize, Phase<'r>)>,
-    /// Highest degree along each axis, or what stands for it where a coordinate turns more often.
-    degrees: Vec<u8>,
 }
 
 /// The outputs' ranges in a row.
@@ -179,38 +177,20 @@ impl<'r> Row<'r> {
         (time, motion, velocities): (f64, &'r [f64], bool),
         work: &mut SurrogateWork,
     ) -> Self {
-        let extent = |line: &[f64]| {
-            line.iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
-        };
-        let (coordinates, at_samples) = motion.split_at(2 * ensemble.scales().len() * surrogate.samples().len());
-        let extent: Vec<(f64, f64)> = coordinates.chunks_exact(surrogate.samples().len()).map(extent).collect();
+        let count = surrogate.samples().len();
+        let (coordinates, others) = motion.split_at(2 * ensemble.scales().len() * count);
+        let (at_samples, times) = others.split_at(ensemble.outputs() * count);
+        let extent: Vec<(f64, f64)> = coordinates.chunks_exact(count).map(limits).collect();
         let phases = phases(closure, courses, &extent);
-        let expanded = as_times(coordinates, &phases, surrogate.samples().len());
-        let coefficients = if velocities {
-            surrogate.coefficients(&[&expanded, at_samples].concat(), work)
-        } else {
-            let positions = &expanded[..coordinates.len() / 2];
-            let mut coefficients = surrogate.coefficients(&[positions, at_samples].concat(), work);
+        let wanted = if velocities { coordinates } else { &coordinates[..coordinates.len() / 2] };
+        let expanded = as_times(wanted, &phases, (courses, times), count);
+        let mut coefficients = surrogate.coefficients(&[&expanded, at_samples].concat(), work);
+        if !velocities {
             let of_outputs = coefficients.split_off(ensemble.scales().len() * surrogate.basis().len());
             coefficients.resize(2 * coefficients.len(), 0.0);
             coefficients.extend(of_outputs);
-            coefficients
-        };
-        let degrees = with_turns((surrogate.basis(), &coefficients), &phases, &extent, ensemble.scales());
-        Self {
-            ensemble,
-            surrogate,
-            domain,
-            closure,
-            time,
-            coefficients,
-            velocities,
-            extent,
-            at_samples,
-            phases,
-            degrees,
         }
+        Self { ensemble, surrogate, domain, closure, time, coefficients, velocities, extent, at_samples, phases }
     }
 
     /// What its polynomials are made by.
@@ -237,6 +217,7 @@ impl<'r> Row<'r> {
         let of = |outputs: &[usize], values: &[f64], stride: usize| -> Vec<Vec<f64>> {
             outputs.iter().map(|&output| values[output * stride..][..points.len()].to_vec()).collect()
         };
+        let degrees = self.degrees();
         let mut extents = vec![Extent::unknown(self.domain.dimension()); outputs];
         let places = if range_search.climbs().is_some() { self.seeds() } else { Vec::new() };
         let by_closure = |wanted: &[usize], points: &[Vec<f64>]| {
@@ -245,7 +226,7 @@ impl<'r> Row<'r> {
         };
         let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
         let of_polynomials = |outputs: &[usize], previous: &mut Previous| {
-            let functions = self.functions(outputs.to_vec(), true, (&rounding, &places), &by_coefficients);
+            let functions = self.functions(outputs.to_vec(), None, (&rounding, &places), &by_coefficients);
             range_search.range(&functions, &of(outputs, &own, points.len()), previous)
         };
         let found = of_polynomials(&alike, previous);
@@ -262,7 +243,7 @@ impl<'r> Row<'r> {
         }
         composed.sort_unstable();
         let composed_values = of(&composed, &values, all.len());
-        let functions = self.functions(composed, false, (&rounding, &places), &by_closure);
+        let functions = self.functions(composed, Some(&degrees), (&rounding, &places), &by_closure);
         for (&output, extent) in
             functions.outputs.iter().zip(range_search.range(&functions, &composed_values, previous))
         {
@@ -321,15 +302,22 @@ impl<'r> Row<'r> {
         outputs.iter().zip(found).enumerate().map(of_output).collect()
     }
 
+    /// Highest degree along each axis, or what stands for it where a coordinate turns more often.
+    fn degrees(&self) -> Vec<u8> {
+        let polynomials = (self.surrogate.basis(), self.coefficients.as_slice());
+        with_turns(polynomials, &self.phases, &self.extent, self.ensemble.scales())
+    }
+
+    /// Outputs as polynomials, or, where degrees are given that stand for them, as they are composed.
     fn functions<'f>(
         &'f self,
         outputs: Vec<usize>,
-        are_polynomials: bool,
+        composed: Option<&'f [u8]>,
         (rounding, places): (&'f [f64], &'f [Vec<f64>]),
         evaluate: &'f Evaluate<'f>,
     ) -> Functions<'f> {
-        let degrees = if are_polynomials { self.surrogate.basis().orders() } else { &self.degrees };
-        Functions { outputs, degrees, are_polynomials, rounding, places, evaluate }
+        let degrees = composed.unwrap_or(self.surrogate.basis().orders());
+        Functions { outputs, degrees, are_polynomials: composed.is_none(), rounding, places, evaluate }
     }
 
     /// What of an output is too small a difference to be one.
@@ -387,7 +375,7 @@ impl<'r> Row<'r> {
     }
 
     /// For each output the corners of the box at which it is least and largest.
-    fn best_corners(&self) -> Vec<Vec<f64>> {
+    pub fn best_corners(&self) -> Vec<Vec<f64>> {
         let places = corners(self.domain.dimension(), CORNERS);
         let values = self.evaluate(&places);
         let of_output = |values: &[f64]| {

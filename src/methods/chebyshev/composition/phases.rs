@@ -64,16 +64,24 @@ pub(super) fn phases<'c>(
     closure.independent().iter().filter_map(of).collect()
 }
 
-/// Positions and velocities (2n lines of samples) with those of such coordinates as times of their courses, and rates of these.
-pub(super) fn as_times<'m>(motion: &'m [f64], phases: &[(usize, Phase)], samples: usize) -> Cow<'m, [f64]> {
+/// Positions (n lines of samples), and velocities where they are there, with those of such coordinates as times of their courses, and
+/// rates of these. `known` are the times, line by line of the courses, as far as they were told before.
+pub(super) fn as_times<'m>(
+    motion: &'m [f64],
+    phases: &[(usize, Phase)],
+    (courses, known): (&[Option<Course>], &[f64]),
+    samples: usize,
+) -> Cow<'m, [f64]> {
     let mut motion = Cow::Borrowed(motion);
-    let half = motion.len() / 2;
     for (coordinate, phase) in phases {
-        let motion = motion.to_mut();
-        for place in coordinate * samples..(coordinate + 1) * samples {
-            let time = phase.time(motion[place]);
-            motion[place] = time;
-            motion[half + place] /= phase.at(time).1;
+        let (positions, velocities) = motion.to_mut().split_at_mut(courses.len() * samples);
+        let line = |line: usize| line * samples..(line + 1) * samples;
+        let mut known = known[line(courses[..*coordinate].iter().flatten().count())].iter();
+        let mut velocities = velocities.get_mut(line(*coordinate)).into_iter().flatten();
+        for position in &mut positions[line(*coordinate)] {
+            let told = known.next().copied().filter(|&time| phase.holds(time));
+            *position = told.unwrap_or_else(|| phase.time(*position));
+            velocities.next().into_iter().for_each(|velocity| *velocity /= phase.at(*position).1);
         }
     }
     motion

@@ -1,0 +1,187 @@
+//! How far off the surrogate of a sub-box is: at nodes that are new to it, and at validation samples.
+
+use std::borrow::Cow;
+
+use super::{Adaptation, WITNESSES};
+use crate::methods::chebyshev::composition::{BLOCK, Composer, Row};
+use crate::methods::chebyshev::detail::Detail;
+use crate::methods::chebyshev::estimator::RangeEstimator;
+use crate::methods::chebyshev::range_search::Previous;
+use crate::methods::chebyshev::sensitivity::SensitivityAnalysis;
+use crate::methods::chebyshev::sub_box::SubBox;
+use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, lines};
+use crate::methods::kept::KeptRow;
+use crate::methods::result::Estimate;
+use crate::numerics::{SAFETY_OF_SURROGATE, Surrogate, largest};
+
+/// Rows in which the error at new nodes is looked at, which only tells what to add next.
+const AT_NODES: usize = 16;
+
+impl Adaptation<'_> {
+    /// Values a row and sample of what is observed.
+    pub(super) fn lines(&self) -> usize {
+        lines(self.ensemble, Observed::Motion)
+    }
+
+    /// Largest error of a sub-box's surrogate at new nodes, over the one that is allowed: that of the outputs that follow from its
+    /// motion, against those that follow from the nodes' own.
+    pub(super) fn errors_at(
+        &mut self,
+        surrogate: &Surrogate,
+        sub_box: &SubBox,
+        nodes: &[Vec<f64>],
+        own: &[f64],
+    ) -> Result<Vec<f64>, EnsembleError> {
+        let own_stride = self.lines() * nodes.len();
+        let reached = self.goal.rows.min(sub_box.rows()).min(own.len() / own_stride.max(1));
+        let step = self.every.max(reached.div_ceil(AT_NODES)).max(1);
+        let rows: Vec<usize> = (0..reached).rev().step_by(step).collect();
+        let allowed = &self.goal.allowed;
+        let look = |place: usize, composed: &Row, _: &mut Previous| {
+            let own = &own[rows[place] * own_stride..];
+            let (expected, found) = (composed.evaluate_motion(nodes, own), composed.evaluate(nodes));
+            let mut errors = vec![0.0_f64; nodes.len()];
+            for (line, &allowed) in allowed.iter().enumerate() {
+                for (node, error) in errors.iter_mut().enumerate() {
+                    let place = line * nodes.len() + node;
+                    *error = largest([*error, (expected[place] - found[place]) / allowed]);
+                }
+            }
+            errors
+        };
+        let by_row = rows_of(&mut self.composer, self.ensemble, (sub_box, surrogate), &rows, (false, BLOCK), look)?;
+        Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
+    }
+
+    /// The rows that are looked at of so many, the last ones first.
+    fn looked_at(&self, rows: usize) -> Vec<usize> {
+        (0..rows).rev().step_by(self.every).collect()
+    }
+
+    /// Estimates a sub-box's error. A glance at some rows tells where it may be too large; those are looked at closely, the worst first,
+    /// until one of them is.
+    pub(super) fn check(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
+        sub_box.estimates = None;
+        let rows = self.looked_at(self.goal.rows.min(sub_box.rows()));
+        let glance = self.glance(sub_box, &rows)?;
+        let mut suspects: Vec<usize> = (0..rows.len()).filter(|&place| is_missed(glance[place])).collect();
+        suspects.sort_by(|&a, &b| glance[b].total_cmp(&glance[a]).then(a.cmp(&b)));
+        sub_box.error = glance.iter().filter(|error| **error <= 1.0).fold(0.0, |most, error| error.max(most));
+        let mut suspects: &[usize] = &suspects.into_iter().map(|place| rows[place]).collect::<Vec<usize>>();
+        // The worst alone at first: it tells most often.
+        let mut together = 1;
+        while !suspects.is_empty() && !is_missed(sub_box.error) {
+            let (worst, others) = suspects.split_at(together.min(suspects.len()));
+            let found = self.estimates(sub_box, worst, Detail::Errors)?.0;
+            sub_box.error = largest([sub_box.error, self.worst(&found)]);
+            (suspects, together) = (others, 2 * together);
+        }
+        Ok(())
+    }
+
+    /// Largest error of some rows' estimates over the one that is allowed, with its safety.
+    fn worst(&self, found: &[Estimate]) -> f64 {
+        let allowed = self.goal.allowed.iter().cycle();
+        largest(found.iter().zip(allowed).map(|(found, allowed)| SAFETY_OF_SURROGATE * found.error / allowed))
+    }
+
+    /// For each of some rows the largest error at the samples with the least and the largest values, over the one that is allowed.
+    fn glance(&mut self, sub_box: &SubBox, rows: &[usize]) -> Result<Vec<f64>, EnsembleError> {
+        let surrogate = Surrogate::sparse(&sub_box.grid);
+        let allowed = &self.goal.allowed;
+        let look = |place: usize, row: &Row, _: &mut Previous| {
+            let errors = row.errors_at_samples((&sub_box.points, &sub_box.direct), rows[place]);
+            largest(errors.iter().zip(allowed).map(|(error, allowed)| SAFETY_OF_SURROGATE * error / allowed))
+        };
+        rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, (false, BLOCK), look)
+    }
+
+    /// Estimates over a sub-box in some rows, by row and output, and what is kept of them.
+    fn estimates(
+        &mut self,
+        sub_box: &SubBox,
+        rows: &[usize],
+        detail: Detail,
+    ) -> Result<(Vec<Estimate>, Vec<KeptRow>), EnsembleError> {
+        let surrogate = Surrogate::sparse(&sub_box.grid);
+        let estimator = RangeEstimator {
+            search: &self.search,
+            validation: (&sub_box.points, &sub_box.direct),
+            halved: (detail != Detail::Errors).then_some((&self.validation.direct, &self.validation.halved)),
+            sensitivity: (detail == Detail::Sensitivities)
+                .then(|| SensitivityAnalysis::new(&sub_box.domain, &surrogate)),
+        };
+        let keeps = self.kept.is_some() && detail != Detail::Errors;
+        let look = |place: usize, row: &Row, previous: &mut Previous| {
+            let found = estimator.estimate(row, rows[place], previous);
+            let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
+            (found, kept)
+        };
+        // Errors alone are asked for of rows that are not neighbours.
+        let looked = if detail == Detail::Errors { (false, 1) } else { (true, BLOCK) };
+        let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, looked, look)?;
+        let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();
+        Ok((found.concat(), kept.into_iter().flatten().collect()))
+    }
+
+    /// Estimates over a sub-box in all rows, where they are not known.
+    pub(super) fn conclude_box(&mut self, sub_box: &mut SubBox, detail: Detail) -> Result<(), EnsembleError> {
+        if sub_box.estimates.is_none() {
+            let rows: Vec<usize> = (0..sub_box.rows()).collect();
+            let found = self.estimates(sub_box, &rows, detail)?;
+            let goal = self.goal.rows.min(rows.len()) * self.goal.allowed.len();
+            sub_box.error = self.worst(&found.0[..goal]);
+            sub_box.estimates = Some(found);
+        }
+        Ok(())
+    }
+
+    /// Adds the corners at which outputs are least or largest in most rows to a sub-box's validation samples.
+    pub(super) fn witness(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
+        if std::mem::replace(&mut sub_box.witnessed, true) {
+            return Ok(());
+        }
+        let rows = self.looked_at(self.goal.rows.min(sub_box.rows()));
+        let surrogate = Surrogate::sparse(&sub_box.grid);
+        let look = |_: usize, row: &Row, _: &mut Previous| row.best_corners();
+        let in_rows = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, BLOCK), look)?;
+        let mut corners: Vec<(Vec<f64>, usize)> = Vec::new();
+        for corner in in_rows.into_iter().flatten().filter(|corner| !sub_box.points.contains(corner)) {
+            match corners.iter_mut().find(|(known, _)| *known == corner) {
+                Some((_, rows)) => *rows += 1,
+                None => corners.push((corner, 1)),
+            }
+        }
+        // Stable: of equals, those of later rows.
+        corners.sort_by_key(|(_, rows)| std::cmp::Reverse(*rows));
+        corners.truncate(WITNESSES.min(self.goal.budget.simulations.saturating_sub(self.goal.spent)));
+        if corners.is_empty() {
+            return Ok(());
+        }
+        let corners: Vec<Vec<f64>> = corners.into_iter().map(|(corner, _)| corner).collect();
+        let direct = self.hold_out(&sub_box.domain, &corners)?;
+        sub_box.direct = Cow::Owned(sub_box.direct.with(&direct));
+        sub_box.points.to_mut().extend(corners);
+        self.check(sub_box)
+    }
+}
+
+/// Applies `look` to some rows of a sub-box's surrogate.
+fn rows_of<T: Send>(
+    composer: &mut Composer,
+    ensemble: &dyn Ensemble,
+    (sub_box, surrogate): (&SubBox, &Surrogate),
+    rows: &[usize],
+    (velocities, together): (bool, usize),
+    look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
+) -> Result<Vec<T>, EnsembleError> {
+    let values = sub_box.values(rows.iter().copied());
+    let times: Vec<f64> = rows.iter().map(|&row| ensemble.time(row)).collect();
+    let values = (values.as_slice(), sub_box.lines * surrogate.samples().len(), sub_box.courses.as_slice());
+    composer.rows(surrogate, &sub_box.domain, &times, values, (velocities, together), look)
+}
+
+/// Whether an error is more than the one that is allowed, which is 1; NaN is.
+fn is_missed(error: f64) -> bool {
+    error > 1.0 || error.is_nan()
+}
