@@ -115,3 +115,57 @@ simulation: {{ duration: 2, step: 1e-4, output_step: 1e-3 }}
     let off = largest(energy.iter().map(|e| e / energy[0] - 1.0));
     assert!(off < 1e-4, "{off:e}");
 }
+
+/// A ball beside, over and about the rim of a cylinder: the gap is the least distance by brute force, the side and the face as they are.
+#[test]
+fn gaps_to_a_ball_are_least_distances() {
+    let bounds = nominal(&read(&format!(
+        "
+bodies: {{ body: {{ mass: 2, inertia: {INERTIA}, points: {{ a: [0, 0, -0.25], b: [0, 0, 0.25] }} }} }}
+effects: {{ it: {{ contact: {{ between: [ground, body], circle: 0.05, {UPRIGHT}, impact: {{ stiffness: 1e5 }} }} }} }}
+initial: {{ body.x: -0.6, body.y: 0.25, body.z: 0.2, body.vx: 0.3, body.vz: -0.1, body.omega.x: 1.3, body.omega.y: 2.1 }}
+outputs: {{ gap: it.gap, ax: body.a.x, ay: body.a.y, az: body.a.z, bx: body.b.x, by: body.b.y, bz: body.b.z }}
+simulation: {{ duration: 4, step: 1e-3, output_step: 0.01 }}
+"
+    )));
+    let of = |name: &str, row: usize| curve(&bounds, name)[row];
+    for (row, gap) in curve(&bounds, "gap").iter().enumerate() {
+        let [a, b] = [["ax", "ay", "az"], ["bx", "by", "bz"]].map(|names| names.map(|name| of(name, row)));
+        let axis = [0, 1, 2].map(|i| (b[i] - a[i]) / 0.5);
+        let ahead: f64 = (0..3).map(|i| -a[i] * axis[i]).sum();
+        let aside = a.iter().map(|a| a * a).sum::<f64>() - ahead * ahead;
+        let aside = aside.max(0.0).sqrt();
+        // Over a grid of the half section, its edge among it, and refined about the best.
+        let (mut best, mut at, mut width) = (f64::INFINITY, [0.25, 0.05], [0.25, 0.05]);
+        for _ in 0..40 {
+            let middle = at;
+            for i in -10..=10 {
+                for j in -10..=10 {
+                    let t = (middle[0] + width[0] * f64::from(i) / 10.0).clamp(0.0, 0.5);
+                    let r = (middle[1] + width[1] * f64::from(j) / 10.0).clamp(0.0, 0.1);
+                    let distance = (ahead - t).hypot(aside - r);
+                    if distance < best {
+                        (best, at) = (distance, [t, r]);
+                    }
+                }
+            }
+            width = width.map(|width| 0.5 * width);
+        }
+        assert!((gap + 0.05 - best).abs() < 1e-8, "{row}: {} not {best}", gap + 0.05);
+    }
+}
+
+/// A ball and the side of a cylinder reflect as two balls of the same masses: along the common normal through both centres.
+#[test]
+fn a_cylinder_and_a_ball_exchange_their_velocities() {
+    let bounds = nominal(&read(&format!(
+        "
+bodies: {{ ball: {{ mass: 2, inertia: [0.01, 0.01, 0.01] }}, body: {{ mass: 2, inertia: {INERTIA} }} }}
+effects: {{ it: {{ contact: {{ between: [ball, body], circle: 0.05, {UPRIGHT}, impact: {{ stiffness: 1e7 }} }} }} }}
+initial: {{ ball.x: 0, ball.y: 0, ball.z: 0, body.x: 0.16, body.y: 0, body.z: 0, body.vx: -1 }}
+outputs: {{ ball: ball.vx, body: body.vx }}
+simulation: {{ duration: 0.03, step: 1e-5, output_step: 1e-3 }}
+"
+    )));
+    assert!((last(&bounds, "ball") + 1.0).abs() < 1e-4 && last(&bounds, "body").abs() < 1e-4);
+}

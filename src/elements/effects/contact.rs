@@ -117,7 +117,10 @@ impl ForceElement for Contact {
         let surface = if let Some(normal) = &self.plane {
             Surface::Whole(Shape::Plane(direction(normal)?))
         } else if let Some(outer) = &self.circle {
-            Surface::Whole(Shape::Round(forces.prescribed(outer)?))
+            let outer = forces.prescribed(outer)?;
+            // A ball's centre within the cylinder has no nearest side.
+            let ball = || Shape::Solid(Solid::point(forces.graph()), outer);
+            Surface::Whole(if cylinder.is_some() { ball() } else { Shape::Round(outer) })
         } else if let Some(bore) = &self.hollow {
             Surface::Whole(Shape::Hollow(forces.prescribed(bore)? - radius))
         } else if let Some(points) = &self.path {
@@ -144,9 +147,12 @@ impl ForceElement for Contact {
             corners.into_iter().map(|corner| centre + pair.outward_of_second(corner)).collect()
         } else if let Some(line) = line {
             surface.centres_on(&line, &pair)
-        } else if let (Some(cylinder), Surface::Whole(Shape::Plane(normal))) = (cylinder, &surface) {
+        } else if let Some(cylinder) = cylinder {
             reach = forces.graph().number(0.0);
-            cylinder.rims(&pair, *normal, radius)
+            match surface {
+                Surface::Whole(Shape::Plane(normal)) => cylinder.rims(&pair, normal, radius),
+                _ => vec![cylinder.nearest_in_cylinder(&pair, pair.first.point.position, radius)],
+            }
         } else {
             vec![centre]
         };

@@ -7,6 +7,8 @@
 //! p = n − (n·v) v,    q = p + w e,   w = ε³/(ε² + p²),    c = q/√(q² + w²/100),    place = face − r (c cos φ + v × c sin φ),   φ = 0, ±120°
 //! ```
 //!
+//! Of a cylinder with p = b + t v + l, l across v, the nearest point to a ball's centre p has t within 0 … M and |l| within r.
+//!
 //! Lines that cross have one nearest pair of points. Parallel ones have many: m is the middle of what they have beside one another,
 //! and ε = 10⁻⁴ the angle at which it takes over. At φ = 0 each face's deepest point touches, so that a cylinder rolls on the line
 //! between two of them and tips about its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the
@@ -52,6 +54,16 @@ impl<'g> Rod<'g> {
     pub fn nearest_to_point(&self, pair: &Pair<'g>, point: Vector<'g>) -> Vector<'g> {
         let (start, along) = self.outward(pair);
         start + self.within(along.dot(point - start)) * along
+    }
+
+    /// The point of a cylinder with flat ends that is nearest to one; in it, the same.
+    pub fn nearest_in_cylinder(&self, pair: &Pair<'g>, point: Vector<'g>, radius: Scalar<'g>) -> Vector<'g> {
+        let (start, along) = self.outward(pair);
+        let offset = point - start;
+        let ahead = along.dot(offset);
+        let aside = offset - ahead * along;
+        let share = radius / aside.dot(aside).max(radius * radius).sqrt();
+        start + self.within(ahead) * along + share * aside
     }
 
     /// The point that is nearest to a line of the first frame: from a point along a unit vector.
@@ -127,11 +139,7 @@ const TOUCHED: [(&str, &[&str], &str); 2] = [
         &["plane", "circle", "hollow", "capsule"],
         "a `line` touches a `plane`, `circle` (without `axis`), `hollow` or `capsule`",
     ),
-    (
-        "cylinder",
-        &["plane"],
-        "a `cylinder` touches a `plane`; against a ball it is the first body's `circle` with an `axis`",
-    ),
+    ("cylinder", &["plane", "circle"], "a `cylinder` touches a `plane` or a `circle` (without `axis`)"),
 ];
 
 /// Reports shapes of the second body that exclude each other, that lack a radius, and surfaces that they do not touch.
@@ -154,7 +162,7 @@ pub(super) fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fi
         reader.error(fields.key_span(key), format!("a `{key}` needs its `radius`"), None);
     }
     let others = all.iter().copied().filter(|surface| !surfaces.contains(surface));
-    let is_turned = key == "line" && fields.get("circle").is_some();
+    let is_turned = fields.get("circle").is_some();
     if let Some(other) = others.chain(is_turned.then_some("axis")).find(|other| fields.get(other).is_some()) {
         reader.error(fields.key_span(key), format!("`{key}` does not go with `{other}`"), help.to_owned());
     }

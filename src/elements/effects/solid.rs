@@ -10,7 +10,7 @@
 //! corners. Inside of a block, where e = 0, the nearest face pushes: gap = maxᵢ(|pᵢ| − hᵢ) − ρ − r, which is continuous. A centre on
 //! a capsule's line has no nearest side: nothing pushes it.
 
-use symdiff::{Formula, Scalar};
+use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use crate::grammar::{Reader, Span, SymbolTable};
@@ -42,6 +42,11 @@ impl<'g> Solid<'g> {
         let way = end - start;
         let length = way.norm();
         Self::Capsule { start, tangent: way / length, length }
+    }
+
+    /// A capsule without length.
+    pub fn point(g: &'g Builder) -> Self {
+        Self::Capsule { start: Vector::zero(g), tangent: Vector::along(g, 0), length: g.number(0.0) }
     }
 
     /// The gap to a centre at `offset` from the first point; `reach` is ρ + r.
