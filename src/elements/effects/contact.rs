@@ -7,6 +7,7 @@
 //! height h(x, t):               see `ground`
 //! edges, rounding ρ:            see `outline`
 //! capsule, block, rounding ρ:   see `solid`
+//! line, cylinder of the second: see `rod`
 //! F_B = f(−gap) n − R_μ v_t,    F_A = −F_B          N, both at r_B − r n
 //! ```
 //!
@@ -26,6 +27,7 @@ use super::felt::{Felt, SENSORS};
 use super::ground::Ground;
 use super::impact::Push;
 use super::outline::Outline;
+use super::rod::{self, Rod};
 use super::solid::{self, Gap, Solid};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
@@ -79,6 +81,12 @@ pub struct Contact {
     /// Points of the second point's frame that touch, each with the `radius`.
     #[quantity(unit = "m", constant, otherwise = "the second point itself")]
     pub corners: Option<Points>,
+    /// Both ends of the line in the middle of a capsule on the second body, in the second point's frame; its radius is the `radius`.
+    #[quantity(unit = "m", constant, otherwise = "no capsule")]
+    pub line: Option<Points>,
+    /// In space: centres of both faces of a cylinder on the second body, in the second point's frame; its radius is the `radius`.
+    #[quantity(unit = "m", constant, otherwise = "no cylinder")]
+    pub cylinder: Option<Points>,
     /// In space: axis of two parallel cylinders, in the first point's frame.
     #[key(otherwise = "they are spheres")]
     pub axis: Option<Axis>,
@@ -104,10 +112,15 @@ impl ForceElement for Contact {
         let direction = |formulas: &[Formula; 3]| forces.prescribed_vector(formulas).map(Vector::unit);
         let axis = self.axis.as_ref().filter(|_| forces.is_spatial()).map(|axis| direction(axis)).transpose()?;
         let corners = self.corners.as_ref().map(|corners| placed(forces, corners)).transpose()?;
+        let line = self.rod(forces, self.line.as_ref())?;
+        let cylinder = self.rod(forces, self.cylinder.as_ref())?;
         let surface = if let Some(normal) = &self.plane {
             Surface::Whole(Shape::Plane(direction(normal)?))
         } else if let Some(outer) = &self.circle {
-            Surface::Whole(Shape::Round(forces.prescribed(outer)?))
+            let outer = forces.prescribed(outer)?;
+            // A ball's centre within the cylinder has no nearest side.
+            let ball = || Shape::Solid(Solid::point(forces.graph()), outer);
+            Surface::Whole(if cylinder.is_some() { ball() } else { Shape::Round(outer) })
         } else if let Some(bore) = &self.hollow {
             Surface::Whole(Shape::Hollow(forces.prescribed(bore)? - radius))
         } else if let Some(points) = &self.path {
@@ -129,13 +142,23 @@ impl ForceElement for Contact {
         };
         let pair = forces.pair(self.between);
         let centre = pair.second.point.position;
-        let centres = corners.map_or_else(
-            || vec![centre],
-            |corners| corners.into_iter().map(|corner| centre + pair.outward_of_second(corner)).collect(),
-        );
+        let mut reach = radius;
+        let centres = if let Some(corners) = corners {
+            corners.into_iter().map(|corner| centre + pair.outward_of_second(corner)).collect()
+        } else if let Some(line) = line {
+            surface.centres_on(&line, &pair)
+        } else if let Some(cylinder) = cylinder {
+            reach = forces.graph().number(0.0);
+            match surface {
+                Surface::Whole(Shape::Plane(normal)) => cylinder.rims(&pair, normal, radius),
+                _ => vec![cylinder.nearest_in_cylinder(&pair, pair.first.point.position, radius)],
+            }
+        } else {
+            vec![centre]
+        };
         let felt = centres.into_iter().map(|centre| match &surface {
             &Surface::Whole(shape) => {
-                Touch { shape, radius, axis, impact, friction, along }.act(forces, (&pair, centre))
+                Touch { shape, radius: reach, axis, impact, friction, along }.act(forces, (&pair, centre))
             }
             Surface::Edges(outline) => outline.apply(forces, (&pair, centre), &impact, friction.as_ref()),
         });
@@ -147,6 +170,11 @@ impl ForceElement for Contact {
 }
 
 impl Contact {
+    fn rod<'g>(&self, forces: &dyn Forces<'g>, ends: Option<&Points>) -> Result<Option<Rod<'g>>, BuildError> {
+        let ends = ends.map(|ends| placed(forces, ends)).transpose()?.unwrap_or_default();
+        Ok(ends.first().zip(ends.last()).map(|(start, end)| Rod::between(*start, *end)))
+    }
+
     fn solid<'g>(&self, forces: &dyn Forces<'g>) -> Result<Option<Solid<'g>>, BuildError> {
         if let Some(ends) = &self.capsule {
             let ends = placed(forces, ends)?;
@@ -181,6 +209,7 @@ impl Checked for Contact {
                 reader.error(at, format!("`friction_along` does not go with `{edges}`"), None);
             }
         }
+        rod::check_keys(reader, fields, &SURFACES);
         match given.collect::<Vec<_>>().as_slice() {
             [] if !fields.lacks_all(&SURFACES) => {}
             [] => {
@@ -219,8 +248,13 @@ impl Checked for Contact {
                 points.check_edges(reader, fields.key_span(key), (key, least));
             }
         }
-        if let Some(ends) = &self.capsule {
-            solid::check_ends(reader, fields.key_span("capsule"), ends);
+        if let Some(corners) = &self.corners {
+            rod::check_corners(reader, fields, corners);
+        }
+        for (key, ends) in [("capsule", &self.capsule), ("line", &self.line), ("cylinder", &self.cylinder)] {
+            if let Some(ends) = ends {
+                solid::check_ends(reader, fields.key_span(key), (key, ends));
+            }
         }
         if let Some(lengths) = &self.block {
             solid::check_lengths(reader, fields.key_span("block"), lengths);
@@ -232,6 +266,19 @@ impl Checked for Contact {
 enum Surface<'g> {
     Whole(Shape<'g>),
     Edges(Outline<'g>),
+}
+
+impl<'g> Surface<'g> {
+    /// Centres on a line of the second body that are nearest.
+    fn centres_on(&self, line: &Rod<'g>, pair: &Pair<'g>) -> Vec<Vector<'g>> {
+        match *self {
+            Self::Whole(Shape::Solid(Solid::Capsule { start, tangent, length }, _)) => {
+                vec![line.nearest_to_line(pair, (start, tangent, length))]
+            }
+            Self::Whole(Shape::Round(_)) => vec![line.nearest_to_point(pair, pair.first.point.position)],
+            _ => line.ends(pair).to_vec(),
+        }
+    }
 }
 
 /// The first body's surface, where it is one.

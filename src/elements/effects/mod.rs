@@ -15,6 +15,7 @@ pub mod matrices;
 mod outline;
 mod positive_part;
 mod registry;
+mod rod;
 mod saturation;
 mod solid;
 mod spatial_beam;

@@ -10,7 +10,7 @@
 //! corners. Inside of a block, where e = 0, the nearest face pushes: gap = maxᵢ(|pᵢ| − hᵢ) − ρ − r, which is continuous. A centre on
 //! a capsule's line has no nearest side: nothing pushes it.
 
-use symdiff::{Formula, Scalar};
+use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use crate::grammar::{Reader, Span, SymbolTable};
@@ -42,6 +42,11 @@ impl<'g> Solid<'g> {
         let way = end - start;
         let length = way.norm();
         Self::Capsule { start, tangent: way / length, length }
+    }
+
+    /// A capsule without length.
+    pub fn point(g: &'g Builder) -> Self {
+        Self::Capsule { start: Vector::zero(g), tangent: Vector::along(g, 0), length: g.number(0.0) }
     }
 
     /// The gap to a centre at `offset` from the first point; `reach` is ρ + r.
@@ -113,10 +118,11 @@ fn inside<'g>(
 }
 
 /// Reports a capsule of other than two points, or of one twice, somewhere in the box of parameters.
-pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, ends: &Points) {
+pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (key, ends): (&str, &Points)) {
     let [start, end] = &**ends else {
-        let message = format!("a `capsule` has 2 points, not {}", ends.len());
-        reader.error(at, message, "several in a row are a `path`, in the plane".to_owned());
+        let message = format!("a `{key}` has 2 points, not {}", ends.len());
+        let help = (key == "capsule").then(|| "several in a row are a `path`, in the plane".to_owned());
+        reader.error(at, message, help);
         return;
     };
     for corner in 0..reader.corners.len() {
@@ -126,8 +132,9 @@ pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, e
         };
         if (0..3).all(is_same) {
             let label = &reader.corners[corner].label;
-            let message = format!("the ends of the `capsule` are one point{label}");
-            reader.error(at, message, "a ball is a `circle`".to_owned());
+            let message = format!("the ends of the `{key}` are one point{label}");
+            let help = (key == "capsule").then(|| "a ball is a `circle`".to_owned());
+            reader.error(at, message, help);
             return;
         }
     }

@@ -69,6 +69,8 @@ const KINDS: [(&str, &[(&str, Image)]); 32] = [
             ("polygon", Polars),
             ("capsule", Polars),
             ("corners", Polars),
+            ("line", Polars),
+            ("cylinder", Polars),
             ("friction_along", Directed),
         ],
     ),

@@ -1,0 +1,169 @@
+//! What the second body of a contact touches with: capsules and cylinders about a line in its frame.
+//!
+//! ```text
+//! line from b along v, length M, against one from a along u, length L; r = a − b:
+//! s = (v·r u·v − u·r + ε² m)/(|u × v|² + ε²) within 0 … L,    t = v·r + s u·v within 0 … M,    centre = b + t v
+//! faces of a cylinder of radius r about b and b + M v, plane with the normal n:
+//! p = n − (n·v) v,    q = p + w e,   w = ε³/(ε² + p²),    c = q/√(q² + w²/100),    place = face − r (c cos φ + v × c sin φ),   φ = 0, ±120°
+//! ```
+//!
+//! Of a cylinder with p = b + t v + l, l across v, the nearest point to a ball's centre p has t within 0 … M and |l| within r.
+//!
+//! Lines that cross have one nearest pair of points. Parallel ones have many: m is the middle of what they have beside one another,
+//! and ε = 10⁻⁴ the angle at which it takes over. At φ = 0 each face's deepest point touches, so that a cylinder rolls on the line
+//! between two of them and tips about its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the
+//! body turns into that of the deepest point. The pushes at ±120° are alike, and their torques about the axis cancel.
+
+use symdiff::Scalar;
+
+use super::course::Points;
+use crate::grammar::{Fields, Reader, SymbolTable};
+use crate::multibody::{Pair, Vector};
+
+/// ε of two lines.
+const PARALLEL: f64 = 1e-4;
+
+/// ε of a face and a plane.
+const FLAT: f64 = 1e-3;
+
+/// A line in the second frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rod<'g> {
+    start: Vector<'g>,
+    /// v
+    tangent: Vector<'g>,
+    /// M, m
+    length: Scalar<'g>,
+}
+
+impl<'g> Rod<'g> {
+    /// Between two points.
+    pub fn between(start: Vector<'g>, end: Vector<'g>) -> Self {
+        let way = end - start;
+        let length = way.norm();
+        Self { start, tangent: way / length, length }
+    }
+
+    /// Both ends.
+    pub fn ends(&self, pair: &Pair<'g>) -> [Vector<'g>; 2] {
+        let (start, along) = self.outward(pair);
+        [start, start + self.length * along]
+    }
+
+    /// The point that is nearest to one.
+    pub fn nearest_to_point(&self, pair: &Pair<'g>, point: Vector<'g>) -> Vector<'g> {
+        let (start, along) = self.outward(pair);
+        start + self.within(along.dot(point - start)) * along
+    }
+
+    /// The point of a cylinder with flat ends that is nearest to one; in it, the same.
+    pub fn nearest_in_cylinder(&self, pair: &Pair<'g>, point: Vector<'g>, radius: Scalar<'g>) -> Vector<'g> {
+        let (start, along) = self.outward(pair);
+        let offset = point - start;
+        let ahead = along.dot(offset);
+        let aside = offset - ahead * along;
+        let share = radius / aside.dot(aside).max(radius * radius).sqrt();
+        start + self.within(ahead) * along + share * aside
+    }
+
+    /// The point that is nearest to a line of the first frame: from a point along a unit vector.
+    pub fn nearest_to_line(
+        &self,
+        pair: &Pair<'g>,
+        (from, tangent, length): (Vector<'g>, Vector<'g>, Scalar<'g>),
+    ) -> Vector<'g> {
+        let (start, along) = self.outward(pair);
+        let across = pair.outward(tangent);
+        let offset = pair.first.point.position + pair.outward(from) - start;
+        let (cosine, normal) = (across.dot(along), across.cross(along));
+        let (ahead, aside) = (along.dot(offset), across.dot(offset));
+        let zero = length.builder().number(0.0);
+        let on_first = |place: Scalar<'g>| place.max(zero).min(length);
+        let middle = 0.5 * (on_first(-aside) + on_first(cosine * self.length - aside));
+        let small = PARALLEL * PARALLEL;
+        let place = (cosine * ahead - aside + small * middle) / (normal.dot(normal) + small);
+        start + self.within(ahead + cosine * on_first(place)) * along
+    }
+
+    /// Points of both rims of a cylinder that touch a plane with a normal in the first frame.
+    pub fn rims(&self, pair: &Pair<'g>, normal: Vector<'g>, radius: Scalar<'g>) -> Vec<Vector<'g>> {
+        let (_, along) = self.outward(pair);
+        let normal = pair.outward(normal);
+        let lean = normal - along.dot(normal) * along;
+        let square = lean.dot(lean);
+        let small = FLAT * FLAT;
+        let upright = FLAT * small / (square + small);
+        let toward = lean + upright * pair.outward_of_second(self.aside());
+        let size = (toward.dot(toward) + 0.01 * upright * upright).sqrt();
+        let down = radius * (toward / size);
+        let side = along.cross(down);
+        let third = 0.5 * 3.0_f64.sqrt();
+        let arms = [down, -0.5 * down + third * side, -0.5 * down - third * side];
+        self.ends(pair).into_iter().flat_map(|face| arms.map(|arm| face - arm)).collect()
+    }
+
+    /// A unit vector across it (Duff et al., J. Comput. Graph. Tech. 6 (2017) 1).
+    fn aside(&self) -> Vector<'g> {
+        let [x, y, z] = self.tangent.components();
+        let one = z.builder().number(1.0);
+        let sign = z.select(one, -one);
+        let factor = -1.0 / (sign + z);
+        Vector::from([1.0 + sign * x * x * factor, sign * x * y * factor, -(sign * x)])
+    }
+
+    fn outward(&self, pair: &Pair<'g>) -> (Vector<'g>, Vector<'g>) {
+        (pair.second.point.position + pair.outward_of_second(self.start), pair.outward_of_second(self.tangent))
+    }
+
+    fn within(&self, place: Scalar<'g>) -> Scalar<'g> {
+        place.max(self.length.builder().number(0.0)).min(self.length)
+    }
+}
+
+/// Of one contact: each has instructions of its own.
+const MOST_CORNERS: usize = 256;
+
+/// Reports more corners than a contact has.
+pub(super) fn check_corners<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, corners: &Points) {
+    if corners.len() > MOST_CORNERS {
+        let message = format!("a contact has at most {MOST_CORNERS} `corners`, not {}", corners.len());
+        let help = "points inside of their hull touch nothing: leave them out".to_owned();
+        reader.error(fields.key_span("corners"), message, help);
+    }
+}
+
+/// Surfaces that a key of the second body goes with.
+const TOUCHED: [(&str, &[&str], &str); 2] = [
+    (
+        "line",
+        &["plane", "circle", "hollow", "capsule"],
+        "a `line` touches a `plane`, `circle` (without `axis`), `hollow` or `capsule`",
+    ),
+    ("cylinder", &["plane", "circle"], "a `cylinder` touches a `plane` or a `circle` (without `axis`)"),
+];
+
+/// Reports shapes of the second body that exclude each other, that lack a radius, and surfaces that they do not touch.
+pub(super) fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, all: &[&'static str]) {
+    let shapes: Vec<&str> =
+        ["corners", "line", "cylinder"].into_iter().filter(|key| fields.get(key).is_some()).collect();
+    if let [first, second, ..] = shapes.as_slice() {
+        reader.error(fields.key_span(second), format!("`{first}` and `{second}` exclude each other"), None);
+        return;
+    }
+    if fields.get("cylinder").is_some() && !reader.model.is_spatial() {
+        reader.error(
+            fields.key_span("cylinder"),
+            "a `cylinder` needs `space: spatial`",
+            "in the plane it is a ball: give its `radius` alone".to_owned(),
+        );
+    }
+    let Some((key, surfaces, help)) = TOUCHED.into_iter().find(|(key, ..)| fields.get(key).is_some()) else { return };
+    if fields.lacks_all(&["radius"]) {
+        reader.error(fields.key_span(key), format!("a `{key}` needs its `radius`"), None);
+    }
+    let others = all.iter().copied().filter(|surface| !surfaces.contains(surface));
+    let is_turned = fields.get("circle").is_some();
+    if let Some(other) = others.chain(is_turned.then_some("axis")).find(|other| fields.get(other).is_some()) {
+        reader.error(fields.key_span(key), format!("`{key}` does not go with `{other}`"), help.to_owned());
+    }
+}
