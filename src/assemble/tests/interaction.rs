@@ -33,6 +33,8 @@ fn touching(between: [PointRef; 2]) -> Contact {
         polygon: None,
         height: None,
         corners: None,
+        line: None,
+        cylinder: None,
         rounding: formula("0"),
         radius: formula("0.9"),
         axis: None,
