@@ -35,6 +35,7 @@ joints! {
     cam::Cam,
     gear::Gear,
     rack::Rack,
+    planetary::Planetary,
     motor::Motor,
     equation::Equation,
 }

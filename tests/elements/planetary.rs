@@ -1,0 +1,126 @@
+//! Planetary sets: Willis' equation, torques, inertia.
+
+use mbint::inner::model;
+use mbint::inner::results::Bounds;
+
+use crate::common::closed_forms::{assert_exact, assert_exact_force};
+use crate::common::{nominal, read};
+
+/// Inertias of sun, ring and carrier, kg m²; ring teeth per tooth of the sun; torque on the first member named, N m.
+const INERTIA: [f64; 3] = [0.02, 0.5, 0.3];
+const RATIO: f64 = 3.0;
+const DRIVE: f64 = 0.6;
+
+fn text(members: &[&str], joints: &str, set: &str) -> String {
+    let bodies = ["sun", "ring", "carrier"].iter().zip(INERTIA);
+    let bodies: String = bodies.filter(|(name, _)| members.contains(name)).map(|(name, i)| format!("  {name}: {{ inertia: {i}, mass: 1 }}\n")).collect();
+    let initial: Vec<String> = members.iter().skip(1).map(|name| format!("{name}.angle: 0, {name}.angular_velocity: 0")).collect();
+    let outputs: Vec<String> = members.iter().map(|name| format!("{name}: {name}.angular_velocity")).collect();
+    format!(
+        "
+bodies:
+{bodies}
+joints:
+{joints}
+  set: {{ planetary: {set} }}
+effects: {{ drive: {{ torque: {{ on: {}, value: {DRIVE} }} }} }}
+initial: {{ {} }}
+outputs: {{ {}, torque: set.torque }}
+simulation: {{ duration: 1, step: 0.01, output_step: 0.1 }}
+",
+        members[0],
+        initial.join(", "),
+        outputs.join(", ")
+    )
+}
+
+fn run(members: &[&str]) -> Bounds {
+    let joints: String = members.iter().map(|name| format!("  j{name}: {{ revolute: [ground, {name}] }}\n")).collect();
+    let set: Vec<String> = members.iter().map(|name| format!("{name}: j{name}")).collect();
+    nominal(&read(&text(members, &joints, &format!("{{ {}, ratio: 60/20 }}", set.join(", ")))))
+}
+
+/// With the ring held the carrier turns 1 + ρ times slower than the sun; with the carrier held the ring turns backwards; with the sun
+/// held the carrier turns with the ring. What is driven feels the other's inertia by the square of the ratio.
+#[test]
+fn two_members_turn_in_a_ratio() {
+    for (members, ratio) in [
+        (["sun", "carrier"], 1.0 / (1.0 + RATIO)),
+        (["sun", "ring"], -1.0 / RATIO),
+        (["ring", "carrier"], RATIO / (1.0 + RATIO)),
+        (["carrier", "sun"], 1.0 + RATIO),
+    ] {
+        let bounds = run(&members);
+        let place = |name: &str| ["sun", "ring", "carrier"].iter().position(|known| *known == name).unwrap();
+        let [driven, other] = members.map(|name| INERTIA[place(name)]);
+        let acceleration = DRIVE / (driven + ratio * ratio * other);
+        assert_exact(&bounds, members[0], |t| acceleration * t);
+        assert_exact(&bounds, members[1], |t| ratio * acceleration * t);
+    }
+}
+
+/// A differential: α_s + ρ α_r = (1 + ρ) α_c, with the torques 1 : ρ : −(1 + ρ).
+#[test]
+fn three_members_share_the_torque() {
+    let bounds = run(&["sun", "ring", "carrier"]);
+    let [sun, ring, carrier] = INERTIA;
+    let share = 1.0 / sun + RATIO * RATIO / ring + (1.0 + RATIO) * (1.0 + RATIO) / carrier;
+    let lambda = DRIVE / sun / share;
+    assert_exact(&bounds, "sun", |t| (DRIVE - lambda) / sun * t);
+    assert_exact(&bounds, "ring", |t| -RATIO * lambda / ring * t);
+    assert_exact(&bounds, "carrier", |t| (1.0 + RATIO) * lambda / carrier * t);
+    assert_exact_force(&bounds, "torque", |_| -lambda);
+}
+
+/// A joint that counts from the wheel to the housing is as good.
+#[test]
+fn joints_may_count_either_way() {
+    let joints = "  js: { revolute: [sun, ground] }\n  jc: { revolute: [ground, carrier] }\n";
+    let bounds = nominal(&read(&text(&["sun", "carrier"], joints, "{ sun: js, carrier: jc, ratio: 3 }")));
+    let acceleration = DRIVE / (INERTIA[0] + INERTIA[2] / 16.0);
+    assert_exact(&bounds, "sun", |t| acceleration * t);
+    assert_exact(&bounds, "carrier", |t| acceleration / 4.0 * t);
+}
+
+#[test]
+fn what_is_no_set_is_refused() {
+    let joints = "  js: { revolute: [ground, sun] }\n  jc: { revolute: [sun, carrier] }\n";
+    for (set, message) in [
+        ("{ sun: js, ratio: 3 }", "one wheel alone is no planetary set"),
+        ("{ sun: js, carrier: js, ratio: 3 }", "`sun` and `carrier` are the same joint"),
+        ("{ sun: js, carrier: jc, ratio: -3 }", "positive"),
+    ] {
+        let report = model::load_str("test", &text(&["sun", "carrier"], joints, set), &[]).unwrap_err().to_string();
+        assert!(report.contains(message), "{set}: {report}");
+    }
+}
+
+/// What can be read, but is no set where it is assembled.
+#[test]
+fn axes_have_to_be_parallel_and_on_one_body() {
+    let model = |joints: &str, set: &str| {
+        read(&format!(
+            "
+space: spatial
+bodies:
+  sun: {{ mass: 1, inertia: [1, 1, 1] }}
+  ring: {{ mass: 1, inertia: [1, 1, 1] }}
+  carrier: {{ mass: 1, inertia: [1, 1, 1] }}
+joints:
+{joints}
+  set: {{ planetary: {set} }}
+outputs: {{ torque: set.torque }}
+simulation: {{ duration: 0.1, step: 1e-3 }}
+"
+        ))
+    };
+    let turned = "  js: { revolute: [ground, sun] }\n  jr: { fixed: [ground, ring] }\n  jc: { revolute: { between: [ground, carrier], axis: x } }\n";
+    let chain = "  js: { revolute: [ground, sun] }\n  jr: { revolute: [sun, ring] }\n  jc: { revolute: [ring, carrier] }\n";
+    for (joints, set, expected) in [
+        (turned, "{ sun: js, carrier: jc, ratio: 3 }", "the axis of `jc` is not parallel to the others"),
+        (chain, "{ sun: js, ring: jr, carrier: jc, ratio: 3 }", "have to turn on one body that they have in common"),
+    ] {
+        let wrong = mbint::inner::assemble::build(&model(joints, set)).unwrap_err().to_string();
+        assert!(wrong.contains(expected), "{wrong}");
+    }
+}
