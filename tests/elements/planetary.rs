@@ -12,8 +12,9 @@ const RATIO: f64 = 3.0;
 const DRIVE: f64 = 0.6;
 
 fn text(members: &[&str], joints: &str, set: &str) -> String {
-    let bodies = ["sun", "ring", "carrier"].iter().zip(INERTIA);
-    let bodies: String = bodies.filter(|(name, _)| members.contains(name)).map(|(name, i)| format!("  {name}: {{ inertia: {i}, mass: 1 }}\n")).collect();
+    let body = |(name, inertia)| format!("  {name}: {{ inertia: {inertia}, mass: 1 }}\n");
+    let bodies = ["sun", "ring", "carrier"].into_iter().zip(INERTIA).filter(|(name, _)| members.contains(name));
+    let bodies: String = bodies.map(body).collect();
     let initial: Vec<String> = members.iter().skip(1).map(|name| format!("{name}.angle: 0, {name}.angular_velocity: 0")).collect();
     let outputs: Vec<String> = members.iter().map(|name| format!("{name}: {name}.angular_velocity")).collect();
     format!(
@@ -114,7 +115,11 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
 "
         ))
     };
-    let turned = "  js: { revolute: [ground, sun] }\n  jr: { fixed: [ground, ring] }\n  jc: { revolute: { between: [ground, carrier], axis: x } }\n";
+    let turned = "
+  js: { revolute: [ground, sun] }
+  jr: { fixed: [ground, ring] }
+  jc: { revolute: { between: [ground, carrier], axis: x } }
+";
     let chain = "  js: { revolute: [ground, sun] }\n  jr: { revolute: [sun, ring] }\n  jc: { revolute: [ring, carrier] }\n";
     for (joints, set, expected) in [
         (turned, "{ sun: js, carrier: jc, ratio: 3 }", "the axis of `jc` is not parallel to the others"),

@@ -4,10 +4,10 @@
 //! Φ = φ_s − φ_c + ρ (φ_r − φ_c) − offset = 0,   ρ = z_r/z_s          1 row, rad
 //! ```
 //!
-//! Angles are those of joints about parallel axes, against the one body on which all are held; what is not named stands still. Against the carrier the sun turns the
-//! ring backwards (Willis). −Φ_qᵀ λ is the torque −λ on the sun, −ρ λ on the ring and (1 + ρ) λ on the carrier: together they are
-//! zero, and planets at even distances push no bearing aside. The planets have no inertia of their own here: that about the common axis
-//! belongs to the carrier's.
+//! Angles are those of joints about parallel axes, against the one body on which all are held; what is not named stands still.
+//! Against the carrier the sun turns the ring backwards (Willis). −Φ_qᵀ λ is the torque −λ on the sun, −ρ λ on the ring and
+//! (1 + ρ) λ on the carrier: together they are zero, and planets at even distances push no bearing aside. The planets have no inertia
+//! of their own here: that about the common axis belongs to the carrier's.
 
 use mbint_derive::Element;
 use symdiff::Formula;
