@@ -121,7 +121,10 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
   jc: { revolute: { between: [ground, carrier], axis: x } }
 ";
     let chain = "  js: { revolute: [ground, sun] }\n  jr: { revolute: [sun, ring] }\n  jc: { revolute: [ring, carrier] }\n";
+    // The sun's angle is that against the carrier: the body in common is the carrier, and the ground would turn on it.
+    let on_carrier = "  jc: { revolute: [ground, carrier] }\n  js: { revolute: [carrier, sun] }\n  jr: { fixed: [ground, ring] }\n";
     for (joints, set, expected) in [
+        (on_carrier, "{ sun: js, carrier: jc, ratio: 3 }", "have to turn on one body that they have in common"),
         (turned, "{ sun: js, carrier: jc, ratio: 3 }", "the axis of `jc` is not parallel to the others"),
         (chain, "{ sun: js, ring: jr, carrier: jc, ratio: 3 }", "have to turn on one body that they have in common"),
     ] {

@@ -16,6 +16,7 @@ use crate::elements::Glyph;
 use crate::grammar::{Checked, Fields, JointCoordinate, OnJoint, Reader, RotatingJoint, SymbolTable};
 use crate::multibody::{BuildError, Vector};
 
+use super::teeth::ALIGNED;
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 
 /// A sun and a ring, meshed by planets on a carrier; two of the three at least are named, and the third stands still.
@@ -29,13 +30,13 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
     checked
 )]
 pub struct Planetary {
-    /// Revolute joint of the sun.
+    /// Revolute joint of the sun on the housing.
     #[key(otherwise = "it stands still")]
     sun: Option<RotatingJoint>,
-    /// Revolute joint of the ring.
+    /// Revolute joint of the ring on the housing.
     #[key(otherwise = "it stands still")]
     ring: Option<RotatingJoint>,
-    /// Revolute joint of the carrier.
+    /// Revolute joint of the carrier on the housing.
     #[key(otherwise = "it stands still")]
     carrier: Option<RotatingJoint>,
     /// Teeth of the ring per tooth of the sun.
@@ -58,9 +59,14 @@ impl Planetary {
         let refuse = |why: String| BuildError::Teeth { joint: k.joint_name(own).to_owned(), why };
         let given: Vec<OnJoint> = self.members().into_iter().flatten().collect();
         let held: Vec<[usize; 2]> = given.iter().map(|on| k.bodies(on.joint).unwrap_or_default()).collect();
-        let on_all = |body: &usize| held.iter().all(|bodies| bodies.contains(body));
-        let housing = held.first().and_then(|bodies| bodies.iter().copied().find(on_all));
-        let housing = housing.ok_or_else(|| refuse("sun, ring and carrier have to turn on one body that they have in common".to_owned()))?;
+        // The ground, body 0, does not turn: where it would, the angles are against the carrier, or another member.
+        let holds_all = |body: &usize| {
+            held.iter().all(|bodies| bodies.contains(body) && bodies.iter().all(|held| held == body || *held != 0))
+        };
+        let housing = held.first().and_then(|bodies| bodies.iter().copied().find(holds_all));
+        let housing = housing.ok_or_else(|| {
+            refuse("sun, ring and carrier have to turn on one body that they have in common, the housing".to_owned())
+        })?;
         let mut first = None;
         let mut senses = [1.0; 3];
         for (sense, on) in senses.iter_mut().zip(self.members()) {
@@ -78,9 +84,6 @@ impl Planetary {
         Ok(senses)
     }
 }
-
-/// Sines of angles below this are zero.
-const ALIGNED: f64 = 1e-9;
 
 impl Checked for Planetary {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {

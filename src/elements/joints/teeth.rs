@@ -38,7 +38,7 @@ const PRESSURE: Requirement = Requirement {
 };
 
 /// Sines of angles and relative distances below this are zero.
-const ALIGNED: f64 = 1e-9;
+pub(super) const ALIGNED: f64 = 1e-9;
 
 /// How teeth touch.
 #[derive(Clone, Debug, Element)]
