@@ -34,7 +34,7 @@ impl Adaptation<'_> {
     ) -> Result<Vec<f64>, EnsembleError> {
         let own_stride = self.lines() * nodes.len();
         let reached = self.goal.rows.min(sub_box.rows()).min(own.len() / own_stride.max(1));
-        let step = self.every.max(reached.div_ceil(AT_NODES)).max(1);
+        let step = self.every.max(reached.div_ceil(AT_NODES));
         let rows: Vec<usize> = (0..reached).rev().step_by(step).collect();
         let allowed = &self.goal.allowed;
         let look = |place: usize, composed: &Row, _: &mut Previous| {
@@ -53,16 +53,16 @@ impl Adaptation<'_> {
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
-    /// The rows that are looked at of so many, the last ones first.
-    fn looked_at(&self, rows: usize) -> Vec<usize> {
-        (0..rows).rev().step_by(self.every).collect()
+    /// The rows of a sub-box that are looked at, the last ones first.
+    fn looked_at(&self, sub_box: &SubBox) -> Vec<usize> {
+        (0..self.goal.rows.min(sub_box.rows())).rev().step_by(self.every).collect()
     }
 
     /// Estimates a sub-box's error. A glance at some rows tells where it may be too large; those are looked at closely, the worst first,
     /// until one of them is.
     pub(super) fn check(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
         sub_box.estimates = None;
-        let rows = self.looked_at(self.goal.rows.min(sub_box.rows()));
+        let rows = self.looked_at(sub_box);
         let glance = self.glance(sub_box, &rows)?;
         let mut suspects: Vec<usize> = (0..rows.len()).filter(|&place| is_missed(glance[place])).collect();
         suspects.sort_by(|&a, &b| glance[b].total_cmp(&glance[a]).then(a.cmp(&b)));
@@ -141,7 +141,7 @@ impl Adaptation<'_> {
         if std::mem::replace(&mut sub_box.witnessed, true) {
             return Ok(());
         }
-        let rows = self.looked_at(self.goal.rows.min(sub_box.rows()));
+        let rows = self.looked_at(sub_box);
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let look = |_: usize, row: &Row, _: &mut Previous| row.best_corners();
         let in_rows = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, BLOCK), look)?;
