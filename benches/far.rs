@@ -94,7 +94,7 @@ fn main() {
         let Paired { seconds: [_, seconds], ratio: [low, ratio, high] } =
             paired(PAIRS, [&|| ran(&bare), &|| ran(description)]);
         let program = prepare(description).expect("the model compiles").program;
-        let tapes = [program.step(), program.factor(), program.correct(), program.advance()];
+        let tapes = [program.step(), program.factor(), program.first_correction(), program.advance()];
         let [all, apart] = [true, false].map(|active| tapes.iter().map(|tape| tape.len_where(active)).sum::<usize>());
         println!("{name:30} {seconds:8.3} {ratio:7.3} ({low:.3} to {high:.3}) {all:14} {apart:7}");
     }

@@ -36,11 +36,12 @@ fn main() {
         // What is asked without a motion has no steps.
         let Some(simulator) = load(&file, &[]).ok().and_then(|model| prepare(&model).ok()) else { continue };
         let (program, start) = (&simulator.program, &simulator.start);
-        let tapes: [(&str, &Tape); 9] = [
+        let tapes: [(&str, &Tape); 10] = [
             ("sample", program.sample()),
             ("step size", program.step_size()),
             ("step", program.step()),
             ("factor", program.factor()),
+            ("first correction", program.first_correction()),
             ("correct", program.correct()),
             ("advance", program.advance()),
             ("observe", program.observe()),

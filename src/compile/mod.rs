@@ -4,7 +4,7 @@
 //! - `scheme`: the integration schemes' coefficients;
 //! - `newton_matrix`: residual, Newton matrix and new state of a step; `links`: derivatives of deep trees, link by link;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`, `start_program`,
+//! - `step` → `program`: the tapes of a step, `first_correction` what a factorisation spares the correction after it; `start`: the tapes of a consistent start (`start_equations`, `start_program`,
 //!   `start_factors`), `nearest` what decides where it is open; `rounding`: how exactly constraints can be computed; `equation_tapes`: the equations alone;
 //! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
@@ -12,6 +12,7 @@
 mod elimination;
 mod equation_tapes;
 mod equations;
+mod first_correction;
 mod inertial_change;
 mod layout;
 mod links;

@@ -82,11 +82,12 @@ pub struct Program {
 }
 
 pub(super) const FACTOR: usize = 0;
-pub(super) const CORRECT: usize = 1;
-pub(super) const ADVANCE: usize = 2;
-pub(super) const OBSERVE: usize = 3;
-pub(super) const MATRIX: usize = 4;
-pub(super) const ESTIMATE: usize = 5;
+pub(super) const FIRST_CORRECTION: usize = 1;
+pub(super) const CORRECT: usize = 2;
+pub(super) const ADVANCE: usize = 3;
+pub(super) const OBSERVE: usize = 4;
+pub(super) const MATRIX: usize = 5;
+pub(super) const ESTIMATE: usize = 6;
 
 impl Tapes for Program {
     fn lowered(&self) -> &Lowered {
@@ -108,6 +109,11 @@ impl Program {
     /// Newton matrix at the iterate, factorised.
     pub fn factor(&self) -> &Tape {
         &self.lowered.kernels[FACTOR]
+    }
+
+    /// The same as [`correct`](Self::correct), after a factorisation at the same iterate.
+    pub fn first_correction(&self) -> &Tape {
+        &self.lowered.kernels[FIRST_CORRECTION]
     }
 
     /// Residual at the iterate and, with the last factors, the correction.
@@ -138,7 +144,7 @@ impl Program {
 
     /// Instructions of a step with one correction.
     pub fn instructions(&self) -> usize {
-        [self.step(), self.factor(), self.correct(), self.advance()].into_iter().map(Tape::len).sum()
+        [self.step(), self.factor(), self.first_correction(), self.advance()].into_iter().map(Tape::len).sum()
     }
 
     /// Registers that the factors occupy.

@@ -5,6 +5,7 @@ use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower_where, with_recipr
 
 use super::elimination::{Elimination, PivotChoice, Version, is_worthwhile};
 use super::equations::Equation;
+use super::first_correction::first_correction;
 use super::layout::Layout;
 use super::links;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
@@ -62,14 +63,15 @@ fn compile_as(
     let mut next = layout.registers() as u32;
     let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, active, inactive);
     let [correct, estimate] = solutions(&mut graph, &newton, &elimination, &layout);
-    let Elimination { frozen, guards, watched, active: Version { factors, mut equilibration }, .. } = elimination;
+    let Elimination { mut frozen, guards, watched, active: Version { factors, mut equilibration }, .. } = elimination;
     equilibration.truncate(newton.residual.len());
     let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
     let observe = with_reciprocals(&mut graph, &inputs, &outputs).into_iter().map(|output| (output, None)).collect();
     let mut matrix: Vec<Target> = newton.matrix.entries().map(|(_, _, value)| (value, None)).collect();
     matrix.extend(newton.residual.iter().map(|&value| (value, None)));
+    let first = first_correction(&mut graph, &mut inputs, &mut next, (&mut frozen, &guards), &correct);
     let guards = guards.into_iter().map(|(value, guard)| ((FACTOR, value), guard)).collect();
-    let kernels = [frozen, correct, advanced_state(&newton, &layout), observe, matrix, estimate];
+    let kernels = [frozen, first, correct, advanced_state(&newton, &layout), observe, matrix, estimate];
     let lowered = lower_where(&graph, &inputs, ITERATION, next, &kernels, &guards);
     debug_assert_eq!(lowered.stages.len(), STEP_SIZE + 2);
     let nonzeros = newton.matrix.nonzeros();

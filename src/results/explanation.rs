@@ -77,7 +77,9 @@ pub struct InstructionCounts {
     pub step: usize,
     /// Once a step, and again where Newton's iteration needs it: the matrix and its factors.
     pub factor: usize,
-    /// Once a Newton iteration: residual and substitution.
+    /// After a factorisation, at its iterate: residual and substitution, with the values that both need.
+    pub first_correction: usize,
+    /// Once a further Newton iteration: residual and substitution.
     pub correct: usize,
     /// Once a step, at its end.
     pub advance: usize,
@@ -87,13 +89,14 @@ pub struct InstructionCounts {
 
 impl InstructionCounts {
     /// Stages by name, with when they run and how many instructions they have.
-    pub fn stages(&self) -> [(&'static str, &'static str, usize); 7] {
+    pub fn stages(&self) -> [(&'static str, &'static str, usize); 8] {
         [
             ("sample", "once a sample", self.sample),
             ("step size", "once a step size", self.step_size),
             ("step", "once a step", self.step),
             ("factor", "when the Newton matrix is factored", self.factor),
-            ("correct", "every Newton iteration", self.correct),
+            ("first correction", "after a factorisation, with what it has computed", self.first_correction),
+            ("correct", "every further Newton iteration", self.correct),
             ("advance", "once a step, at its end", self.advance),
             ("observe", "once a row of output", self.observe),
         ]

@@ -183,6 +183,7 @@ impl InstructionCounts {
         self.step_size += other.step_size;
         self.step += other.step;
         self.factor += other.factor;
+        self.first_correction += other.first_correction;
         self.correct += other.correct;
         self.advance += other.advance;
         self.observe += other.observe;

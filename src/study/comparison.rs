@@ -17,6 +17,5 @@ pub(super) fn starts_alike(one: &Simulator, other: &Simulator) -> bool {
 
 /// Instructions of a step with one correction.
 pub(super) fn instructions(simulator: &Simulator) -> usize {
-    let p = &simulator.program;
-    [p.step(), p.factor(), p.correct(), p.advance()].into_iter().map(symdiff::Tape::len).sum()
+    simulator.program.instructions()
 }

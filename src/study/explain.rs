@@ -120,6 +120,7 @@ fn instruction_counts(program: &Program, active: bool) -> InstructionCounts {
         step_size: count(program.step_size()),
         step: count(program.step()),
         factor: count(program.factor()),
+        first_correction: count(program.first_correction()),
         correct: count(program.correct()),
         advance: count(program.advance()),
         observe: count(program.observe()),

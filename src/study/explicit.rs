@@ -165,7 +165,7 @@ impl Study<'_> {
 /// Instructions of a sample by the scheme's own steps.
 fn plain_work(simulator: &Simulator, schedule: &Schedule) -> usize {
     let program = &simulator.program;
-    let of_step = program.step().len() + program.factor().len() + 2 * program.correct().len() + program.advance().len();
+    let of_step = program.instructions() + program.correct().len();
     of_step * schedule.steps_before(schedule.rows - 1)
 }
 

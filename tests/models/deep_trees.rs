@@ -86,8 +86,7 @@ fn both(description: &Description) -> [Simulator; 2] {
 }
 
 fn instructions(simulator: &Simulator) -> usize {
-    let p = &simulator.program;
-    p.step().len() + p.factor().len() + p.correct().len() + p.advance().len()
+    simulator.program.instructions()
 }
 
 #[test]

@@ -39,7 +39,10 @@ fn floors(count: usize) -> Description {
 /// Instructions of a step with one correction, where everything touches or nothing does.
 fn instructions(simulator: &Simulator, active: bool) -> usize {
     let p = &simulator.program;
-    [p.step(), p.factor(), p.correct(), p.advance()].map(|tape: &Tape| tape.len_where(active)).into_iter().sum()
+    [p.step(), p.factor(), p.first_correction(), p.advance()]
+        .map(|tape: &Tape| tape.len_where(active))
+        .into_iter()
+        .sum()
 }
 
 /// Bare, and then a few instructions for each contact: its gap and the greatest of the gaps, when the matrix is factorised and

@@ -200,9 +200,7 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: {form
 /// Instructions of a step with one correction.
 fn instructions(description: &Description) -> (bool, usize) {
     let simulator = study::prepare(description).unwrap();
-    let p = &simulator.program;
-    let count = p.step().len() + p.factor().len() + p.correct().len() + p.advance().len();
-    (simulator.system.formulation.joint, count)
+    (simulator.system.formulation.joint, simulator.program.instructions())
 }
 
 #[test]
@@ -251,7 +249,7 @@ fn a_program_is_given_up_beyond_its_limit_and_not_before() {
     let [free, limited] = [None, Some(1_000_000)].map(|limit| within(limit).unwrap());
     let instructions = |simulator: &Simulator| {
         let program = &simulator.program;
-        [program.step(), program.factor(), program.correct(), program.advance()].map(|tape| tape.len())
+        [program.step(), program.factor(), program.first_correction(), program.advance()].map(|tape| tape.len())
     };
     assert_eq!(instructions(&free), instructions(&limited));
 }

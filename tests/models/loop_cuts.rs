@@ -17,8 +17,7 @@ fn within(mut description: Description, formulation: Formulation) -> Description
 
 /// Instructions of a step with one correction.
 fn instructions(simulator: &Simulator) -> usize {
-    let p = &simulator.program;
-    p.step().len() + p.factor().len() + p.correct().len() + p.advance().len()
+    simulator.program.instructions()
 }
 
 fn cut(description: &Description, simulator: &Simulator) -> Vec<String> {

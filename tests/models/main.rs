@@ -26,6 +26,7 @@ mod extrapolation;
 mod far;
 mod fast_functions;
 mod features;
+mod first_correction;
 mod formulas;
 mod formulations;
 mod hard_cases;

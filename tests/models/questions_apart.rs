@@ -169,7 +169,8 @@ fn who_does_not_ask_does_not_pay() {
     let statistics = text("", "statistics: { quantiles: [5%, 95%] }\n");
     let tapes = |description: &Description| {
         let program = study::prepare(description).unwrap().program;
-        [program.step(), program.factor(), program.correct(), program.advance()].map(|tape| tape.len_where(true))
+        [program.step(), program.factor(), program.first_correction(), program.advance()]
+            .map(|tape| tape.len_where(true))
     };
     assert_eq!(tapes(&plain), tapes(&statistics));
     assert_eq!(tapes(&plain), tapes(&asked));

@@ -179,8 +179,10 @@ impl Newton {
             if count == 0 || count >= FROZEN_CORRECTIONS {
                 tile.run(program.factor());
                 vectorised(Watch { watched: &program.watched, tile, singular: &mut self.singular });
+                tile.run(program.first_correction());
+            } else {
+                tile.run(program.correct());
             }
-            tile.run(program.correct());
             if self.pending.iter().zip(&self.singular).any(|(pending, singular)| *pending && *singular) {
                 self.correct_singular(program, tile, gain, count);
             }
