@@ -243,14 +243,15 @@ mod tests {
           spring  spring_damper  on 1 coordinate  9 expressions   adds 4 an iteration, 0 a factorisation, 2 a step
           floor   contact        on 1 coordinate  40 expressions  adds 30 an iteration, -3 a factorisation, 0 a step; inactive 2, -5, 0
 
-        313 instructions
-          sample      21  once a sample
-          step size    4  once a step size
-          step        30  once a step
-          factor      94  when the Newton matrix is factored, 90 while conditional effects are inactive
-          correct    122  every Newton iteration, 94 while conditional effects are inactive
-          advance     40  once a step, at its end
-          observe      2  once a row of output
+        393 instructions
+          sample             21  once a sample
+          step size           4  once a step size
+          step               30  once a step
+          factor             94  when the Newton matrix is factored, 90 while conditional effects are inactive
+          first correction   80  right after a factorisation, 60 while conditional effects are inactive
+          correct           122  every further Newton iteration, 94 while conditional effects are inactive
+          advance            40  once a step, at its end
+          observe             2  once a row of output
 
         Newton matrix, 13 × 13
           nonzeros             43  25 % of the square

@@ -95,7 +95,7 @@ impl InstructionCounts {
             ("step size", "once a step size", self.step_size),
             ("step", "once a step", self.step),
             ("factor", "when the Newton matrix is factored", self.factor),
-            ("first correction", "after a factorisation, with what it has computed", self.first_correction),
+            ("first correction", "right after a factorisation", self.first_correction),
             ("correct", "every further Newton iteration", self.correct),
             ("advance", "once a step, at its end", self.advance),
             ("observe", "once a row of output", self.observe),

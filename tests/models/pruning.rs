@@ -25,7 +25,7 @@ fn csv(bounds: &Bounds) -> String {
 }
 
 /// Instructions of every tape.
-fn instructions(description: &Description) -> [usize; 9] {
+fn instructions(description: &Description) -> [usize; 10] {
     let simulator = study::prepare(description).unwrap();
     let (p, s) = (&simulator.program, &simulator.start);
     [
@@ -33,8 +33,9 @@ fn instructions(description: &Description) -> [usize; 9] {
         p.step_size().len(),
         p.step().len(),
         p.factor().len(),
-        p.correct().len(),
+        p.first_correction().len(),
         p.advance().len(),
+        p.correct().len(),
         p.observe().len(),
         p.matrix().len(),
         s.position().len(),

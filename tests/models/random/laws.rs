@@ -210,13 +210,21 @@ fn motion_does_not_depend_on_names_and_order() {
     let looped = |kind: Kind| Kind { looped: true, ..kind };
     let kinds = [PLANAR, SPATIAL, looped(PLANAR), looped(SPATIAL), Kind { driven: true, ..SPATIAL }];
     holds(&kinds, |mechanism| {
-        let here = Scene::of(places(mechanism), STEP, DURATION);
-        let there = Scene { name: "zz_part_", reversed: true, ..here.clone() };
-        let (a, b) = (here.run(mechanism), there.run(mechanism));
-        let off = (0..here.outputs.len())
-            .map(|output| largest(course(&a, output).iter().zip(course(&b, output)).map(|(a, b)| a - b)));
-        let worst = largest(off);
-        prop_assert!(worst < 1e-8, "{worst:e} m");
+        let apart = |step: f64| {
+            let here = Scene::of(places(mechanism), step, DURATION);
+            let there = Scene { name: "zz_part_", reversed: true, ..here.clone() };
+            let (a, b) = (here.run(mechanism), there.run(mechanism));
+            let off = (0..here.outputs.len())
+                .map(|output| largest(course(&a, output).iter().zip(course(&b, output)).map(|(a, b)| a - b)));
+            largest(off)
+        };
+        let coarse = apart(STEP);
+        if coarse < 1e-8 {
+            return Ok(());
+        }
+        // A loop may be cut elsewhere, where cuts are as short as one another: then the steps' errors differ.
+        let fine = apart(0.5 * STEP);
+        prop_assert!(mechanism.kind.looped && is_of_second_order(coarse, fine, 1e-8), "{coarse:e} and {fine:e} m");
         Ok(())
     });
 }
