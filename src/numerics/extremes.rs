@@ -162,17 +162,20 @@ fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
     let mut tops: FxHashMap<(usize, bool), f64> = FxHashMap::default();
     for _ in 0..ROUNDS {
         let searched: Vec<usize> = (0..ends.len()).filter(|&end| !ends[end].found).collect();
-        let around: Vec<Vec<Vec<f64>>> = searched.iter().map(|&end| ends[end].points()).collect();
-        let points = around.concat();
+        let (mut points, mut firsts) = (Vec::new(), Vec::with_capacity(searched.len() + 1));
+        for &end in &searched {
+            firsts.push(points.len());
+            points.extend(ends[end].points());
+        }
         if points.is_empty() {
             break;
         }
+        firsts.push(points.len());
         let values = evaluate(&points);
-        let mut first = 0;
-        for (&end, around) in searched.iter().zip(&around) {
-            let of_output = ends[end].output * points.len() + first;
+        for (&end, bounds) in searched.iter().zip(firsts.windows(2)) {
+            let around = &points[bounds[0]..bounds[1]];
+            let of_output = ends[end].output * points.len() + bounds[0];
             ends[end].refine(around, &values[of_output..][..around.len()]);
-            first += around.len();
             let top = tops.entry(ends[end].goal()).or_insert(f64::NEG_INFINITY);
             *top = top.max(ends[end].height());
         }
@@ -332,9 +335,8 @@ impl End {
     }
 
     /// Where the function is needed for the next step: around the peak, and on it.
-    fn points(&self) -> Vec<Vec<f64>> {
-        let stencil = self.around.stencil();
-        stencil.iter().map(|offsets| self.around.neighbour(offsets)).chain([self.xi.clone()]).collect()
+    fn points(&self) -> impl Iterator<Item = Vec<f64>> {
+        self.around.neighbours().chain([self.xi.clone()])
     }
 
     /// Takes in the values there.

@@ -14,6 +14,8 @@ const AT_FACE: f64 = 0.3;
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
     intervals: Vec<usize>,
+    /// Places from a point to the next one along each axis.
+    strides: Vec<usize>,
     axes: Vec<Vec<f64>>,
     grid: TensorGrid,
 }
@@ -22,7 +24,9 @@ impl Lattice {
     pub(super) fn new(intervals: &[usize]) -> Self {
         let axis = |&count: &usize| (0..=count).map(|l| 0.0 - cos_pi(l, count.max(1))).collect();
         let axes: Vec<Vec<f64>> = intervals.iter().map(axis).collect();
-        Self { intervals: intervals.to_vec(), grid: TensorGrid::new(axes.clone()), axes }
+        let stride = |axis: usize| intervals[axis + 1..].iter().map(|count| count + 1).product();
+        let strides = (0..intervals.len()).map(stride).collect();
+        Self { intervals: intervals.to_vec(), strides, grid: TensorGrid::new(axes.clone()), axes }
     }
 
     pub(super) fn points(&self) -> Vec<Vec<f64>> {
@@ -42,30 +46,19 @@ impl Lattice {
             let after = points.get(at + 1).map_or(0.0, |after| after - points[at]);
             before.max(after).max(AT_FACE * PI / self.intervals[axis] as f64)
         };
-        self.indices(place).into_iter().enumerate().map(|(axis, at)| of_axis(axis, at)).collect()
+        self.indices(place).enumerate().map(|(axis, at)| of_axis(axis, at)).collect()
     }
 
     /// Place along each axis.
-    fn indices(&self, place: usize) -> Vec<usize> {
-        let mut rest = place;
-        let mut indices: Vec<usize> = (0..self.intervals.len())
-            .rev()
-            .map(|axis| {
-                let points = self.intervals[axis] + 1;
-                let at = rest % points;
-                rest /= points;
-                at
-            })
-            .collect();
-        indices.reverse();
-        indices
+    fn indices(&self, place: usize) -> impl Iterator<Item = usize> {
+        self.strides.iter().zip(&self.intervals).map(move |(stride, count)| place / stride % (count + 1))
     }
 
     /// The values at a point and at those one and two further along an axis, mirrored at the faces: two before, before, here, after,
     /// two after.
     fn along(&self, values: &[f64], place: usize, (axis, at): (usize, usize)) -> [f64; 5] {
         let count = self.intervals[axis] as isize;
-        let stride: usize = self.intervals[axis + 1..].iter().map(|count| count + 1).product();
+        let stride = self.strides[axis];
         [-2, -1, 0, 1, 2].map(|away| {
             let index = (at as isize + away).rem_euclid(2 * count);
             let mirrored = index.min(2 * count - index) as usize;
@@ -77,7 +70,7 @@ impl Lattice {
     pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let mut residuals = vec![0.0_f64; self.intervals.len()];
         for place in 0..values.len() {
-            for (axis, at) in self.indices(place).into_iter().enumerate() {
+            for (axis, at) in self.indices(place).enumerate() {
                 residuals[axis] = residuals[axis].max(residual(self.along(values, place, (axis, at))));
             }
         }
@@ -89,7 +82,7 @@ impl Lattice {
         let mut peaks = Vec::new();
         for place in 0..values.len() {
             let mut height = sign * values[place];
-            let is_peak = self.indices(place).into_iter().enumerate().all(|(axis, at)| {
+            let is_peak = self.indices(place).enumerate().all(|(axis, at)| {
                 let line = self.along(values, place, (axis, at));
                 let [_, before, here, after, _] = line;
                 height += (before - 2.0 * here + after).abs() / 8.0 + residual(line);

@@ -36,26 +36,24 @@ impl Peak {
         Self { center: xi, spacing }
     }
 
-    /// Where the function is needed, in spacings along each axis: the middle, its neighbours along each axis (before, after),
+    /// ξ where the function is needed: the middle, its neighbours along each axis (before, after),
     /// and those along each two (−−, −+, +−, ++).
-    pub fn stencil(&self) -> Vec<Vec<i8>> {
+    pub fn neighbours(&self) -> impl Iterator<Item = Vec<f64>> {
         let k = self.center.len();
-        let at = |moves: &[(usize, i8)]| {
-            let mut offsets = vec![0; k];
-            moves.iter().for_each(|&(axis, by)| offsets[axis] = by);
-            offsets
-        };
-        let mut stencil = vec![at(&[])];
-        stencil.extend((0..k).flat_map(|axis| [at(&[(axis, -1)]), at(&[(axis, 1)])]));
-        for (a, b) in (0..k).flat_map(|a| (0..a).map(move |b| (a, b))) {
-            stencil.extend([(-1, -1), (-1, 1), (1, -1), (1, 1)].map(|(of_a, of_b)| at(&[(a, of_a), (b, of_b)])));
-        }
-        stencil
+        let pairs = (0..k).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let alone = (0..k).flat_map(|axis| [-1.0, 1.0].map(|by| [(axis, by); 2]));
+        let both = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
+        let beside = pairs.flat_map(move |(a, b)| both.map(|(of_a, of_b)| [(a, of_a), (b, of_b)]));
+        let middle = self.center.iter().map(|center| center.clamp(-1.0, 1.0)).collect();
+        std::iter::once(middle).chain(alone.chain(beside).map(|moves| self.neighbour(moves)))
     }
 
-    /// ξ of a place of the stencil.
-    pub fn neighbour(&self, offsets: &[i8]) -> Vec<f64> {
-        self.away(offsets.iter().map(|&offset| f64::from(offset)))
+    /// ξ of the middle moved by so many spacings along one or two axes.
+    fn neighbour(&self, moves: [(usize, f64); 2]) -> Vec<f64> {
+        let mut xi = self.center.clone();
+        moves.into_iter().for_each(|(axis, by)| xi[axis] = self.center[axis] + by * self.spacing[axis]);
+        xi.iter_mut().for_each(|xi| *xi = xi.clamp(-1.0, 1.0));
+        xi
     }
 
     /// Around the peak that was found: nearer neighbours, or further ones where it lies at the limit of their reach.
@@ -86,7 +84,7 @@ impl Peak {
         xi.map(|((center, spacing), step)| (center + step * spacing).clamp(-1.0, 1.0)).collect()
     }
 
-    /// Where, no further away than the neighbours, the quadratic through the values on the stencil is best. `sign` is 1 for a
+    /// Where, no further away than the neighbours, the quadratic through the values at its [neighbours](Self::neighbours) is best. `sign` is 1 for a
     /// largest value, −1 for a least.
     pub fn vertex(&self, values: &[f64], sign: f64) -> Vec<f64> {
         let k = self.center.len();
@@ -193,7 +191,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn vertex(peak: &Peak, f: impl Fn(&[f64]) -> f64, sign: f64) -> Vec<f64> {
-        let values: Vec<f64> = peak.stencil().iter().map(|offsets| f(&peak.neighbour(offsets))).collect();
+        let values: Vec<f64> = peak.neighbours().map(|xi| f(&xi)).collect();
         peak.vertex(&values, sign)
     }
 

@@ -4,7 +4,7 @@
 //! The tapes are those of the start, with the independent coordinates as given ones.
 
 use nalgebra::DMatrix;
-use symdiff::Tile;
+use symdiff::{Tile, WIDTHS};
 
 use super::error::{SimulationError, no_factors};
 use super::simulator::Simulator;
@@ -16,7 +16,7 @@ use crate::compile::{StartProgram, Tapes, compile_start};
 /// bound, so that they determine the configuration over whole turns.
 const ANGLES_STAY: f64 = 0.3;
 
-/// Lanes evaluated at once.
+/// Most lanes evaluated at once.
 const WIDTH: usize = 32;
 
 /// The closure of a mechanism over one choice of independent coordinates.
@@ -102,10 +102,11 @@ impl<'s> Closure<'s> {
         let layout = &self.program.layout;
         into.clear();
         into.resize(self.program.outputs.len() * points.count, 0.0);
-        let mut assembly = Assembly::new(&self.program, &self.simulator.system, WIDTH, |_, _| 0.0);
+        let width = WIDTHS.into_iter().find(|&width| width >= points.count.min(WIDTH)).unwrap_or(WIDTH);
+        let mut assembly = Assembly::new(&self.program, &self.simulator.system, width, |_, _| 0.0);
         let mut first = 0;
         while first < points.count {
-            let count = WIDTH.min(points.count - first);
+            let count = width.min(points.count - first);
             let tile = assembly.tile_mut();
             let mut set = |registers: std::ops::Range<usize>, values: &[f64]| {
                 for (register, values) in registers.zip(values.chunks_exact(points.count)) {
@@ -145,7 +146,7 @@ impl<'s> Closure<'s> {
 
     fn closed(&self, assembly: &Assembly) -> Vec<bool> {
         let allowed = allowed_residual(&self.simulator.program.scale);
-        let mut closed = vec![true; WIDTH];
+        let mut closed = vec![true; assembly.tile().width()];
         for residual in &self.program.constraint {
             for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(residual.register)) {
                 *closed &= gap.abs() <= allowed;

@@ -2,6 +2,7 @@
 
 use symdiff::{Tape, Tile};
 
+use super::settling::{SETTLED, Settling};
 use crate::assemble::System;
 use crate::compile::{ClosureRow, Residual, StartProgram, Tapes};
 
@@ -16,12 +17,6 @@ const GUESSES: usize = 60;
 
 /// A constraint holds when its residual is at most this, relative to the smallest coordinate scale (at most 1).
 const CLOSED: f64 = 1e-9;
-
-/// Corrections (relative to the coordinates' scales) that end the iteration.
-const SETTLED: f64 = 1e-14;
-
-/// Corrections below this that no longer shrink are round-off.
-const STALLED: f64 = 1e-8;
 
 /// Largest residual at which a constraint holds, given the coordinates' scales.
 pub fn allowed_residual(scale: &[f64]) -> f64 {
@@ -53,6 +48,7 @@ pub struct Assembly<'p> {
     program: &'p StartProgram,
     scale: Vec<f64>,
     tile: Tile,
+    settling: Settling,
 }
 
 impl<'p> Assembly<'p> {
@@ -65,7 +61,7 @@ impl<'p> Assembly<'p> {
     ) -> Self {
         let tile = Tile::new(width, program.registers(), program.constants());
         let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
-        let mut assembly = Self { program, scale, tile };
+        let mut assembly = Self { program, scale, tile, settling: Settling::new(width) };
         assembly.set_parameters(parameters);
         assembly
     }
@@ -320,32 +316,16 @@ impl<'p> Assembly<'p> {
     /// Returns which lanes have settled.
     pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) -> Vec<bool> {
         let layout = &self.program.layout;
-        let width = self.tile.width();
         let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };
-        let mut pending = vec![true; width];
-        let mut last = vec![f64::INFINITY; width];
+        let registers = (start, layout.correction.start, count);
+        self.settling.begin();
         for _ in 0..MAX_CORRECTIONS {
             self.tile.run(tape);
-            let mut size = vec![0.0_f64; width];
-            for place in 0..count {
-                for lane in (0..width).filter(|&lane| pending[lane]) {
-                    let correction = self.tile.lane(layout.correction.start + place)[lane];
-                    let value = &mut self.tile.lane_mut(start + place)[lane];
-                    *value += correction;
-                    let scale = self.scale.get(place).copied().unwrap_or(1.0).max(value.abs());
-                    size[lane] = size[lane].max((correction / scale).abs());
-                }
-            }
-            for ((pending, size), last) in pending.iter_mut().zip(&size).zip(&last) {
-                let round_off = *size <= STALLED && *size >= 0.5 * last;
-                *pending &= *size > SETTLED && !round_off;
-            }
-            last = size;
-            if !pending.contains(&true) {
+            if !self.settling.apply(&mut self.tile, registers, &self.scale) {
                 break;
             }
         }
-        pending.into_iter().map(|pending| !pending).collect()
+        self.settling.settled()
     }
 
     /// The largest residual of each lane with a constraint that does not hold.

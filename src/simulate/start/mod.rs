@@ -5,6 +5,7 @@ mod general_position;
 mod mobility;
 mod open;
 mod rank;
+mod settling;
 
 pub(super) use assembly::{Assembly, ConstraintResidual, allowed_residual};
 pub(super) use general_position::{guess_state, move_apart, pivot_samples, spread};

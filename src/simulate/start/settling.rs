@@ -1,0 +1,85 @@
+//! Newton's corrections of a tile until every lane has settled.
+
+use symdiff::{Tile, Vectorise, vectorised};
+
+/// Corrections (relative to the coordinates' scales) that end the iteration.
+pub(super) const SETTLED: f64 = 1e-14;
+
+/// Corrections below this that no longer shrink are round-off.
+const STALLED: f64 = 1e-8;
+
+/// What is known of each lane's corrections.
+#[derive(Debug)]
+pub(super) struct Settling {
+    pending: Vec<bool>,
+    size: Vec<f64>,
+    /// Size of the correction before; NaN before the first one.
+    last: Vec<f64>,
+}
+
+impl Settling {
+    /// Of so many lanes.
+    pub fn new(width: usize) -> Self {
+        Self { pending: vec![true; width], size: vec![0.0; width], last: vec![f64::NAN; width] }
+    }
+
+    /// Before the first correction.
+    pub fn begin(&mut self) {
+        self.pending.fill(true);
+        self.last.fill(f64::NAN);
+    }
+
+    /// Adds corrections, `count` registers from `corrections` on, to as many values from `values` on, which are before them in the tile,
+    /// in all lanes that have not settled. `scale` has the least size of the values, 1 where it ends. Returns whether a lane has not
+    /// settled.
+    pub fn apply(
+        &mut self,
+        tile: &mut Tile,
+        (values, corrections, count): (usize, usize, usize),
+        scale: &[f64],
+    ) -> bool {
+        let width = tile.width();
+        let (known, found) = tile.values_mut().split_at_mut(corrections * width);
+        let (known, found) = (&mut known[values * width..][..count * width], &found[..count * width]);
+        vectorised(Apply { settling: self, width, known, corrections: found, scale });
+        self.pending.contains(&true)
+    }
+
+    /// Which lanes have settled.
+    pub fn settled(&self) -> Vec<bool> {
+        self.pending.iter().map(|pending| !pending).collect()
+    }
+}
+
+struct Apply<'a> {
+    settling: &'a mut Settling,
+    width: usize,
+    known: &'a mut [f64],
+    corrections: &'a [f64],
+    scale: &'a [f64],
+}
+
+impl Vectorise for Apply<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { settling: Settling { pending, size, last }, width, known, corrections, scale } = self;
+        size.fill(0.0);
+        let rows = known.chunks_exact_mut(width).zip(corrections.chunks_exact(width));
+        for ((values, corrections), scale) in rows.zip(scale.iter().chain(std::iter::repeat(&1.0))) {
+            let lanes = values.iter_mut().zip(corrections).zip(size.iter_mut()).zip(pending.iter());
+            for (((value, correction), size), pending) in lanes {
+                *value = if *pending { *value + correction } else { *value };
+                // NaN is left out: who corrects looks for values that are not finite.
+                let relative = (correction / scale.max(value.abs())).abs();
+                *size = if relative > *size { relative } else { *size };
+            }
+        }
+        for ((pending, size), last) in pending.iter_mut().zip(size.iter()).zip(last.iter_mut()) {
+            let is_rounding = *size <= STALLED && *size >= 0.5 * *last;
+            *pending &= *size > SETTLED && !is_rounding;
+            *last = *size;
+        }
+    }
+}
