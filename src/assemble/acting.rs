@@ -5,6 +5,7 @@ use symdiff::{Builder, Formula, Scalar};
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
 use crate::elements::effects::Forces;
+use crate::elements::meshing::Meshing;
 use crate::grammar::{OfPlace, OnJoint, PointRef, Rotating, Sensor, TimeOrder};
 use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, OwnFunction, Pair, Vector};
 
@@ -98,6 +99,14 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
     fn reaction(&self, joint: usize) -> [Vector<'g>; 2] {
         let reaction = &self.m.reactions[joint];
         [reaction.force, reaction.torque]
+    }
+
+    fn multiplier(&self, joint: usize) -> Option<Scalar<'g>> {
+        self.m.multipliers[joint]
+    }
+
+    fn meshing(&self, joint: usize) -> Result<Option<Meshing<'g>>, BuildError> {
+        self.m.meshing(joint)
     }
 
     fn only_where(&mut self, condition: Scalar<'g>) {

@@ -62,6 +62,10 @@ impl<'g> Constraints<'g> {
                 m.teeth.push(tooth);
             }
             m.reactions.push(reaction);
+            m.multipliers.push(match kept.as_slice() {
+                &[(_, lambda)] => Some(lambda),
+                _ => None,
+            });
             for definition in m.definitions(index)? {
                 let name = format!("{}.{}", joint.name, definition.name);
                 let unit = match definition.coordinate {

@@ -42,6 +42,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             tree: Tree::absolute(description),
             joint_coordinates: BTreeMap::new(),
             reactions: Vec::new(),
+            multipliers: Vec::new(),
             potentials: Vec::new(),
             teeth: Vec::new(),
             kinetic_energy_of_flexible: g.number(0.0),

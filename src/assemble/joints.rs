@@ -4,6 +4,7 @@ use symdiff::{Builder, Formula, Scalar};
 
 use super::mechanism::Mechanism;
 use crate::elements::joints::{Kinematics, Rows, ToothForce};
+use crate::elements::meshing::Meshing;
 use crate::grammar::{JointCoordinate, OfAngle, OnJoint, PointRef, TimeOrder};
 use crate::multibody::{ANGLE, BuildError, Context, Pair, Vector};
 
@@ -16,6 +17,11 @@ impl<'g> Mechanism<'g, '_> {
     /// The force between the teeth of a joint under the multiplier λ.
     pub fn tooth_force(&self, joint: usize, lambda: Scalar<'g>) -> Result<Option<ToothForce<'g>>, BuildError> {
         self.joints[joint].kind.tooth_force(joint, &Position(self), lambda)
+    }
+
+    /// How the teeth of a joint rub.
+    pub fn meshing(&self, joint: usize) -> Result<Option<Meshing<'g>>, BuildError> {
+        self.joints[joint].kind.meshing(joint, &Position(self))
     }
 
     /// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has none.

@@ -109,6 +109,8 @@ pub struct Mechanism<'g, 'd> {
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
     /// Of the joints built so far.
     pub reactions: Vec<Reaction<'g>>,
+    /// The same joints' multipliers, of those with one constraint.
+    pub multipliers: Vec<Option<Scalar<'g>>>,
     /// Forces between teeth, where a reaction depends on them.
     pub teeth: Vec<ToothForce<'g>>,
     /// Potential energies of the effects built so far, J.

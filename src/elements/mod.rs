@@ -3,6 +3,7 @@
 pub mod effects;
 mod glyph;
 pub mod joints;
+pub mod meshing;
 mod trajectory;
 
 pub use glyph::Glyph;

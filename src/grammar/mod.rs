@@ -8,6 +8,7 @@ pub(crate) mod dimension;
 pub(crate) mod display_unit;
 mod element;
 pub(crate) mod formulas;
+mod friction;
 mod kinds;
 pub(crate) mod mapping;
 pub(crate) mod motions;
@@ -37,6 +38,7 @@ pub use element::{
     Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kinds_schema, not_negative, object_schema,
     one_of, ordered, short_or_full,
 };
+pub use friction::{FrictionMode, MeshKind};
 pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, OfPlace, PerAxis, RotatingJoint, SlidingJoint};
 pub use names::Context;
 pub use reader::{Fields, Lengths, Reader};

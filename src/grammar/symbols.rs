@@ -2,6 +2,7 @@
 
 use symdiff::Formula;
 
+use super::friction::{FrictionMode, MeshKind};
 use super::quantity::Dimension;
 
 /// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in the file;
@@ -41,6 +42,8 @@ pub trait SymbolTable {
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool;
     /// Which of a joint's motions friction resists; nothing where friction does not act in it.
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode>;
+    /// Which friction the teeth of a joint have; nothing where it has none.
+    fn mesh_kind(&self, joint: usize) -> Option<MeshKind>;
     /// Whether a joint joins two points, so that its reaction has a place.
     fn has_place(&self, joint: usize) -> bool;
     /// Whether a joint has an axis of its own, or drives a joint that has one.
@@ -382,15 +385,4 @@ pub enum Reference<'a> {
     Point(&'a mut PointRef),
     /// Of a joint.
     Joint(&'a mut usize),
-}
-
-/// Which motions of a joint friction resists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrictionMode {
-    /// Its rotation: revolute joints.
-    Rotating,
-    /// Its sliding: prismatic joints.
-    Sliding,
-    /// Both at once: cylindrical joints.
-    Both,
 }

@@ -5,7 +5,7 @@ use symdiff::Formula;
 use super::description::Description;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{self, FrictionMode, JointCoordinate, PointRef, Sensor, Symbol, SymbolTable};
+use crate::grammar::{self, FrictionMode, JointCoordinate, MeshKind, PointRef, Sensor, Symbol, SymbolTable};
 
 /// Reads a description.
 pub type Reader<'d> = grammar::reader::Reader<'d, Description>;
@@ -139,6 +139,10 @@ impl SymbolTable for Description {
             Mobilizer::RotationAndTranslation { .. } => Some(FrictionMode::Both),
             _ => None,
         }
+    }
+
+    fn mesh_kind(&self, joint: usize) -> Option<MeshKind> {
+        self.joints[joint].kind.mesh_kind()
     }
 
     fn equated(&self, joint: usize) -> Option<&Formula> {

@@ -20,10 +20,13 @@ bodies:
   ball: { mass: 0.5, inertia: 0.002 }
   pinion: { inertia: 0.01, coordinates: [angle] }
   wheel: { inertia: 0.02, coordinates: [angle] }
+  spur: { inertia: 0.01, coordinates: [angle] }
+  rim: { inertia: 0.02, coordinates: [angle] }
 joints:
   hinge: { revolute: [ground, arm.pin] }
   rail: { prismatic: { between: [ground, cart], axis: x } }
-initial: { arm.angle: 0, cart.x: 1, ball.x: 0.5, ball.y: 2, ball.angle: 0, pinion.angle: 0, wheel.angle: 0 }
+  mesh: { gear: { between: [spur, rim], ratio: -0.5 } }
+initial: { arm.angle: 0, cart.x: 1, ball.x: 0.5, ball.y: 2, ball.angle: 0, pinion.angle: 0, wheel.angle: 0, spur.angle: 0 }
 outputs: { x: cart.x }
 simulation: { duration: 0.1, step: 1e-3, formulation: absolute }
 ";

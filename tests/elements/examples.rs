@@ -9,6 +9,7 @@ use crate::common::nominal;
 const MECHANISM: &str = "
 space: SPACE
 bodies:
+  ground: { points: { beside: [0.05, 0.05] } }
   arm: { mass: 1, inertia: 0.01, points: { P: [0.2, 0] } }
   bead: { mass: 1, inertia: 0.01 }
   bob: { mass: 1, inertia: 0.01 }
@@ -26,12 +27,14 @@ bodies:
   rod: { mass: 1, inertia: 0.01, points: { A: [-0.2, 0] } }
   shaft: { mass: 1, inertia: 0.01, points: { P: [0.1, 0] } }
   slider: { mass: 1, inertia: 0.01 }
+  spindle: { mass: 1, inertia: 0.01 }
   wheel: { inertia: 0.02, coordinates: [angle] }
   pinion: { inertia: 0.01, coordinates: [angle] }
 joints:
   axle: { revolute: [ground, gear] }
   guide: { prismatic: { between: [ground, cart], axis: x } }
   pivot: { revolute: [ground, lever] }
+  thread: { revolute: THREAD }
   it: { KEYWORD: EXAMPLE }
 guess: { bob.x: 0.5, follower.y: 0.03 }
 outputs: { energy: kinetic_energy }
@@ -41,8 +44,12 @@ simulation: { duration: 0.02, step: 1e-3 }
 /// The example in the plane or else in space.
 fn with(keyword: &str, example: &str) -> Description {
     let text = MECHANISM.replace("KEYWORD", keyword).replace("EXAMPLE", example);
-    let read = |space: &str| model::load_str("example", &text.replace("SPACE", space), &[]);
-    read("planar").or_else(|_| read("spatial")).unwrap_or_else(|wrong| panic!("{keyword}: {}", wrong.render(false)))
+    let read = |space: &str, thread: &str| {
+        model::load_str("example", &text.replace("SPACE", space).replace("THREAD", thread), &[])
+    };
+    read("planar", "[ground.beside, spindle]")
+        .or_else(|_| read("spatial", "{ between: [ground.beside, spindle], axis: x }"))
+        .unwrap_or_else(|wrong| panic!("{keyword}: {}", wrong.render(false)))
 }
 
 #[test]

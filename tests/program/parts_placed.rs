@@ -161,6 +161,90 @@ outputs: {{ x1: one.fore.x, x2: two.fore.x, y1: one.fore.y, y2: two.fore.y, z1: 
     }
 }
 
+/// Friction in a joint of an instance is that of the model's own joint.
+#[test]
+fn joints_of_instances_rub() {
+    let parts = |of: &str| {
+        format!(
+            "bodies: {{ bar: {{ mass: 1, inertia: 0.02, points: {{ A: [-0.1, 0] }} }} }}{of}joints: {{ pin: {{ revolute: [ground, bar.A] }} }}{of}effects: {{ rub: {{ joint_friction: {{ on: pin, viscous: 0.5, coefficient: 0.2, radius: 0.02 }} }} }}{of}initial: {{ pin.angle: 0 }}"
+        )
+    };
+    let rest = "parameters: { g: 9 m/s^2 ± 1% }
+simulation: { duration: 0.5, step: 1e-3, output_step: 0.05 }
+bounds: { chebyshev: { order: 3 } }
+";
+    let weight = "weight: { gravity: { acceleration: [0, -g] } }";
+    let own = bounds(&format!(
+        "{}\noutputs: {{ a: pin.angle, t: rub.torque }}\n{rest}",
+        parts("\n").replace("effects: {", &format!("effects: {{ {weight}, "))
+    ));
+    let instance = bounds(&format!(
+        "assemblies:\n  arm:\n    {}\ninstances: {{ one: {{ of: arm }} }}\neffects: {{ {weight} }}\noutputs: {{ a: one.pin.angle, t: one.rub.torque }}\n{rest}",
+        parts("\n    ")
+    ));
+    for output in ["a", "t"] {
+        same(&own, output, (&instance, output), 1.0);
+    }
+}
+
+/// A worm turns a wheel whose helical gear drives another, and that a rack; the bearings feel the teeth.
+#[test]
+fn the_image_of_teeth_has_the_other_hand() {
+    let train = "
+assemblies:
+  train:
+    shared: all
+    parameters: { drive: 0.4 N*m ± 1% }
+    bodies:
+      ground: { points: { W: [0, 0.1, 0], G: [0.15, 0.1, 0], R: [0.15, 0.3, 0.01] } }
+      thread: { mass: 1, inertia: [0.002, 0.002, 0.002] }
+      wheel: { mass: 1, inertia: [0.02, 0.02, 0.03] }
+      gear: { mass: 1, inertia: [0.02, 0.02, 0.01] }
+      bar: { mass: 2, inertia: [0.02, 0.02, 0.01] }
+    joints:
+      shaft: { revolute: { between: [ground, thread], axis: x } }
+      axle: { revolute: { between: [ground.W, wheel], axis: z } }
+      pin: { revolute: { between: [ground.G, gear], axis: z } }
+      guide: { prismatic: { between: [ground.R, bar], axis: x } }
+      first: { worm: { worm: shaft, wheel: axle, ratio: 3/40, lead_angle: 15 deg, offset: 0.1 } }
+      second: { gear: { between: [axle, pin], ratio: -0.8, offset: 0.2, pressure_angle: 20 deg, helix_angle: 12 deg } }
+      third: { rack: { pinion: pin, rack: guide, radius: -0.05, offset: 0.02, pressure_angle: 20 deg, helix_angle: 5 deg } }
+    effects:
+      motor: { torque: { on: shaft, value: drive } }
+      rub: { tooth_friction: { on: first, coefficient: 0.05 } }
+      lose: { tooth_friction: { on: second, efficiency: 0.95 } }
+    initial: { shaft.angle: 0.3, shaft.angular_velocity: 1 }
+";
+    for (axis, letter) in [("x", 0), ("y", 1), ("z", 2)] {
+        let measured = |instance: &str, number: usize| {
+            let forces = ["shaft", "axle", "pin"].map(|joint| {
+                ["x", "y", "z"]
+                    .map(|along| format!("{joint}_{along}_{number}: {instance}.{joint}.force.{along}"))
+                    .join(", ")
+            });
+            let loss = format!("loss_{number}: {instance}.rub.loss, a_{number}: {instance}.pin.angle");
+            format!("{}, s_{number}: {instance}.guide.displacement, {loss}", forces.join(", "))
+        };
+        let text = format!(
+            "{train}instances: {{ one: {{ of: train }}, two: {{ of: train, mirror: {axis} }} }}
+outputs: {{ {}, {} }}
+{ASKED}",
+            measured("one", 1),
+            measured("two", 2)
+        );
+        let found = bounds(&text);
+        for joint in ["shaft", "axle", "pin"] {
+            for (place, along) in ["x", "y", "z"].into_iter().enumerate() {
+                let sign = if place == letter { -1.0 } else { 1.0 };
+                same(&found, &format!("{joint}_{along}_1"), (&found, &format!("{joint}_{along}_2")), sign);
+            }
+        }
+        same(&found, "a_1", (&found, "a_2"), -1.0);
+        same(&found, "s_1", (&found, "s_2"), 1.0);
+        same(&found, "loss_1", (&found, "loss_2"), 1.0);
+    }
+}
+
 /// A motion without weight does not know where it is.
 #[test]
 fn a_placed_instance_moves_in_its_frame() {

@@ -2,6 +2,7 @@
 
 use symdiff::{Builder, Formula, Scalar};
 
+use crate::elements::meshing::{Member, Meshing};
 use crate::grammar::{OfPlace, OnJoint, PointRef, Rotating, Sensor, TimeOrder};
 use crate::multibody::{BuildError, MaterialPoint, OwnFunction, Pair, Vector};
 
@@ -51,6 +52,11 @@ pub trait Forces<'g> {
     /// A joint's reaction on its second body, in the ground's axes: force, N, and torque about the second point, N m.
     fn reaction(&self, joint: usize) -> [Vector<'g>; 2];
 
+    /// The multiplier of a joint's one constraint; `None` where it has none, or nothing that it constrains can move.
+    fn multiplier(&self, joint: usize) -> Option<Scalar<'g>>;
+    /// How the teeth of a joint rub.
+    fn meshing(&self, joint: usize) -> Result<Option<Meshing<'g>>, BuildError>;
+
     /// From now on the effect acts only where the condition is positive, whatever its expressions are elsewhere. They are not
     /// computed where no sample of a tile needs them, so they have to vanish continuously as the condition does.
     fn only_where(&mut self, condition: Scalar<'g>);
@@ -93,6 +99,22 @@ impl<'g> dyn Forces<'g> + '_ {
                 Ok(())
             }
             Rotating::Joint(joint) => self.effort(OnJoint::angle(joint), torque),
+        }
+    }
+
+    /// The rate of a toothed member, rad/s or m/s.
+    pub fn member_rate(&self, member: Member) -> Result<Scalar<'g>, BuildError> {
+        match member {
+            Member::Body(body) => Ok(self.angle(Rotating::Body(body), TimeOrder::Velocity)),
+            Member::Joint(on) => self.rate(on),
+        }
+    }
+
+    /// A torque or force on a toothed member, N m or N.
+    pub fn member_effort(&mut self, member: Member, effort: Scalar<'g>) -> Result<(), BuildError> {
+        match member {
+            Member::Body(body) => self.torque_about(Rotating::Body(body), effort),
+            Member::Joint(on) => self.effort(on, effort),
         }
     }
 

@@ -203,7 +203,7 @@ impl Group for FrictionJoint {
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _: usize) -> Option<Self> {
         let node = reader.required(fields, "on")?;
         let scalar = reader.scalar(node, "the name of a joint")?;
-        let Some(joint) = reader.model.joint(&scalar.text) else {
+        let Some(joint) = reader.model.joint(&scalar.name()) else {
             // Reports that it is unknown.
             reader.joint_ref(node, JointCoordinate::Angle);
             return None;

@@ -43,6 +43,7 @@ effects! {
     torsional_spring_damper::TorsionalSpringDamper,
     bushing::Bushing,
     joint_friction::JointFriction,
+    tooth_friction::ToothFriction,
     stop::Stop,
     contact::Contact,
     clearance_joint::ClearanceJoint,

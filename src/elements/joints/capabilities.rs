@@ -6,7 +6,8 @@ use serde::Serialize;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
-use crate::grammar::{Element, JointCoordinate, OnJoint, PointRef};
+use crate::elements::meshing::Meshing;
+use crate::grammar::{Element, JointCoordinate, MeshKind, OnJoint, PointRef};
 use crate::multibody::BuildError;
 
 use super::rows::{Kinematics, Rows};
@@ -85,6 +86,20 @@ pub trait Joint: Debug {
     /// What it pushes on by teeth of which nothing is known: bearings feel more than its own torque and force.
     fn toothed(&self) -> Toothed {
         Toothed::default()
+    }
+
+    /// Which friction its teeth have; nothing where it has none.
+    fn mesh_kind(&self) -> Option<MeshKind> {
+        None
+    }
+
+    /// How its teeth rub; `own` is its own index.
+    ///
+    /// # Errors
+    /// As [`tooth_force`](Self::tooth_force).
+    fn meshing<'g>(&self, own: usize, k: &dyn Kinematics<'g>) -> Result<Option<Meshing<'g>>, BuildError> {
+        let _ = (own, k);
+        Ok(None)
     }
 
     /// Whether it prescribes a motion, whatever its formulas.

@@ -14,7 +14,8 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
-use crate::grammar::{Checked, Fields, JointCoordinate, OnJoint, Reader, Rotating, SymbolTable};
+use crate::elements::meshing::{Member, Meshing};
+use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader, Rotating, SymbolTable};
 use crate::multibody::{BuildError, Vector};
 
 use super::teeth::{self, Flanks, Mesh, ToothForce};
@@ -125,6 +126,19 @@ impl Joint for Gear {
         let distance = self.cone_distance.as_ref().map(|distance| k.number(distance)).transpose()?;
         let mesh = Mesh::of(k, own, [first, second])?;
         mesh.of_gears(k.number(&self.ratio)?, distance, &self.flanks, lambda).map(Some)
+    }
+
+    fn mesh_kind(&self) -> Option<MeshKind> {
+        Some(MeshKind::Rolling)
+    }
+
+    fn meshing<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Result<Option<Meshing<'g>>, BuildError> {
+        let [first, second] = self.between.map(|angle| match angle {
+            Rotating::Body(body) => Member::Body(body),
+            Rotating::Joint(joint) => Member::Joint(OnJoint::angle(joint)),
+        });
+        let (ratio, one) = (k.number(&self.ratio)?, k.graph().number(1.0));
+        Ok(Some(Meshing::Rolling(vec![vec![(first, ratio)], vec![(second, one)]])))
     }
 
     fn glyph(&self) -> Glyph {

@@ -36,6 +36,7 @@ joints! {
     gear::Gear,
     rack::Rack,
     planetary::Planetary,
+    worm::Worm,
     motor::Motor,
     equation::Equation,
 }

@@ -10,10 +10,11 @@
 //! of their own here: that about the common axis belongs to the carrier's.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
-use crate::grammar::{Checked, Fields, JointCoordinate, OnJoint, Reader, RotatingJoint, SymbolTable};
+use crate::elements::meshing::{Member, Meshing, Rim};
+use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader, RotatingJoint, SymbolTable};
 use crate::multibody::{BuildError, Vector};
 
 use super::teeth::ALIGNED;
@@ -117,6 +118,24 @@ impl JointElement for Planetary {
 impl Joint for Planetary {
     fn coordinates(&self, _own: usize) -> Vec<OnJoint> {
         self.members().into_iter().flatten().collect()
+    }
+
+    fn mesh_kind(&self) -> Option<MeshKind> {
+        Some(MeshKind::Rolling)
+    }
+
+    fn meshing<'g>(&self, own: usize, k: &dyn Kinematics<'g>) -> Result<Option<Meshing<'g>>, BuildError> {
+        let ratio = k.number(&self.ratio)?;
+        let senses = self.senses(own, k)?;
+        let members = self.members();
+        let carrier = members[2].map(|on| (Member::Joint(on), senses[2]));
+        // Of sun and ring against the carrier.
+        let rim = |place: usize, radius: Scalar<'g>| -> Rim<'g> {
+            let wheel = members[place].map(|on| (Member::Joint(on), senses[place] * radius));
+            let carrier = carrier.map(|(member, sense)| (member, -(sense * radius)));
+            wheel.into_iter().chain(carrier).collect()
+        };
+        Ok(Some(Meshing::Rolling(vec![rim(0, k.graph().number(1.0)), rim(1, ratio)])))
     }
 
     fn glyph(&self) -> Glyph {

@@ -13,7 +13,8 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
-use crate::grammar::{Checked, JointCoordinate, OnJoint, SlidingJoint, RotatingJoint};
+use crate::elements::meshing::{Member, Meshing};
+use crate::grammar::{Checked, JointCoordinate, MeshKind, OnJoint, SlidingJoint, RotatingJoint};
 use crate::multibody::{BuildError, Vector};
 
 use super::teeth::{self, Flanks, Mesh, ToothForce};
@@ -84,6 +85,16 @@ impl Joint for Rack {
         }
         let mesh = Mesh::of(k, own, self.pinion_and_rack())?;
         mesh.of_rack(k.number(&self.radius)?, &self.flanks, lambda).map(Some)
+    }
+
+    fn mesh_kind(&self) -> Option<MeshKind> {
+        Some(MeshKind::Rolling)
+    }
+
+    fn meshing<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Result<Option<Meshing<'g>>, BuildError> {
+        let [pinion, rack] = self.pinion_and_rack().map(Member::Joint);
+        let (radius, one) = (k.number(&self.radius)?, k.graph().number(1.0));
+        Ok(Some(Meshing::Rolling(vec![vec![(pinion, radius)], vec![(rack, one)]])))
     }
 
     fn glyph(&self) -> Glyph {

@@ -32,7 +32,7 @@ use super::Kinematics;
 
 const BELOW_RIGHT: Requirement =
     Requirement { holds: |value| value.abs() < std::f64::consts::FRAC_PI_2, message: "must be below 90 deg" };
-const PRESSURE: Requirement = Requirement {
+pub(super) const PRESSURE: Requirement = Requirement {
     holds: |value| (0.0..std::f64::consts::FRAC_PI_2).contains(&value),
     message: "must be at least 0 and below 90 deg",
 };
@@ -98,15 +98,15 @@ pub struct ToothForce<'g> {
 
 /// A gear, or rack, and its bearing in the frame of the body that both bearings have in common.
 #[derive(Clone, Copy)]
-struct Toothed<'g> {
+pub(super) struct Toothed<'g> {
     /// By index.
-    body: usize,
+    pub body: usize,
     /// Whether the joint's coordinate is that of the toothed body against the common one, or −1 where it is the opposite.
-    sign: f64,
+    pub sign: f64,
     /// A point of the axis.
-    center: Vector<'g>,
+    pub center: Vector<'g>,
     /// The unit vector along it.
-    axis: Vector<'g>,
+    pub axis: Vector<'g>,
 }
 
 impl<'g> Toothed<'g> {
@@ -135,8 +135,9 @@ pub(super) struct Mesh<'g, 'k> {
     k: &'k dyn Kinematics<'g>,
     own: usize,
     on: [OnJoint; 2],
-    common: usize,
-    toothed: [Toothed<'g>; 2],
+    /// The body that holds both, by index.
+    pub common: usize,
+    pub toothed: [Toothed<'g>; 2],
 }
 
 impl<'g, 'k> Mesh<'g, 'k> {
@@ -293,11 +294,13 @@ impl<'g, 'k> Mesh<'g, 'k> {
         })
     }
 
-    fn nominal(&self, value: Scalar<'g>) -> f64 {
+    /// At the nominal parameters.
+    pub fn nominal(&self, value: Scalar<'g>) -> f64 {
         self.k.nominal([value; 3].into())[0]
     }
 
-    fn refused(&self, why: &str) -> BuildError {
+    /// Why teeth cannot touch there.
+    pub fn refused(&self, why: &str) -> BuildError {
         BuildError::Teeth { joint: self.k.joint_name(self.own).to_owned(), why: why.to_owned() }
     }
 }

@@ -28,7 +28,7 @@ enum Image {
 use Image::{Axial, Directed, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 32] = [
+const KINDS: [(&str, &[(&str, Image)]); 37] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -40,6 +40,11 @@ const KINDS: [(&str, &[(&str, Image)]); 32] = [
     ("pin_in_slot", &[("axis", Polar)]),
     ("universal", &[("axes", Polars)]),
     ("motor", &[("position", Turning), ("speed", Turning), ("to", Turning), ("from", Turning)]),
+    ("gear", &[("offset", Turning), ("helix_angle", Turning)]),
+    ("rack", &[("radius", Turning), ("helix_angle", Turning)]),
+    ("planetary", &[("offset", Turning)]),
+    ("worm", &[("lead_angle", Turning), ("offset", Turning)]),
+    ("tooth_friction", &[]),
     ("spring_damper", &[("along", Polar)]),
     ("cable", &[]),
     ("drag", &[("wind", Polar)]),
