@@ -121,6 +121,17 @@ impl ForceElement for Filter {
 }
 
 impl Filter {
+    /// With the coefficients of input and output, the highest power of s first, settled at an input.
+    pub(super) fn of(
+        input: Formula,
+        [numerator, denominator]: [Vec<Formula>; 2],
+        initial: Option<Formula>,
+        dimension: Option<Dimension>,
+    ) -> Self {
+        let start = settled(initial.as_ref(), &numerator, &denominator);
+        Self { input, numerator, denominator, initial, start, dimension }
+    }
+
     /// Whether the output is a state, and not the input's at once.
     fn lags(&self) -> bool {
         self.numerator.len() < self.denominator.len()
@@ -229,8 +240,7 @@ impl Group for Filter {
         };
         let dimension = of_output(dimension, numerator.dimension, denominator.dimension);
         let (numerator, denominator) = (numerator.formulas, denominator.formulas);
-        let start = settled(initial.as_ref(), &numerator, &denominator);
-        Some(Self { input, numerator, denominator, initial, start, dimension })
+        Some(Self::of(input, [numerator, denominator], initial, dimension))
     }
 
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {

@@ -58,6 +58,7 @@ effects! {
     pid::Pid,
     dc_motor::DcMotor,
     filter::Filter,
+    delay::Delay,
     rate_limit::RateLimit,
     hydraulic_cylinder::HydraulicCylinder,
     gas_spring::GasSpring,

@@ -28,7 +28,7 @@ enum Image {
 use Image::{Axial, Directed, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 37] = [
+const KINDS: [(&str, &[(&str, Image)]); 38] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -59,6 +59,7 @@ const KINDS: [(&str, &[(&str, Image)]); 37] = [
     ("gravity", &[]),
     ("preload", &[]),
     ("filter", &[]),
+    ("delay", &[]),
     ("rate_limit", &[]),
     ("pid", &[("target", Turning), ("target_rate", Turning), ("initial", Turning)]),
     ("dc_motor", &[("voltage", Turning), ("initial", Turning)]),

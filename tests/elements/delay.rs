@@ -1,0 +1,89 @@
+//! Delays against what they approximate.
+
+use mbint::inner::results::{Bounds, Method};
+
+use crate::common::{band, curve, largest, nominal, output, read, run};
+
+/// Delays beside a mass that hangs still.
+fn text(effects: &str, states: &str, outputs: &str, simulation: &str) -> String {
+    format!(
+        "
+parameters: {{ late: {{ value: 0.2, unit: s, tolerance: 10% }} }}
+bodies: {{ m: {{ mass: 1, coordinates: [x] }} }}
+states: {{ {states} }}
+effects: {{ {effects} }}
+initial: {{ m.x: 0.5, m.vx: 0 }}
+outputs: {{ {outputs}, late: late }}
+simulation: {{ duration: 3, output_step: 0.1, {simulation} }}
+bounds: {{ chebyshev: {{ order: 5 }}, scan: {{ points: 5 }} }}
+"
+    )
+}
+
+fn off(bounds: &Bounds, name: &str, from: f64, wanted: impl Fn(f64) -> f64) -> f64 {
+    let rows = bounds.times.iter().zip(curve(bounds, name)).filter(|(t, _)| **t > from);
+    largest(rows.map(|(&t, value)| value - wanted(t)))
+}
+
+/// A sine of x = ω T is met to n! (n−1)!/((2n)! (2n−1)!) x²ⁿ, the first term of the error of Padé's approximation, once it has settled.
+#[test]
+fn sines_come_late() {
+    for (simulation, allowed) in [("step: 2e-4", 1e-6), ("scheme: explicit, tolerance: 1e-10", 1e-9)] {
+        for (order, missed) in [(2, 2.0 / (24.0 * 6.0)), (3, 12.0 / (720.0 * 120.0)), (5, 2880.0 / (3_628_800.0 * 362_880.0))] {
+            let effects = format!("slow: {{ delay: {{ input: sin(5*t), time: late, order: {order} }} }}");
+            let bounds = nominal(&read(&text(&effects, "", "slow: slow", simulation)));
+            // x = 1; poles have real parts below −2/T, so that 2 s later nothing is left of the start.
+            let error = off(&bounds, "slow", 2.0, |t| (5.0 * (t - 0.2)).sin());
+            assert!(error < 1.1 * missed + allowed, "{simulation}, order {order}: {error:e}");
+            assert!(order > 3 || error > 0.3 * missed, "{simulation}, order {order}: {error:e}");
+        }
+    }
+}
+
+/// A ramp is late by T itself, whatever T.
+#[test]
+fn bounds_of_a_ramp_are_those_of_its_delay() {
+    let bounds = run(&read(&text("slow: { delay: { input: t, time: late, order: 3 } }", "", "slow: slow", "step: 1e-3")));
+    assert_eq!(output(&bounds, "slow").unit, "s");
+    for method in [Method::Chebyshev, Method::Scan] {
+        let band = band(output(&bounds, "slow"), method);
+        for (row, &t) in bounds.times.iter().enumerate().filter(|(_, t)| **t > 2.0) {
+            let allowed = 1.01 * band.error.total[row] + 1e-12;
+            assert!((band.lower[row] - (t - 0.22)).abs() < allowed && (band.upper[row] - (t - 0.18)).abs() < allowed, "{method:?} at {t}");
+        }
+    }
+}
+
+/// ẋ = −k x(t − T) with x = 1 before: Σ (−k)ʲ (t − (j − 1) T)ʲ/j! over j with t > (j − 1) T. Here x jumps in its rates, at which a rational
+/// law rings: less, the more states it has.
+#[test]
+fn a_loop_with_a_delay_moves_by_the_method_of_steps() {
+    let exact = |t: f64| {
+        let mut sum = 1.0;
+        let mut factor = 1.0;
+        for j in 1..20 {
+            let since = t - f64::from(j - 1) * 0.2;
+            factor *= -3.0 / f64::from(j);
+            if since > 0.0 {
+                sum += factor * since.powi(j);
+            }
+        }
+        sum
+    };
+    let errors = [2, 4, 8].map(|order| {
+        let effects = format!("old: {{ delay: {{ input: x, time: late, order: {order}, initial: 1 }} }}");
+        let states = "x: { rate: -3*old/(1 s), initial: 1 }";
+        let bounds = nominal(&read(&text(&effects, states, "x: x", "step: 1e-3")));
+        off(&bounds, "x", -1.0, exact)
+    });
+    println!("{errors:?}");
+    assert!(errors[0] < 2e-2 && errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1], "{errors:?}");
+}
+
+#[test]
+fn it_begins_settled() {
+    let effects = "old: { delay: { input: m.x, time: late, initial: 0.5 m } }, slow: { delay: { input: m.x, time: late } }";
+    let bounds = nominal(&read(&text(effects, "", "old: old, slow: slow", "step: 1e-3")));
+    assert!(off(&bounds, "old", -1.0, |_| 0.5) < 1e-12);
+    assert_eq!((output(&bounds, "old").unit.as_str(), curve(&bounds, "slow")[0]), ("m", 0.0));
+}
