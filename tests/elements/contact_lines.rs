@@ -93,6 +93,91 @@ fn gaps_to_a_ball_are_least_distances() {
     }
 }
 
+/// e from a block of half-sizes (0.3, 0.2, 0.1) to a point.
+fn away(point: Point) -> f64 {
+    let half = [0.3, 0.2, 0.1];
+    let beyond = [0, 1, 2].map(|axis| (point[axis].abs() - half[axis]).max(0.0));
+    beyond.iter().map(|e| e * e).sum::<f64>().sqrt()
+}
+
+/// Faces, edges and corners of a block are found, also by a bar that is parallel to some of them.
+#[test]
+fn gaps_to_a_block_are_least_distances() {
+    let block = "block: [0.6, 0.4, 0.2], rounding: 0.05";
+    for (points, start) in [
+        (["[-0.2, 0, 0.1]", "[0.3, 0.1, 0]"], "bar.x: -1, bar.y: 0.7, bar.z: 0.4, bar.vx: 0.5, bar.vy: -0.1, bar.omega.x: 1.3, bar.omega.y: -1.7, bar.omega.z: 2.1"),
+        (["[-0.2, 0, 0.1]", "[0.3, 0.1, 0]"], "bar.x: 0.1, bar.y: -1, bar.z: 0.3, bar.vy: 0.4, bar.omega.x: 0.5, bar.omega.z: 1"),
+        (["[-0.5, -0.3, 0]", "[0.4, 0.5, 0]"], "bar.x: -1, bar.y: 0.2, bar.z: 0.2, bar.vx: 0.5, bar.omega.z: 0.4"),
+        (["[-0.4, 0, 0]", "[0.4, 0, 0]"], "bar.x: -1, bar.y: -0.4, bar.z: 0.25, bar.vx: 0.5, bar.vy: 0.2"),
+    ] {
+        let bounds = flight("spatial", points, block, start);
+        for (row, gap) in curve(&bounds, "gap").iter().enumerate() {
+            let [a, b] = ends(&bounds, row);
+            let by_force = least(|t| away(between(a, b, t)));
+            if by_force > 0.01 {
+                assert!((gap + 0.07 - by_force).abs() < 1e-7, "{start}, {row}: {} not {by_force}", gap + 0.07);
+            }
+        }
+    }
+}
+
+/// A bar across the edge of a block on which it lies: the push is in its middle, where it can balance.
+#[test]
+fn a_bar_lies_across_a_block() {
+    let bounds = nominal(&read(
+        "
+bodies: { bar: { mass: 2, inertia: [0.001, 0.1, 0.1], points: { a: [-0.5, 0, 0], b: [0.5, 0, 0] } } }
+effects:
+  weight: { gravity: { acceleration: [0, 0, -9.81] } }
+  it:
+    contact:
+      between: [ground, bar]
+      block: [0.6, 0.4, 0.2]
+      rounding: 0.01
+      line: [[-0.5, 0, 0], [0.5, 0, 0]]
+      radius: 0.02
+      impact: { stiffness: 1e5, exponent: 1, dissipation: 50 }
+      friction: { coefficient: 0.4 }
+initial: { bar.x: 0, bar.y: 0.05, bar.z: 0.13 }
+outputs: { force: it.force, z: bar.z, x: bar.x, a: bar.a.z, b: bar.b.z }
+simulation: { duration: 1, step: 5e-4, output_step: 0.05 }
+",
+    ));
+    let last = bounds.times.len() - 1;
+    let of = |name: &str| curve(&bounds, name)[last];
+    assert!((of("force") - 2.0 * 9.81).abs() < 1e-3, "{}", of("force"));
+    assert!((of("z") - (0.13 - 2.0 * 9.81 / 1e5)).abs() < 1e-7 && (of("a") - of("b")).abs() < 1e-9 && of("x").abs() < 1e-9);
+}
+
+/// An edge against an edge, which corners alone do not find: a ridge that falls across another one bounces as a ball does.
+#[test]
+fn an_edge_meets_an_edge() {
+    let bounds = nominal(&read(
+        "
+bodies:
+  box: { mass: 1, inertia: [0.01, 0.01, 0.01] }
+  lower: { mass: 1, inertia: [0.01, 0.01, 0.01] }
+effects:
+  it:
+    contact:
+      between: [lower, box]
+      block: [1, 0.2, 0.2]
+      rounding: 0.01
+      line: [[0, -0.5, -0.1], [0, 0.5, -0.1]]
+      radius: 0.01
+      impact: { stiffness: 1e9 }
+initial: { lower.x: 0, lower.y: 0, lower.z: 0, box.x: 0, box.y: 0, box.z: 0.225, box.vz: -1 }
+outputs: { lower: lower.vz, box: box.vz, energy: kinetic_energy, spin: box.omega.x }
+simulation: { duration: 0.012, step: 2e-6, output_step: 1e-3 }
+",
+    ));
+    let last = bounds.times.len() - 1;
+    let of = |name: &str| curve(&bounds, name)[last];
+    // Of equal masses one takes over the other's velocity.
+    assert!((of("lower") + 1.0).abs() < 1e-5 && of("box").abs() < 1e-5 && of("spin").abs() < 1e-6, "{} {}", of("lower"), of("box"));
+    assert!((of("energy") - 0.5).abs() < 1e-6);
+}
+
 /// Two crossed bars hit beside their middles: the normal velocity of the places that touch is reversed, by an impulse of
 /// 2 v/(1/m₁ + 1/m₂ + a²/I₁ + b²/I₂).
 #[test]

@@ -19,22 +19,19 @@
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
 use mbint_derive::Element;
-use symdiff::{Formula, Scalar};
+use symdiff::Formula;
 
 use super::course::{Course, Points, placed};
-use super::dry_friction::Resistance;
 use super::felt::{Felt, SENSORS};
 use super::ground::Ground;
 use super::impact::Push;
 use super::outline::Outline;
 use super::rod::{self, Rod};
-use super::solid::{self, Gap, Solid};
+use super::solid::{self, Solid};
+use super::touch::{Shape, Surface, Touch};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
-use crate::multibody::{BuildError, Pair, Vector};
-
-/// ε over R − r.
-const CENTRED: f64 = 1e-4;
+use crate::multibody::{BuildError, Vector};
 
 /// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block or edges on one body with a circle, sphere, cylinder or point on another.
 #[derive(Clone, Debug, Element)]
@@ -145,8 +142,8 @@ impl ForceElement for Contact {
         let mut reach = radius;
         let centres = if let Some(corners) = corners {
             corners.into_iter().map(|corner| centre + pair.outward_of_second(corner)).collect()
-        } else if let Some(line) = line {
-            surface.centres_on(&line, &pair)
+        } else if let Some(line) = &line {
+            surface.centres_on(line, &pair)
         } else if let Some(cylinder) = cylinder {
             reach = forces.graph().number(0.0);
             match surface {
@@ -156,9 +153,10 @@ impl ForceElement for Contact {
         } else {
             vec![centre]
         };
+        let near = line.and_then(|line| surface.is_near(&line, &pair));
         let felt = centres.into_iter().map(|centre| match &surface {
             &Surface::Whole(shape) => {
-                Touch { shape, radius: reach, axis, impact, friction, along }.act(forces, (&pair, centre))
+                Touch { shape, radius: reach, axis, impact, friction, along, near }.act(forces, (&pair, centre))
             }
             Surface::Edges(outline) => outline.apply(forces, (&pair, centre), &impact, friction.as_ref()),
         });
@@ -259,138 +257,5 @@ impl Checked for Contact {
         if let Some(lengths) = &self.block {
             solid::check_lengths(reader, fields.key_span("block"), lengths);
         }
-    }
-}
-
-/// What the first body's surface is made of.
-enum Surface<'g> {
-    Whole(Shape<'g>),
-    Edges(Outline<'g>),
-}
-
-impl<'g> Surface<'g> {
-    /// Centres on a line of the second body that are nearest.
-    fn centres_on(&self, line: &Rod<'g>, pair: &Pair<'g>) -> Vec<Vector<'g>> {
-        match *self {
-            Self::Whole(Shape::Solid(Solid::Capsule { start, tangent, length }, _)) => {
-                vec![line.nearest_to_line(pair, (start, tangent, length))]
-            }
-            Self::Whole(Shape::Round(_)) => vec![line.nearest_to_point(pair, pair.first.point.position)],
-            _ => line.ends(pair).to_vec(),
-        }
-    }
-}
-
-/// The first body's surface, where it is one.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Shape<'g> {
-    /// A unit normal, in the first frame.
-    Plane(Vector<'g>),
-    /// R, m
-    Round(Scalar<'g>),
-    /// R − r, m
-    Hollow(Scalar<'g>),
-    /// A height over its x.
-    Ground(Ground<'g>),
-    /// With ρ + r, m
-    Solid(Solid<'g>, Scalar<'g>),
-}
-
-/// Two surfaces and what they do to one another.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Touch<'g> {
-    pub shape: Shape<'g>,
-    /// r, m
-    pub radius: Scalar<'g>,
-    /// A unit vector in the first frame across which centres are apart.
-    pub axis: Option<Vector<'g>>,
-    pub impact: Push<'g>,
-    pub friction: Option<Resistance<'g>>,
-    /// A unit vector in the first frame and the coefficient of friction along it.
-    pub along: Option<(Vector<'g>, Scalar<'g>)>,
-}
-
-impl<'g> Touch<'g> {
-    /// Adds the forces on a circle or point about `centre`, which belongs to the second body.
-    pub fn act(&self, forces: &mut dyn Forces<'g>, (pair, centre): (&Pair<'g>, Vector<'g>)) -> Felt<'g> {
-        let Gap { gap, normal, overlap } = self.gap(pair, centre);
-        let place = centre - self.radius * normal;
-        let [first, second] = [pair.first, pair.second].map(|frame| forces.point_at(frame.point.body, place));
-        let mut velocity = second.velocity - first.velocity;
-        if let Shape::Ground(ground) = &self.shape {
-            velocity = velocity - ground.velocity(pair, centre - pair.first.point.position);
-        }
-        let parting = normal.dot(velocity);
-        let (depth, approach) = (-gap, -parting);
-        forces.only_where(overlap);
-        let push = self.impact.force(depth, approach).only_where(depth);
-        let mut force = push * normal;
-        let mut felt_friction = None;
-        if let Some(friction) = &self.friction {
-            let sliding = velocity - parting * normal;
-            let resistance = friction.by_speed(sliding.dot(sliding));
-            let mut drag = friction.coefficient * push * resistance * sliding;
-            if let Some((direction, coefficient)) = self.along {
-                let direction = pair.outward(direction);
-                let direction = direction - direction.dot(normal) * normal;
-                let excess = (coefficient - friction.coefficient) * push * resistance;
-                drag += excess * direction.dot(sliding) * direction;
-            }
-            force = force - drag;
-            let felt = if forces.is_spatial() {
-                drag.norm()
-            } else {
-                // Along n turned clockwise: x on a floor.
-                normal.perpendicular().dot(drag)
-            };
-            felt_friction = Some(felt.only_where(overlap));
-        }
-        forces.between(&first, &second, force);
-        let push = push.only_where(overlap);
-        let potential = self.impact.potential(depth).only_where(depth);
-        forces.potential(&[self.impact.stiffness], potential);
-        Felt { gap, rate: parting, force: push, friction: felt_friction }
-    }
-
-    fn gap(&self, pair: &Pair<'g>, centre: Vector<'g>) -> Gap<'g> {
-        let offset = centre - pair.first.point.position;
-        match self.shape {
-            Shape::Plane(normal) => {
-                let normal = pair.outward(normal);
-                let height = normal.dot(offset);
-                Gap { gap: height - self.radius, normal, overlap: self.radius - height }
-            }
-            Shape::Round(outer) => {
-                let (across, square) = self.across(pair, offset);
-                let distance = square.sqrt();
-                let normal = across / distance;
-                let together = outer + self.radius;
-                let square_of_sum = together * together;
-                Gap { gap: distance - together, normal, overlap: square_of_sum - square }
-            }
-            Shape::Hollow(clearance) => {
-                let (across, square) = self.across(pair, offset);
-                let centred = CENTRED * clearance;
-                let smooth = square + centred * centred;
-                let distance = smooth.sqrt();
-                let outward = across / distance;
-                let square_of_clearance = clearance * clearance;
-                Gap { gap: clearance - distance, overlap: smooth - square_of_clearance, normal: -outward }
-            }
-            Shape::Ground(ground) => ground.gap(pair, offset),
-            Shape::Solid(solid, reach) => solid.gap(pair, offset, reach),
-        }
-    }
-
-    /// d, and its square.
-    fn across(&self, pair: &Pair<'g>, offset: Vector<'g>) -> (Vector<'g>, Scalar<'g>) {
-        let across = match self.axis {
-            Some(axis) => {
-                let axis = pair.outward(axis);
-                offset - axis.dot(offset) * axis
-            }
-            None => offset,
-        };
-        (across, across.dot(across))
     }
 }

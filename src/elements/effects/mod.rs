@@ -4,6 +4,7 @@
 //! what it refers to, its forces, what it costs.
 
 mod arc;
+mod beside;
 mod course;
 mod dry_friction;
 mod felt;
@@ -19,6 +20,7 @@ mod rod;
 mod saturation;
 mod solid;
 mod spatial_beam;
+mod touch;
 
 use schemars::JsonSchema;
 use symdiff::Formula;

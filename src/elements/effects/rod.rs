@@ -9,13 +9,14 @@
 //!
 //! Of a cylinder with p = b + t v + l, l across v, the nearest point to a ball's centre p has t within 0 … M and |l| within r.
 //!
-//! Lines that cross have one nearest pair of points. Parallel ones have many: m is the middle of what they have beside one another,
+//! Against a block see `beside`. Lines that cross have one nearest pair of points. Parallel ones have many: m is the middle of what they have beside one another,
 //! and ε = 10⁻⁴ the angle at which it takes over. At φ = 0 each face's deepest point touches, so that a cylinder rolls on the line
 //! between two of them and tips about its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the
 //! body turns into that of the deepest point. The pushes at ±120° are alike, and their torques about the axis cancel.
 
 use symdiff::Scalar;
 
+use super::beside::nearest_to_block;
 use super::course::Points;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::multibody::{Pair, Vector};
@@ -64,6 +65,23 @@ impl<'g> Rod<'g> {
         let aside = offset - ahead * along;
         let share = radius / aside.dot(aside).max(radius * radius).sqrt();
         start + self.within(ahead) * along + share * aside
+    }
+
+    /// The point that is nearest to a block about the first point; `reach` is ρ + r.
+    pub fn nearest_to_block(&self, pair: &Pair<'g>, half: [Option<Scalar<'g>>; 3], reach: Scalar<'g>) -> Vector<'g> {
+        let (start, along) = self.outward(pair);
+        let offset = start - pair.first.point.position;
+        let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(reach.builder(), axis)));
+        let local = |vector: Vector<'g>| Vector::from(axes.map(|axis| axis.dot(vector)));
+        start + nearest_to_block((local(offset), local(along), self.length), half, reach) * along
+    }
+
+    /// Positive where the line may be within `reach` of a body that a ball of some radius about the first point holds.
+    pub fn is_near(&self, pair: &Pair<'g>, radius: Scalar<'g>, reach: Scalar<'g>) -> Scalar<'g> {
+        let (start, along) = self.outward(pair);
+        let offset = start + 0.5 * self.length * along - pair.first.point.position;
+        let sum = radius + reach + 0.5 * self.length;
+        sum * sum - offset.dot(offset)
     }
 
     /// The point that is nearest to a line of the first frame: from a point along a unit vector.
@@ -136,8 +154,8 @@ pub(super) fn check_corners<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: 
 const TOUCHED: [(&str, &[&str], &str); 2] = [
     (
         "line",
-        &["plane", "circle", "hollow", "capsule"],
-        "a `line` touches a `plane`, `circle` (without `axis`), `hollow` or `capsule`",
+        &["plane", "circle", "hollow", "capsule", "block"],
+        "a `line` touches a `plane`, `circle` (without `axis`), `hollow`, `capsule` or `block`",
     ),
     ("cylinder", &["plane", "circle"], "a `cylinder` touches a `plane` or a `circle` (without `axis`)"),
 ];

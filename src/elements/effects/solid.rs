@@ -44,6 +44,20 @@ impl<'g> Solid<'g> {
         Self::Capsule { start, tangent: way / length, length }
     }
 
+    /// The radius of a ball about the first point that holds it.
+    pub fn radius(&self, g: &'g Builder) -> Scalar<'g> {
+        match *self {
+            Self::Capsule { start, tangent, length } => {
+                let end = start + length * tangent;
+                start.norm().max(end.norm())
+            }
+            Self::Block { half } => {
+                let square = half.into_iter().flatten().fold(g.number(0.0), |sum, half| sum + half * half);
+                square.sqrt()
+            }
+        }
+    }
+
     /// A capsule without length.
     pub fn point(g: &'g Builder) -> Self {
         Self::Capsule { start: Vector::zero(g), tangent: Vector::along(g, 0), length: g.number(0.0) }

@@ -25,7 +25,7 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 
 const LEAD: Requirement = Requirement {
     holds: |value| value != 0.0 && value.abs() < std::f64::consts::FRAC_PI_2,
-    message: "must not be zero and below 90 deg",
+    message: "must be below 90 deg, and not zero",
 };
 
 /// Where none is given, degrees.
