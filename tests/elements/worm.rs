@@ -135,15 +135,15 @@ fn a_worm_of_little_lead_locks() {
 
 /// What can be read, but has no pitch point.
 #[test]
-fn axes_have_to_cross_apart_and_on_one_body() {
+fn axes_have_to_cross_apart() {
     let good = text(LEAD, 0.0, [0.2, 0.0], "", "", "");
-    for (from, to, expected) in [
-        ("between: [ground.side, wheel], axis: z", "between: [ground.side, wheel], axis: x", "do not cross at right angles"),
-        ("between: [ground.side, wheel], axis: z", "between: [ground, wheel], axis: z", "intersect"),
-        ("between: [ground.side, wheel], axis: z", "between: [worm, wheel], axis: z", "have to hold two bodies on one"),
+    let axle = "between: [ground.side, wheel], axis: z";
+    assert!(good.contains(axle));
+    for (other, expected) in [
+        ("between: [ground.side, wheel], axis: x", "do not cross at right angles"),
+        ("between: [ground, wheel], axis: z", "intersect"),
     ] {
-        assert!(good.contains(from));
-        let wrong = mbint::inner::assemble::build(&read(&good.replace(from, to))).unwrap_err().to_string();
+        let wrong = mbint::inner::assemble::build(&read(&good.replace(axle, other))).unwrap_err().to_string();
         assert!(wrong.contains(expected), "{wrong}");
     }
 }
