@@ -39,6 +39,12 @@ fn correct(bencher: Bencher, width: usize) {
     evaluate(bencher, width, |simulator| simulator.program.correct());
 }
 
+/// The same right after a factorisation.
+#[bench(args = WIDTHS)]
+fn first_correction(bencher: Bencher, width: usize) {
+    evaluate(bencher, width, |simulator| simulator.program.first_correction());
+}
+
 /// The state at the step's end.
 #[bench(args = WIDTHS)]
 fn advance(bencher: Bencher, width: usize) {
