@@ -156,6 +156,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
         self.applied.add_to_coordinate(self.m.states[&(self.effect, place)], rate);
     }
 
+    fn hold(&mut self, place: usize, value: Scalar<'g>) {
+        self.applied.held.push(((self.effect, place), value));
+    }
+
     fn mode(&self, place: usize) -> [Scalar<'g>; 2] {
         let index = self.m.modes[&(self.effect, place)];
         [self.m.q[index], self.m.v[index]]

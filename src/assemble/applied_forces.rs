@@ -38,6 +38,8 @@ pub struct AppliedForces<'g> {
     pub field: Vector<'g>,
     /// Potential energies, J.
     pub potentials: Vec<Scalar<'g>>,
+    /// States that change at instants only: the effect, the place among its states, and what it becomes.
+    pub held: Vec<((usize, usize), Scalar<'g>)>,
     /// What was added to since the last [`AppliedForces::begin`].
     touched: BTreeSet<Target>,
     /// What was measured since then.
@@ -57,6 +59,7 @@ impl<'g> AppliedForces<'g> {
             coordinates: BTreeMap::new(),
             field: Vector::zero(g),
             potentials: Vec::new(),
+            held: Vec::new(),
             touched: BTreeSet::new(),
             measured: Vec::new(),
             guard: None,

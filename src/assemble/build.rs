@@ -104,7 +104,8 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let length = m.characteristic_length(description)?;
     let mut left_out = Vec::new();
     let mut constraints = Constraints::of(&mut m, description, length, &mut left_out)?;
-    let (applied, effects) = apply_effects(&mut m, description, &mut left_out)?;
+    let (mut applied, effects) = apply_effects(&mut m, description, &mut left_out)?;
+    let held = m.held_states(description, std::mem::take(&mut applied.held));
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
     let outputs = m.outputs(description)?;
     let mut start = m.start(description)?;
@@ -157,6 +158,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             active_condition,
             conditional,
             constraint,
+            held,
             links,
             outputs,
             length,
@@ -188,7 +190,7 @@ fn apply_effects<'g>(
     m.add_tooth_forces(&mut applied, false)?;
     let mut effects = Vec::new();
     for (index, effect) in description.effects.iter().enumerate() {
-        let nodes = g.len();
+        let (nodes, held) = (g.len(), applied.held.len());
         applied.begin();
         effect.kind.apply(&mut Acting { m, effect: index, applied: &mut applied })?;
         m.sensors.extend(applied.measured().iter().map(|&(measure, value)| ((index, measure), value)));
@@ -199,7 +201,8 @@ fn apply_effects<'g>(
         }
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
         let graph = g.graph();
-        let enclosed = graph.exprs_after(nodes).all(|expr| encloses(graph.node(expr)));
+        // What jumps at instants is not enclosed.
+        let enclosed = applied.held.len() == held && graph.exprs_after(nodes).all(|expr| encloses(graph.node(expr)));
         let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);
         let length = measured.map(|&(_, length)| length.expr());
         effects.push(EffectInfo { name, kind, forces, expressions: graph.len() - nodes, enclosed, length });

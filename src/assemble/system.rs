@@ -42,6 +42,8 @@ pub struct System {
     pub conditional: Vec<Expr>,
     /// Φ(q, t), m.
     pub constraint: Vec<Expr>,
+    /// States that change at instants only.
+    pub held: Vec<HeldState>,
     /// In joint coordinates the children, parents first.
     pub links: Vec<Link>,
     /// What is observed, over t, q, v, w, λ and the parameters.
@@ -108,6 +110,17 @@ pub struct LeftOut {
     pub what: String,
     /// The reason.
     pub why: String,
+}
+
+/// A state that changes at the instants 0, T, 2 T, … only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldState {
+    /// The coordinate whose velocity it is.
+    pub coordinate: usize,
+    /// What it becomes, over t, q, v, λ and the parameters just before.
+    pub value: Expr,
+    /// T, s.
+    pub period: f64,
 }
 
 /// A child of the trees: all that bodies before it feel of it, and it of them, goes through a few values.
@@ -258,6 +271,7 @@ impl System {
     pub fn unused_parameters(&self) -> Vec<usize> {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();
         roots.extend(self.inertia.iter().chain(&self.force).chain(&self.constraint).chain(&self.start.guess));
+        roots.extend(self.held.iter().map(|held| held.value));
         roots.extend(self.outputs.iter().map(|output| output.expr));
         roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
         roots.extend(

@@ -6,6 +6,7 @@ use super::layout::Layout;
 use super::nearest::OpenStart;
 use super::start_equations::Residual;
 use super::tapes::Tapes;
+use crate::assemble::{HeldState, System};
 
 /// Tapes for the start of a tile of samples; states and corrections are in the registers of [`Layout`].
 #[derive(Clone, Debug)]
@@ -18,11 +19,52 @@ pub struct StartProgram {
     pub constraint_rate: Vec<Residual>,
     /// Registers of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
+    /// States that change at instants, after [`StartProgram::sampling`].
+    pub held: Vec<HeldValue>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
     /// What is nearest to rest.
     pub open: OpenStart,
     pub(super) lowered: Lowered,
+}
+
+/// A state that changes at the instants 0, T, 2 T, … only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldValue {
+    /// Its register: that of a velocity.
+    pub state: usize,
+    /// Register of what it becomes.
+    pub value: usize,
+    /// T, s.
+    pub period: f64,
+}
+
+/// Instants are met to this share of the time between them: times of steps are rounded.
+const ROUNDING: f64 = 1e-9;
+
+impl HeldValue {
+    /// Those of a system, whose new values are in these registers.
+    pub(super) fn all(system: &System, layout: &Layout, registers: Vec<usize>) -> Vec<Self> {
+        let states = system.held.iter().zip(registers);
+        let value = |(held, value): (&HeldState, usize)| Self {
+            state: layout.v.start + held.coordinate,
+            value,
+            period: held.period,
+        };
+        states.map(value).collect()
+    }
+
+    /// Whether a time, s, is one of its instants.
+    pub fn is_due(&self, time: f64) -> bool {
+        let periods = time / self.period;
+        (periods - periods.round()).abs() <= ROUNDING
+    }
+
+    /// Its first instant after a time and before another.
+    pub fn due_between(&self, from: f64, to: f64) -> Option<f64> {
+        let number = (from / self.period + ROUNDING).floor() + 1.0;
+        (number < to / self.period - ROUNDING).then(|| number * self.period)
+    }
 }
 
 // Numbers of the tapes.
@@ -34,6 +76,7 @@ const ACCELERATION: usize = 4;
 pub(super) const JACOBIAN: usize = 5;
 pub(super) const OBSERVE: usize = 6;
 const PROJECTION: usize = 7;
+pub(super) const SAMPLING: usize = 8;
 
 impl Tapes for StartProgram {
     fn lowered(&self) -> &Lowered {
@@ -76,6 +119,11 @@ impl StartProgram {
     /// Outputs of the state.
     pub fn observe(&self) -> &Tape {
         &self.lowered.kernels[OBSERVE]
+    }
+
+    /// What the states become that change at instants.
+    pub fn sampling(&self) -> &Tape {
+        &self.lowered.kernels[SAMPLING]
     }
 
     /// Φ_q.

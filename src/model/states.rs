@@ -120,6 +120,25 @@ fn circle<'n>(needs: &BTreeMap<&'n str, Vec<&'n str>>, first: &'n str) -> Option
     None
 }
 
+/// Most instants of a state in a motion.
+const MOST_INSTANTS: f64 = 1e7;
+
+/// Reports states that change at too many instants.
+pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
+    let duration = reader.model.simulation.duration;
+    for entry in effects {
+        let effect = reader.model.effects.iter().find(|effect| effect.name == entry.key);
+        let periods = effect.into_iter().flat_map(|effect| effect.kind.states()).filter_map(|state| state.period);
+        if let Some(period) = periods.reduce(f64::min).filter(|period| duration / period > MOST_INSTANTS) {
+            let message =
+                format!("`{}` changes at {:.0e} instants in {duration} s: too many", entry.key, duration / period);
+            let help =
+                format!("a period of {:e} s makes 10000; what is sampled that often is continuous", duration / 1e4);
+            reader.error(entry.key_span.clone(), message, help);
+        }
+    }
+}
+
 /// Reports states where nothing moves in time.
 pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
     if reader.model.states.is_empty()

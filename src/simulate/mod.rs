@@ -7,6 +7,7 @@
 //! - `control`: the step schedule that all samples share, fixed or from a tolerance;
 //! - `ensemble`: many samples, or one jet in the parameters, over a schedule;
 //! - `explicit`: the same by an explicit method of order 8, and `sample_run`: whichever a schedule asks for;
+//! - `sampling`: states that change at instants, at which steps end;
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
 //! - `closure`: the motion from independent coordinates, without integration;
 //! - `unmet_switch`: contacts and kinks that some parameter values meet and no sample does;
@@ -27,6 +28,7 @@ mod further;
 mod modal;
 mod modes;
 mod sample_run;
+mod sampling;
 mod simulator;
 mod start;
 mod statics;

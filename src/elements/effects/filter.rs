@@ -72,7 +72,7 @@ impl ForceElement for Filter {
         let [first, ..] = STAGES;
         let first = if self.lags() { self.sensors()[0].0 } else { first };
         let sensors = [first].into_iter().chain(STAGES.into_iter().skip(1));
-        sensors.zip(&self.start).map(|(sensor, initial)| StateVariable { sensor, initial }).collect()
+        sensors.zip(&self.start).map(|(sensor, initial)| StateVariable { sensor, initial, period: None }).collect()
     }
 
     fn value_ahead<S: SymbolTable>(reader: &mut Reader<'_, S>, mapping: &Node) -> Option<Option<Dimension>> {

@@ -76,6 +76,8 @@ pub trait Forces<'g> {
     fn state(&self, place: usize) -> Scalar<'g>;
     /// How fast a state of the effect changes, by its place among them.
     fn state_rate(&mut self, place: usize, rate: Scalar<'g>);
+    /// What a state of the effect that has a period, by its place among them, becomes at its instants, of what was just before.
+    fn hold(&mut self, place: usize, value: Scalar<'g>);
     /// A modal coordinate of the effect and its rate, by its place among them.
     fn mode(&self, place: usize) -> [Scalar<'g>; 2];
     /// A force on a modal coordinate of the effect, by its place among them.

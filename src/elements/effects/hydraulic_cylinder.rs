@@ -113,8 +113,8 @@ impl ForceElement for HydraulicCylinder {
 
     fn states(&self) -> Vec<StateVariable<'_>> {
         vec![
-            StateVariable { sensor: PISTON_PRESSURE, initial: &self.piston_pressure },
-            StateVariable { sensor: ROD_PRESSURE, initial: &self.rod_pressure },
+            StateVariable { sensor: PISTON_PRESSURE, initial: &self.piston_pressure, period: None },
+            StateVariable { sensor: ROD_PRESSURE, initial: &self.rod_pressure, period: None },
         ]
     }
 

@@ -61,6 +61,7 @@ effects! {
     dc_motor::DcMotor,
     filter::Filter,
     delay::Delay,
+    sampled::Sampled,
     rate_limit::RateLimit,
     hydraulic_cylinder::HydraulicCylinder,
     gas_spring::GasSpring,
@@ -142,6 +143,8 @@ pub struct StateVariable<'a> {
     pub sensor: Sensor,
     /// Its value at the start, of parameters.
     pub initial: &'a Formula,
+    /// Time between the instants at which it changes, s; `None` where it does so at a rate.
+    pub period: Option<f64>,
 }
 
 /// What an effect acts on.

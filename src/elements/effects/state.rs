@@ -46,7 +46,7 @@ impl ForceElement for State {
     }
 
     fn states(&self) -> Vec<StateVariable<'_>> {
-        vec![StateVariable { sensor: self.sensors()[0].0, initial: &self.initial }]
+        vec![StateVariable { sensor: self.sensors()[0].0, initial: &self.initial, period: None }]
     }
 
     fn value_ahead<S: SymbolTable>(reader: &mut Reader<'_, S>, mapping: &Node) -> Option<Option<Dimension>> {

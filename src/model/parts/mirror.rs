@@ -28,7 +28,7 @@ enum Image {
 use Image::{Axial, Directed, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 38] = [
+const KINDS: [(&str, &[(&str, Image)]); 39] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -60,6 +60,7 @@ const KINDS: [(&str, &[(&str, Image)]); 38] = [
     ("preload", &[]),
     ("filter", &[]),
     ("delay", &[]),
+    ("sampled", &[]),
     ("rate_limit", &[]),
     ("pid", &[("target", Turning), ("target_rate", Turning), ("initial", Turning)]),
     ("dc_motor", &[("voltage", Turning), ("initial", Turning)]),

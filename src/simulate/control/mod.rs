@@ -4,6 +4,7 @@
 mod adaptive;
 mod controller;
 mod division;
+mod instants;
 mod integration;
 mod samples;
 mod schedule;

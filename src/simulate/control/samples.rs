@@ -7,6 +7,7 @@ use super::controller::Controller;
 use super::schedule::Schedule;
 use crate::numerics::Sample;
 use crate::simulate::error::SimulationError;
+use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
 use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
@@ -103,6 +104,7 @@ struct Control<'s> {
     output_step: f64,
     steps: Adaptive<'s>,
     functions: Option<ResolvingSteps>,
+    sampling: Option<Sampling<'s>>,
     /// Accepted steps, and those tried.
     count: usize,
     tries: usize,
@@ -135,7 +137,18 @@ impl<'s> Control<'s> {
         let functions = TimeFunctions::of(simulator, controller.duration);
         let functions =
             functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, MOST_STEPS)).transpose()?;
-        Ok(Self { simulator, samples, output_step, steps, functions, count: 0, tries: 0, dropped: Vec::new() })
+        let sampling = Sampling::new(simulator, &start);
+        Ok(Self {
+            simulator,
+            samples,
+            output_step,
+            steps,
+            functions,
+            sampling,
+            count: 0,
+            tries: 0,
+            dropped: Vec::new(),
+        })
     }
 
     /// Goes back to an earlier state, without the samples that were dropped since.
@@ -155,6 +168,7 @@ impl<'s> Control<'s> {
     /// Tries a step from `time` towards the row at `goal`.
     fn step(&mut self, time: f64, goal: f64) -> Outcome {
         self.tries += 1;
+        let goal = Instants::of(self.simulator).between(time, goal).unwrap_or(goal);
         let step = self.steps.h.min(goal - time);
         let longest = self.functions.as_mut().map(|functions| functions.longest(time, step, &self.simulator.system));
         let goal_of_step = match longest {
@@ -167,6 +181,9 @@ impl<'s> Control<'s> {
             Outcome::Dropped(self.drop_failing(&attempt, time, goal))
         } else if attempt.accepted {
             self.count += 1;
+            if let Some(sampling) = &mut self.sampling {
+                sampling.end(&mut self.steps.stepper, attempt.end);
+            }
             Outcome::Accepted(attempt.end)
         } else {
             self.steps.reject(&attempt);

@@ -21,6 +21,7 @@ use super::run::{EnsembleRun, Observed, Stop};
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::error::SimulationError;
+use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
 /// Samples whose rows are closed together.
@@ -129,6 +130,7 @@ impl<'s> ExtrapolatedRun<'s> {
         into: &mut Vec<f64>,
     ) -> Vec<Stop> {
         let mut stops: Vec<Stop> = Vec::new();
+        let schedule = &*schedule.ending_at(Instants::of(self.simulator));
         for (level, (run, values)) in self.levels.iter_mut().zip(&mut self.values).enumerate() {
             let parts = 1 << level;
             let (schedule, tolerance) = (schedule.refined(parts), tolerance.map(|all| all.for_parts(parts)));
@@ -201,6 +203,7 @@ fn closed(
 /// The run of one jet on several levels.
 #[derive(Debug)]
 pub struct ExtrapolatedJets<'s> {
+    simulator: &'s Simulator,
     levels: Vec<JetRun<'s>>,
     weights: Vec<f64>,
     closure: JetClosure<'s>,
@@ -225,6 +228,7 @@ impl<'s> ExtrapolatedJets<'s> {
             |level: u32| JetRun::start(simulator, space, center, half_width, first_step / f64::from(1_u32 << level));
         let start = simulator.assemble(1, first_step, |_| center.iter().copied().collect())?;
         Ok(Self {
+            simulator,
             levels: (0..levels as u32).map(of_level).collect::<Result<_, _>>()?,
             weights: weights(levels),
             closure: JetClosure::new(simulator, space, (center, half_width), &start)?,
@@ -242,6 +246,7 @@ impl<'s> ExtrapolatedJets<'s> {
     /// As [`JetRun::advance`].
     pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         let mut stop: Option<Stop> = None;
+        let schedule = &*schedule.ending_at(Instants::of(self.simulator));
         let mut reached = rows.end;
         for (level, (run, values)) in self.levels.iter_mut().zip(&mut self.values).enumerate() {
             let found = run.advance_motion(&schedule.refined(1 << level), rows.start..reached, values);

@@ -10,6 +10,7 @@ use super::run::Stop;
 use crate::compile::{StartProgram, Tapes};
 use crate::simulate::control::Schedule;
 use crate::simulate::error::SimulationError;
+use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, Stepper};
 
@@ -21,8 +22,12 @@ pub struct JetRun<'s> {
     /// The box's centre.
     center: Stepper<'s>,
     memory: JetMemory<'s>,
-    /// The start's, which solves for the accelerations of rows; `None` where outputs do not need them.
-    accelerations: Option<JetMemory<'s>>,
+    /// The start's, which solves for the accelerations of rows, and after instants at which states change.
+    start: JetMemory<'s>,
+    /// Whether rows have accelerations of their own.
+    recomputes: bool,
+    /// Where states of the centre change at instants.
+    sampling: Option<Sampling<'s>>,
     /// Whether rows make their velocities consistent.
     projects: bool,
     step_size: f64,
@@ -49,10 +54,10 @@ impl<'s> JetRun<'s> {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
         }
         memory.run(program.sample());
-        let recomputed = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
-        let accelerations = recomputed.then_some(start);
+        let recomputes = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
         let center = Stepper::new(program, &assembled);
-        Ok(Self { simulator, order, center, memory, accelerations, projects: false, step_size: f64::NAN })
+        let sampling = Sampling::new(simulator, &assembled);
+        Ok(Self { simulator, order, center, memory, start, recomputes, sampling, projects: false, step_size: f64::NAN })
     }
 
     /// For steps that are controlled by a tolerance: rows make their velocities consistent.
@@ -97,13 +102,40 @@ impl<'s> JetRun<'s> {
 
     /// Advances to a row from the one before; where the run stopped, if it did.
     fn advance_to(&mut self, schedule: &Schedule, row: usize) -> Option<Stop> {
-        for (h, end) in schedule.steps_to(row) {
+        let instants = Instants::of(self.simulator);
+        for (h, end) in schedule.steps_to(row).flat_map(|step| instants.divide(step)) {
             if let Err(singular) = self.step(h, end) {
                 let equation = self.center.worst_equation(0);
                 return Some(Stop { sample: 0, row, time: end, equation, open: None, singular });
             }
+            self.sample(end);
         }
         None
+    }
+
+    /// Lets the states change that do so at this time.
+    fn sample(&mut self, time: f64) {
+        let Some(sampling) = &mut self.sampling else { return };
+        if !sampling.end(&mut self.center, time) {
+            return;
+        }
+        let Self { simulator, start, memory, center, order, .. } = self;
+        let layout = &simulator.program.layout;
+        let constant = |memory: &mut JetMemory, register: usize| {
+            memory.jet_mut(register)[0] = center.tile().lane(register)[0];
+        };
+        for register in layout.state().chain([layout.time]) {
+            start.jet_mut(register).copy_from_slice(memory.jet(register));
+        }
+        sample_states(&simulator.start, start, time);
+        // The centre's converge where those of the step are far.
+        layout.w.clone().chain(layout.lambda.clone()).for_each(|register| constant(start, register));
+        accelerate(simulator, start, *order);
+        shift_accelerations(simulator, start, *order, (time, simulator.program.coefficients.shift() * self.step_size));
+        for register in layout.v.start..layout.lambda.end {
+            memory.jet_mut(register).copy_from_slice(start.jet(register));
+            constant(memory, register);
+        }
     }
 
     /// Appends the outputs. Their accelerations are those of [`super::row_accelerations`]; where these have no jet, those of
@@ -111,9 +143,9 @@ impl<'s> JetRun<'s> {
     fn observe(&mut self, into: &mut Vec<f64>) {
         let layout = &self.simulator.program.layout;
         let unknowns = layout.v.start..layout.lambda.end;
-        let own: Vec<Vec<f64>> = match &mut self.accelerations {
-            None => Vec::new(),
-            Some(start) => {
+        let own: Vec<Vec<f64>> = match &mut self.start {
+            _ if !self.recomputes => Vec::new(),
+            start => {
                 for register in layout.state().chain([layout.time]) {
                     start.jet_mut(register).copy_from_slice(self.memory.jet(register));
                 }
@@ -287,8 +319,27 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         add_correction(memory, layout.v.clone(), layout.correction.start);
     }
     accelerate(simulator, memory, order);
-    // a = w(t + Δh), as for tiles.
-    let shift = simulator.program.coefficients.shift() * first_step;
+    if !start.held.is_empty() {
+        sample_states(start, memory, 0.0);
+        accelerate(simulator, memory, order);
+    }
+    shift_accelerations(simulator, memory, order, (0.0, simulator.program.coefficients.shift() * first_step));
+}
+
+/// Gives the states that change at a time their new values.
+pub(super) fn sample_states(program: &StartProgram, memory: &mut JetMemory, time: f64) {
+    memory.run(program.sampling());
+    let due = || program.held.iter().filter(|held| held.is_due(time));
+    // All are taken before one changes: a value may be another of these states.
+    let values: Vec<Vec<f64>> = due().map(|held| memory.jet(held.value).to_vec()).collect();
+    for (held, value) in due().zip(&values) {
+        memory.jet_mut(held.state).copy_from_slice(value);
+    }
+}
+
+/// a = w(t + shift), as for tiles.
+fn shift_accelerations(simulator: &Simulator, memory: &mut JetMemory, order: usize, (time, shift): (f64, f64)) {
+    let layout = &simulator.start.layout;
     let saved: Vec<Vec<f64>> = layout.state().map(|register| memory.jet(register).to_vec()).collect();
     let state = |register: usize| &saved[register - layout.q.start];
     for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
@@ -297,7 +348,7 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
             memory.jet_mut(v)[place] += shift * state(w)[place];
         }
     }
-    memory.set_constant(layout.time, shift);
+    memory.set_constant(layout.time, time + shift);
     accelerate(simulator, memory, order);
     let shifted: Vec<Vec<f64>> = layout.w.clone().map(|register| memory.jet(register).to_vec()).collect();
     for (register, saved) in layout.state().zip(&saved) {
@@ -306,7 +357,7 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
     for (register, shifted) in layout.a.clone().zip(&shifted) {
         memory.jet_mut(register).copy_from_slice(shifted);
     }
-    memory.set_constant(layout.time, 0.0);
+    memory.set_constant(layout.time, time);
 }
 
 /// Newton corrections that make a jet of this order consistent.

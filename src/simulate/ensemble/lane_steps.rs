@@ -105,6 +105,17 @@ impl<'s> LaneSteps<'s> {
         failures
     }
 
+    /// Lanes that go on alone do so from the stepper's present states, as where their equations switch.
+    pub fn begin_anew(&mut self, stepper: &Stepper<'s>) {
+        for lane in 0..self.alone.len() {
+            if let Some(before) = self.alone[lane].take() {
+                let mut alone = self.detached(stepper, lane, stepper.step_size(), None);
+                alone.h = before.h;
+                self.alone[lane] = Some(alone);
+            }
+        }
+    }
+
     /// A lane alone, in its present state or in that of states saved before.
     fn detached(&self, stepper: &Stepper<'s>, lane: usize, h: f64, saved: Option<&[f64]>) -> Box<Adaptive<'s>> {
         let program = &self.simulator.program;

@@ -8,6 +8,7 @@ mod row_accelerations;
 mod row_closure;
 mod run;
 mod switch_extents;
+mod tiling;
 
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
 pub use jets::JetRun;

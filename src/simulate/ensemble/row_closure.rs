@@ -6,7 +6,7 @@
 
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
-use super::jets::{add_correction, assembled_jet, corrections, solve_accelerations};
+use super::jets::{add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
 use crate::compile::{StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
@@ -109,6 +109,22 @@ impl<'s> RowClosure<'s> {
         into[n..].copy_from_slice(&self.assembly.tile().values()[layout.w.start * width..layout.w.end * width]);
     }
 
+    /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n lines).
+    pub fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
+        if !self.program.held.iter().any(|held| held.is_due(time)) {
+            return false;
+        }
+        let layout = &self.program.layout;
+        let width = self.assembly.tile().width();
+        let registers = layout.q.start * width..layout.v.end * width;
+        self.assembly.tile_mut().values_mut()[registers.clone()].copy_from_slice(state);
+        self.assembly.tile_mut().lane_mut(layout.time).fill(time);
+        self.assembly.accelerate();
+        self.assembly.sample();
+        state.copy_from_slice(&self.assembly.tile().values()[registers]);
+        true
+    }
+
     /// Forgets accelerations and multipliers, from which the next are corrected.
     pub fn forget(&mut self) {
         let layout = &self.program.layout;
@@ -199,6 +215,26 @@ impl<'s> JetClosure<'s> {
         for (register, jet) in layout.w.clone().zip(accelerations.chunks_exact_mut(terms)) {
             jet.copy_from_slice(self.memory.jet(register));
         }
+    }
+
+    /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n jets).
+    pub fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
+        if !self.program.held.iter().any(|held| held.is_due(time)) {
+            return false;
+        }
+        let layout = &self.program.layout;
+        let registers = layout.q.start..layout.v.end;
+        let terms = state.len() / registers.len();
+        for (register, jet) in registers.clone().zip(state.chunks_exact(terms)) {
+            self.memory.jet_mut(register).copy_from_slice(jet);
+        }
+        self.memory.set_constant(layout.time, time);
+        solve_accelerations(self.program, &mut self.memory, self.order);
+        sample_states(self.program, &mut self.memory, time);
+        for (register, jet) in registers.zip(state.chunks_exact_mut(terms)) {
+            jet.copy_from_slice(self.memory.jet(register));
+        }
+        true
     }
 
     /// Makes a motion (2n jets, q and v) consistent at a time.

@@ -1,30 +1,21 @@
 //! An ensemble of samples on one step schedule: tiles over all cores, advanced row by row of output.
 
 use rayon::prelude::*;
-use symdiff::WIDTHS;
 
 use super::lane_steps::LaneSteps;
 use super::reduction::{Channel, Reduction};
 use super::row_accelerations::RowAccelerations;
 use super::switch_extents::SwitchExtents;
+use super::tiling::tiles;
 use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::FeatureWatch;
+use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, StepFailure, Stepper};
-
-/// Widest tile in use: a wider one's memory would leave the first-level cache.
-const WIDEST: usize = 32;
-
-/// Most memory of a tile, so that a large mechanism's stays in the second-level cache. Tiles are narrower then, down to
-/// [`NARROWEST`], where dispatch costs more than memory does.
-const TILE_MEMORY: usize = 2 << 20;
-
-/// See [`TILE_MEMORY`].
-const NARROWEST: usize = 8;
 
 /// The run of an ensemble of samples.
 #[derive(Debug)]
@@ -44,6 +35,8 @@ struct TileRun<'s> {
     /// First sample of the tile, and how many of its lanes are samples.
     first: usize,
     count: usize,
+    /// Where states change at instants.
+    sampling: Option<Sampling<'s>>,
     /// With a tolerance: keeps all lanes within it.
     lanes: Option<LaneSteps<'s>>,
     /// The first row before which a lane's local errors add up to more than the tolerance, or its steps pass over a feature.
@@ -106,22 +99,6 @@ pub struct Stop {
     pub singular: bool,
 }
 
-/// Tiles of `samples` with this many registers each for `threads`: (first, count, width). Results do not depend on the tiling.
-fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
-    let fits = TILE_MEMORY / (registers * size_of::<f64>()).max(1);
-    let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));
-    let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);
-    let mut tiles = Vec::new();
-    let mut first = 0;
-    while first < samples {
-        let count = width.min(samples - first);
-        let width = WIDTHS.into_iter().find(|&width| width >= count).unwrap_or(width);
-        tiles.push((first, count, width));
-        first += count;
-    }
-    tiles
-}
-
 impl<'s> EnsembleRun<'s> {
     /// Assembles samples for a schedule that begins with steps of `first_step`.
     ///
@@ -141,6 +118,7 @@ impl<'s> EnsembleRun<'s> {
                 Ok(TileRun {
                     simulator,
                     stepper,
+                    sampling: Sampling::new(simulator, &start),
                     observes_accelerations,
                     accelerations: None,
                     begun: false,
@@ -296,7 +274,8 @@ impl TileRun<'_> {
             if row == 0 {
                 self.reduce(0.0);
             }
-            let mut steps = schedule.steps_to(row).peekable();
+            let instants = Instants::of(self.simulator);
+            let mut steps = schedule.steps_to(row).flat_map(|step| instants.divide(step)).peekable();
             while let Some((h, end)) = steps.next() {
                 if !self.stepper.alive().contains(&true) {
                     break;
@@ -326,6 +305,7 @@ impl TileRun<'_> {
                 let features = self.features.as_mut();
                 let hidden = features.is_some_and(|it| it.end_hidden(&self.stepper, self.count, (h, end)));
                 self.beyond = self.beyond.or(hidden.then_some(row));
+                self.sample(end);
                 self.reduce(end);
                 stops.extend(failures.into_iter().map(|StepFailure { lane, time, equation }| Stop {
                     sample: self.first + lane,
@@ -361,6 +341,14 @@ impl TileRun<'_> {
         (values, stops)
     }
 
+    /// Lets the states change that do so at this time.
+    fn sample(&mut self, time: f64) {
+        let has_changed = self.sampling.as_mut().is_some_and(|sampling| sampling.end(&mut self.stepper, time));
+        if let Some(lanes) = self.lanes.as_mut().filter(|_| has_changed) {
+            lanes.begin_anew(&self.stepper);
+        }
+    }
+
     /// Takes the outputs into what they are reduced to, if they are.
     fn reduce(&mut self, time: f64) {
         if let Some(mut reduction) = self.reduction.take() {
@@ -375,26 +363,6 @@ impl TileRun<'_> {
         match &mut self.accelerations {
             Some(accelerations) => accelerations.observe(&mut self.stepper, into),
             None => self.stepper.observe(into),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tiles_cover_all_samples_once() {
-        for samples in 1..200 {
-            for (threads, registers) in [(1, 100), (2, 100), (7, 100), (2, 100_000)] {
-                let mut next = 0;
-                for (first, count, width) in tiles(samples, registers, threads) {
-                    assert_eq!(first, next);
-                    assert!(count >= 1 && count <= width && WIDTHS.contains(&width));
-                    next += count;
-                }
-                assert_eq!(next, samples);
-            }
         }
     }
 }

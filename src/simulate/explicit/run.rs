@@ -11,6 +11,7 @@ use crate::simulate::control::Schedule;
 use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::{FeatureWork, Features, Passage};
+use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
 /// Samples whose states are advanced together.
@@ -30,6 +31,10 @@ impl Motion for RowClosure<'_> {
     fn close(&mut self, time: f64, state: &mut [f64]) {
         RowClosure::close(self, time, state);
     }
+
+    fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
+        RowClosure::sample(self, time, state)
+    }
 }
 
 impl Motion for JetClosure<'_> {
@@ -39,6 +44,10 @@ impl Motion for JetClosure<'_> {
 
     fn close(&mut self, time: f64, state: &mut [f64]) {
         JetClosure::close(self, time, state);
+    }
+
+    fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
+        JetClosure::sample(self, time, state)
     }
 }
 
@@ -153,7 +162,7 @@ impl<'s> Tiles<'s> {
     /// Goes on from the step's end.
     pub fn accept(&mut self, end: f64) {
         for tile in &mut self.tiles {
-            tile.run.accept(end);
+            tile.run.accept(&mut tile.motion, end);
             self.movement = self.movement.clone().reaching(&tile.start, &tile.run.state, tile.alive.len());
         }
     }
@@ -211,7 +220,7 @@ impl<'s> ExplicitRun<'s> {
         into: &mut Vec<f64>,
     ) -> Vec<Stop> {
         let lines = observed.count(self.simulator);
-        let ends = schedule.ends();
+        let ends = schedule.ending_at(Instants::of(self.simulator)).ends();
         let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
             .tiles
             .par_iter_mut()
@@ -336,7 +345,7 @@ fn reach<M: Motion>(
             run.interpolate((time - run.time) / (end - run.time), state);
             return;
         }
-        run.accept(end);
+        run.accept(motion, end);
     }
     state.copy_from_slice(&run.state);
 }
@@ -344,6 +353,7 @@ fn reach<M: Motion>(
 /// The run of one jet.
 #[derive(Debug)]
 pub struct ExplicitJets<'s> {
+    simulator: &'s Simulator,
     motion: JetClosure<'s>,
     run: RungeKutta,
     steps: usize,
@@ -364,14 +374,14 @@ impl<'s> ExplicitJets<'s> {
         let mut motion = JetClosure::new(simulator, space, (center, half_width), &start)?;
         let state = motion.start(simulator, space, (center, half_width))?;
         let run = RungeKutta::start(&mut motion, 0.0, state);
-        Ok(Self { motion, run, steps: 0, coordinates: simulator.system.q.len() })
+        Ok(Self { simulator, motion, run, steps: 0, coordinates: simulator.system.q.len() })
     }
 
     /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by output,
     /// coefficient by coefficient. Returns where the run stopped, if it did.
     pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         into.clear();
-        let ends = schedule.ends();
+        let ends = schedule.ending_at(Instants::of(self.simulator)).ends();
         let mut state = vec![0.0; self.run.state.len()];
         for row in rows {
             let time = schedule.time(row);

@@ -11,6 +11,9 @@ pub(super) trait Motion {
 
     /// Moves a state onto the constraints.
     fn close(&mut self, time: f64, state: &mut [f64]);
+
+    /// Gives what changes at instants its new values; whether the time is one.
+    fn sample(&mut self, time: f64, state: &mut [f64]) -> bool;
 }
 
 /// Terms of the dense output: the change, two of the ends' rates, and four of all stages.
@@ -66,10 +69,13 @@ impl RungeKutta {
     }
 
     /// Goes on from the end of the step that was finished.
-    pub fn accept(&mut self, end: f64) {
+    pub fn accept(&mut self, motion: &mut impl Motion, end: f64) {
         std::mem::swap(&mut self.state, &mut self.next);
         self.rates.swap(0, STAGES - 1);
         self.time = end;
+        if motion.sample(end, &mut self.state) {
+            motion.rate(end, &self.state, &mut self.rates[0]);
+        }
     }
 
     /// Makes the dense output of the step that was finished.
@@ -190,6 +196,10 @@ mod tests {
         }
 
         fn close(&mut self, _: f64, _: &mut [f64]) {}
+
+        fn sample(&mut self, _: f64, _: &mut [f64]) -> bool {
+            false
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::run::Tiles;
 use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::error::SimulationError;
+use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
 
@@ -75,6 +76,7 @@ pub fn explicit_schedule(
     let functions = TimeFunctions::of(simulator, duration);
     let functions = functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, most)).transpose();
     let Ok(mut functions) = functions else { return too_many };
+    let instants = Instants::of(simulator);
     let (mut ends, mut time, mut h) = (Vec::new(), 0.0, FIRST_STEP * output_step);
     let (mut stiff, mut others) = (0, 0);
     while time < duration {
@@ -89,6 +91,10 @@ pub fn explicit_schedule(
             None => Ok(h),
         };
         let Ok(step) = resolved else { return too_many };
+        let step = match instants.between(time, time + step) {
+            Some(instant) => Schedule::at_row(instant, (duration, output_step)) - time,
+            None => step,
+        };
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
         let worst = tiles.attempt(end, tolerance);
         let factor = SAFETY * math::pow(worst.ratio.max(1e-12), -0.125);

@@ -208,7 +208,23 @@ impl<'p> Assembly<'p> {
             self.tile.lane_mut(register).fill(0.0);
         }
         self.accelerate();
+        if !program.held.is_empty() {
+            self.sample();
+            self.accelerate();
+        }
         open
+    }
+
+    /// Gives the states that change at instants their new values, where the tile's time is one of theirs.
+    pub fn sample(&mut self) {
+        let time = self.tile.lane(self.program.layout.time)[0];
+        self.tile.run(self.program.sampling());
+        let due = || self.program.held.iter().filter(|held| held.is_due(time));
+        // All are taken before one changes: a value may be another of these states.
+        let values: Vec<Vec<f64>> = due().map(|held| self.tile.lane(held.value).to_vec()).collect();
+        for (held, values) in due().zip(values) {
+            self.tile.lane_mut(held.state).copy_from_slice(&values);
+        }
     }
 
     /// Corrects the velocities of a motion at the tile's positions and time. Returns which lanes have settled.
@@ -224,6 +240,7 @@ impl<'p> Assembly<'p> {
     /// a = w(t + shift) to first order: the accelerations of the state moved there.
     pub fn shift_accelerations(&mut self, shift: f64) {
         let layout = &self.program.layout;
+        let time = self.tile.lane(layout.time)[0];
         let state: Vec<f64> =
             self.tile.values()[layout.q.start * self.tile.width()..layout.lambda.end * self.tile.width()].to_vec();
         for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
@@ -233,13 +250,13 @@ impl<'p> Assembly<'p> {
                 self.tile.lane_mut(v)[lane] += shift * acceleration;
             }
         }
-        self.tile.lane_mut(layout.time).fill(shift);
+        self.tile.lane_mut(layout.time).fill(time + shift);
         self.accelerate();
         let width = self.tile.width();
         let shifted: Vec<f64> = self.tile.values()[layout.w.start * width..layout.w.end * width].to_vec();
         self.tile.values_mut()[layout.q.start * width..layout.lambda.end * width].copy_from_slice(&state);
         self.tile.values_mut()[layout.a.start * width..layout.a.end * width].copy_from_slice(&shifted);
-        self.tile.lane_mut(layout.time).fill(0.0);
+        self.tile.lane_mut(layout.time).fill(time);
     }
 
     /// Damped Gauss–Newton of a single lane.

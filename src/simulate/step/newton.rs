@@ -7,6 +7,7 @@
 
 use symdiff::{Tile, Vectorise, vectorised};
 
+use super::prediction::Predict;
 use super::rank_revealing::solve_rank_deficient;
 use super::rounding::{ROUND_OFF, is_rounding, matrix_entries, rounding_of_residuals};
 use crate::compile::{Program, Watched};
@@ -89,6 +90,12 @@ impl Newton {
             steps: 0,
             counters: Counters::default(),
         }
+    }
+
+    /// Forgets the steps before: accelerations and multipliers do not go on from theirs.
+    pub fn forget(&mut self) {
+        self.known = 0;
+        self.contraction.fill(FIRST_CONTRACTION);
     }
 
     /// Whether a lane's last step took the rank-revealing solve.
@@ -254,35 +261,6 @@ impl Newton {
             for (lane, residual) in tile.lane(register).iter().enumerate() {
                 let closed = (gain * residual).abs() <= allowed;
                 self.pending[lane] |= self.singular[lane] && !closed;
-            }
-        }
-    }
-}
-
-/// w₊ and λ₊ of pending lanes as weighted sums of values w, λ.
-struct Predict<'a> {
-    program: &'a Program,
-    tile: &'a mut Tile,
-    pending: &'a [bool],
-    weights: [f64; 3],
-    values: [&'a [f64]; 3],
-}
-
-impl Vectorise for Predict<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let layout = &self.program.layout;
-        let width = self.tile.width();
-        let ([a, b, c], [now, last, second_last]) = (self.weights, self.values);
-        let targets = layout.iterate.clone().chain(layout.lambda.clone());
-        for (place, register) in targets.enumerate() {
-            let [now, last, second_last] = [now, last, second_last].map(|values| &values[place * width..][..width]);
-            let values = self.tile.lane_mut(register);
-            for lane in 0..width {
-                let predicted = a * now[lane] + (b * last[lane] + c * second_last[lane]);
-                values[lane] = if self.pending[lane] { predicted } else { values[lane] };
             }
         }
     }

@@ -140,6 +140,21 @@ impl<'p> Stepper<'p> {
         }
     }
 
+    /// Length of the step before, to which a belongs, s.
+    pub(in crate::simulate) fn step_size(&self) -> f64 {
+        self.step_size
+    }
+
+    /// Goes on with other velocities, accelerations and multipliers, where those are finite.
+    pub(in crate::simulate) fn begin_anew(&mut self, from: &Tile) {
+        let layout = &self.program.layout;
+        for register in layout.v.start..layout.lambda.end {
+            let values = self.tile.lane_mut(register).iter_mut().zip(from.lane(register));
+            values.filter(|(_, new)| new.is_finite()).for_each(|(value, new)| *value = *new);
+        }
+        self.newton.forget();
+    }
+
     /// Counts what another stepper has done for this one since it had counted `before`.
     pub(in crate::simulate) fn count_since(&mut self, now: Counters, before: Counters) {
         self.newton.counters.iterations += now.iterations - before.iterations;

@@ -1,0 +1,38 @@
+//! Schedules whose steps end at the instants at which states change.
+
+use std::borrow::Cow;
+
+use super::schedule::Schedule;
+use crate::simulate::sampling::Instants;
+
+/// Times that differ by this share of the output step are the same.
+const ROUNDING: f64 = 1e-9;
+
+impl Schedule {
+    /// The same with each step divided at the instants in it, so that all parts of a step that are halved later end there too.
+    pub(in crate::simulate) fn ending_at(&self, instants: Instants<'_>) -> Cow<'_, Self> {
+        let steps = || (1..self.rows).flat_map(|row| self.steps_to(row));
+        if instants.is_empty() || steps().all(|(h, end)| instants.between(end - h, end).is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let times = (self.end(), self.output_step);
+        let ends = |steps: &mut dyn Iterator<Item = (f64, f64)>| {
+            steps.flat_map(|step| instants.divide(step)).map(|(_, end)| end).collect::<Vec<f64>>()
+        };
+        let divided = if self.passes_rows() {
+            let at_rows = ends(&mut steps()).into_iter().map(|end| Self::at_row(end, times)).collect();
+            Self::passing(self.end(), self.output_step, at_rows)
+        } else {
+            Self::listed(self.output_step, (1..self.rows).map(|row| ends(&mut self.steps_to(row))).collect())
+        };
+        Cow::Owned(divided.taken(self.integration))
+    }
+
+    /// An instant, or the time of the row that it is but for rounding, so that the row comes after what changes there; of a schedule of
+    /// this duration and output step, s.
+    pub(in crate::simulate) fn at_row(instant: f64, (duration, output_step): (f64, f64)) -> f64 {
+        let row = (instant / output_step).round();
+        let time = Self::time_of(duration, output_step, row as usize);
+        if (time - instant).abs() <= ROUNDING * output_step { time } else { instant }
+    }
+}

@@ -1,0 +1,49 @@
+//! How samples are divided among tiles.
+
+use symdiff::WIDTHS;
+
+/// Widest tile in use: a wider one's memory would leave the first-level cache.
+const WIDEST: usize = 32;
+
+/// Most memory of a tile, so that a large mechanism's stays in the second-level cache. Tiles are narrower then, down to
+/// [`NARROWEST`], where dispatch costs more than memory does.
+const TILE_MEMORY: usize = 2 << 20;
+
+/// See [`TILE_MEMORY`].
+const NARROWEST: usize = 8;
+
+/// Tiles of `samples` with this many registers each for `threads`: (first, count, width). Results do not depend on the tiling.
+pub(super) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
+    let fits = TILE_MEMORY / (registers * size_of::<f64>()).max(1);
+    let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));
+    let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);
+    let mut tiles = Vec::new();
+    let mut first = 0;
+    while first < samples {
+        let count = width.min(samples - first);
+        let width = WIDTHS.into_iter().find(|&width| width >= count).unwrap_or(width);
+        tiles.push((first, count, width));
+        first += count;
+    }
+    tiles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_all_samples_once() {
+        for samples in 1..200 {
+            for (threads, registers) in [(1, 100), (2, 100), (7, 100), (2, 100_000)] {
+                let mut next = 0;
+                for (first, count, width) in tiles(samples, registers, threads) {
+                    assert_eq!(first, next);
+                    assert!(count >= 1 && count <= width && WIDTHS.contains(&width));
+                    next += count;
+                }
+                assert_eq!(next, samples);
+            }
+        }
+    }
+}
