@@ -1,9 +1,53 @@
 //! What an analysis makes of the equations.
 
+use std::borrow::Cow;
+
+use rustc_hash::FxHashMap;
+use symdiff::Expr;
+
 use super::System;
 use super::system::Start;
 
 impl System {
+    /// The equations for a configuration at rest, in which states rest, too: each is the position of its coordinate in place of its
+    /// velocity, and its rate the force on it; one that changes at instants is what it becomes there.
+    pub fn at_rest(&self) -> Cow<'_, Self> {
+        let states: Vec<usize> = (0..self.q.len()).filter(|&place| self.coordinates[place].is_state).collect();
+        if states.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut system = self.clone();
+        let graph = &mut system.graph;
+        for held in &system.held {
+            let change = graph.sub(held.value, system.v[held.coordinate]);
+            system.force[held.coordinate] = graph.add(system.force[held.coordinate], change);
+        }
+        let positions: FxHashMap<Expr, Expr> = states.iter().map(|&place| (system.v[place], system.q[place])).collect();
+        let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
+        let condition: Vec<Expr> = system.active_condition.into_iter().collect();
+        let lists = [&system.inertia, &system.force, &system.conditional, &outputs, &condition];
+        let lists = lists.map(|list| graph.substitute(list, &positions));
+        let [inertia, force, conditional, outputs, condition] = lists;
+        (system.inertia, system.force, system.conditional) = (inertia, force, conditional);
+        system.outputs.iter_mut().zip(outputs).for_each(|(output, expr)| output.expr = expr);
+        system.active_condition = condition.first().copied();
+        Cow::Owned(system)
+    }
+
+    /// Whether it has states.
+    pub fn has_states(&self) -> bool {
+        self.coordinates.iter().any(|coordinate| coordinate.is_state)
+    }
+
+    /// A start at an equilibrium is known: nothing is given of positions, and nothing decides where they are left open. States are those
+    /// that their coordinates' positions were there.
+    pub fn start_at_equilibrium(&mut self) {
+        self.start.leave_positions();
+        for place in (0..self.q.len()).filter(|&place| self.coordinates[place].is_state) {
+            self.start.velocity[place] = Some(self.q[place]);
+        }
+    }
+
     /// Without forces and masses: w minimises Σ (w/scale)², and so is what the constraints make of it. Where they leave no freedom,
     /// nothing else is.
     pub(super) fn forget_forces(&mut self) {
@@ -23,7 +67,7 @@ impl System {
 
 impl Start {
     /// Positions are known: nothing is given of them, and nothing decides where they are left open.
-    pub fn leave_positions(&mut self) {
+    fn leave_positions(&mut self) {
         self.position.fill(None);
         self.conditions.iter_mut().for_each(|condition| condition.position = false);
         self.conditions.retain(|condition| condition.velocity);

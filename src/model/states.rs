@@ -141,14 +141,11 @@ pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
 
 /// Reports states where nothing moves in time.
 pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
-    if reader.model.states.is_empty()
-        || (reader.model.analysis == Analysis::Motion && !reader.model.starts_at_equilibrium)
-    {
+    if reader.model.states.is_empty() || matches!(reader.model.analysis, Analysis::Motion | Analysis::Statics) {
         return;
     }
     let of_effects = effects.iter().find(|entry| reader.model.states.contains(&entry.key));
     let place = of_effects.map_or_else(|| fields.key_span("states"), |entry| entry.key_span.clone());
-    let help =
-        "states change in time: leave them out here, e.g. in a scene with `without`, or ask for `analysis: motion`";
-    reader.error(place, "states belong to a motion from a given start", help.to_owned());
+    let help = "leave them out here, e.g. in a scene with `without`, or ask for `analysis: motion` or `statics`";
+    reader.error(place, "states belong to a motion or to an equilibrium", help.to_owned());
 }

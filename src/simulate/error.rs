@@ -44,12 +44,12 @@ pub enum SimulationError {
         massless: Option<String>,
     },
     /// No static equilibrium was found.
-    #[error("{}", equilibrium_message(coordinate, force, *is_free, parameters))]
+    #[error("{}", equilibrium_message(pushed, *is_state, *is_free, parameters))]
     NoEquilibrium {
-        /// Name of the coordinate that is pushed most.
-        coordinate: String,
-        /// By how much, with its unit.
-        force: String,
+        /// What is pushed most, and by how much; or which state changes most.
+        pushed: String,
+        /// Whether it is a state.
+        is_state: bool,
         /// Whether nothing holds it, wherever it is.
         is_free: bool,
         /// The sample.
@@ -195,14 +195,15 @@ fn assembly_message(
     }
 }
 
-fn equilibrium_message(coordinate: &str, force: &str, is_free: bool, parameters: &[(String, f64)]) -> String {
+fn equilibrium_message(pushed: &str, is_state: bool, is_free: bool, parameters: &[(String, f64)]) -> String {
     let with = if parameters.is_empty() { String::new() } else { format!(" with {}", parameter_list(parameters)) };
-    let advice = if is_free {
-        "and no force changes as it moves: hold it by a joint or a spring"
-    } else {
-        "say in `guess` near where it is to rest, or hold it by a spring or a stop"
+    let advice = match (is_state, is_free) {
+        (false, true) => "and no force changes as it moves: hold it by a joint or a spring",
+        (false, false) => "say in `guess` near where it is to rest, or hold it by a spring or a stop",
+        (true, true) => "and no rate or force depends on it: close its loop",
+        (true, false) => "say as its `initial` near where it is to rest",
     };
-    format!("there is no equilibrium near the start{with}: {force} still push `{coordinate}`, {advice}")
+    format!("there is no equilibrium near the start{with}: {pushed}, {advice}")
 }
 
 fn names(coordinates: &[String]) -> String {
@@ -229,10 +230,15 @@ pub(super) fn not_driven(system: &System, start: &StartProgram, state: &[f64]) -
 pub(super) fn no_equilibrium(system: &System, none: &NoEquilibrium, parameters: &[f64]) -> SimulationError {
     let names = system.parameters.iter().map(|parameter| parameter.name.clone());
     let coordinate = &system[none.coordinate];
-    let unit = if coordinate.is_angle { "N m" } else { "N" };
+    let (name, amount) = (&coordinate.name, none.force.abs());
+    let pushed = match (coordinate.is_state, coordinate.is_angle) {
+        (true, _) => format!("the state `{name}` still changes by {amount:.3e} a second"),
+        (false, true) => format!("{amount:.3e} N m still push `{name}`"),
+        (false, false) => format!("{amount:.3e} N still push `{name}`"),
+    };
     SimulationError::NoEquilibrium {
-        coordinate: coordinate.name.clone(),
-        force: format!("{:.3e} {unit}", none.force.abs()),
+        pushed,
+        is_state: coordinate.is_state,
         is_free: none.is_free,
         parameters: names.zip(parameters.iter().copied()).collect(),
     }

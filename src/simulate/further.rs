@@ -11,7 +11,8 @@ const STABILITY: &str = "stability";
 pub fn further_outputs(system: &mut System, freedom: usize) {
     match system.analysis {
         Analysis::Modes(_) => modal::further_outputs(system, freedom),
-        Analysis::Statics => {
+        // What a controller does at an equilibrium depends on how it moves.
+        Analysis::Statics if !system.has_states() => {
             let taken = |name: &str| system.outputs.iter().any(|output| output.name == name);
             let mut name = STABILITY.to_owned();
             while taken(&name) {
@@ -20,6 +21,6 @@ pub fn further_outputs(system: &mut System, freedom: usize) {
             let expr = system.graph.constant(0.0);
             system.outputs.push(OutputInfo { name, unit: "1/s^2".to_owned(), dimension: None, expr });
         }
-        Analysis::Motion | Analysis::Kinematics => {}
+        Analysis::Motion | Analysis::Kinematics | Analysis::Statics => {}
     }
 }

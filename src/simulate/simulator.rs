@@ -101,7 +101,7 @@ impl Assembled {
         if let Some(equilibrium) = &equilibrium {
             let found = equilibrium.find(&nominal, &parameters);
             nominal = found.map_err(|none| no_equilibrium(&system, &none, &parameters))?;
-            system.start.leave_positions();
+            system.start_at_equilibrium();
             start = compile_start(&system, &mobility.redundant, &nominal).map_err(|none| no_factors(&system, &none))?;
             let mut assembly = Assembly::new(&start, &system, 1, |parameter, _| parameters[parameter]);
             if let Some(worst) = assembly.assemble_from(&nominal).first() {

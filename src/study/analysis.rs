@@ -12,6 +12,9 @@ impl Study<'_> {
         let Some(equilibrium) = &self.simulator.equilibrium else {
             return (system.analysis != Analysis::Motion).then_some(summary);
         };
+        if system.has_states() {
+            return (system.analysis != Analysis::Motion).then_some(summary);
+        }
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let found = equilibrium.stability(&self.simulator.nominal, &parameters);
         summary.stability = Some(found.smallest);

@@ -62,6 +62,7 @@ mod snapshots;
 mod snapshots_questions;
 mod spatial_linkages;
 mod starts;
+mod states_at_rest;
 mod statics;
 mod statistics;
 mod step_control;

@@ -3,14 +3,16 @@
 //! Newton's method on the motions that the constraints allow: with Φ̂_q = L B and N orthogonal to B, the correction of the coordinates is
 //! the shortest one that closes the constraints, and N p with Nᵀ K N p = −Nᵀ(M w + Φ_qᵀ λ − Q). Near a solution that is all: it is the
 //! nearest equilibrium, stable or not. Further away each eigenvalue of Nᵀ K N is taken positive, and the step is shortened: that leads
-//! downhill, to a stable one.
+//! downhill, to a stable one. States of controllers rest there, too: their rates are zero. What drives them has no hill; Newton's steps are
+//! shortened then, and stability is not looked at, for it depends on how they move.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::configuration::{Configuration, Linearised, reduced, times};
+use super::scaled::Scaled;
 use super::stability::Stability;
 use crate::assemble::{ConstraintId, CoordinateId, System};
-use crate::compile::{EquationsProgram, compile_equations};
+use crate::compile::{EquationsProgram, Layout, compile_equations};
 use crate::numerics::{RowSpace, combined, dot};
 
 /// Corrections before it is given up.
@@ -46,6 +48,17 @@ pub struct Equilibrium {
     pub(super) program: EquationsProgram,
     pub(super) scale: Vec<f64>,
     pub(super) redundant: Vec<ConstraintId>,
+    pub(super) states: Vec<State>,
+}
+
+/// A state, whose coordinate's position it is here.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    /// The coordinate's place in q.
+    place: usize,
+    /// Registers of the coordinate, and of the state elsewhere.
+    position: usize,
+    value: usize,
 }
 
 /// Why there is none.
@@ -63,7 +76,11 @@ impl Equilibrium {
     /// Of a mechanism with these redundant constraints.
     pub fn new(system: &System, redundant: &[ConstraintId]) -> Self {
         let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
-        Self { program: compile_equations(system), scale, redundant: redundant.to_vec() }
+        let program = compile_equations(&system.at_rest());
+        let Layout { q, v, .. } = &program.layout;
+        let places = (0..q.len()).filter(|&place| system.coordinates[place].is_state);
+        let states = places.map(|place| State { place, position: q.start + place, value: v.start + place }).collect();
+        Self { program, scale, redundant: redundant.to_vec(), states }
     }
 
     /// The equations at rest with these parameters.
@@ -105,15 +122,15 @@ impl Equilibrium {
     pub fn find(&self, state: &[f64], parameters: &[f64]) -> Result<Vec<f64>, NoEquilibrium> {
         let layout = &self.program.layout;
         let mut at = self.configuration(parameters);
-        at.set(layout.q.clone(), &state[layout.q.clone()]);
+        self.set_positions(&mut at, state);
         let mut last = f64::INFINITY;
         let mut balance = self.balanced(&mut at);
         for _ in 0..MAX_CORRECTIONS {
-            let Some(step) = balance.step() else { break };
-            let size = step.all.iter().fold(0.0_f64, |size, change| size.max(change.abs()));
+            let before = at.get(layout.q.clone());
+            let Some(step) = balance.step(&self.states) else { break };
+            let size = self.size(&step, &before);
             let settles = size <= SETTLED || size <= STALLED && size >= 0.5 * last;
             last = if step.is_newton { size } else { f64::INFINITY };
-            let before = at.get(layout.q.clone());
             let mut share = 1.0;
             for _ in 0..MOST_HALVINGS {
                 let places = before.iter().zip(&step.all).zip(&self.scale);
@@ -121,7 +138,7 @@ impl Equilibrium {
                 at.set(layout.q.clone(), &moved);
                 balance = self.balanced(&mut at);
                 let work = -dot(&balance.linear.motion, &step.allowed);
-                if step.is_newton || work > -0.5 * step.work {
+                if step.is_newton || !step.is_downhill || work > -0.5 * step.work {
                     break;
                 }
                 share *= 0.5;
@@ -130,11 +147,21 @@ impl Equilibrium {
                 let mut found = state.to_vec();
                 found[layout.q.clone()].copy_from_slice(&at.get(layout.q.clone()));
                 found[layout.v.start..layout.w.end].fill(0.0);
+                self.states.iter().for_each(|state| found[state.value] = found[state.position]);
                 found[layout.lambda.clone()].copy_from_slice(&at.get(layout.lambda.clone()));
                 return Ok(found);
             }
         }
-        Err(balance.why(&self.scale))
+        Err(balance.why(&self.scale, &self.states))
+    }
+
+    /// The largest change of a step from these positions, per scale; of states relative to what they are.
+    fn size(&self, step: &Step, before: &[f64]) -> f64 {
+        let mut sizes: Vec<f64> = step.all.iter().map(|change| change.abs()).collect();
+        for &State { place, .. } in &self.states {
+            sizes[place] /= (before[place] / self.scale[place]).abs().max(1.0);
+        }
+        sizes.into_iter().fold(0.0, f64::max)
     }
 
     /// What the stiffness says of an equilibrium's state.
@@ -146,9 +173,16 @@ impl Equilibrium {
     pub fn at(&self, state: &[f64], parameters: &[f64]) -> Configuration<'_> {
         let layout = &self.program.layout;
         let mut at = self.configuration(parameters);
-        at.set(layout.q.clone(), &state[layout.q.clone()]);
+        self.set_positions(&mut at, state);
         at.set(layout.lambda.clone(), &state[layout.lambda.clone()]);
         at
+    }
+
+    /// Sets positions, and those of the states' coordinates to the states.
+    fn set_positions(&self, at: &mut Configuration, state: &[f64]) {
+        let registers = self.program.layout.q.clone();
+        at.set(registers.clone(), &state[registers]);
+        self.states.iter().for_each(|own| at.set(own.position..own.position + 1, &[state[own.value]]));
     }
 
     /// The equations with the multipliers that leave the smallest forces.
@@ -183,11 +217,14 @@ struct Step {
     work: f64,
     /// Whether it is that of Newton's method.
     is_newton: bool,
+    /// Whether the forces along it are to do work.
+    is_downhill: bool,
 }
 
 impl Balance {
-    /// `None` where a number is not finite.
-    fn step(&self) -> Option<Step> {
+    /// `None` where a number is not finite. Without states a long step leads downhill; with them it is that of Newton's method, shortened so
+    /// that no coordinate of the mechanism goes far.
+    fn step(&self, states: &[State]) -> Option<Step> {
         let Linearised { motion, constraint, stiffness, .. } = &self.linear;
         let (basis, n) = (&self.space.null, motion.len());
         let right: Vec<f64> = constraint.iter().map(|value| -value).collect();
@@ -200,11 +237,21 @@ impl Balance {
         if forces.iter().chain(small.iter()).chain(&closing).any(|value| !value.is_finite()) {
             return None;
         }
-        let longest = |parts: &[f64]| parts.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
-        let (newton, is_regular) = newton(&small, &forces, NOTHING * self.applied.max(longest_of(stiffness)));
+        let leads_downhill = states.is_empty();
+        let longest = |parts: &[f64]| {
+            let mut sizes: Vec<f64> = parts.iter().map(|part| part.abs()).collect();
+            states.iter().for_each(|state| sizes[state.place] = 0.0);
+            sizes.into_iter().fold(0.0, f64::max)
+        };
+        let nothing = NOTHING * self.applied.max(longest_of(stiffness));
+        let solve = if leads_downhill { newton } else { shortest };
+        let (newton, is_regular) = solve(&small, &forces, nothing);
         let allowed = combined(basis, &newton, n);
-        let (allowed, is_newton) = if is_regular && longest(&allowed) <= NEAR {
-            (allowed, true)
+        let is_near = longest(&allowed) <= NEAR;
+        let is_downhill = leads_downhill && !(is_regular && is_near);
+        let (allowed, is_newton) = if !is_downhill {
+            let share = if is_near { 1.0 } else { (REACH / longest(&allowed)).min(1.0) };
+            (allowed.iter().map(|part| share * part).collect::<Vec<f64>>(), is_near && is_regular)
         } else {
             let downhill = combined(basis, &downhill(&small, &forces), n);
             let share = (REACH / longest(&downhill)).min(1.0);
@@ -213,19 +260,23 @@ impl Balance {
         let shortened = (REACH / longest(&closing)).min(1.0);
         let all = allowed.iter().zip(&closing).map(|(a, b)| a + shortened * b).collect();
         let work = -dot(motion, &allowed);
-        Some(Step { all, allowed, work, is_newton: is_newton && shortened == 1.0 })
+        Some(Step { all, allowed, work, is_newton: is_newton && shortened == 1.0, is_downhill })
     }
 
-    fn why(&self, scale: &[f64]) -> NoEquilibrium {
+    fn why(&self, scale: &[f64], states: &[State]) -> NoEquilibrium {
         let (basis, n) = (&self.space.null, scale.len());
         let forces: Vec<f64> = basis.iter().map(|vector| -dot(vector, &self.linear.motion)).collect();
         let pushed = combined(basis, &forces, n);
-        let coordinate = (0..n).max_by(|&a, &b| pushed[a].abs().total_cmp(&pushed[b].abs())).unwrap_or(0);
-        let small = reduced(&self.linear.stiffness, basis);
-        let yields: Vec<f64> = times(&small, &forces).iter().map(|part| part.abs()).collect();
-        let largest = yields.iter().copied().fold(0.0, f64::max);
-        let is_free =
-            largest <= NOTHING * longest_of(&self.linear.stiffness).max(1e-300) * dot(&forces, &forces).sqrt();
+        let nothing = NOTHING * longest_of(&self.linear.stiffness).max(1e-300);
+        let by_push = |a: &usize, b: &usize| pushed[*a].abs().total_cmp(&pushed[*b].abs());
+        let is_alone = |place: &usize| self.linear.stiffness.column(*place).iter().all(|entry| entry.abs() <= nothing);
+        // A state that nothing depends on cannot be brought to rest, and what else is not in balance gives way to it.
+        let least = NOTHING * pushed.iter().fold(0.0_f64, |most, push| most.max(push.abs()));
+        let states = states.iter().map(|state| state.place).filter(|&place| pushed[place].abs() > least);
+        let open = states.filter(is_alone).max_by(by_push);
+        let coordinate = open.or_else(|| (0..n).max_by(by_push)).unwrap_or(0);
+        let yields = times(&reduced(&self.linear.stiffness, basis), &forces);
+        let is_free = open.is_some() || yields.iter().all(|part| part.abs() <= nothing * dot(&forces, &forces).sqrt());
         NoEquilibrium {
             coordinate: CoordinateId::new(coordinate),
             force: pushed.get(coordinate).map_or(0.0, |force| force / scale[coordinate]),
@@ -260,7 +311,26 @@ fn newton(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool
     (found, is_regular)
 }
 
-/// The same with every eigenvalue positive.
+/// The shortest x with the least |K x − f|, and whether that is zero. Forces below `nothing` are.
+fn shortest(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool) {
+    if forces.is_empty() {
+        return (Vec::new(), true);
+    }
+    let Scaled { matrix, rows, columns } = Scaled::of(small);
+    let right = DVector::from_iterator(forces.len(), forces.iter().zip(&rows).map(|(force, factor)| force * factor));
+    let factors = matrix.svd(true, true);
+    let Ok(found) = factors.solve(&right, NOTHING * factors.singular_values.max()) else {
+        return (vec![0.0; forces.len()], false);
+    };
+    let found: Vec<f64> = found.iter().zip(&columns).map(|(part, factor)| part * factor).collect();
+    let is_met = |((image, force), row): ((f64, &f64), &f64)| {
+        (image - force).abs() <= nothing.max(NOTHING * (force.abs() + row.recip()))
+    };
+    let is_met = times(small, &found).into_iter().zip(forces).zip(&rows).all(is_met);
+    (found, is_met)
+}
+
+/// K⁻¹ f with every eigenvalue positive.
 fn downhill(small: &DMatrix<f64>, forces: &[f64]) -> Vec<f64> {
     let eigen = SymmetricEigen::new((small + small.transpose()) * 0.5);
     let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));

@@ -5,6 +5,7 @@ use symdiff::JetMemory;
 use symdiff::jet::JetSpace;
 
 use super::equilibrium::Equilibrium;
+use super::scaled::Scaled;
 use crate::assemble::ConstraintId;
 use crate::compile::Tapes;
 
@@ -72,7 +73,8 @@ impl Equilibrium {
         };
         let size = kept.len();
         let matrix = DMatrix::from_fn(size, size, |row, column| entry(kept[row], kept[column]));
-        let factors = matrix.full_piv_lu();
+        let scaled = if self.states.is_empty() { Scaled::not(matrix) } else { Scaled::of(&matrix) };
+        let factors = scaled.matrix.full_piv_lu();
         let pivots = factors.u().diagonal().map(f64::abs);
         let (least, most) = (pivots.min(), pivots.max());
         if least.is_nan() || most.is_nan() || least <= SINGULAR * most {
@@ -82,10 +84,10 @@ impl Equilibrium {
         let mut inverse = DMatrix::zeros(n + m, n + m);
         for (place, &column) in kept.iter().enumerate() {
             let mut unit = DVector::zeros(size);
-            unit[place] = 1.0;
+            unit[place] = scaled.rows[place];
             let solution = factors.solve(&unit)?;
-            for (value, &row) in solution.iter().zip(&kept) {
-                inverse[(row, column)] = value * scale(row) * scale(column);
+            for ((value, factor), &row) in solution.iter().zip(&scaled.columns).zip(&kept) {
+                inverse[(row, column)] = value * factor * scale(row) * scale(column);
             }
         }
         Some(inverse)

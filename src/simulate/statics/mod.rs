@@ -7,6 +7,7 @@
 mod configuration;
 mod equilibrium;
 mod jets;
+mod scaled;
 mod stability;
 
 pub use configuration::{Configuration, Linearised, reduced, times};

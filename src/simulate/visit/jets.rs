@@ -54,7 +54,8 @@ impl Simulator {
             None => unknown,
         };
         // The smallest eigenvalue may be one or another: it has no jet.
-        let last = values.len() - space.len();
+        let own = if self.system.has_states() { 0 } else { space.len() };
+        let last = values.len() - own;
         values[last..].fill(f64::NAN);
         row(&values);
         Ok(())

@@ -11,8 +11,8 @@ impl Simulator {
         let Some(equilibrium) = &self.equilibrium else { return Ok(Visit::default()) };
         let state = self.equilibrium_of(equilibrium, sample)?;
         let mut values = equilibrium.at(&state, sample).outputs();
-        // The last is the smallest eigenvalue.
-        if let Some(last) = values.last_mut() {
+        // The last is the smallest eigenvalue, but where there are states.
+        if let Some(last) = values.last_mut().filter(|_| !self.system.has_states()) {
             *last = equilibrium.stability(&state, sample).smallest;
         }
         let mut reduction = Reduction::new(channels, values.len(), 1);
