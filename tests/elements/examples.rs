@@ -14,6 +14,7 @@ bodies:
   bead: { mass: 1, inertia: 0.01 }
   bob: { mass: 1, inertia: 0.01 }
   cart: { mass: 1, inertia: 0.01 }
+  disc: { mass: 1, inertia: 0.01 }
   crank: { mass: 1, inertia: 0.01, points: { A: [-0.1, 0], P: [0.1, 0] } }
   follower: { mass: 1, inertia: 0.01 }
   foot: { mass: 1, inertia: 0.01, points: { P: [0, -0.1] } }

@@ -245,6 +245,44 @@ outputs: {{ {}, {} }}
     }
 }
 
+/// Drives that follow targets by their rates, through rate limits and in a computer's time, and a wheel on the other side of its rail. What
+/// formulas of an instance refer to is what it is in the instance.
+#[test]
+fn the_image_of_a_controller_and_of_a_wheel() {
+    let cart = "
+assemblies:
+  cart:
+    shared: all
+    parameters: { m: 2 kg ± 2% }
+    bodies:
+      lever: { mass: m, inertia: 0.05, points: { top: [0.02, 0.03] } }
+      fore: { mass: 0.5, inertia: 2e-3, points: { A: [-0.1, 0.01] } }
+      wheel: { mass: 0.5, inertia: 2e-4 }
+    joints:
+      pin: { revolute: [ground, lever] }
+      wrist: { revolute: [lever.top, fore.A] }
+      roll: { rolling: { between: [lever.top, wheel], axis: [1, 0.2], radius: 0.04, offset: 0.03 } }
+    effects:
+      aim: { rate_limit: { input: 0.4*sin(9*t), rate: 2, lag: 20 ms } }
+      felt: { sampled: { input: wrist.angle, period: 30 ms } }
+      hold: { servo: { on: pin, target: aim, target_rate: 3.6*cos(9*t), proportional: 20, derivative: 1 } }
+      drive: { pid: { on: wrist, target: 0.3*sin(7*t), target_rate: 2.1*cos(7*t), proportional: 4, integral: 6, derivative: 0.3 } }
+      nudge: { torque: { on: wrist, value: -(0.5 N*m/rad)*felt } }
+    initial: { pin.angle: 0.1, pin.angular_velocity: 0, wrist.angle: 0, wrist.angular_velocity: 0, wheel.angle: 0.4 }
+";
+    for (mirror, gravity, signs) in [("y", "[5, 0]", [1.0, -1.0]), ("x", "[0, -9.81]", [-1.0, 1.0])] {
+        let found = bounds(&format!(
+            "{cart}instances: {{ one: {{ of: cart }}, two: {{ of: cart, mirror: {mirror} }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: {gravity} }} }} }}
+outputs: {{ x1: one.wheel.x, x2: two.wheel.x, y1: one.wheel.y, y2: two.wheel.y, f1: one.felt, f2: two.felt, a1: one.wrist.angle, a2: two.wrist.angle }}
+{ASKED}"
+        ));
+        for (name, sign) in [("x", signs[0]), ("y", signs[1]), ("f", 1.0), ("a", -1.0)] {
+            same(&found, &format!("{name}1"), (&found, &format!("{name}2")), sign);
+        }
+    }
+}
+
 /// A motion without weight does not know where it is.
 #[test]
 fn a_placed_instance_moves_in_its_frame() {

@@ -37,6 +37,7 @@ joints! {
     rack::Rack,
     planetary::Planetary,
     worm::Worm,
+    rolling::Rolling,
     motor::Motor,
     equation::Equation,
 }

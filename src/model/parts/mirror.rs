@@ -28,7 +28,7 @@ enum Image {
 use Image::{Axial, Directed, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 39] = [
+const KINDS: [(&str, &[(&str, Image)]); 40] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -44,6 +44,8 @@ const KINDS: [(&str, &[(&str, Image)]); 39] = [
     ("rack", &[("radius", Turning), ("helix_angle", Turning)]),
     ("planetary", &[("offset", Turning)]),
     ("worm", &[("lead_angle", Turning), ("offset", Turning)]),
+    // The wheel changes the side of a rail that keeps its direction.
+    ("rolling", &[("axis", Axial), ("offset", Turning)]),
     ("tooth_friction", &[]),
     ("spring_damper", &[("along", Polar)]),
     ("cable", &[]),
