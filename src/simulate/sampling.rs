@@ -106,8 +106,8 @@ mod tests {
         assert_eq!(divided(&[0.1, 0.05], (0.1, 1e3)).len(), 2);
         let parts = divided(&[0.3, 0.25], (1.0, 1.0));
         let ends: Vec<f64> = parts.iter().map(|&(_, end)| end).collect();
-        assert_eq!(ends.len(), 6);
-        for (end, expected) in ends.iter().zip([0.25, 0.3, 0.5, 0.6, 0.75, 0.9]) {
+        assert_eq!(ends.len(), 7);
+        for (end, expected) in ends.iter().zip([0.25, 0.3, 0.5, 0.6, 0.75, 0.9, 1.0]) {
             assert!((end - expected).abs() < 1e-15, "{ends:?}");
         }
     }

@@ -115,16 +115,17 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
     if !absolute.mobility.redundant.is_empty() {
         return keep(absolute, "constraints are redundant".to_owned());
     }
-    if passes_singular(description, &absolute) {
-        return keep(absolute, "the nominal motion passes singular configurations".to_owned());
-    }
     let start = &absolute.nominal[absolute.start.layout.q.clone()];
     let joint = match assemble::in_joint_coordinates(description, Some(deepest(description)), Some(start))? {
         Ok(joint) => joint,
         Err(why) => return keep(absolute, why),
     };
     match within(joint, enough(&absolute)) {
+        // The nominal motion is looked at only where joint coordinates are possible: it takes longer than to find that they are not.
         Ok(joint) if starts_alike(&absolute, &joint) => {
+            if passes_singular(description, &absolute) {
+                return keep(absolute, "the nominal motion passes singular configurations".to_owned());
+            }
             let joint = loop_cuts::shortest(description, joint, |other, best| {
                 let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
                 within(system, enough(best)).ok()
