@@ -63,7 +63,7 @@ impl HeldValue {
     /// Its first instant after a time and before another.
     pub fn due_between(&self, from: f64, to: f64) -> Option<f64> {
         let number = (from / self.period + ROUNDING).floor() + 1.0;
-        (number < to / self.period - ROUNDING).then(|| number * self.period)
+        (number < to / self.period - ROUNDING).then_some(number * self.period)
     }
 }
 
