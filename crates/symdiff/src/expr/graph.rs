@@ -3,7 +3,11 @@
 //! Equal subexpressions are one node, so common subexpressions cost nothing to find. Children always come before
 //! their parents in the arena, so every pass over a graph is a loop over ascending indices and none recurses.
 
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher;
+
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::node::{Binary, Expr, Node, Unary};
 use super::visits::Visits;
@@ -15,7 +19,8 @@ use super::visits::Visits;
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
-    known: FxHashMap<Node, Expr>,
+    /// All nodes by what they are: their handles alone, so that the table is small.
+    known: HashTable<Expr>,
     names: Vec<String>,
     symbols: FxHashMap<String, Expr>,
     most: Option<usize>,
@@ -100,13 +105,19 @@ impl Graph {
     }
 
     pub(super) fn intern(&mut self, node: Node) -> Expr {
-        if let Some(&known) = self.known.get(&node) {
-            return known;
+        let Self { nodes, known, .. } = self;
+        let hash = |node: &Node| FxBuildHasher.hash_one(node);
+        let is_same = |expr: &Expr| nodes[expr.index()] == node;
+        match known.entry(hash(&node), is_same, |expr| hash(&nodes[expr.index()])) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(place) => {
+                let number = u32::try_from(nodes.len());
+                let expr = Expr(number.expect("a graph has fewer than 2^32 nodes: memory ends first"));
+                place.insert(expr);
+                nodes.push(node);
+                expr
+            }
         }
-        let expr = Expr(u32::try_from(self.nodes.len()).expect("a graph has fewer than 2^32 nodes: memory ends first"));
-        self.nodes.push(node);
-        self.known.insert(node, expr);
-        expr
     }
 
     /// `a + b`.
