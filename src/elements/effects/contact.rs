@@ -7,6 +7,7 @@
 //! height h(x, t):               see `ground`
 //! edges, rounding ρ:            see `outline`
 //! capsule, block, rounding ρ:   see `solid`
+//! hull, rounding ρ:             see `hull`
 //! line, cylinder of the second: see `rod`
 //! F_B = f(−gap) n − R_μ v_t,    F_A = −F_B          N, both at r_B − r n
 //! ```
@@ -24,6 +25,7 @@ use symdiff::Formula;
 use super::course::{Course, Points, placed};
 use super::felt::{Felt, SENSORS};
 use super::ground::Ground;
+use super::hull::{self, Hull};
 use super::impact::Push;
 use super::outline::Outline;
 use super::rod::{self, Rod};
@@ -72,7 +74,10 @@ pub struct Contact {
     /// Instead of `plane`: lengths of a block along the axes of the first point's frame, about that point.
     #[quantity(unit = "m", constant)]
     pub block: Option<Components>,
-    /// How far the surface lies outside of a `path`, `polygon`, `capsule` or `block`.
+    /// Instead of `plane`: in space, points whose convex hull it is, in the first point's frame.
+    #[quantity(unit = "m", constant)]
+    pub hull: Option<Points>,
+    /// How far the surface lies outside of a `path`, `polygon`, `capsule`, `block` or `hull`.
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     pub rounding: Formula,
     /// Points of the second point's frame that touch, each with the `radius`.
@@ -98,7 +103,7 @@ pub struct Contact {
 }
 
 /// Keys of the first body's surface.
-const SURFACES: [&str; 8] = ["plane", "circle", "hollow", "path", "polygon", "height", "capsule", "block"];
+const SURFACES: [&str; 9] = ["plane", "circle", "hollow", "path", "polygon", "height", "capsule", "block", "hull"];
 
 impl ForceElement for Contact {
     const RESISTS: bool = true;
@@ -128,6 +133,8 @@ impl ForceElement for Contact {
             Surface::Whole(Shape::Ground(Ground::of(forces, height, radius)?))
         } else if let Some(solid) = self.solid(forces)? {
             Surface::Whole(Shape::Solid(solid, forces.prescribed(&self.rounding)? + radius))
+        } else if let Some(hull) = self.hull(forces)? {
+            Surface::Whole(Shape::Hull(hull.into(), forces.prescribed(&self.rounding)? + radius))
         } else {
             return Ok(());
         };
@@ -155,8 +162,8 @@ impl ForceElement for Contact {
         };
         let near = line.and_then(|line| surface.is_near(&line, &pair));
         let felt = centres.into_iter().map(|centre| match &surface {
-            &Surface::Whole(shape) => {
-                Touch { shape, radius: reach, axis, impact, friction, along, near }.act(forces, (&pair, centre))
+            Surface::Whole(shape) => {
+                Touch { shape: shape.clone(), radius: reach, axis, impact, friction, along, near }.act(forces, (&pair, centre))
             }
             Surface::Edges(outline) => outline.apply(forces, (&pair, centre), &impact, friction.as_ref()),
         });
@@ -182,6 +189,13 @@ impl Contact {
         let half = forces.prescribed_vector(lengths)?.map(|length| 0.5 * length).components().map(Some);
         let [x, y, z] = half;
         Ok(Some(Solid::Block { half: [x, y, z.filter(|_| forces.is_spatial())] }))
+    }
+
+    fn hull<'g>(&self, forces: &dyn Forces<'g>) -> Result<Option<Hull>, BuildError> {
+        let Some(points) = &self.hull else { return Ok(None) };
+        // The reader lets numbers through only.
+        let number = |point: Vector| point.components().map(|part| part.as_constant().unwrap_or(f64::NAN));
+        Ok(Hull::of(placed(forces, points)?.into_iter().map(number).collect()))
     }
 
     fn outline<'g>(
@@ -212,7 +226,8 @@ impl Checked for Contact {
             [] if !fields.lacks_all(&SURFACES) => {}
             [] => {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
-                let message = "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `height`, `capsule` or `block`";
+                let message =
+                    "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `height`, `capsule`, `block` or `hull`";
                 reader.error(fields.at.clone(), message, help);
             }
             ["capsule"] => {
@@ -221,7 +236,7 @@ impl Checked for Contact {
                     reader.error(fields.key_span("capsule"), message, None);
                 }
             }
-            [edges @ ("path" | "polygon" | "block")] => {
+            [edges @ ("path" | "polygon" | "block" | "hull")] => {
                 if fields.lacks_all(&["rounding", "radius"]) {
                     let message = format!("a `{edges}` needs `rounding`, or a `radius` of what touches it");
                     let help = "surfaces are told apart to that depth".to_owned();
@@ -230,7 +245,7 @@ impl Checked for Contact {
             }
             [surface] => {
                 if fields.get("rounding").is_some() {
-                    let message = format!("`rounding` goes with `path`, `polygon`, `capsule` or `block`, not with `{surface}`");
+                    let message = format!("`rounding` goes with `path`, `polygon`, `capsule`, `block` or `hull`, not with `{surface}`");
                     reader.error(fields.key_span("rounding"), message, None);
                 }
             }
@@ -253,6 +268,9 @@ impl Checked for Contact {
             if let Some(ends) = ends {
                 solid::check_ends(reader, fields.key_span(key), (key, ends));
             }
+        }
+        if let Some(points) = &self.hull {
+            hull::check(reader, fields, points);
         }
         if let Some(lengths) = &self.block {
             solid::check_lengths(reader, fields.key_span("block"), lengths);

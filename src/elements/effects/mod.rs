@@ -11,6 +11,7 @@ mod felt;
 mod forces;
 mod goal;
 mod ground;
+mod hull;
 mod impact;
 pub mod matrices;
 mod outline;

@@ -2,12 +2,15 @@
 //!
 //! The equations are in `contact`.
 
+use std::rc::Rc;
+
 use symdiff::Scalar;
 
 use super::Forces;
 use super::dry_friction::Resistance;
 use super::felt::Felt;
 use super::ground::Ground;
+use super::hull::Hull;
 use super::impact::Push;
 use super::outline::Outline;
 use super::rod::Rod;
@@ -46,7 +49,7 @@ impl<'g> Surface<'g> {
 }
 
 /// The first body's surface, where it is one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Shape<'g> {
     /// A unit normal, in the first frame.
     Plane(Vector<'g>),
@@ -58,10 +61,12 @@ pub(super) enum Shape<'g> {
     Ground(Ground<'g>),
     /// With ρ + r, m
     Solid(Solid<'g>, Scalar<'g>),
+    /// With ρ + r, m
+    Hull(Rc<Hull>, Scalar<'g>),
 }
 
 /// Two surfaces and what they do to one another.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Touch<'g> {
     pub shape: Shape<'g>,
     /// r, m
@@ -122,6 +127,7 @@ impl<'g> Touch<'g> {
     fn gap(&self, pair: &Pair<'g>, centre: Vector<'g>) -> Gap<'g> {
         let offset = centre - pair.first.point.position;
         match self.shape {
+            Shape::Hull(ref hull, reach) => hull.gap(pair, offset, reach),
             Shape::Plane(normal) => {
                 let normal = pair.outward(normal);
                 let height = normal.dot(offset);

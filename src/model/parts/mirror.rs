@@ -77,6 +77,7 @@ const KINDS: [(&str, &[(&str, Image)]); 40] = [
             ("path", Polars),
             ("polygon", Polars),
             ("capsule", Polars),
+            ("hull", Polars),
             ("corners", Polars),
             ("line", Polars),
             ("cylinder", Polars),

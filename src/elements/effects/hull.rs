@@ -1,0 +1,251 @@
+//! The convex hull of points in space as a surface: the gap to a centre p, and the direction in which it is pushed.
+//!
+//! ```text
+//! faces      n_f · p − d_f
+//! edges      |e|,  e = w − (w · u) u,  w = p − a,     where e · m ≤ 0 for both of its faces
+//! corners    |w|,  w = p − a,                         where w · u ≤ 0 for all of its edges
+//! gap = the largest of these − ρ − r
+//! ```
+//!
+//! u is the unit vector along an edge (away from the corner), m that in a face across the edge, to its inside: where the conditions hold, the
+//! direction is one in which the hull does not reach beyond the edge or the corner, so that the value is no more than the distance, and for the nearest of
+//! them it is the distance (Ericson, *Real-Time Collision Detection* (2005), ch. 5). Inside, the nearest face pushes.
+//!
+//! Which faces there are follows from the points, so these are the same for all samples.
+
+use symdiff::{Builder, Scalar};
+
+use super::course::Points;
+use super::solid::Gap;
+use crate::grammar::{Fields, Reader, SymbolTable};
+use crate::multibody::{Pair, Vector};
+
+/// Most points: each face, edge and corner has instructions of its own.
+const MOST: usize = 32;
+
+/// Points that lie this share of the hull's size beside a plane lie in it.
+const FLAT: f64 = 1e-9;
+
+type Point = [f64; 3];
+
+fn minus(a: Point, b: Point) -> Point {
+    [0, 1, 2].map(|axis| a[axis] - b[axis])
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn scaled(a: Point, factor: f64) -> Point {
+    a.map(|part| factor * part)
+}
+
+fn unit(a: Point) -> Point {
+    scaled(a, dot(a, a).sqrt().recip())
+}
+
+/// A plane that all points are below.
+#[derive(Clone, Debug)]
+struct Face {
+    normal: Point,
+    height: f64,
+    /// Points in it.
+    corners: Vec<usize>,
+}
+
+/// The line between two corners.
+#[derive(Clone, Debug)]
+struct Edge {
+    ends: [usize; 2],
+    /// From the first end.
+    along: Point,
+    /// In each of both faces, across the edge to the inside.
+    inward: [Point; 2],
+}
+
+/// A convex hull.
+#[derive(Clone, Debug)]
+pub(super) struct Hull {
+    points: Vec<Point>,
+    faces: Vec<Face>,
+    edges: Vec<Edge>,
+}
+
+impl Hull {
+    /// Of points; `None` where they lie in a plane.
+    pub fn of(points: Vec<Point>) -> Option<Self> {
+        let size = points
+            .iter()
+            .map(|&point| dot(minus(point, points[0]), minus(point, points[0])))
+            .fold(0.0, f64::max)
+            .sqrt();
+        let mut faces: Vec<Face> = Vec::new();
+        for i in 0..points.len() {
+            for j in i + 1..points.len() {
+                for k in j + 1..points.len() {
+                    let normal = cross(minus(points[j], points[i]), minus(points[k], points[i]));
+                    if dot(normal, normal).sqrt() <= FLAT * size * size {
+                        continue;
+                    }
+                    for normal in [unit(normal), scaled(unit(normal), -1.0)] {
+                        let height = dot(normal, points[i]);
+                        let above = |point: &Point| dot(normal, *point) - height;
+                        let is_known = faces.iter().any(|face| dot(face.normal, normal) > 1.0 - FLAT);
+                        if !is_known && points.iter().all(|point| above(point) <= FLAT * size) {
+                            let corners = (0..points.len()).filter(|&place| above(&points[place]) >= -FLAT * size);
+                            faces.push(Face { normal, height, corners: corners.collect() });
+                        }
+                    }
+                }
+            }
+        }
+        let mut edges = Vec::new();
+        for (place, first) in faces.iter().enumerate() {
+            for second in &faces[place + 1..] {
+                let both: Vec<usize> =
+                    first.corners.iter().copied().filter(|corner| second.corners.contains(corner)).collect();
+                let Some(ends) = farthest(&points, &both) else { continue };
+                let along = unit(minus(points[ends[1]], points[ends[0]]));
+                let inward = [first, second].map(|face| {
+                    let across = cross(face.normal, along);
+                    let side: f64 =
+                        face.corners.iter().map(|&corner| dot(across, minus(points[corner], points[ends[0]]))).sum();
+                    scaled(across, side.signum())
+                });
+                edges.push(Edge { ends, along, inward });
+            }
+        }
+        (faces.len() >= 4).then_some(Self { points, faces, edges })
+    }
+
+    /// The radius of a ball about the origin that holds it.
+    fn radius(&self) -> f64 {
+        self.points.iter().map(|&point| dot(point, point)).fold(0.0, f64::max).sqrt()
+    }
+
+    /// The gap to a centre at `offset` from the first point; `reach` is ρ + r. Where that lies outside of a ball about the hull, the sign
+    /// of `overlap` tells it at once.
+    pub fn gap<'g>(&self, pair: &Pair<'g>, offset: Vector<'g>, reach: Scalar<'g>) -> Gap<'g> {
+        let g = reach.builder();
+        let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(g, axis)));
+        let place = Vector::from(axes.map(|axis| axis.dot(offset)));
+        let (depth, face) = self.over_faces(g, place);
+        let (square, way) = self.beside_edges(g, place);
+        let above = depth.max(g.number(0.0));
+        let is_beside = square - above * above;
+        // No root of zero, also where it is not used.
+        let distance = is_beside.select(square, g.number(1.0)).sqrt();
+        let gap = is_beside.select(distance, depth) - reach;
+        let normal = [0, 1, 2].map(|axis| is_beside.select(way[axis] / distance, face[axis]));
+        let normal = axes.into_iter().zip(normal).fold(Vector::zero(g), |sum, (axis, part)| sum + part * axis);
+        let around = g.number(self.radius()) + reach;
+        let near = around * around - place.dot(place);
+        Gap { gap, normal, overlap: near.select(-gap, near) }
+    }
+
+    /// The greatest height over a face, and that face's normal.
+    fn over_faces<'g>(&self, g: &'g Builder, place: Vector<'g>) -> (Scalar<'g>, [Scalar<'g>; 3]) {
+        let mut best: Option<(Scalar<'g>, [Scalar<'g>; 3])> = None;
+        for face in &self.faces {
+            let height = constant(g, face.normal).dot(place) - face.height;
+            let normal = face.normal.map(|part| g.number(part));
+            best = Some(match best {
+                None => (height, normal),
+                Some((before, its)) => {
+                    let better = height - before;
+                    (better.select(height, before), [0, 1, 2].map(|axis| better.select(normal[axis], its[axis])))
+                }
+            });
+        }
+        best.unwrap_or((g.number(0.0), [g.number(0.0); 3]))
+    }
+
+    /// The square of the greatest distance from an edge or a corner beside which the place is, zero where it is beside none, and the way
+    /// from there.
+    fn beside_edges<'g>(&self, g: &'g Builder, place: Vector<'g>) -> (Scalar<'g>, [Scalar<'g>; 3]) {
+        let zero = g.number(0.0);
+        let mut best = (zero, [zero; 3]);
+        let mut take = |way: Vector<'g>, beside: Scalar<'g>| {
+            let square = beside.select(way.dot(way), zero);
+            let better = square - best.0;
+            let way = way.components();
+            best = (better.select(square, best.0), [0, 1, 2].map(|axis| better.select(way[axis], best.1[axis])));
+        };
+        for edge in &self.edges {
+            let from = place - constant(g, self.points[edge.ends[0]]);
+            let along = constant(g, edge.along);
+            let way = from - along.dot(from) * along;
+            let [first, second] = edge.inward.map(|inward| -constant(g, inward).dot(from));
+            take(way, first.min(second));
+        }
+        for (corner, &point) in self.points.iter().enumerate() {
+            let from = place - constant(g, point);
+            let outward = self.edges.iter().filter_map(|edge| match edge.ends {
+                [first, _] if first == corner => Some(edge.along),
+                [_, second] if second == corner => Some(scaled(edge.along, -1.0)),
+                _ => None,
+            });
+            let beside = outward.map(|along| -constant(g, along).dot(from)).reduce(Scalar::min);
+            if let Some(beside) = beside {
+                take(from, beside);
+            }
+        }
+        best
+    }
+}
+
+fn constant(g: &Builder, point: Point) -> Vector<'_> {
+    point.map(|part| g.number(part)).into()
+}
+
+/// The two of some points that are farthest apart, if there are two.
+fn farthest(points: &[Point], some: &[usize]) -> Option<[usize; 2]> {
+    let mut best: Option<([usize; 2], f64)> = None;
+    for (place, &first) in some.iter().enumerate() {
+        for &second in &some[place + 1..] {
+            let way = minus(points[second], points[first]);
+            if best.is_none_or(|(_, square)| dot(way, way) > square) {
+                best = Some(([first, second], dot(way, way)));
+            }
+        }
+    }
+    best.map(|(ends, _)| ends)
+}
+
+/// Reports points that make no hull, and those that are not the same for all samples.
+pub(super) fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, points: &Points) {
+    let at = fields.key_span("hull");
+    if !reader.model.is_spatial() {
+        reader.error(at, "a `hull` needs `space: spatial`", "in the plane it is a `polygon`".to_owned());
+        return;
+    }
+    if points.iter().flatten().any(|formula| reader.is_uncertain(formula)) {
+        let help = "which faces it has would depend on them; a `block` may have uncertain lengths".to_owned();
+        reader.error(
+            at,
+            "points of a `hull` are the same for all samples, so they cannot depend on an uncertain parameter",
+            help,
+        );
+        return;
+    }
+    if points.len() > MOST {
+        reader.error(at, format!("a `hull` has at most {MOST} points, not {}", points.len()), None);
+        return;
+    }
+    let numbers: Option<Vec<Point>> = points
+        .iter()
+        .map(|point| {
+            let [x, y, z] = [0, 1, 2].map(|axis| reader.evaluate(&point[axis], 0));
+            Some([x?, y?, z?])
+        })
+        .collect();
+    let Some(numbers) = numbers else { return };
+    if numbers.len() < 4 || Hull::of(numbers).is_none() {
+        let help = "a plate of no thickness is a `polygon` that extends along z, or a thin `block`".to_owned();
+        reader.error(at, "a `hull` needs four points or more that do not lie in one plane", help);
+    }
+}
