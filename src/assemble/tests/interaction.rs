@@ -26,6 +26,7 @@ fn touching(between: [PointRef; 2]) -> Contact {
         plane: None,
         circle: None,
         block: None,
+        hull: None,
         capsule: None,
         friction_along: None,
         hollow: None,
