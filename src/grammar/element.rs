@@ -34,10 +34,12 @@ pub trait Group: Sized {
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>);
 
     /// Every body, point and joint that is named within, formulas aside.
-    fn references<'a>(&'a mut self, found: &mut Vec<Reference<'a>>);
+    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
 
     /// The key that leaves the plane, by the text alone.
-    fn leaves_plane(mapping: &Node) -> Option<&'static str>;
+    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
+        None
+    }
 }
 
 /// A kind of effect or joint.

@@ -17,7 +17,7 @@ use symdiff::{Binary, Formula};
 use super::{Filter, ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, SymbolTable};
 use crate::multibody::BuildError;
 
 /// n where none is given, and at most.
@@ -145,12 +145,6 @@ impl Group for Delay {
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
         found.extend([&self.input, &self.time]);
         found.extend(&self.initial);
-    }
-
-    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
-
-    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
-        None
     }
 }
 

@@ -18,7 +18,7 @@ use symdiff::{Binary, Formula};
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Sensor, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
 use crate::syntax::yaml::Value;
 
@@ -246,12 +246,6 @@ impl Group for Filter {
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
         found.push(&self.input);
         found.extend(self.numerator.iter().chain(&self.denominator).chain(&self.initial));
-    }
-
-    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
-
-    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
-        None
     }
 }
 

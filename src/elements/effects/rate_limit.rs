@@ -17,7 +17,7 @@ use super::state::{VALUE_AND_CHANGE, value_and_change};
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, SymbolTable};
 use crate::multibody::BuildError;
 
 /// A number that follows another within limits.
@@ -148,12 +148,6 @@ impl Group for RateLimit {
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
         found.extend([&self.input, &self.lag, &self.initial]);
         found.extend(self.rate.iter().chain(self.limits.iter().flatten()));
-    }
-
-    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
-
-    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
-        None
     }
 }
 

@@ -16,7 +16,7 @@ use symdiff::Formula;
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Sensor, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
 
 /// A number that is computed at instants.
@@ -99,12 +99,6 @@ impl Group for Sampled {
 
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
         found.extend([&self.input, &self.initial]);
-    }
-
-    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
-
-    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
-        None
     }
 }
 

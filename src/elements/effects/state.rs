@@ -15,7 +15,7 @@ use symdiff::Formula;
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Sensor, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
 
 /// A number with its rate of change.
@@ -104,12 +104,6 @@ impl Group for State {
 
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
         found.extend([&self.rate, &self.initial]);
-    }
-
-    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
-
-    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
-        None
     }
 }
 

@@ -13,7 +13,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::Formula;
 
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Symbol, Span, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Symbol, Span, SymbolTable};
 use crate::multibody::Vector;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
@@ -66,12 +66,6 @@ impl Group for Equation {
 
     fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
         found.extend([&self.left, &self.right]);
-    }
-
-    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
-
-    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
-        None
     }
 }
 
