@@ -157,7 +157,7 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
     }
 
     fn hold(&mut self, place: usize, value: Scalar<'g>) {
-        self.applied.held.push(((self.effect, place), value));
+        self.applied.sampled.push(((self.effect, place), value));
     }
 
     fn mode(&self, place: usize) -> [Scalar<'g>; 2] {

@@ -18,9 +18,9 @@ impl System {
         }
         let mut system = self.clone();
         let graph = &mut system.graph;
-        for held in &system.held {
-            let change = graph.sub(held.value, system.v[held.coordinate]);
-            system.force[held.coordinate] = graph.add(system.force[held.coordinate], change);
+        for sampled in &system.sampled {
+            let change = graph.sub(sampled.value, system.v[sampled.coordinate]);
+            system.force[sampled.coordinate] = graph.add(system.force[sampled.coordinate], change);
         }
         let positions: FxHashMap<Expr, Expr> = states.iter().map(|&place| (system.v[place], system.q[place])).collect();
         let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();

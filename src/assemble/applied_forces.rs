@@ -39,7 +39,7 @@ pub struct AppliedForces<'g> {
     /// Potential energies, J.
     pub potentials: Vec<Scalar<'g>>,
     /// States that change at instants only: the effect, the place among its states, and what it becomes.
-    pub held: Vec<((usize, usize), Scalar<'g>)>,
+    pub sampled: Vec<((usize, usize), Scalar<'g>)>,
     /// What was added to since the last [`AppliedForces::begin`].
     touched: BTreeSet<Target>,
     /// What was measured since then.
@@ -59,7 +59,7 @@ impl<'g> AppliedForces<'g> {
             coordinates: BTreeMap::new(),
             field: Vector::zero(g),
             potentials: Vec::new(),
-            held: Vec::new(),
+            sampled: Vec::new(),
             touched: BTreeSet::new(),
             measured: Vec::new(),
             guard: None,

@@ -105,7 +105,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let mut left_out = Vec::new();
     let mut constraints = Constraints::of(&mut m, description, length, &mut left_out)?;
     let (mut applied, effects) = apply_effects(&mut m, description, &mut left_out)?;
-    let held = m.held_states(description, std::mem::take(&mut applied.held));
+    let sampled = m.sampled_states(description, std::mem::take(&mut applied.sampled));
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
     let outputs = m.outputs(description)?;
     let mut start = m.start(description)?;
@@ -158,7 +158,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             active_condition,
             conditional,
             constraint,
-            held,
+            sampled,
             links,
             outputs,
             length,
@@ -190,7 +190,7 @@ fn apply_effects<'g>(
     m.add_tooth_forces(&mut applied, false)?;
     let mut effects = Vec::new();
     for (index, effect) in description.effects.iter().enumerate() {
-        let (nodes, held) = (g.len(), applied.held.len());
+        let (nodes, sampled) = (g.len(), applied.sampled.len());
         applied.begin();
         effect.kind.apply(&mut Acting { m, effect: index, applied: &mut applied })?;
         m.sensors.extend(applied.measured().iter().map(|&(measure, value)| ((index, measure), value)));
@@ -202,7 +202,8 @@ fn apply_effects<'g>(
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
         let graph = g.graph();
         // What jumps at instants is not enclosed.
-        let enclosed = applied.held.len() == held && graph.exprs_after(nodes).all(|expr| encloses(graph.node(expr)));
+        let enclosed =
+            applied.sampled.len() == sampled && graph.exprs_after(nodes).all(|expr| encloses(graph.node(expr)));
         let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);
         let length = measured.map(|&(_, length)| length.expr());
         effects.push(EffectInfo { name, kind, forces, expressions: graph.len() - nodes, enclosed, length });

@@ -57,6 +57,6 @@ pub use build::{build, closes_loops, in_absolute_coordinates, in_joint_coordinat
 pub use cuts::other_cuts;
 pub use inventory::Inventory;
 pub use system::{
-    ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, HeldState, OutputInfo, ResidualUnit,
+    ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, SampledState,
     StartCondition, System, UncertainParameter,
 };

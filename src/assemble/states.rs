@@ -4,7 +4,7 @@ use symdiff::{Expr, Scalar};
 
 use super::at_guess::AtGuess;
 use super::mechanism::{Mechanism, Owner};
-use super::system::{CoordinateInfo, HeldState, Start};
+use super::system::{CoordinateInfo, SampledState, Start};
 use crate::grammar::Sensor;
 use crate::model::{Description, Effect, TimeOrder};
 use crate::multibody::{BuildError, Context};
@@ -45,12 +45,16 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// Those that change at instants, each with what it becomes.
-    pub fn held_states(&self, description: &Description, held: Vec<((usize, usize), Scalar<'g>)>) -> Vec<HeldState> {
+    pub fn sampled_states(
+        &self,
+        description: &Description,
+        sampled: Vec<((usize, usize), Scalar<'g>)>,
+    ) -> Vec<SampledState> {
         let state = |((effect, place), value): ((usize, usize), Scalar)| {
             let period = description.effects[effect].kind.states()[place].period?;
-            Some(HeldState { coordinate: self.states[&(effect, place)], value: value.expr(), period })
+            Some(SampledState { coordinate: self.states[&(effect, place)], value: value.expr(), period })
         };
-        held.into_iter().filter_map(state).collect()
+        sampled.into_iter().filter_map(state).collect()
     }
 
     /// Typical sizes of the states, over a second: by their values and rates at the nominal start, at least 1.

@@ -43,7 +43,7 @@ pub struct System {
     /// Φ(q, t), m.
     pub constraint: Vec<Expr>,
     /// States that change at instants only.
-    pub held: Vec<HeldState>,
+    pub sampled: Vec<SampledState>,
     /// In joint coordinates the children, parents first.
     pub links: Vec<Link>,
     /// What is observed, over t, q, v, w, λ and the parameters.
@@ -114,7 +114,7 @@ pub struct LeftOut {
 
 /// A state that changes at the instants 0, T, 2 T, … only.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeldState {
+pub struct SampledState {
     /// The coordinate whose velocity it is.
     pub coordinate: usize,
     /// What it becomes, over t, q, v, λ and the parameters just before.
@@ -271,7 +271,7 @@ impl System {
     pub fn unused_parameters(&self) -> Vec<usize> {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();
         roots.extend(self.inertia.iter().chain(&self.force).chain(&self.constraint).chain(&self.start.guess));
-        roots.extend(self.held.iter().map(|held| held.value));
+        roots.extend(self.sampled.iter().map(|sampled| sampled.value));
         roots.extend(self.outputs.iter().map(|output| output.expr));
         roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
         roots.extend(

@@ -39,7 +39,7 @@ pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
 pub use start::{compile_nearest_start, compile_start};
 pub use start_equations::Residual;
-pub use start_program::{HeldValue, StartProgram};
+pub use start_program::{SampledValue, StartProgram};
 pub use step::compile;
 pub use switches::{Switch, SwitchProgram, compile_switches, has_kink};
 pub use tapes::Tapes;

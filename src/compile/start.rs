@@ -34,7 +34,7 @@ use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, constraint_sizes, named, residuals};
 use super::start_factors::Factorised;
-use super::start_program::{HeldValue, JACOBIAN, OBSERVE, POSITION, SAMPLING, StartProgram, VELOCITY};
+use super::start_program::{JACOBIAN, OBSERVE, POSITION, SAMPLING, SampledValue, StartProgram, VELOCITY};
 use crate::assemble::{ConstraintId, System};
 
 /// ε relative to a constraint's own size in the matrix's metric.
@@ -103,7 +103,7 @@ pub fn compile_nearest_start(
         jacobian.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
         with(&projection[..n], &[]),
-        system.held.iter().map(|held| (held.value, None)).collect(),
+        system.sampled.iter().map(|sampled| (sampled.value, None)).collect(),
     ];
     let values: Vec<Expr> = kernels.iter().flatten().map(|&(value, _)| value).collect();
     let replaced = with_reciprocals(&mut graph, &inputs, &values);
@@ -118,7 +118,7 @@ pub fn compile_nearest_start(
         constraint: residuals(system, OF_POSITION, tail(POSITION, n)),
         constraint_rate: residuals(system, OF_VELOCITY, tail(VELOCITY, n)),
         outputs: tail(OBSERVE, 0),
-        held: HeldValue::all(system, &layout, tail(SAMPLING, 0)),
+        sampled: SampledValue::all(system, &layout, tail(SAMPLING, 0)),
         jacobian_entries,
         open,
         layout,

@@ -6,7 +6,7 @@ use super::layout::Layout;
 use super::nearest::OpenStart;
 use super::start_equations::Residual;
 use super::tapes::Tapes;
-use crate::assemble::{HeldState, System};
+use crate::assemble::{SampledState, System};
 
 /// Tapes for the start of a tile of samples; states and corrections are in the registers of [`Layout`].
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct StartProgram {
     /// Registers of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
     /// States that change at instants, after [`StartProgram::sampling`].
-    pub held: Vec<HeldValue>,
+    pub sampled: Vec<SampledValue>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
     /// What is nearest to rest.
@@ -30,7 +30,7 @@ pub struct StartProgram {
 
 /// A state that changes at the instants 0, T, 2 T, … only.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeldValue {
+pub struct SampledValue {
     /// Its register: that of a velocity.
     pub state: usize,
     /// Register of what it becomes.
@@ -42,14 +42,14 @@ pub struct HeldValue {
 /// Instants are met to this share of the time between them: times of steps are rounded.
 const ROUNDING: f64 = 1e-9;
 
-impl HeldValue {
+impl SampledValue {
     /// Those of a system, whose new values are in these registers.
     pub(super) fn all(system: &System, layout: &Layout, registers: Vec<usize>) -> Vec<Self> {
-        let states = system.held.iter().zip(registers);
-        let value = |(held, value): (&HeldState, usize)| Self {
-            state: layout.v.start + held.coordinate,
+        let states = system.sampled.iter().zip(registers);
+        let value = |(sampled, value): (&SampledState, usize)| Self {
+            state: layout.v.start + sampled.coordinate,
             value,
-            period: held.period,
+            period: sampled.period,
         };
         states.map(value).collect()
     }

@@ -8,16 +8,16 @@ use symdiff::Tile;
 use super::simulator::Simulator;
 use super::start::Assembly;
 use super::step::Stepper;
-use crate::compile::HeldValue;
+use crate::compile::SampledValue;
 
 /// The instants of all states that change at some.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::simulate) struct Instants<'s>(&'s [HeldValue]);
+pub(in crate::simulate) struct Instants<'s>(&'s [SampledValue]);
 
 impl<'s> Instants<'s> {
     /// Of a mechanism.
     pub fn of(simulator: &'s Simulator) -> Self {
-        Self(&simulator.start.held)
+        Self(&simulator.start.sampled)
     }
 
     /// Whether there are none.
@@ -27,12 +27,12 @@ impl<'s> Instants<'s> {
 
     /// Whether a time is one.
     pub fn contain(self, time: f64) -> bool {
-        self.0.iter().any(|held| held.is_due(time))
+        self.0.iter().any(|sampled| sampled.is_due(time))
     }
 
     /// The first after a time and before another.
     pub fn between(self, from: f64, to: f64) -> Option<f64> {
-        self.0.iter().filter_map(|held| held.due_between(from, to)).reduce(f64::min)
+        self.0.iter().filter_map(|sampled| sampled.due_between(from, to)).reduce(f64::min)
     }
 
     /// A step of length h, divided at the instants in it: length and end of each part, s.
@@ -94,8 +94,9 @@ mod tests {
     use super::*;
 
     fn divided(periods: &[f64], step: (f64, f64)) -> Vec<(f64, f64)> {
-        let held: Vec<HeldValue> = periods.iter().map(|&period| HeldValue { state: 0, value: 0, period }).collect();
-        Instants(&held).divide(step).collect()
+        let sampled: Vec<SampledValue> =
+            periods.iter().map(|&period| SampledValue { state: 0, value: 0, period }).collect();
+        Instants(&sampled).divide(step).collect()
     }
 
     #[test]

@@ -319,7 +319,7 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         add_correction(memory, layout.v.clone(), layout.correction.start);
     }
     accelerate(simulator, memory, order);
-    if !start.held.is_empty() {
+    if !start.sampled.is_empty() {
         sample_states(start, memory, 0.0);
         accelerate(simulator, memory, order);
     }
@@ -329,11 +329,11 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
 /// Gives the states that change at a time their new values.
 pub(super) fn sample_states(program: &StartProgram, memory: &mut JetMemory, time: f64) {
     memory.run(program.sampling());
-    let due = || program.held.iter().filter(|held| held.is_due(time));
+    let due = || program.sampled.iter().filter(|sampled| sampled.is_due(time));
     // All are taken before one changes: a value may be another of these states.
-    let values: Vec<Vec<f64>> = due().map(|held| memory.jet(held.value).to_vec()).collect();
-    for (held, value) in due().zip(&values) {
-        memory.jet_mut(held.state).copy_from_slice(value);
+    let values: Vec<Vec<f64>> = due().map(|sampled| memory.jet(sampled.value).to_vec()).collect();
+    for (sampled, value) in due().zip(&values) {
+        memory.jet_mut(sampled.state).copy_from_slice(value);
     }
 }
 

@@ -111,7 +111,7 @@ impl<'s> RowClosure<'s> {
 
     /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n lines).
     pub fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
-        if !self.program.held.iter().any(|held| held.is_due(time)) {
+        if !self.program.sampled.iter().any(|sampled| sampled.is_due(time)) {
             return false;
         }
         let layout = &self.program.layout;
@@ -219,7 +219,7 @@ impl<'s> JetClosure<'s> {
 
     /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n jets).
     pub fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
-        if !self.program.held.iter().any(|held| held.is_due(time)) {
+        if !self.program.sampled.iter().any(|sampled| sampled.is_due(time)) {
             return false;
         }
         let layout = &self.program.layout;

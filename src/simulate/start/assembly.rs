@@ -208,7 +208,7 @@ impl<'p> Assembly<'p> {
             self.tile.lane_mut(register).fill(0.0);
         }
         self.accelerate();
-        if !program.held.is_empty() {
+        if !program.sampled.is_empty() {
             self.sample();
             self.accelerate();
         }
@@ -219,11 +219,11 @@ impl<'p> Assembly<'p> {
     pub fn sample(&mut self) {
         let time = self.tile.lane(self.program.layout.time)[0];
         self.tile.run(self.program.sampling());
-        let due = || self.program.held.iter().filter(|held| held.is_due(time));
+        let due = || self.program.sampled.iter().filter(|sampled| sampled.is_due(time));
         // All are taken before one changes: a value may be another of these states.
-        let values: Vec<Vec<f64>> = due().map(|held| self.tile.lane(held.value).to_vec()).collect();
-        for (held, values) in due().zip(values) {
-            self.tile.lane_mut(held.state).copy_from_slice(&values);
+        let values: Vec<Vec<f64>> = due().map(|sampled| self.tile.lane(sampled.value).to_vec()).collect();
+        for (sampled, values) in due().zip(values) {
+            self.tile.lane_mut(sampled.state).copy_from_slice(&values);
         }
     }
 
