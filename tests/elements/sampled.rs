@@ -167,3 +167,32 @@ bounds: {{ taylor: {{ order: 1 }} }}
         assert!(extrapolated < 1e-4 * plain, "{name}: {plain:e}, extrapolated {extrapolated:e}");
     }
 }
+
+/// Samples that meet a stop at times of their own take steps of their own, and go on from the instants as all others do.
+#[test]
+fn samples_that_step_alone_change_with_the_others() {
+    let effects = "
+  floor: { contact: { between: [ground, m], plane: x, impact: { stiffness: 2e4, exponent: 1, dissipation: 0.5 } } }
+  pull: { force: { on: m, value: [-10, 0] } }
+  count: { sampled: { input: count + 1, period: 30 ms } }";
+    let outputs = "x: m.x, v: m.vx, count: count, gain: gain, touch: floor.force";
+    let command = "input: -gain*m.x - 2 N*s/m*m.vx";
+    let of = |simulation: &str| run(&read(&text(command, effects, outputs, simulation)));
+    let fine = of("step: 1e-4, output_step: 0.1");
+    let controlled = of("tolerance: 1e-5, output_step: 0.1");
+    let touches = curve(&of("step: 1e-3, output_step: 1e-3"), "touch").iter().filter(|force| **force > 1.0).count();
+    assert!(touches > 20, "{touches}");
+    for name in ["x", "v", "count"] {
+        let bands = [&fine, &controlled].map(|bounds| band(output(bounds, name), Method::Scan));
+        for row in 0..fine.times.len() {
+            let [one, other] = [&bands[0], &bands[1]].map(|band| [band.lower[row], band.upper[row]]);
+            let allowed = 2e-4 * if name == "v" { 20.0 } else { 1.0 };
+            let off = largest([one[0] - other[0], one[1] - other[1]]);
+            assert!(off < allowed, "{name} at {}: {one:?}, {other:?}", fine.times[row]);
+        }
+    }
+    let counts = curve(&controlled, "count");
+    for (&t, &count) in controlled.times.iter().zip(counts) {
+        assert_eq!(count, (t / 0.03 + 1e-9).floor() + 1.0, "at {t}");
+    }
+}
