@@ -130,12 +130,15 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let mass_of_bodies = m.total_mass();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
-    let [lambda, constraint] = [&constraints.lambda, &constraints.values].map(|list| Scalar::exprs(list));
+    let kinds = [constraints.positions, constraints.velocities];
+    let [constraint, velocity_constraint] = kinds.each_ref().map(|kind| Scalar::exprs(&kind.values));
+    let lambda = kinds.iter().flat_map(|kind| Scalar::exprs(&kind.lambda)).collect();
+    let constraints = kinds.into_iter().flat_map(|kind| kind.infos).collect();
     let [inertia, force, conditional] =
         [&balance.inertia, &balance.force, &balance.conditional].map(|list| Scalar::exprs(list));
     let mass = balance.mass.into_iter().map(|(row, column, value)| (row, column, value.expr())).collect();
     let links = balance.links;
-    let (active_condition, constraints) = (balance.active_condition.map(Scalar::expr), constraints.infos);
+    let active_condition = balance.active_condition.map(Scalar::expr);
     Ok(move |graph| {
         let (graph, with_distances) = match of_equations {
             Some(of_equations) => (of_equations, Some(graph)),
@@ -158,6 +161,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             active_condition,
             conditional,
             constraint,
+            velocity_constraint,
             sampled,
             links,
             outputs,

@@ -15,15 +15,24 @@ use crate::multibody::{Body, BuildError, EULER, RotationCoordinates};
 /// only.
 const CLOSED: f64 = 1e-9;
 
-/// The rows that are kept, with their multipliers.
+/// Constraints of a kind, with their multipliers.
 #[derive(Default)]
-pub struct Constraints<'g> {
+pub struct Rows<'g> {
     /// Names and units.
     pub infos: Vec<ConstraintInfo>,
-    /// Φ
+    /// Φ, or Ψ.
     pub values: Vec<Scalar<'g>>,
     /// λ
     pub lambda: Vec<Scalar<'g>>,
+}
+
+/// The rows that are kept.
+#[derive(Default)]
+pub struct Constraints<'g> {
+    /// Φ
+    pub positions: Rows<'g>,
+    /// Ψ
+    pub velocities: Rows<'g>,
     /// The joints that are no inboard joints.
     pub closures: Vec<usize>,
 }
@@ -41,7 +50,7 @@ impl<'g> Constraints<'g> {
         for (body, built) in description.bodies.iter().zip(&m.bodies) {
             if let Some(value) = normalisation(built) {
                 let (name, joint) = (format!("{}.norm", body.name), body.name.clone());
-                constraints.add(ConstraintInfo { name, joint, unit: ResidualUnit::Number }, value);
+                constraints.positions.add(ConstraintInfo { name, joint, unit: ResidualUnit::Number }, value);
             }
         }
         let with_teeth = reactions_are_asked(description);
@@ -50,7 +59,10 @@ impl<'g> Constraints<'g> {
                 Vec::new()
             } else {
                 constraints.closures.push(index);
-                constraints.add_rows(m, index, length, left_out)?
+                let [positions, velocities] = [m.rows(index)?, m.velocity_rows(index)?];
+                let mut kept = constraints.positions.add_rows(m, index, positions, (length, left_out))?;
+                kept.extend(constraints.velocities.add_rows(m, index, velocities, (length, left_out))?);
+                kept
             };
             let mut reaction = Reaction::of(m.g, &*joint.kind, &kept);
             let tooth = match kept.as_slice() {
@@ -72,22 +84,23 @@ impl<'g> Constraints<'g> {
                     JointCoordinate::Angle => ResidualUnit::Angle,
                     JointCoordinate::Displacement => ResidualUnit::Length,
                 };
-                constraints.add(ConstraintInfo { name, joint: joint.name.clone(), unit }, definition.value);
+                constraints.positions.add(ConstraintInfo { name, joint: joint.name.clone(), unit }, definition.value);
             }
         }
         Ok(constraints)
     }
+}
 
-    /// The rows of a joint that constrain anything, each with its multiplier.
+impl<'g> Rows<'g> {
+    /// The rows of a joint that constrain anything, each with its multiplier, in a model of a size.
     fn add_rows(
         &mut self,
         m: &Mechanism<'g, '_>,
         index: usize,
-        length: f64,
-        left_out: &mut Vec<LeftOut>,
+        rows: Vec<Row<'g>>,
+        (length, left_out): (f64, &mut Vec<LeftOut>),
     ) -> Result<Vec<(Row<'g>, Scalar<'g>)>, BuildError> {
         let joint = &m.joints[index];
-        let rows = m.rows(index)?;
         let mut kept = Vec::with_capacity(rows.len());
         for row in rows {
             let name = if row.name.is_empty() { joint.name.clone() } else { format!("{}.{}", joint.name, row.name) };

@@ -11,17 +11,22 @@ use crate::multibody::{ANGLE, BuildError, Context, Pair, Vector};
 impl<'g> Mechanism<'g, '_> {
     /// A joint's constraints.
     pub fn rows(&self, joint: usize) -> Rows<'g> {
-        self.joints[joint].kind.rows(joint, &Position(self))
+        self.joints[joint].kind.rows(joint, &Motion(self))
+    }
+
+    /// A joint's velocity constraints.
+    pub fn velocity_rows(&self, joint: usize) -> Rows<'g> {
+        self.joints[joint].kind.velocity_rows(&Motion(self))
     }
 
     /// The force between the teeth of a joint under the multiplier λ.
     pub fn tooth_force(&self, joint: usize, lambda: Scalar<'g>) -> Result<Option<ToothForce<'g>>, BuildError> {
-        self.joints[joint].kind.tooth_force(joint, &Position(self), lambda)
+        self.joints[joint].kind.tooth_force(joint, &Motion(self), lambda)
     }
 
     /// How the teeth of a joint rub.
     pub fn meshing(&self, joint: usize) -> Result<Option<Meshing<'g>>, BuildError> {
-        self.joints[joint].kind.meshing(joint, &Position(self))
+        self.joints[joint].kind.meshing(joint, &Motion(self))
     }
 
     /// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has none.
@@ -57,10 +62,10 @@ impl<'g> Mechanism<'g, '_> {
     }
 }
 
-/// The positions of a mechanism.
-struct Position<'m, 'g, 'd>(&'m Mechanism<'g, 'd>);
+/// The positions and velocities of a mechanism.
+struct Motion<'m, 'g, 'd>(&'m Mechanism<'g, 'd>);
 
-impl<'g> Kinematics<'g> for Position<'_, 'g, '_> {
+impl<'g> Kinematics<'g> for Motion<'_, 'g, '_> {
     fn graph(&self) -> &'g Builder {
         self.0.g
     }
@@ -92,6 +97,14 @@ impl<'g> Kinematics<'g> for Position<'_, 'g, '_> {
 
     fn points(&self, between: [PointRef; 2]) -> [Vector<'g>; 2] {
         between.map(|point| self.0.point(point).position)
+    }
+
+    fn velocity(&self, point: PointRef) -> Vector<'g> {
+        self.0.point(point).velocity
+    }
+
+    fn angular_velocity(&self, body: usize) -> Vector<'g> {
+        self.0.bodies[body].angular_velocity()
     }
 
     fn pair(&self, between: [PointRef; 2]) -> Pair<'g> {

@@ -37,18 +37,19 @@ impl<'g> Constraints<'g> {
         if is_massive.iter().all(|&massive| massive) {
             return Ok(());
         }
-        let constrained: FxHashSet<Expr> = symbols(m, &self.values).into_iter().collect();
+        let constrained: FxHashSet<Expr> = symbols(m, &self.positions.values).into_iter().collect();
         let is_balanced = |place: &usize| !is_massive[*place] && !constrained.contains(&m.q[*place].expr());
         let balanced: Vec<usize> = (0..m.q.len()).filter(is_balanced).collect();
         let unknown: Vec<Scalar<'g>> = balanced.iter().map(|&place| m.q[place]).collect();
+        let multipliers = [&self.positions.lambda[..], &self.velocities.lambda].concat();
         let start = AtGuess::of(m, &m.g.graph(), &start.guess);
         for place in balanced {
             let balance = Balance { m, place, force: force[place] };
-            balance.check(&unknown, &self.lambda)?;
+            balance.check(&unknown, &multipliers)?;
             let stiffness = balance.stiffness(&start);
             let unit = if m.coordinates[place].is_length() { ResidualUnit::Length } else { ResidualUnit::Angle };
             let info = ConstraintInfo { name: balance.name().to_owned(), joint: balance.owner().to_owned(), unit };
-            self.add(info, stiffness.recip() * force[place]);
+            self.positions.add(info, stiffness.recip() * force[place]);
         }
         Ok(())
     }

@@ -53,6 +53,7 @@ impl<'g> Mechanism<'g, '_> {
             position: exprs(position),
             velocity: exprs(velocity),
             guess,
+            fulfils_velocity_constraints: false,
             conditions,
             at_equilibrium: description.starts_at_equilibrium,
             nearest: None,

@@ -1,4 +1,5 @@
-//! The equations of motion as expressions: q̇ = v, M v̇ = Q − Φ_qᵀλ, Φ = 0 (design: index-3 form).
+//! The equations of motion as expressions: q̇ = v, M v̇ = Q − Φ_qᵀλ, Φ = 0 (design: index-3 form), and where something rolls, Ψ(q, v, t) = 0 with
+//! −Ψ_vᵀλ.
 
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use crate::model::{Analysis, ModesRequest, Space};
 
 /// A mechanism's equations of motion over the symbols of `graph`.
 ///
-/// n coordinates, m constraints. `w` stands for the true acceleration v̇.
+/// n coordinates, m constraints: first those of positions, then those of velocities. `w` stands for the true acceleration v̇.
 #[derive(Clone, Debug)]
 pub struct System {
     /// Holds every expression below.
@@ -40,8 +41,10 @@ pub struct System {
     pub active_condition: Option<Expr>,
     /// What conditional effects add to Q where it is positive, n; it is in `force`, under that condition.
     pub conditional: Vec<Expr>,
-    /// Φ(q, t), m.
+    /// Φ(q, t); as many as there are constraints of positions.
     pub constraint: Vec<Expr>,
+    /// Ψ(q, v, t), linear in v: velocity constraints that are no derivatives of positions'.
+    pub velocity_constraint: Vec<Expr>,
     /// States that change at instants only.
     pub sampled: Vec<SampledState>,
     /// In joint coordinates the children, parents first.
@@ -206,6 +209,8 @@ pub struct Start {
     pub velocity: Vec<Option<Expr>>,
     /// Where assembly begins to look, n.
     pub guess: Vec<Expr>,
+    /// Whether the velocities that are kept fulfil Ψ = 0, so that none follows from it.
+    pub fulfils_velocity_constraints: bool,
     /// What must hold then besides the constraints.
     pub conditions: Vec<StartCondition>,
     /// Whether it is the equilibrium to which all this is near.
@@ -270,7 +275,8 @@ impl System {
     /// Uncertain parameters that no equation, output or start value depends on, by number.
     pub fn unused_parameters(&self) -> Vec<usize> {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();
-        roots.extend(self.inertia.iter().chain(&self.force).chain(&self.constraint).chain(&self.start.guess));
+        roots.extend(self.inertia.iter().chain(&self.force).chain(&self.start.guess));
+        roots.extend(self.named_constraints().map(|(value, _)| value));
         roots.extend(self.sampled.iter().map(|sampled| sampled.value));
         roots.extend(self.outputs.iter().map(|output| output.expr));
         roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
@@ -280,6 +286,11 @@ impl System {
         let used = self.graph.symbols_of(&roots);
         let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
         (0..self.parameters.len()).filter(unused).collect()
+    }
+
+    /// Φ and Ψ, m, by name.
+    pub fn named_constraints(&self) -> impl Iterator<Item = (Expr, &ConstraintInfo)> {
+        self.constraint.iter().chain(&self.velocity_constraint).copied().zip(&self.constraints)
     }
 
     /// The coordinates of the mechanism, without those of states.

@@ -32,7 +32,7 @@ impl Equation {
     }
 }
 
-/// M w + Φ_qᵀ λ − Q, n rows, and Φ_q, over the system's symbols.
+/// M w + Φ_qᵀ λ − Q, n rows, and Φ_q with Ψ_v below it, over the system's symbols.
 pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
     let n = system.q.len();
     // Conditional forces come last: without them the rows are those of a system that has none.
@@ -42,7 +42,7 @@ pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, Sp
     };
     let mut rows: Vec<Expr> = force.into_iter().map(|force| graph.neg(force)).collect();
     debug_assert_eq!(rows.len(), n);
-    let jacobian = graph.jacobian(&system.constraint, &system.q);
+    let jacobian = constraint_jacobian(system, graph);
     for (constraint, coordinate, derivative) in jacobian.entries() {
         let force = graph.mul(derivative, system.lambda[constraint]);
         rows[coordinate] = graph.add(rows[coordinate], force);
@@ -57,6 +57,20 @@ pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, Sp
         }
     }
     (rows, jacobian)
+}
+
+/// Φ_q, and Ψ_v below it: m rows.
+fn constraint_jacobian(system: &System, graph: &mut Graph) -> SparseMatrix {
+    let mut jacobian = graph.jacobian(&system.constraint, &system.q);
+    jacobian.rows.extend(graph.jacobian(&system.velocity_constraint, &system.v).rows);
+    jacobian
+}
+
+/// Φ̇, and Ψ below it: m rows.
+pub fn constraint_rates(system: &System, graph: &mut Graph) -> Vec<Expr> {
+    let mut rates = time_derivative(system, graph, &system.constraint);
+    rates.extend(&system.velocity_constraint);
+    rates
 }
 
 /// d/dt of expressions of t, q and v, with q̇ = v and v̇ = w.

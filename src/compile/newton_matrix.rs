@@ -12,12 +12,13 @@
 //!
 //! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊: q₊ = q̂ + b x
 //! and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration. The constraint is divided
-//! by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c = 0 in its place.
+//! by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c = 0 in its place. Velocity constraints are
+//! Ψ(q₊,v₊,t₊)/c = 0 in each of them.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Input, SparseMatrix};
 
-use super::equations::{equations_of_motion, time_derivative};
+use super::equations::{constraint_rates, equations_of_motion};
 use super::inertial_change;
 use super::layout::Layout;
 use super::links::{Linked, Unknowns};
@@ -250,18 +251,19 @@ fn residual_and_matrix(
         matrix.add(graph, n + row, column, value);
     }
     let mut residual = motion;
-    match level {
-        ConstraintLevel::Position => residual.extend(system.constraint.iter().map(|&value| graph.div(value, b))),
-        ConstraintLevel::Velocity => {
-            let rates = time_derivative(system, graph, &system.constraint);
-            // ∂Φ̇/∂v₊ = Φ_q is in the matrix already.
-            let ratio = graph.div(b, c);
-            for (row, column, derivative) in graph.jacobian(&rates, &system.q).entries() {
-                let value = graph.mul(ratio, derivative);
-                matrix.add(graph, n + row, column, value);
-            }
-            residual.extend(rates.iter().map(|&rate| graph.div(rate, c)));
+    let (positions, rates) = match level {
+        ConstraintLevel::Position => (&system.constraint[..], system.velocity_constraint.clone()),
+        ConstraintLevel::Velocity => (&[][..], constraint_rates(system, graph)),
+    };
+    residual.extend(positions.iter().map(|&value| graph.div(value, b)));
+    // ∂Φ̇/∂v₊ = Φ_q and ∂Ψ/∂v₊ are in the matrix already.
+    if !rates.is_empty() {
+        let ratio = graph.div(b, c);
+        for (row, column, derivative) in graph.jacobian(&rates, &system.q).entries() {
+            let value = graph.mul(ratio, derivative);
+            matrix.add(graph, residual.len() + row, column, value);
         }
+        residual.extend(rates.iter().map(|&rate| graph.div(rate, c)));
     }
     (residual, matrix, linked)
 }

@@ -8,6 +8,8 @@
 //!                 [ Φ_q     −ε    ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
 //!
+//! Velocity constraints Ψ are below Φ̇ and Φ̈, with Ψ_v below Φ_q; positions know nothing of them.
+//!
 //! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to them.
 //!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
@@ -32,7 +34,7 @@ use super::layout::Layout;
 use super::links::{self, MassOfLinks};
 use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
-use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, constraint_sizes, named, residuals};
+use super::start_equations::{ClosureOf, Equations, constraint_sizes, given_values, named, residuals};
 use super::start_factors::Factorised;
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, SAMPLING, SampledValue, StartProgram, VELOCITY};
 use crate::assemble::{ConstraintId, System};
@@ -115,8 +117,8 @@ pub fn compile_nearest_start(
     let jacobian_entries =
         jacobian.entries().zip(tail(JACOBIAN, 0)).map(|((row, column, _), register)| (row, column, register)).collect();
     Ok(StartProgram {
-        constraint: residuals(system, OF_POSITION, tail(POSITION, n)),
-        constraint_rate: residuals(system, OF_VELOCITY, tail(VELOCITY, n)),
+        constraint: residuals(system, ClosureOf::Positions, tail(POSITION, n)),
+        constraint_rate: residuals(system, ClosureOf::Velocities, tail(VELOCITY, n)),
         outputs: tail(OBSERVE, 0),
         sampled: SampledValue::all(system, &layout, tail(SAMPLING, 0)),
         jacobian_entries,
@@ -126,22 +128,13 @@ pub fn compile_nearest_start(
     })
 }
 
-/// Positions and velocities that are given at the start, in the registers of the state.
-fn given_values(system: &System, layout: &Layout) -> Vec<Target> {
-    let mut given = Vec::new();
-    for (values, block) in [(&system.start.position, &layout.q), (&system.start.velocity, &layout.v)] {
-        given.extend(
-            values.iter().zip(block.clone()).filter_map(|(value, register)| value.map(|v| (v, Some(register as u32)))),
-        );
-    }
-    given
-}
-
 /// What is known of a correction's matrix.
 #[derive(Clone, Copy)]
 struct Known<'m> {
     /// Coordinates that do not change.
     given: &'m [bool],
+    /// How many of the rows below the metric are constraints.
+    constraints: usize,
     /// Coordinates and the constraints that define them.
     pairs: &'m [(usize, usize)],
     /// Whether the metric couples coordinates of different bodies.
@@ -180,6 +173,7 @@ impl Builder<'_> {
                 closure_jacobian,
                 Known {
                     given: &given(&system.start.position),
+                    constraints: ClosureOf::Positions.constraints(system),
                     pairs: &[],
                     is_coupled: positions.is_coupled,
                     is_mass: false,
@@ -187,7 +181,7 @@ impl Builder<'_> {
                 &positions.gradient,
                 closure,
             )
-            .map_err(|none| named(system, none, OF_POSITION))?;
+            .map_err(|none| named(system, none, ClosureOf::Positions))?;
         let velocity = self
             .correction(
                 &velocities.metric,
@@ -195,6 +189,7 @@ impl Builder<'_> {
                 closure_rate_jacobian,
                 Known {
                     given: &given(&system.start.velocity),
+                    constraints: ClosureOf::Velocities.constraints(system),
                     pairs: &[],
                     is_coupled: velocities.is_coupled,
                     is_mass: false,
@@ -202,13 +197,14 @@ impl Builder<'_> {
                 &velocities.gradient,
                 closure_rate,
             )
-            .map_err(|none| named(system, none, OF_VELOCITY))?;
+            .map_err(|none| named(system, none, ClosureOf::Velocities))?;
         let by_multiplier = self.graph.jacobian(&system.force, &system.lambda);
         let Equations { jacobian, rate_of_rate, .. } = equations;
         let pairs = self.pairs(jacobian);
         let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate, &pairs);
         let free = vec![false; n];
-        let of_masses = Known { given: &free, pairs: &pairs, is_coupled: false, is_mass: true };
+        let constraints = system.lambda.len();
+        let of_masses = Known { given: &free, constraints, pairs: &pairs, is_coupled: false, is_mass: true };
         let of_motion = |none: NoFactors| none.named(|row| Equation::of_row(row, n));
         let solve = |builder: &mut Self| {
             builder.correction(&mass, &by_multiplier, jacobian, of_masses, &motion, rate_of_rate).map_err(of_motion)
@@ -235,10 +231,10 @@ impl Builder<'_> {
                 }
             }
         };
-        let rate = &closure_rate[..system.lambda.len()];
         let zero = vec![self.graph.constant(0.0); n];
-        let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate, &pairs);
-        let projection = self.correction(&mass, &none, jacobian, of_masses, &motion, rate).map_err(of_motion)?;
+        let (mass, motion) = self.with_defined_coordinates(jacobian, zero, &equations.rate, &pairs);
+        let projection =
+            self.correction(&mass, &none, jacobian, of_masses, &motion, &equations.rate).map_err(of_motion)?;
         Ok([position, velocity, acceleration, projection])
     }
 
@@ -249,7 +245,7 @@ impl Builder<'_> {
         metric: &[(usize, usize, Expr)],
         by_multiplier: &SparseMatrix,
         jacobian: &SparseMatrix,
-        Known { given, pairs, is_coupled, is_mass }: Known,
+        Known { given, constraints, pairs, is_coupled, is_mass }: Known,
         first: &[Expr],
         second: &[Expr],
     ) -> Result<Vec<Expr>, NoFactors> {
@@ -283,7 +279,7 @@ impl Builder<'_> {
         let sizes = constraint_sizes(&matrix, &numbers, &diagonal, m);
         let mut scale = vec![1.0; matrix.rows.len()];
         for (constraint, size) in sizes.into_iter().enumerate() {
-            let relaxed = self.redundant.contains(&ConstraintId::new(constraint));
+            let relaxed = constraint < constraints && self.redundant.contains(&ConstraintId::new(constraint));
             if pairs.iter().all(|&(_, paired)| paired != constraint) {
                 let value = self.graph.constant(-size * if relaxed { RELAXATION } else { REGULARISATION });
                 matrix.add(&mut self.graph, n + constraint, n + constraint, value);

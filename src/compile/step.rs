@@ -56,10 +56,11 @@ fn compile_as(
     let newton = newton.map(|values| with_reciprocals(&mut graph, &inputs, values));
     let (active, inactive) = factors(system, &mut graph, &newton, &inputs, redundant, samples)
         .map_err(|none| none.named(|row| Equation::of_row(row, system.q.len())))?;
-    let rounding = match coefficients.level {
+    let mut rounding = match coefficients.level {
         ConstraintLevel::Position => rounding_of_constraints(system, &inputs, samples),
-        ConstraintLevel::Velocity => vec![0.0; system.constraint.len()],
+        ConstraintLevel::Velocity => Vec::new(),
     };
+    rounding.resize(system.lambda.len(), 0.0);
     let mut next = layout.registers() as u32;
     let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, active, inactive);
     let [correct, estimate] = solutions(&mut graph, &newton, &elimination, &layout);

@@ -73,7 +73,8 @@ pub fn compile_switches(system: &System) -> Option<SwitchProgram> {
 
 /// The arguments that change during a motion, each once, and of each the places of those at which it jumps.
 fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<Vec<usize>>) {
-    let roots: Vec<Expr> = system.force.iter().chain(&system.inertia).chain(&system.constraint).copied().collect();
+    let constraints = system.named_constraints().map(|(value, _)| value);
+    let roots: Vec<Expr> = system.force.iter().chain(&system.inertia).copied().chain(constraints).collect();
     let mut found = Vec::new();
     let mut of_floor: FxHashMap<Expr, Expr> = FxHashMap::default();
     let values = reachable_values(graph, &roots);

@@ -179,6 +179,22 @@ pub fn fit_time(model: &mut Description) {
     simulation.stepping = Stepping::Fixed(simulation.output_step);
 }
 
+/// Reports joints that belong to a motion alone.
+pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
+    if reader.model.analysis == Analysis::Motion && !reader.model.starts_at_equilibrium {
+        return;
+    }
+    let is_nonholonomic = |name: &str| {
+        let mut joints = reader.model.joints.iter();
+        joints.any(|joint| joint.name == name && joint.kind.is_nonholonomic())
+    };
+    if let Some(entry) = entries.iter().find(|entry| is_nonholonomic(&entry.key)) {
+        let message = format!("`{}` constrains velocities, which say nothing of where it is at rest", clip(&entry.key));
+        let help = "ask for `analysis: motion`, from a start that `initial` gives, or leave it out here, e.g. in a scene with `without`";
+        reader.error(entry.key_span.clone(), message, help.to_owned());
+    }
+}
+
 /// Reports what an analysis does not have: what is one number a motion but of positions over the time, requirements of modes, forces
 /// in kinematics, and Taylor bounds of modes. The entries are those of outputs and requirements.
 pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 2]) {

@@ -54,8 +54,10 @@ pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f
     tile.lane_mut(layout.time)[0] = time;
     tile.run(start.sample());
     tile.run(start.jacobian());
-    let mut slopes = DMatrix::zeros(layout.lambda.len(), n);
-    for &(row, column, register) in &start.jacobian_entries {
+    // Of positions: what rolls may be anywhere.
+    let constraints = simulator.system.constraint.len();
+    let mut slopes = DMatrix::zeros(constraints, n);
+    for &(row, column, register) in start.jacobian_entries.iter().filter(|&&(row, ..)| row < constraints) {
         slopes[(row, column)] = tile.lane(register)[0] * simulator.program.scale[column];
     }
     let weight: Vec<f64> = simulator
@@ -79,6 +81,7 @@ impl<'s> Closure<'s> {
         system.start.position = kept(&system.q);
         system.start.velocity = kept(&system.v);
         system.start.conditions.clear();
+        system.start.fulfils_velocity_constraints = true;
         let program = compile_start(&system, &simulator.mobility.redundant, &simulator.nominal)
             .map_err(|none| no_factors(&simulator.system, &none))?;
         let accelerations = system.observes_accelerations();

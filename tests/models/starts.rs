@@ -342,3 +342,26 @@ fn a_chain_that_winds_up_starts_in_every_formulation() {
         }
     }
 }
+
+/// A ball on a floor may be turned in any way, but not lifted: its height is no choice.
+#[test]
+fn what_constraints_determine_is_not_left_open() {
+    let shared = |name: &str, height: &str| {
+        let text = format!(
+            "
+space: spatial
+bodies: {{ ball: {{ mass: 1, inertia: 0.01 }} }}
+joints: {{ floor: {{ point_on_plane: {{ between: [{name}, ball], normal: {height} }} }} }}
+initial: {{ ball.x: 0.1, ball.vx: 1, ball.vy: 0.5 }}
+outputs: {{ x: ball.x }}
+simulation: {{ duration: 0.1, step: 1e-3 }}
+"
+        )
+        .replace("bodies: {", "bodies: { ground: { points: { high: [0, 0.2, 0.3] } },");
+        let options = Options { methods: Some(Vec::new()), ..Options::default() };
+        study::run(&read(&text), options).unwrap().1.shared_start
+    };
+    assert_eq!(shared("ground.high", "z"), Vec::<String>::new());
+    // Here height and side share what the plane leaves open.
+    assert_eq!(shared("ground.high", "[1, 1, 2]"), ["ball.y", "ball.z"]);
+}

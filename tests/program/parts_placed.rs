@@ -161,6 +161,66 @@ outputs: {{ x1: one.fore.x, x2: two.fore.x, y1: one.fore.y, y2: two.fore.y, z1: 
     }
 }
 
+/// Points at the start are those of the instance, up to what the steps miss.
+#[test]
+fn a_placed_instance_starts_where_its_points_say() {
+    let arm = "
+assemblies:
+  arm:
+    shared: all
+    parameters: { m: 1 kg ± 1% }
+    bodies: { bar: { mass: m, inertia: 0.01, points: { A: [-0.1, 0], B: [0.1, 0] } }, bar_2: { mass: 1, inertia: 0.01 } }
+    joints: { pin: { revolute: [ground, bar.A] }, slide: { prismatic: { between: [ground, bar_2], axis: x } } }
+    initial: { bar.B.x: 0.12, bar.B.vy: 0.3, bar_2.x: 0.2, bar_2.vx: 0.1 }
+    guess: { bar.angle: -0.8 }
+";
+    let found = bounds(&format!(
+        "{arm}instances: {{ one: {{ of: arm }}, two: {{ of: arm, at: [1, 2] }}, three: {{ of: arm, mirror: x }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+outputs: {{ x1: one.bar.B.x, x2: two.bar.B.x - 1, x3: three.bar.B.x, y1: one.bar.B.y, y2: two.bar.B.y - 2, y3: three.bar.B.y, v1: one.bar.B.vy, v2: two.bar.B.vy, v3: three.bar.B.vy }}
+{ASKED}"
+    ));
+    for (name, sign) in [("x", -1.0), ("y", 1.0), ("v", 1.0)] {
+        let [[one, ..], [two, ..], [three, ..]] = [1, 2, 3].map(|place| courses(&found, &format!("{name}{place}")));
+        for ((one, two), three) in one.iter().zip(two).zip(three) {
+            assert!((one - two).abs() < 1e-5 && (one - sign * three).abs() < 1e-5, "{name}: {one}, {two}, {three}");
+        }
+    }
+    assert!((courses(&found, "x1")[0][0] - 0.12).abs() < 1e-9);
+}
+
+/// A coin on a slope that is mirrored with it.
+#[test]
+fn the_image_of_a_coin_rolls_as_the_mirror_shows() {
+    let coin = "
+assemblies:
+  coin:
+    shared: all
+    parameters: { r: 12 mm ± 2% }
+    bodies: { disc: { mass: 9 g, inertia: [9 g*r^2/4, 9 g*r^2/4, 9 g*r^2/2] } }
+    joints: { roll: { rolling_on_plane: { between: [ground, disc], normal: [0.2, 0.1, 1], axle: [0.1, 0.2, 1], radius: r } } }
+    initial: { disc.x: 0.1, disc.y: 0.05, disc.orientation: { rpy: [0.2, 1, 0.1] }, disc.omega_body: [-8, 3, -50] }
+";
+    let by_parts =
+        coin.replace("disc.omega_body: [-8, 3, -50]", "disc.omega.x: -8, disc.omega.y: 3, disc.omega.z: -50");
+    let whole = coin.replace("disc.omega_body", "disc.omega");
+    for (coin, axis, gravity) in
+        [(coin, "x", "[0, 0.3, -9.81]"), (&by_parts, "y", "[0.3, 0, -9.81]"), (&whole, "x", "[0, 0.3, -9.81]")]
+    {
+        let found = bounds(&format!(
+            "{coin}instances: {{ one: {{ of: coin }}, two: {{ of: coin, mirror: {axis} }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: {gravity} }} }} }}
+outputs: {{ x1: one.disc.x, x2: two.disc.x, y1: one.disc.y, y2: two.disc.y, z1: one.disc.z, z2: two.disc.z }}
+{}",
+            ASKED.replace("0.5, step", "0.2, step")
+        ));
+        for coordinate in ["x", "y", "z"] {
+            let sign = if coordinate == axis { -1.0 } else { 1.0 };
+            same(&found, &format!("{coordinate}1"), (&found, &format!("{coordinate}2")), sign);
+        }
+    }
+}
+
 /// Friction in a joint of an instance is that of the model's own joint.
 #[test]
 fn joints_of_instances_rub() {

@@ -113,6 +113,20 @@ pub trait Joint: Debug {
     /// A formula with a name that cannot stand in it; the reader of model files lets none through.
     fn rows<'g>(&self, own: usize, k: &dyn Kinematics<'g>) -> Rows<'g>;
 
+    /// Whether it constrains velocities beyond positions.
+    fn is_nonholonomic(&self) -> bool {
+        false
+    }
+
+    /// Its nonholonomic constraints: Ψ(q, v, t) = 0, linear in v, which are no derivatives of constraints of positions.
+    ///
+    /// # Errors
+    /// As [`rows`](Self::rows).
+    fn velocity_rows<'g>(&self, k: &dyn Kinematics<'g>) -> Rows<'g> {
+        let _ = k;
+        Ok(Vec::new())
+    }
+
     /// Its symbol in drawings.
     fn glyph(&self) -> Glyph {
         match self.mobilizer() {

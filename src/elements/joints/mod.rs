@@ -38,6 +38,7 @@ joints! {
     planetary::Planetary,
     worm::Worm,
     rolling::Rolling,
+    rolling_on_plane::RollingOnPlane,
     motor::Motor,
     equation::Equation,
 }

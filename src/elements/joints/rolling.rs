@@ -47,7 +47,7 @@ pub struct Rolling {
 impl Checked for Rolling {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if reader.model.is_spatial() {
-            let help = "in space let a `rack` couple the angle of its axle to the way of its carriage, or roll it by the `friction` of a `contact`";
+            let help = "in space `rolling_on_plane` rolls a disc; on a rail a `rack` couples the angle of an axle to the way of its carriage";
             reader.error(fields.at.clone(), "a `rolling` wheel is one of the plane, but the model is spatial", help.to_owned());
         }
     }

@@ -18,13 +18,13 @@ use crate::multibody::{BuildError, Pair, Vector};
 
 /// One scalar constraint.
 ///
-/// The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is −Φ_qᵀ λ. `force` and `torque` are what that
+/// The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is −Φ_qᵀ λ, or −Ψ_vᵀ λ of a velocity constraint. `force` and `torque` are what that
 /// is on the joint's second body, for λ = 1; the first body has the opposite, at the same place (but for gears and racks).
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'g> {
     /// Distinguishes it from the joint's other rows; empty where there are none.
     pub name: &'static str,
-    /// Φ, m or rad.
+    /// Φ, m or rad; Ψ, m/s, of a velocity constraint.
     pub value: Scalar<'g>,
     /// Force on the second body for λ = 1, in the ground's axes: a unit vector where Φ = 0, or zero.
     pub force: Vector<'g>,
@@ -32,7 +32,7 @@ pub struct Row<'g> {
     pub torque: Vector<'g>,
 }
 
-/// The mechanism as far as constraints depend on it: at a position and a time.
+/// The mechanism as far as constraints depend on it: at a position and a time, and for velocity constraints in a motion.
 pub trait Kinematics<'g> {
     /// The graph that expressions are added to.
     fn graph(&self) -> &'g Builder;
@@ -50,6 +50,10 @@ pub trait Kinematics<'g> {
     fn unit_vector(&self, direction: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
     /// Positions of two points in the ground's frame, m.
     fn points(&self, between: [PointRef; 2]) -> [Vector<'g>; 2];
+    /// The velocity of a point in the ground's axes, m/s.
+    fn velocity(&self, point: PointRef) -> Vector<'g>;
+    /// The angular velocity of a body in the ground's axes, rad/s.
+    fn angular_velocity(&self, body: usize) -> Vector<'g>;
     /// The frames at two points.
     fn pair(&self, between: [PointRef; 2]) -> Pair<'g>;
     /// A vector of a body's frame, in the ground's axes.
@@ -152,7 +156,7 @@ impl<'g, 'k> Frames<'g, 'k> {
 
     /// Two unit vectors normal to a unit vector and to one another. Which axis of the frame they lean on is decided at the
     /// nominal parameters: the one that the vector is farthest from.
-    fn normals(&self, axis: Vector<'g>) -> [Vector<'g>; 2] {
+    pub fn normals(&self, axis: Vector<'g>) -> [Vector<'g>; 2] {
         let size = self.k.nominal(axis).into_iter().map(f64::abs).enumerate();
         let least = size.reduce(|best, next| if next.1 < best.1 { next } else { best }).map_or(0, |(index, _)| index);
         let lean = Vector::along(self.g, least);

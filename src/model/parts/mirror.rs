@@ -28,7 +28,7 @@ enum Image {
 use Image::{Axial, Directed, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 40] = [
+const KINDS: [(&str, &[(&str, Image)]); 41] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -46,6 +46,7 @@ const KINDS: [(&str, &[(&str, Image)]); 40] = [
     ("worm", &[("lead_angle", Turning), ("offset", Turning)]),
     // The wheel changes the side of a rail that keeps its direction.
     ("rolling", &[("axis", Axial), ("offset", Turning)]),
+    ("rolling_on_plane", &[("normal", Polar), ("axle", Polar)]),
     ("tooth_friction", &[]),
     ("spring_damper", &[("along", Polar)]),
     ("cable", &[]),

@@ -144,10 +144,23 @@ impl Writer<'_, '_> {
                 written.push(entry);
                 continue;
             };
-            if !bodies.contains(&owner) {
+            let is_part = |rest: &&str| rest.is_empty() || rest.starts_with('.');
+            let part = bodies.iter().find_map(|body| owner.strip_prefix(body.as_str()).filter(is_part));
+            let Some(part) = part else {
                 // Of a joint: its angle counts the other way.
                 if placement.mirror.is_some() && matches!(coordinate.as_str(), "angle" | "angular_velocity") {
                     mirror::negate(&mut entry.value);
+                }
+                written.push(entry);
+                continue;
+            };
+            // `omega` and `omega_body`, whole or by their parts.
+            let rate = part.strip_prefix('.').unwrap_or(&coordinate);
+            if rate == "omega_body" || rate == "omega" && !placement.turns() {
+                match placement.mirror {
+                    Some(axis) if part.is_empty() => mirror::axial(&mut entry.value, axis),
+                    Some(axis) if coordinate != PLACE[axis] => mirror::negate(&mut entry.value),
+                    _ => {}
                 }
                 written.push(entry);
                 continue;

@@ -25,8 +25,7 @@ pub fn not_finite(system: &System, layout: &Layout, state: &[f64], time: f64) ->
     let value_of = |symbol: Expr| values.get(&symbol).copied().unwrap_or(0.0);
     let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());
     let named = motion.map(|(&expr, coordinate)| (expr, format!("the motion of `{}`", coordinate.name)));
-    let closure = system.constraint.iter().zip(&system.constraints);
-    let named = named.chain(closure.map(|(&expr, info)| (expr, format!("`{}`", info.name))));
+    let named = named.chain(system.named_constraints().map(|(expr, info)| (expr, format!("`{}`", info.name))));
     let graph = &system.graph;
     let value = |expr: Expr| graph.evaluate(&[expr], value_of)[0];
     let (mut term, place) = named.into_iter().find(|&(expr, _)| !value(expr).is_finite())?;

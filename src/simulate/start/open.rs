@@ -36,8 +36,8 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], sample
     // With constraints, other parameters move what is at rest in the nominal start.
     let follows = samples == Samples::All && !system.parameters.is_empty() && !system.lambda.is_empty();
     let mut rows = None;
-    let mut is_free = |given: &[Option<Expr>], conditions: usize| {
-        let rows = rows.get_or_insert_with(|| jacobian_rows(system, start, nominal));
+    let mut is_free = |given: &[Option<Expr>], constraints: usize, conditions: usize| {
+        let rows = &rows.get_or_insert_with(|| jacobian_rows(system, start, nominal))[..constraints];
         let open = |row: &Vec<(usize, f64)>| row.iter().copied().filter(|(place, _)| given[*place].is_none()).collect();
         let rows: Vec<Vec<(usize, f64)>> = rows.iter().map(open).collect();
         let rank = rows.len() - dependent_rows(&rows, DEPENDENT).len();
@@ -47,10 +47,11 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], sample
     let of_position = conditions.iter().filter(|condition| condition.position).count();
     let of_velocity = conditions.iter().filter(|condition| condition.velocity).count();
     OpenStart {
-        positions: (follows || is_apart(Kind::Position)) && is_free(&system.start.position, of_position),
+        positions: (follows || is_apart(Kind::Position))
+            && is_free(&system.start.position, system.constraint.len(), of_position),
         velocities: is_driven(system)
             && (follows || is_apart(Kind::Velocity))
-            && is_free(&system.start.velocity, of_velocity),
+            && is_free(&system.start.velocity, system.lambda.len(), of_velocity),
     }
 }
 
@@ -59,8 +60,9 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
     let mut shared = Vec::new();
     for (kind, is_open) in [(Kind::Position, start.open.positions), (Kind::Velocity, start.open.velocities)] {
         let distances = if is_open { distances(system, &start.layout, nominal, kind) } else { Vec::new() };
-        let far = distances.into_iter().filter(|(distance, value)| (value / distance.scale).abs() > APART);
-        shared.extend(far.map(|(distance, _)| match kind {
+        let is_far = |(distance, value): &(&Distance, f64)| (value / distance.scale).abs() > APART;
+        let far: Vec<&Distance> = distances.iter().filter(|distance| is_far(distance)).map(|(far, _)| *far).collect();
+        shared.extend(open_of(system, start, nominal, (kind, far)).map(|distance| match kind {
             Kind::Position => distance.name.clone(),
             Kind::Velocity => format!("the rate of {}", distance.name),
         }));
@@ -68,11 +70,57 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
     shared
 }
 
+/// Those of some distances that what is known at the start does not determine.
+fn open_of<'s>(
+    system: &'s System,
+    start: &StartProgram,
+    nominal: &[f64],
+    (kind, distances): (Kind, Vec<&'s Distance>),
+) -> impl Iterator<Item = &'s Distance> {
+    let mut rows = Vec::new();
+    if !distances.is_empty() {
+        rows = jacobian_rows(system, start, nominal);
+        let (given, constraints) = match kind {
+            Kind::Position => (&system.start.position, system.constraint.len()),
+            Kind::Velocity => (&system.start.velocity, system.lambda.len()),
+        };
+        rows.truncate(constraints);
+        let conditions = system.start.conditions.iter().filter(|condition| match kind {
+            Kind::Position => condition.position,
+            Kind::Velocity => condition.velocity,
+        });
+        let graph = system.start.nearest.as_ref().and_then(|nearest| nearest.graph.as_ref()).unwrap_or(&system.graph);
+        let mut graph = graph.clone();
+        let mut add = |value: Expr, by: &[Expr]| {
+            let (places, slopes): (Vec<usize>, Vec<Expr>) =
+                graph.jacobian(&[value], by).entries().map(|(_, place, slope)| (place, slope)).unzip();
+            let slopes = graph.evaluate(&slopes, values_at(system, &start.layout, nominal));
+            let scaled = places.into_iter().zip(slopes);
+            rows.push(scaled.map(|(place, slope)| (place, slope * system.coordinates[place].scale)).collect());
+        };
+        for condition in conditions {
+            match condition.rate {
+                Some(rate) if matches!(kind, Kind::Velocity) => add(rate, &system.v),
+                _ => add(condition.value, &system.q),
+            }
+        }
+        distances.iter().for_each(|distance| add(distance.value, &system.q));
+        rows.iter_mut().for_each(|row| row.retain(|&(place, _)| given[place].is_none()));
+    }
+    let known = rows.len() - distances.len();
+    let is_determined = move |place: usize| {
+        let with_known: Vec<Vec<(usize, f64)>> = rows[..known].iter().chain([&rows[known + place]]).cloned().collect();
+        dependent_rows(&with_known, DEPENDENT).contains(&known)
+    };
+    distances.into_iter().enumerate().filter(move |&(place, _)| !is_determined(place)).map(|(_, distance)| distance)
+}
+
 /// Whether a velocity is given that may not be zero, or a constraint depends on t: else all velocities are zero.
 fn is_driven(system: &System) -> bool {
     let given = system.start.velocity.iter().flatten().any(|&value| !system.graph.is_zero(value));
     let conditioned = system.start.conditions.iter().any(|condition| condition.rate.is_some());
-    given || conditioned || system.graph.symbols_of(&system.constraint).binary_search(&system.time).is_ok()
+    let constraints: Vec<Expr> = system.named_constraints().map(|(value, _)| value).collect();
+    given || conditioned || system.graph.symbols_of(&constraints).binary_search(&system.time).is_ok()
 }
 
 /// Distances, or their rates.
@@ -90,16 +138,8 @@ fn distances<'s>(system: &'s System, layout: &Layout, state: &[f64], kind: Kind)
         Kind::Velocity => distance.velocity,
     };
     let open: Vec<&Distance> = nearest.distances.iter().filter(is_open).collect();
-    let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
-    let mut set = |symbols: &[Expr], registers: std::ops::Range<usize>| {
-        values.extend(symbols.iter().copied().zip(registers.map(|register| state[register])));
-    };
-    let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
-    set(&parameters, layout.parameters.clone());
-    set(&system.q, layout.q.clone());
-    set(&system.v, layout.v.clone());
     let exprs: Vec<Expr> = open.iter().map(|distance| distance.value).collect();
-    let at = |symbol| values.get(&symbol).copied().unwrap_or(0.0);
+    let at = values_at(system, layout, state);
     let graph = nearest.graph.as_ref().unwrap_or(&system.graph);
     let numbers = match kind {
         Kind::Position => graph.evaluate(&exprs, at),
@@ -110,4 +150,17 @@ fn distances<'s>(system: &'s System, layout: &Layout, state: &[f64], kind: Kind)
         }
     };
     open.into_iter().zip(numbers).collect()
+}
+
+/// The values of symbols at a state; what it does not know is zero.
+fn values_at(system: &System, layout: &Layout, state: &[f64]) -> impl Fn(Expr) -> f64 + use<> {
+    let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
+    let mut set = |symbols: &[Expr], registers: std::ops::Range<usize>| {
+        values.extend(symbols.iter().copied().zip(registers.map(|register| state[register])));
+    };
+    let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
+    set(&parameters, layout.parameters.clone());
+    set(&system.q, layout.q.clone());
+    set(&system.v, layout.v.clone());
+    move |symbol| values.get(&symbol).copied().unwrap_or(0.0)
 }

@@ -116,8 +116,7 @@ impl ResolvingSteps {
 fn place_of(system: &System, of: symdiff::Expr, formula: &str) -> String {
     let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());
     let named = motion.map(|(&root, coordinate)| (root, format!("the motion of `{}`", coordinate.name)));
-    let closure = system.constraint.iter().zip(&system.constraints);
-    let mut named = named.chain(closure.map(|(&root, info)| (root, format!("`{}`", info.name))));
+    let mut named = named.chain(system.named_constraints().map(|(root, info)| (root, format!("`{}`", info.name))));
     match named.find(|&(root, _)| system.graph.reachable(&[root]).contains(&of)) {
         Some((_, place)) => format!("`{formula}` in {place}"),
         None => format!("`{formula}`"),

@@ -343,7 +343,14 @@ impl Ensemble for Motions<'_> {
         if self.simulator.equilibrium.is_some() {
             return Some("a start at an equilibrium".to_owned());
         }
-        let effect = self.simulator.system.effects.iter().find(|effect| !effect.enclosed)?;
+        let system = &self.simulator.system;
+        if !system.velocity_constraint.is_empty() {
+            return Some(
+                "constraints of velocities, as of joint ".to_owned()
+                    + &system.constraints[system.constraint.len()].joint,
+            );
+        }
+        let effect = system.effects.iter().find(|effect| !effect.enclosed)?;
         Some(format!("effect {} ({})", effect.name, effect.kind))
     }
 
