@@ -7,7 +7,7 @@ use mbint::inner::results::Method;
 use mbint::inner::study::{self, Options};
 
 use crate::common::{
-    Vary, band, curve, distance, largest, model, nominal, output, read, reference, row, run, run_methods,
+    Vary, band, curve, distance, distance_from, largest, model, nominal, output, read, reference, row, run, run_methods,
 };
 
 fn scheme(mut description: Description, scheme: SchemeChoice) -> Description {
@@ -169,4 +169,40 @@ fn explain_says_by_what_a_model_is_integrated() {
     println!("{one}");
     assert!(one.starts_with("integrated by the explicit method of order 8: not stiff"), "{one}");
     assert!(decisions(&description.by_hht()).is_empty(), "the model says it");
+}
+
+/// Within the error that is stated, and that within what is allowed.
+#[track_caller]
+fn assert_located(force: &str, start: &str, allowed: f64, exact: impl Fn(f64) -> f64) {
+    let text = "
+space: planar
+bodies: { m: { mass: 1, coordinates: [x] } }
+effects: { ends: { force: { on: m, value: ['FORCE', 0] } } }
+initial: { m.x: START, m.vx: 1 }
+outputs: { x: m.x }
+simulation: { duration: 5, scheme: explicit, tolerance: 1e-9, output_step: 0.01 }
+bounds: { scan: { points: 2 } }
+";
+    let bounds = run(&read(&text.replace("FORCE", force).replace("START", start)));
+    let off = distance_from(&bounds.times, curve(&bounds, "x"), exact);
+    let stated = largest(band(output(&bounds, "x"), Method::Scan).error.total.iter().copied());
+    assert!(off <= stated + 1e-14 && stated < allowed, "{off:e}, stated {stated:e}");
+}
+
+/// A mass flies between two springs: it meets each at v and leaves it half a period later at −v. Where its force jumps, it moves by
+/// parabolas.
+#[test]
+fn steps_end_where_equations_switch() {
+    let half = std::f64::consts::PI / 20.0;
+    assert_located("-(400 N/m)*max(m.x - 0.1, 0) + (400 N/m)*max(-0.1 - m.x, 0)", "0", 1e-10, |t| {
+        let since = (t + 0.1).rem_euclid(2.0 * (0.2 + half));
+        let (since, sign) = if since < 0.2 + half { (since, 1.0) } else { (since - 0.2 - half, -1.0) };
+        sign * if since < 0.2 { since - 0.1 } else { 0.1 + (20.0 * (since - 0.2)).sin() / 20.0 }
+    });
+    let speed = (1.0 + 4.0 * 0.01_f64).sqrt();
+    assert_located("-(2 N)*sign(m.x)", "0.01", 1e-8, |t| {
+        let since = t + (speed - 1.0) / 2.0;
+        let (turn, since) = ((since / speed).floor(), since.rem_euclid(speed));
+        (if turn % 2.0 == 0.0 { 1.0 } else { -1.0 }) * (speed * since - since * since)
+    });
 }

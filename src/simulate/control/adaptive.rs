@@ -85,14 +85,14 @@ impl<'s> Adaptive<'s> {
         // A rejected step leaves the time of its end.
         self.stepper.tile_mut().lane_mut(self.time).fill(time);
         if let Some(watch) = &mut self.watch {
-            watch.begin(&self.stepper);
+            watch.begin(self.stepper.tile());
         }
         if let Some(features) = &mut self.features {
             features.begin(&self.stepper);
         }
         let converged = self.stepper.try_step(step, end);
         if let Some(watch) = &mut self.watch {
-            watch.end(&self.stepper);
+            watch.end(self.stepper.tile());
         }
         let passes = self.passes(&converged, (step, end));
         let crossings: Vec<Option<Crossing>> = (0..converged.len()).map(|lane| self.crossing(lane, step)).collect();

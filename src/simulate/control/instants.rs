@@ -21,7 +21,7 @@ impl Schedule {
         };
         let divided = if self.passes_rows() {
             let at_rows = ends(&mut steps()).into_iter().map(|end| Self::at_row(end, times)).collect();
-            Self::passing(self.end(), self.output_step, at_rows)
+            Self::passing(times, at_rows, Vec::new())
         } else {
             Self::listed(self.output_step, (1..self.rows).map(|row| ends(&mut self.steps_to(row))).collect())
         };

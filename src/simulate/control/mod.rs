@@ -6,6 +6,7 @@ mod controller;
 mod division;
 mod instants;
 mod integration;
+mod refinement;
 mod samples;
 mod schedule;
 mod switch_watch;

@@ -14,49 +14,29 @@ pub struct Schedule {
     /// Rows of output, the one at t = 0 included.
     pub rows: usize,
     /// Time of the last row, s.
-    end: f64,
-    steps: Steps,
+    pub(super) end: f64,
+    pub(super) steps: Steps,
     /// How the steps are taken.
     pub integration: Integration,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-enum Steps {
+pub(super) enum Steps {
     /// This many steps of equal length between rows, and those before the last row.
     Fixed { step: f64, per_row: usize, last: LastSteps },
     /// For each row but the first, the times at which the steps before it end; the last is the row's own.
     Listed(Vec<Vec<f64>>),
-    /// The times at which steps end, which pass over rows; the last is the end of the run.
-    Passing(Vec<f64>),
-}
-
-/// Steps for each of those that they are at odds with.
-const FINER: f64 = 2.7;
-
-fn are_coprime(a: usize, b: usize) -> bool {
-    if b == 0 { a == 1 } else { are_coprime(b, a % b) }
+    /// The times at which steps end, which pass over rows; the last is the end of the run. Those by these numbers are times at which equations
+    /// switch: all schedules of the motion keep them.
+    Passing { ends: Vec<f64>, kept: Vec<usize> },
 }
 
 /// Steps before the last row: whole ones, then so many of the length `rest`, s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct LastSteps {
-    whole: usize,
-    rests: usize,
-    rest: f64,
-}
-
-/// So many steps instead of those that end at these times, as dense as they are.
-fn divided(ends: &[f64], others: usize) -> Vec<f64> {
-    let count = ends.len();
-    let time = |step: usize| if step == 0 { 0.0 } else { ends[step - 1] };
-    let end = |other: usize| {
-        let (whole, part) = (other * count / others, other * count % others);
-        match part {
-            0 => time(whole),
-            _ => time(whole) + (time(whole + 1) - time(whole)) * part as f64 / others as f64,
-        }
-    };
-    (1..=others).map(end).collect()
+pub(super) struct LastSteps {
+    pub whole: usize,
+    pub rests: usize,
+    pub rest: f64,
 }
 
 /// A remainder below this share of a step is rounding.
@@ -102,22 +82,23 @@ impl Schedule {
         Self { output_step, rows: ends.len() + 1, end, steps: Steps::Listed(ends), integration: Integration::Plain }
     }
 
-    /// Steps that end at the listed times, whatever rows lie between.
-    pub fn passing(duration: f64, output_step: f64, ends: Vec<f64>) -> Self {
+    /// Steps that end at the listed times, whatever rows lie between. The ends by the numbers `kept` stay where they are in all schedules
+    /// that are made of this one.
+    pub fn passing((duration, output_step): (f64, f64), ends: Vec<f64>, kept: Vec<usize>) -> Self {
         let rows = rows(duration, output_step);
-        let steps = Steps::Passing(ends);
+        let steps = Steps::Passing { ends, kept };
         Self { output_step, rows, end: duration, steps, integration: Integration::Plain }
     }
 
     /// Whether steps pass over rows.
     pub fn passes_rows(&self) -> bool {
-        matches!(self.steps, Steps::Passing(_))
+        matches!(self.steps, Steps::Passing { .. })
     }
 
     /// The same with steps that end at the rows too.
     #[must_use]
     pub fn ending_at_rows(&self) -> Self {
-        let Steps::Passing(_) = &self.steps else { return self.clone() };
+        let Steps::Passing { .. } = &self.steps else { return self.clone() };
         let of_row = |row: usize| {
             let mut ends: Vec<f64> = self.steps_to(row).map(|(_, end)| end).collect();
             if ends.last().is_none_or(|&end| end < self.time(row)) {
@@ -131,73 +112,9 @@ impl Schedule {
     /// Times at which all steps end.
     pub fn ends(&self) -> Vec<f64> {
         match &self.steps {
-            Steps::Passing(ends) => ends.clone(),
+            Steps::Passing { ends, .. } => ends.clone(),
             _ => (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(_, end)| end).collect(),
         }
-    }
-
-    /// The same rows, each step divided into `parts` equal ones.
-    #[must_use]
-    pub fn refined(&self, parts: usize) -> Self {
-        let steps = match &self.steps {
-            Steps::Fixed { step, per_row, last } => Steps::Fixed {
-                step: step / parts as f64,
-                per_row: per_row * parts,
-                last: LastSteps {
-                    whole: last.whole * parts,
-                    rests: last.rests * parts,
-                    rest: last.rest / parts as f64,
-                },
-            },
-            Steps::Passing(ends) => Steps::Passing(divided(ends, ends.len() * parts)),
-            Steps::Listed(ends) => {
-                let refine = |row: usize| {
-                    self.steps_to(row)
-                        .flat_map(|(h, end)| {
-                            (1..=parts).map(move |part| end - h * (parts - part) as f64 / parts as f64)
-                        })
-                        .collect()
-                };
-                Steps::Listed((1..=ends.len()).map(refine).collect())
-            }
-        };
-        Self { steps, ..*self }
-    }
-
-    /// The same rows with between two and three steps for each, none of which ends where a step or half a step does but at the rows.
-    #[must_use]
-    pub fn at_odds(&self) -> Self {
-        let others = |count: usize| {
-            let least = (FINER * count as f64).round() as usize;
-            (least..).find(|&others| are_coprime(others, 2 * count)).unwrap_or(least)
-        };
-        if let Steps::Passing(ends) = &self.steps {
-            return Self { steps: Steps::Passing(divided(ends, others(ends.len()))), ..*self };
-        }
-        let Steps::Listed(ends) = &self.steps else {
-            return self.with_steps_per_row(others(self.steps_per_row().unwrap_or(1)));
-        };
-        let of_row = |row: usize| {
-            let mut times = vec![self.time(row - 1)];
-            times.extend(&ends[row - 1]);
-            let (count, others) = (times.len() - 1, others(times.len() - 1));
-            let end = |other: usize| {
-                let (whole, part) = (other * count / others, other * count % others);
-                match part {
-                    0 => times[whole],
-                    _ => times[whole] + (times[whole + 1] - times[whole]) * part as f64 / others as f64,
-                }
-            };
-            (1..=others).map(end).collect()
-        };
-        Self { steps: Steps::Listed((1..=ends.len()).map(of_row).collect()), ..*self }
-    }
-
-    /// Length of other steps over that of these, on average.
-    pub fn ratio_to(&self, other: &Self) -> f64 {
-        let [these, others] =
-            [self, other].map(|schedule| schedule.steps_before(schedule.rows.saturating_sub(1)) as f64);
-        if others > 0.0 { these / others } else { 1.0 / FINER }
     }
 
     /// The longest of the steps, s.
@@ -205,7 +122,7 @@ impl Schedule {
         match &self.steps {
             Steps::Fixed { step, .. } => *step,
             Steps::Listed(_) => (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max),
-            Steps::Passing(ends) => {
+            Steps::Passing { ends, .. } => {
                 let first = ends.first().copied().unwrap_or(0.0);
                 ends.windows(2).map(|pair| pair[1] - pair[0]).fold(first, f64::max)
             }
@@ -216,7 +133,7 @@ impl Schedule {
     pub fn steps_per_row(&self) -> Option<usize> {
         match &self.steps {
             Steps::Fixed { per_row, .. } => Some(*per_row),
-            Steps::Listed(_) | Steps::Passing(_) => None,
+            Steps::Listed(_) | Steps::Passing { .. } => None,
         }
     }
 
@@ -259,7 +176,7 @@ impl Schedule {
             Steps::Fixed { last, .. } if self.rows == 2 && last.whole == 0 => last.rest,
             Steps::Fixed { step, .. } => *step,
             Steps::Listed(ends) => ends.first().and_then(|ends| ends.first()).copied().unwrap_or(self.output_step),
-            Steps::Passing(ends) => ends.first().copied().unwrap_or(self.output_step),
+            Steps::Passing { ends, .. } => ends.first().copied().unwrap_or(self.output_step),
         }
     }
 
@@ -270,7 +187,7 @@ impl Schedule {
             Steps::Fixed { last, .. } if row + 1 == self.rows => last.whole + last.rests,
             Steps::Fixed { per_row, .. } => *per_row,
             Steps::Listed(ends) => ends[row - 1].len(),
-            Steps::Passing(_) => self.steps_before(row) - self.steps_before(row - 1),
+            Steps::Passing { .. } => self.steps_before(row) - self.steps_before(row - 1),
         };
         (0..count).map(move |index| match &self.steps {
             Steps::Fixed { last, .. } if row + 1 == self.rows && index >= last.whole => {
@@ -281,7 +198,7 @@ impl Schedule {
                 let before = if index == 0 { self.time(row - 1) } else { ends[row - 1][index - 1] };
                 (ends[row - 1][index] - before, ends[row - 1][index])
             }
-            Steps::Passing(ends) => {
+            Steps::Passing { ends, .. } => {
                 let place = self.steps_before(row - 1) + index;
                 let before = if place == 0 { 0.0 } else { ends[place - 1] };
                 (ends[place] - before, ends[place])
@@ -297,7 +214,7 @@ impl Schedule {
             }
             Steps::Fixed { per_row, .. } => row * per_row,
             Steps::Listed(ends) => ends[..row].iter().map(Vec::len).sum(),
-            Steps::Passing(ends) => {
+            Steps::Passing { ends, .. } => {
                 let time = self.time(row);
                 ends.partition_point(|&end| end <= time)
             }

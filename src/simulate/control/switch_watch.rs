@@ -3,7 +3,6 @@
 use symdiff::Tile;
 
 use crate::compile::{Switch, SwitchProgram, Tapes};
-use crate::simulate::step::Stepper;
 
 /// A cubic's first root is searched for at this many points between the ends of a step, and then by bisection.
 const POINTS: usize = 16;
@@ -50,16 +49,16 @@ impl<'s> SwitchWatch<'s> {
     }
 
     /// Before a step.
-    pub fn begin(&mut self, stepper: &Stepper) {
+    pub fn begin(&mut self, states: &Tile) {
         let mut values = std::mem::take(&mut self.before);
-        self.evaluate(stepper, &mut values);
+        self.evaluate(states, &mut values);
         self.before = values;
     }
 
     /// After a step.
-    pub fn end(&mut self, stepper: &Stepper) {
+    pub fn end(&mut self, states: &Tile) {
         let mut values = std::mem::take(&mut self.after);
-        self.evaluate(stepper, &mut values);
+        self.evaluate(states, &mut values);
         self.after = values;
     }
 
@@ -76,13 +75,13 @@ impl<'s> SwitchWatch<'s> {
     }
 
     /// (value, rate) of each switch, switch by switch, lane by lane; a rate is NaN where it is not known.
-    fn evaluate(&mut self, stepper: &Stepper, into: &mut Vec<[f64; 2]>) {
+    fn evaluate(&mut self, states: &Tile, into: &mut Vec<[f64; 2]>) {
         let layout = &self.program.layout;
         let width = self.tile.width();
         let state = layout.state();
         let state = state.start * width..state.end * width;
-        self.tile.values_mut()[state.clone()].copy_from_slice(&stepper.tile().values()[state]);
-        self.tile.lane_mut(layout.time).copy_from_slice(stepper.tile().lane(layout.time));
+        self.tile.values_mut()[state.clone()].copy_from_slice(&states.values()[state]);
+        self.tile.lane_mut(layout.time).copy_from_slice(states.lane(layout.time));
         self.tile.run(self.program.evaluate());
         into.clear();
         for Switch { value, rate, .. } in &self.program.switches {

@@ -54,14 +54,14 @@ impl<'s> LaneSteps<'s> {
         stepper.set_step_size(h);
         let before = stepper.save();
         if let Some(watch) = &mut self.watch {
-            watch.begin(stepper);
+            watch.begin(stepper.tile());
         }
         if let Some(features) = &mut self.features {
             features.begin(stepper);
         }
         let converged = stepper.try_step(h, end);
         if let Some(watch) = &mut self.watch {
-            watch.end(stepper);
+            watch.end(stepper.tile());
         }
         if let Some(features) = &mut self.features {
             features.end(stepper);

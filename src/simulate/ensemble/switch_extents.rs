@@ -26,12 +26,12 @@ impl<'s> SwitchExtents<'s> {
 
     /// Before a step.
     pub fn begin(&mut self, stepper: &Stepper) {
-        self.watch.begin(stepper);
+        self.watch.begin(stepper.tile());
     }
 
     /// After a step of length h.
     pub fn end(&mut self, stepper: &Stepper, h: f64) {
-        self.watch.end(stepper);
+        self.watch.end(stepper.tile());
         let width = self.width;
         for (place, extent) in self.extents.iter_mut().enumerate() {
             let [low, high] = self.watch.extent(place / width, place % width, h);

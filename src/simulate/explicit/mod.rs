@@ -6,9 +6,11 @@
 //! - `tableau`: the coefficients;
 //! - `runge_kutta`: a step, its errors and its dense output, for states of samples and of jets alike;
 //! - `movement`: how far the motion has gone, which errors count against;
+//! - `controlling`: the samples that decide on the steps, and where their equations switch;
 //! - `steps`: the steps that a tolerance asks for, and what stands against the method;
 //! - `run`: samples and jets over a schedule.
 
+mod controlling;
 mod movement;
 mod run;
 mod runge_kutta;

@@ -3,22 +3,17 @@
 use rayon::prelude::*;
 use symdiff::{WIDTHS, jet::JetSpace};
 
-use super::movement::Movement;
-use super::runge_kutta::{Motion, RungeKutta, StepError};
+use super::runge_kutta::{Motion, RungeKutta};
 use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
 use crate::simulate::error::SimulationError;
-use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
 /// Samples whose states are advanced together.
 const WIDTH: usize = 32;
-
-/// What functions of the positions may change by in a step, as a share of their range: rows of a long step see some of it.
-const MOST_PASSED: f64 = 0.75;
 
 /// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
 const REDUCED: usize = 16;
@@ -53,25 +48,30 @@ impl Motion for JetClosure<'_> {
 
 /// A tile of samples between two steps.
 #[derive(Debug)]
-struct Tile<'s> {
-    motion: RowClosure<'s>,
+pub(super) struct Tile<'s> {
+    pub motion: RowClosure<'s>,
     /// Of rows, whose accelerations are those of their own states.
     rows: RowClosure<'s>,
-    run: RungeKutta,
+    pub run: RungeKutta,
     /// The state at the start.
-    start: Vec<f64>,
+    pub start: Vec<f64>,
     /// First sample, and how many lanes are samples.
-    first: usize,
-    count: usize,
+    pub first: usize,
+    pub count: usize,
     /// Ends of the steps that are taken.
     steps: usize,
     /// Lanes that still run.
-    alive: Vec<bool>,
+    pub alive: Vec<bool>,
     /// Where outputs are reduced to one number.
     reduction: Option<Reduction<'s>>,
 }
 
-fn tiles<'s>(simulator: &'s Simulator, samples: &[Sample], threads: usize) -> Result<Vec<Tile<'s>>, SimulationError> {
+/// Samples in tiles for so many threads, assembled.
+pub(super) fn tiles<'s>(
+    simulator: &'s Simulator,
+    samples: &[Sample],
+    threads: usize,
+) -> Result<Vec<Tile<'s>>, SimulationError> {
     let at_once = samples.len().div_ceil(threads.max(1)).clamp(1, WIDTH);
     let at_once = WIDTHS.into_iter().find(|&width| width >= at_once).unwrap_or(WIDTH);
     let of_tile = |(place, samples): (usize, &[Sample])| {
@@ -97,75 +97,6 @@ fn tiles<'s>(simulator: &'s Simulator, samples: &[Sample], threads: usize) -> Re
     };
     let chunks: Vec<(usize, &[Sample])> = samples.chunks(at_once).enumerate().collect();
     chunks.into_par_iter().map(of_tile).collect()
-}
-
-/// Controlling samples in step.
-#[derive(Debug)]
-pub(super) struct Tiles<'s> {
-    tiles: Vec<Tile<'s>>,
-    features: Option<&'s Features>,
-    samples: Vec<Sample>,
-    movement: Movement,
-}
-
-impl<'s> Tiles<'s> {
-    pub fn start(simulator: &'s Simulator, samples: &[Sample], duration: f64) -> Result<Self, SimulationError> {
-        let (features, tiles) = (simulator.features(), tiles(simulator, samples, 1)?);
-        let movement = Movement::new(&simulator.system.coordinates, duration);
-        Ok(Self { tiles, features, samples: samples.to_vec(), movement })
-    }
-
-    /// Whether a sample passes over most of what a force does in space in the step that was tried.
-    pub fn pass_over(&self, end: f64) -> bool {
-        let Some(features) = self.features else { return false };
-        let mut work = FeatureWork::default();
-        self.tiles.iter().any(|tile| {
-            (0..tile.count).any(|lane| {
-                let passage = Passage {
-                    end,
-                    h: end - tile.run.time,
-                    parameters: &self.samples[tile.first + lane],
-                    states: [&tile.run.state, &tile.run.next],
-                    width: tile.alive.len(),
-                    lane,
-                };
-                features.change(passage, MOST_PASSED, &mut work)
-            })
-        })
-    }
-
-    /// Tries a step of all; the worst lane's error.
-    pub fn attempt(&mut self, end: f64, tolerance: f64) -> StepError {
-        let mut worst = StepError::default();
-        for tile in &mut self.tiles {
-            tile.run.attempt(&mut tile.motion, end);
-            tile.run.finish(&mut tile.motion, end);
-        }
-        let tried = self.tiles.iter().fold(self.movement.clone(), |movement, tile| {
-            movement.reaching(&tile.start, &tile.run.next, tile.alive.len())
-        });
-        let sizes = tried.sizes();
-        for tile in &self.tiles {
-            for error in tile.run.errors(end, &sizes, tolerance, tile.alive.len()) {
-                worst.ratio = worst.ratio.max(error.ratio);
-                worst.stiffness = worst.stiffness.max(error.stiffness);
-            }
-        }
-        worst
-    }
-
-    /// What a rejected step leaves in the memory may not be finite.
-    pub fn reject(&mut self) {
-        self.tiles.iter_mut().for_each(|tile| tile.motion.forget());
-    }
-
-    /// Goes on from the step's end.
-    pub fn accept(&mut self, end: f64) {
-        for tile in &mut self.tiles {
-            tile.run.accept(&mut tile.motion, end);
-            self.movement = self.movement.clone().reaching(&tile.start, &tile.run.state, tile.alive.len());
-        }
-    }
 }
 
 /// The run of an ensemble of samples.

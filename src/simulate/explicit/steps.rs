@@ -2,7 +2,7 @@
 
 use symdiff::math;
 
-use super::run::Tiles;
+use super::controlling::Tiles;
 use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::error::SimulationError;
@@ -15,6 +15,10 @@ const FIRST_STEP: f64 = 1e-2;
 
 /// Smallest step, as a share of the duration.
 const SMALLEST: f64 = 1e-12;
+
+/// A switch is located to this share of the duration, and a step that ends within this share of itself beyond one ends there.
+const LOCATED: f64 = 1e-10;
+const AT_THE_END: f64 = 1e-6;
 
 /// Where h times the largest eigenvalue is more than this, stability limits the step.
 const STABLE: f64 = 6.1;
@@ -79,6 +83,9 @@ pub fn explicit_schedule(
     let instants = Instants::of(simulator);
     let (mut ends, mut time, mut h) = (Vec::new(), 0.0, FIRST_STEP * output_step);
     let (mut stiff, mut others) = (0, 0);
+    // The step that a switch cut short.
+    let mut uncut: Option<f64> = None;
+    let mut switches = Vec::new();
     while time < duration {
         if ends.len() == most {
             return too_many;
@@ -98,6 +105,14 @@ pub fn explicit_schedule(
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
         let worst = tiles.attempt(end, tolerance);
         let factor = SAFETY * math::pow(worst.ratio.max(1e-12), -0.125);
+        let located = LOCATED * duration;
+        let early = tiles.crossing(step).filter(|&share| share < 1.0 - AT_THE_END && step > located);
+        if let Some(share) = early {
+            tiles.reject();
+            uncut = uncut.or(Some(h));
+            h = (step * share * (1.0 + 0.1 * AT_THE_END)).max(located).min(0.999 * step);
+            continue;
+        }
         if worst.ratio > 1.0 {
             tiles.reject();
             h = step * if worst.ratio.is_finite() { factor.clamp(LEAST_FACTOR, SAFETY) } else { LEAST_FACTOR };
@@ -118,8 +133,13 @@ pub fn explicit_schedule(
         tiles.accept(end);
         ends.push(end);
         time = end;
+        if let Some(before) = uncut.take() {
+            switches.push(ends.len() - 1);
+            h = before;
+            continue;
+        }
         // A step cut short at the end, or by a function of the time, is no reason against the longer one.
         h = if step < h { h } else { step * factor.clamp(LEAST_FACTOR, LARGEST_FACTOR) };
     }
-    Ok(Ok(Schedule::passing(duration, output_step, ends).taken(Integration::Explicit)))
+    Ok(Ok(Schedule::passing((duration, output_step), ends, switches).taken(Integration::Explicit)))
 }

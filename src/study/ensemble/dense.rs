@@ -21,7 +21,8 @@ impl Motions<'_> {
             return Ok(None);
         }
         let (end, ends) = (self.schedule.end(), self.schedule.ends());
-        let dense = Schedule::passing(end, end / (DENSE * ends.len()) as f64, ends).taken(self.schedule.integration);
+        let dense = Schedule::passing((end, end / (DENSE * ends.len()) as f64), ends, Vec::new())
+            .taken(self.schedule.integration);
         let mut run = SampleRun::start(self.simulator, samples, &dense)?;
         let lines = 2 * self.simulator.system.q.len() * samples.len();
         let stride = Observed::Motion.count(self.simulator) * samples.len();

@@ -1,0 +1,103 @@
+//! Schedules of the same rows with more steps, by which errors are told.
+
+use super::schedule::{LastSteps, Schedule, Steps};
+
+/// Steps for each of those that they are at odds with.
+const FINER: f64 = 2.7;
+
+/// So many steps as end neither where one of `count` does nor half of it.
+fn odd_to(count: usize) -> usize {
+    let least = (FINER * count as f64).round() as usize;
+    (least..).find(|&others| are_coprime(others, 2 * count)).unwrap_or(least)
+}
+
+fn are_coprime(a: usize, b: usize) -> bool {
+    if b == 0 { a == 1 } else { are_coprime(b, a % b) }
+}
+
+/// So many steps instead of those that end at these times after the first, as dense as they are.
+fn divided(times: &[f64], others: usize) -> impl Iterator<Item = f64> {
+    let count = times.len() - 1;
+    (1..=others).map(move |other| {
+        let (whole, part) = (other * count / others, other * count % others);
+        match part {
+            0 => times[whole],
+            _ => times[whole] + (times[whole + 1] - times[whole]) * part as f64 / others as f64,
+        }
+    })
+}
+
+/// The same for steps of which some ends are kept; `others` says how many there are between two of these instead of so many.
+fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize) -> Steps {
+    let mut divisions = Vec::new();
+    let mut still = Vec::with_capacity(kept.len());
+    let mut times = vec![0.0];
+    for (place, &end) in ends.iter().enumerate() {
+        times.push(end);
+        let is_kept = kept.binary_search(&place).is_ok();
+        if is_kept || place + 1 == ends.len() {
+            divisions.extend(divided(&times, others(times.len() - 1)));
+            if is_kept {
+                still.push(divisions.len() - 1);
+            }
+            times = vec![end];
+        }
+    }
+    Steps::Passing { ends: divisions, kept: still }
+}
+
+impl Schedule {
+    /// The same rows, each step divided into `parts` equal ones.
+    #[must_use]
+    pub fn refined(&self, parts: usize) -> Self {
+        let steps = match &self.steps {
+            Steps::Fixed { step, per_row, last } => Steps::Fixed {
+                step: step / parts as f64,
+                per_row: per_row * parts,
+                last: LastSteps {
+                    whole: last.whole * parts,
+                    rests: last.rests * parts,
+                    rest: last.rest / parts as f64,
+                },
+            },
+            Steps::Passing { ends, kept } => divided_between(ends, kept, |count| count * parts),
+            Steps::Listed(ends) => {
+                let refine = |row: usize| {
+                    self.steps_to(row)
+                        .flat_map(|(h, end)| {
+                            (1..=parts).map(move |part| end - h * (parts - part) as f64 / parts as f64)
+                        })
+                        .collect()
+                };
+                Steps::Listed((1..=ends.len()).map(refine).collect())
+            }
+        };
+        Self { steps, ..*self }
+    }
+
+    /// The same rows with between two and three steps for each, none of which ends where a step or half a step does but at the rows, and
+    /// where equations switch.
+    #[must_use]
+    pub fn at_odds(&self) -> Self {
+        let steps = match &self.steps {
+            Steps::Fixed { .. } => return self.with_steps_per_row(odd_to(self.steps_per_row().unwrap_or(1))),
+            Steps::Passing { ends, kept } => divided_between(ends, kept, odd_to),
+            Steps::Listed(ends) => {
+                let of_row = |row: usize| {
+                    let mut times = vec![self.time(row - 1)];
+                    times.extend(&ends[row - 1]);
+                    divided(&times, odd_to(times.len() - 1)).collect()
+                };
+                Steps::Listed((1..=ends.len()).map(of_row).collect())
+            }
+        };
+        Self { steps, ..*self }
+    }
+
+    /// Length of other steps over that of these, on average.
+    pub fn ratio_to(&self, other: &Self) -> f64 {
+        let [these, others] =
+            [self, other].map(|schedule| schedule.steps_before(schedule.rows.saturating_sub(1)) as f64);
+        if others > 0.0 { these / others } else { 1.0 / FINER }
+    }
+}

@@ -1,0 +1,101 @@
+//! Samples that decide on the steps, all of them in step.
+
+use super::movement::Movement;
+use super::run::{Tile, tiles};
+use super::runge_kutta::StepError;
+use crate::numerics::Sample;
+use crate::simulate::control::SwitchWatch;
+use crate::simulate::error::SimulationError;
+use crate::simulate::features::{FeatureWork, Features, Passage};
+use crate::simulate::simulator::Simulator;
+
+/// What functions of the positions may change by in a step, as a share of their range: rows of a long step see some of it.
+const MOST_PASSED: f64 = 0.75;
+
+/// Controlling samples in step.
+#[derive(Debug)]
+pub(super) struct Tiles<'s> {
+    tiles: Vec<Tile<'s>>,
+    /// Where equations switch, of a sample that is the only one: steps that end where some do would hide what they do to others between.
+    watch: Option<SwitchWatch<'s>>,
+    features: Option<&'s Features>,
+    samples: Vec<Sample>,
+    movement: Movement,
+}
+
+impl<'s> Tiles<'s> {
+    pub fn start(simulator: &'s Simulator, samples: &[Sample], duration: f64) -> Result<Self, SimulationError> {
+        let (features, tiles) = (simulator.features(), tiles(simulator, samples, 1)?);
+        let movement = Movement::new(&simulator.system.coordinates, duration);
+        let switches = simulator.switches().filter(|_| samples.len() == 1);
+        let watch = switches.zip(tiles.first()).map(|(program, tile)| {
+            let mut watch = SwitchWatch::new(program, tile.motion.tile());
+            watch.begin(tile.motion.tile());
+            watch
+        });
+        Ok(Self { tiles, watch, features, samples: samples.to_vec(), movement })
+    }
+
+    /// Whether a sample passes over most of what a force does in space in the step that was tried.
+    pub fn pass_over(&self, end: f64) -> bool {
+        let Some(features) = self.features else { return false };
+        let mut work = FeatureWork::default();
+        self.tiles.iter().any(|tile| {
+            (0..tile.count).any(|lane| {
+                let passage = Passage {
+                    end,
+                    h: end - tile.run.time,
+                    parameters: &self.samples[tile.first + lane],
+                    states: [&tile.run.state, &tile.run.next],
+                    width: tile.alive.len(),
+                    lane,
+                };
+                features.change(passage, MOST_PASSED, &mut work)
+            })
+        })
+    }
+
+    /// The first switch in a step of length h that was tried, as a share of it.
+    pub fn crossing(&self, h: f64) -> Option<f64> {
+        self.watch.as_ref()?.crossing(0, h).map(|crossing| crossing.share)
+    }
+
+    /// Tries a step of all; the worst lane's error.
+    pub fn attempt(&mut self, end: f64, tolerance: f64) -> StepError {
+        let mut worst = StepError::default();
+        for tile in &mut self.tiles {
+            tile.run.attempt(&mut tile.motion, end);
+            tile.run.finish(&mut tile.motion, end);
+        }
+        if let (Some(watch), Some(tile)) = (&mut self.watch, self.tiles.first()) {
+            watch.end(tile.motion.tile());
+        }
+        let tried = self.tiles.iter().fold(self.movement.clone(), |movement, tile| {
+            movement.reaching(&tile.start, &tile.run.next, tile.alive.len())
+        });
+        let sizes = tried.sizes();
+        for tile in &self.tiles {
+            for error in tile.run.errors(end, &sizes, tolerance, tile.alive.len()) {
+                worst.ratio = worst.ratio.max(error.ratio);
+                worst.stiffness = worst.stiffness.max(error.stiffness);
+            }
+        }
+        worst
+    }
+
+    /// What a rejected step leaves in the memory may not be finite.
+    pub fn reject(&mut self) {
+        self.tiles.iter_mut().for_each(|tile| tile.motion.forget());
+    }
+
+    /// Goes on from the step's end.
+    pub fn accept(&mut self, end: f64) {
+        for tile in &mut self.tiles {
+            tile.run.accept(&mut tile.motion, end);
+            self.movement = self.movement.clone().reaching(&tile.start, &tile.run.state, tile.alive.len());
+        }
+        if let (Some(watch), Some(tile)) = (&mut self.watch, self.tiles.first()) {
+            watch.begin(tile.motion.tile());
+        }
+    }
+}
