@@ -61,6 +61,7 @@ impl System {
         }
         let nothing = vec![graph.constant(0.0); self.q.len()];
         (self.mass, self.inertia) = (mass, inertia);
+        self.massive.fill(true);
         (self.force, self.conditional, self.active_condition) = (nothing.clone(), nothing, None);
     }
 }

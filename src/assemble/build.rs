@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use rustc_hash::FxHashSet;
 use symdiff::taylor_model::encloses;
-use symdiff::{Builder, Graph, Scalar};
+use symdiff::{Builder, Expr, Graph, Scalar};
 
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
@@ -17,6 +18,9 @@ use super::tree::Tree;
 use crate::grammar::Sensor;
 use crate::model::{Analysis, Description, Formulation};
 use crate::multibody::BuildError;
+
+/// Links of trees from which M is left out: it has an entry for every pair of them.
+const LONG: usize = 48;
 
 /// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description, in the formulation that it asks for; `auto` is in absolute
 /// coordinates here.
@@ -110,7 +114,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let outputs = m.outputs(description)?;
     let mut start = m.start(description)?;
     if description.analysis != Analysis::Kinematics {
-        constraints.add_balances(&m, &balance.mass, &balance.force, &start)?;
+        constraints.add_balances(&m, &balance.massive, &balance.force, &start)?;
     }
     // The equations' graph stays what it is without the distances; coordinates of joints are in it.
     let of_equations = (!m.has_distances()).then(|| m.g.graph().clone());
@@ -137,7 +141,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let [inertia, force, conditional] =
         [&balance.inertia, &balance.force, &balance.conditional].map(|list| Scalar::exprs(list));
     let mass = balance.mass.into_iter().map(|(row, column, value)| (row, column, value.expr())).collect();
-    let links = balance.links;
+    let (links, massive) = (balance.links, balance.massive);
     let active_condition = balance.active_condition.map(Scalar::expr);
     Ok(move |graph| {
         let (graph, with_distances) = match of_equations {
@@ -156,6 +160,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             coordinates,
             constraints,
             mass,
+            massive,
             inertia,
             force,
             active_condition,
@@ -217,8 +222,10 @@ fn apply_effects<'g>(
 
 /// Both sides of M w = Q but for reactions.
 struct Balance<'g> {
-    /// M's nonzero entries: row, column, value.
+    /// M's nonzero entries: row, column, value; none of long trees.
     mass: Vec<(usize, usize, Scalar<'g>)>,
+    /// Which coordinates have inertia.
+    massive: Vec<bool>,
     /// M w, with what [`System::inertia`] says.
     inertia: Vec<Scalar<'g>>,
     /// Q
@@ -264,17 +271,24 @@ impl<'g> Balance<'g> {
             m.add_reactions_of_trees(on_bodies.clone(), &inertial, closures);
             links = links_of(m, &inertial, &[&applied, &applied.guarded(), &on_bodies]);
             add_all(&mut inertia, inertial.generalised);
-            mass = mass_matrix(&inertia, &m.w);
+            mass.clear();
         }
         if m.flexible().is_some() {
             add_all(&mut inertia, m.inertia_of_beams()?);
             add_all(&mut inertia, m.inertia_of_superelements()?);
-            mass = mass_matrix(&inertia, &m.w);
+            mass.clear();
             m.kinetic_energy_of_flexible = m.energy_of_beams()? + m.energy_of_superelements()?;
+        }
+        let mut massive = depend_on(&inertia, &m.w);
+        let is_long = links.len() >= LONG && massive.iter().all(|&massive| massive);
+        if mass.is_empty() && !is_long {
+            mass = mass_matrix(&inertia, &m.w);
+            massive.fill(false);
+            mass.iter().filter(|(.., value)| !value.is_zero()).for_each(|&(row, ..)| massive[row] = true);
         }
         m.potentials = applied.potentials;
         mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
-        Ok(Self { mass, inertia, force, active_condition, conditional, links })
+        Ok(Self { mass, massive, inertia, force, active_condition, conditional, links })
     }
 }
 
@@ -282,6 +296,19 @@ fn add_all<'g>(totals: &mut [Scalar<'g>], parts: Vec<Scalar<'g>>) {
     for (total, part) in totals.iter_mut().zip(parts) {
         *total += part;
     }
+}
+
+/// Which of some values depend on any of some symbols.
+fn depend_on<'g>(values: &[Scalar<'g>], symbols: &[Scalar<'g>]) -> Vec<bool> {
+    let Some(g) = symbols.first().map(|symbol| symbol.builder()) else { return vec![false; values.len()] };
+    let (values, graph) = (Scalar::exprs(values), g.graph());
+    let mut depends: FxHashSet<Expr> = Scalar::exprs(symbols).into_iter().collect();
+    for expr in graph.reachable(&values) {
+        if graph.node(expr).children().any(|child| depends.contains(&child)) {
+            depends.insert(expr);
+        }
+    }
+    values.iter().map(|value| depends.contains(value)).collect()
 }
 
 /// ∂ inertia / ∂w, both triangles: it is symmetric, so one is enough to be computed.

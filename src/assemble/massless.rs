@@ -20,20 +20,18 @@ use super::system::{ConstraintInfo, ResidualUnit, Start};
 use crate::multibody::BuildError;
 
 impl<'g> Constraints<'g> {
-    /// Adds a constraint for each coordinate without inertia that stands in no other: that its force is zero. `mass` is M's entries,
-    /// `force` is Q.
+    /// Adds a constraint for each coordinate without inertia that stands in no other: that its force is zero. `is_massive` says which have
+    /// inertia, `force` is Q.
     ///
     /// # Errors
     /// A force that depends on velocities, accelerations or reactions, or on no such coordinate.
     pub fn add_balances(
         &mut self,
         m: &Mechanism<'g, '_>,
-        mass: &[(usize, usize, Scalar<'g>)],
+        is_massive: &[bool],
         force: &[Scalar<'g>],
         start: &Start,
     ) -> Result<(), BuildError> {
-        let mut is_massive = vec![false; m.q.len()];
-        mass.iter().filter(|(.., value)| !value.is_zero()).for_each(|&(row, ..)| is_massive[row] = true);
         if is_massive.iter().all(|&massive| massive) {
             return Ok(());
         }

@@ -31,8 +31,11 @@ pub struct System {
     pub coordinates: Vec<CoordinateInfo>,
     /// Names of the constraints, m.
     pub constraints: Vec<ConstraintInfo>,
-    /// M(q)'s nonzero entries (row, column, value), both triangles.
+    /// M(q)'s nonzero entries (row, column, value), both triangles; none of long trees, where they follow from `inertia`
+    /// ([`System::mass_entries`]).
     pub mass: Vec<(usize, usize, Expr)>,
+    /// Which coordinates have inertia, n.
+    pub massive: Vec<bool>,
     /// M w, n; in joint coordinates with the velocity-dependent inertial forces and the weights, and with those forces of beams.
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
@@ -286,6 +289,19 @@ impl System {
         let used = self.graph.symbols_of(&roots);
         let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
         (0..self.parameters.len()).filter(unused).collect()
+    }
+
+    /// Whether M is not written down, because it has an entry for every pair of bodies of a long tree.
+    pub fn is_mass_left_out(&self) -> bool {
+        self.mass.is_empty() && self.massive.contains(&true)
+    }
+
+    /// M's nonzero entries (row, column, value), both triangles.
+    pub fn mass_entries(&self, graph: &mut Graph) -> Vec<(usize, usize, Expr)> {
+        if !self.is_mass_left_out() {
+            return self.mass.clone();
+        }
+        graph.jacobian(&self.inertia, &self.w).entries().collect()
     }
 
     /// Φ and Ψ, m, by name.

@@ -11,6 +11,9 @@ use crate::elements::joints::Mobilizer;
 use crate::grammar::PointRef;
 use crate::model::{Description, StartValue};
 
+/// Multiplications that a link takes where links are eliminated one by one, about.
+const OF_LINK: usize = 1000;
+
 /// The joint between a child and its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InboardJoint {
@@ -174,12 +177,14 @@ impl Tree {
         depths
     }
 
-    /// Least number of multiplications that an elimination of M takes in joint coordinates: a coordinate's row has an entry for
-    /// each joint on its way to the root, and changes as many rows (Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 6.5).
+    /// Least number of multiplications that an elimination takes in joint coordinates. A coordinate's row of M has an entry for each joint on
+    /// its way to the root, and changes as many rows (Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 6.5); or links are
+    /// eliminated one by one.
     pub fn elimination(&self) -> usize {
-        let of_joints = self.order.iter().filter(|&&body| !self.merged[body]);
+        let of_joints: Vec<usize> = self.order.iter().copied().filter(|&body| !self.merged[body]).collect();
         let depths = self.depths();
-        of_joints.map(|&body| depths[body] * (depths[body] + 1) / 2).fold(0, usize::saturating_add)
+        let whole = of_joints.iter().map(|&body| depths[body] * (depths[body] + 1) / 2).fold(0, usize::saturating_add);
+        whole.min(OF_LINK * of_joints.len())
     }
 
     /// Whether a joint is an inboard joint.

@@ -12,10 +12,11 @@ pub(super) fn by_mass(
     [new, old]: [&[Expr]; 2],
     at_end: &FxHashMap<Expr, Expr>,
 ) -> Vec<Expr> {
-    let masses: Vec<Expr> = system.mass.iter().map(|&(_, _, mass)| mass).collect();
+    let entries = system.mass_entries(graph);
+    let masses: Vec<Expr> = entries.iter().map(|&(_, _, mass)| mass).collect();
     let masses = graph.substitute(&masses, at_end);
     let mut changes = vec![graph.constant(0.0); system.q.len()];
-    for (&(row, column, _), mass) in system.mass.iter().zip(masses) {
+    for (&(row, column, _), mass) in entries.iter().zip(masses) {
         let change = graph.sub(new[column], old[column]);
         let change = graph.mul(mass, change);
         changes[row] = graph.add(changes[row], change);

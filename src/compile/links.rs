@@ -22,8 +22,8 @@ use crate::assemble::System;
 /// Coordinates that M couples with each, on average, from which it is looked at whether links are shorter.
 const COUPLED: usize = 6;
 
-/// Coordinates from which nothing else is looked at.
-const LONG: usize = 48;
+/// The same from which nothing else is looked at: the whole matrix takes the third power.
+const CLOSELY_COUPLED: usize = 20;
 
 /// Whether the equations are eliminated link by link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,14 +39,13 @@ pub(super) enum Elimination {
 /// Which eliminations are worth a look.
 pub(super) fn elimination(system: &System, has_redundant: bool) -> Elimination {
     let n = system.q.len();
-    let massive: FxHashSet<usize> =
-        system.mass.iter().filter(|(row, column, _)| row == column).map(|&(row, ..)| row).collect();
-    if system.links.is_empty() || has_redundant || massive.len() < n || system.mass.len() < COUPLED * n {
+    let is_sparse = !system.is_mass_left_out() && system.mass.len() < COUPLED * n;
+    if system.links.is_empty() || has_redundant || system.massive.contains(&false) || is_sparse {
         Elimination::Whole
-    } else if n < LONG {
-        Elimination::Shorter
-    } else {
+    } else if system.is_mass_left_out() || system.mass.len() >= CLOSELY_COUPLED * n {
         Elimination::Links
+    } else {
+        Elimination::Shorter
     }
 }
 

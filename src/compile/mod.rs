@@ -5,10 +5,11 @@
 //! - `newton_matrix`: residual, Newton matrix and new state of a step; `links`: derivatives of deep trees, link by link;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
 //! - `step` → `program`: the tapes of a step, `first_correction` what a factorisation spares the correction after it; `start`: the tapes of a consistent start (`start_equations`, `start_program`,
-//!   `start_factors`), `nearest` what decides where it is open; `rounding`: how exactly constraints can be computed; `equation_tapes`: the equations alone;
+//!   `start_factors`), `at_sample` the numbers that it is planned by, `nearest` what decides where it is open; `rounding`: how exactly constraints can be computed; `equation_tapes`: the equations alone;
 //! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
 
+mod at_sample;
 mod elimination;
 mod equation_tapes;
 mod equations;
@@ -31,7 +32,7 @@ mod switches;
 mod tapes;
 
 pub use equation_tapes::{EquationsProgram, compile_equations};
-pub use equations::{ClosureRow, Equation, time_derivative};
+pub use equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 pub use layout::Layout;
 pub use nearest::OpenStart;
 pub use program::{PivotSample, Program, Watched};

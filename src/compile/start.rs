@@ -29,6 +29,7 @@
 
 use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower, with_reciprocals};
 
+use super::at_sample::AtSample;
 use super::equations::Equation;
 use super::layout::Layout;
 use super::links::{self, MassOfLinks};
@@ -81,8 +82,10 @@ pub fn compile_nearest_start(
         _ => system.graph.clone(),
     };
     let equations = Equations::new(system, &mut graph);
+    let at_sample = AtSample::new(&inputs, sample);
+    let masses = at_sample.masses(system);
     let mut builder =
-        Builder { system, graph, inputs: &inputs, redundant, sample, factorised: Vec::new(), linked: None };
+        Builder { system, graph, inputs: &inputs, redundant, at_sample, masses, factorised: Vec::new(), linked: None };
     let [position, velocity, acceleration, projection] = builder.corrections(&equations, open)?;
     let mut graph = builder.graph;
 
@@ -148,7 +151,9 @@ struct Builder<'s> {
     graph: Graph,
     inputs: &'s [Input],
     redundant: &'s [ConstraintId],
-    sample: &'s [f64],
+    at_sample: AtSample<'s>,
+    /// The diagonal of M at the sample.
+    masses: Vec<f64>,
     factorised: Vec<Factorised>,
     /// M by the values of links, once it is known to be shorter.
     linked: Option<MassOfLinks>,
@@ -201,7 +206,13 @@ impl Builder<'_> {
         let by_multiplier = self.graph.jacobian(&system.force, &system.lambda);
         let Equations { jacobian, rate_of_rate, .. } = equations;
         let pairs = self.pairs(jacobian);
-        let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate, &pairs);
+        let elimination = links::elimination(system, !self.redundant.is_empty() || !pairs.is_empty());
+        let entries = match elimination {
+            links::Elimination::Links => Vec::new(),
+            links::Elimination::Whole | links::Elimination::Shorter => system.mass_entries(&mut self.graph),
+        };
+        let motion = equations.motion.clone();
+        let (mass, motion) = self.with_defined_coordinates(jacobian, (entries.clone(), motion), rate_of_rate, &pairs);
         let free = vec![false; n];
         let constraints = system.lambda.len();
         let of_masses = Known { given: &free, constraints, pairs: &pairs, is_coupled: false, is_mass: true };
@@ -209,7 +220,7 @@ impl Builder<'_> {
         let solve = |builder: &mut Self| {
             builder.correction(&mass, &by_multiplier, jacobian, of_masses, &motion, rate_of_rate).map_err(of_motion)
         };
-        let acceleration = match links::elimination(system, !self.redundant.is_empty() || !pairs.is_empty()) {
+        let acceleration = match elimination {
             links::Elimination::Whole => solve(self)?,
             links::Elimination::Links => {
                 self.linked = Some(MassOfLinks::new(system, &mut self.graph));
@@ -232,7 +243,7 @@ impl Builder<'_> {
             }
         };
         let zero = vec![self.graph.constant(0.0); n];
-        let (mass, motion) = self.with_defined_coordinates(jacobian, zero, &equations.rate, &pairs);
+        let (mass, motion) = self.with_defined_coordinates(jacobian, (entries, zero), &equations.rate, &pairs);
         let projection =
             self.correction(&mass, &none, jacobian, of_masses, &motion, &equations.rate).map_err(of_motion)?;
         Ok([position, velocity, acceleration, projection])
@@ -270,7 +281,7 @@ impl Builder<'_> {
             matrix.add(&mut self.graph, coordinate, coordinate, one);
         }
         let numbers = self.numbers(&matrix);
-        let mut diagonal = if pivots.is_empty() { vec![1.0; n] } else { self.masses() };
+        let mut diagonal = if pivots.is_empty() { vec![1.0; n] } else { self.masses.clone() };
         for ((row, column, _), numbers) in matrix.entries().zip(&numbers).filter(|_| pivots.is_empty()) {
             if row == column && row < n {
                 diagonal[row] = numbers[0];
@@ -316,21 +327,9 @@ impl Builder<'_> {
         Ok(solution)
     }
 
-    /// The diagonal of M at the sample.
-    fn masses(&self) -> Vec<f64> {
-        let mut diagonal = vec![0.0; self.system.q.len()];
-        let entries: Vec<Expr> = self.system.mass.iter().map(|&(_, _, value)| value).collect();
-        for (&(row, column, _), value) in self.system.mass.iter().zip(self.at_sample(&entries)) {
-            if row == column {
-                diagonal[row] = value;
-            }
-        }
-        diagonal
-    }
-
     /// Massless coordinates with the constraints that define them by massive ones, where the derivative by them cannot vanish.
     fn pairs(&self, jacobian: &SparseMatrix) -> Vec<(usize, usize)> {
-        let diagonal = self.masses();
+        let diagonal = &self.masses;
         let mut taken = vec![false; diagonal.len()];
         let mut pairs = Vec::new();
         for (constraint, derivatives) in jacobian.rows.iter().enumerate() {
@@ -355,12 +354,11 @@ impl Builder<'_> {
     fn with_defined_coordinates(
         &mut self,
         jacobian: &SparseMatrix,
-        mut motion: Vec<Expr>,
+        (mut mass, mut motion): (Vec<(usize, usize, Expr)>, Vec<Expr>),
         rate_of_rate: &[Expr],
         pairs: &[(usize, usize)],
     ) -> (Vec<(usize, usize, Expr)>, Vec<Expr>) {
-        let mut mass = self.system.mass.clone();
-        let diagonal = self.masses();
+        let diagonal = &self.masses;
         let mut paired = vec![false; jacobian.rows.len()];
         pairs.iter().for_each(|&(_, constraint)| paired[constraint] = true);
         for (constraint, derivatives) in jacobian.rows.iter().enumerate().filter(|(constraint, _)| !paired[*constraint])
@@ -382,15 +380,8 @@ impl Builder<'_> {
         (mass, motion)
     }
 
-    /// Values at the sample.
-    fn at_sample(&self, exprs: &[Expr]) -> Vec<f64> {
-        let register_of: rustc_hash::FxHashMap<Expr, usize> =
-            self.inputs.iter().map(|input| (input.symbol, input.register as usize)).collect();
-        self.graph.evaluate(exprs, |symbol| self.sample[register_of[&symbol]])
-    }
-
     fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
         let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
-        self.at_sample(&entries).into_iter().map(|value| [value; PIVOT_SAMPLES]).collect()
+        self.at_sample.values(&self.graph, &entries).into_iter().map(|value| [value; PIVOT_SAMPLES]).collect()
     }
 }

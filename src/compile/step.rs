@@ -117,13 +117,12 @@ fn factors(
 ) -> Result<(Version, Option<(Expr, Version)>), NoFactors> {
     let n = system.q.len();
     let numbers = sample_numbers(graph, &newton.matrix, inputs, samples);
-    let mut massive = vec![false; n];
-    system.mass.iter().filter(|(row, column, _)| row == column).for_each(|&(row, _, _)| massive[row] = true);
+    let massive = &system.massive[..];
     let blocks = mass_blocks(system);
-    let symmetric = Pivoting::Symmetric { massive: &massive, blocks: &blocks };
+    let symmetric = Pivoting::Symmetric { massive, blocks: &blocks };
     let choice = PivotChoice { redundant, symmetric, spatial: system.space.spatial, n, first: &newton.first };
     let factorised = |graph: &mut Graph, matrix: &SparseMatrix, numbers: &[Numbers]| {
-        choice.factorise(graph, matrix, numbers, equilibrate(matrix, numbers, &massive), inputs)
+        choice.factorise(graph, matrix, numbers, equilibrate(matrix, numbers, massive), inputs)
     };
     let versions = versions(graph, newton, &numbers, inputs).and_then(|[active, inactive]| {
         let inactive_numbers = sample_numbers(graph, &inactive.0, inputs, samples);
@@ -193,8 +192,12 @@ fn versions(
     (versions[0].0 != versions[1].0).then_some(versions)
 }
 
-/// By coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies.
+/// By coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies. Where M is left out, all are
+/// one block.
 fn mass_blocks(system: &System) -> Vec<usize> {
+    if system.is_mass_left_out() {
+        return vec![0; system.q.len()];
+    }
     let mut coupled: Vec<Vec<usize>> = vec![Vec::new(); system.q.len()];
     system.mass.iter().for_each(|&(row, column, _)| coupled[row].push(column));
     let mut blocks = vec![usize::MAX; system.q.len()];

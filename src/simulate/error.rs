@@ -268,8 +268,7 @@ fn not_placed(massless: Option<&str>) -> String {
 pub(super) fn no_factors(system: &System, none: &NoFactors<Equation>) -> SimulationError {
     match none {
         NoFactors::Singular { rows } => {
-            let has_inertia =
-                |coordinate: CoordinateId| system.mass.iter().any(|&(row, ..)| row == coordinate.number());
+            let has_inertia = |coordinate: CoordinateId| system.massive[coordinate.number()];
             let massless = rows.iter().find_map(|row| match row {
                 Equation::Motion(coordinate) if !has_inertia(*coordinate) => Some(*coordinate),
                 _ => None,

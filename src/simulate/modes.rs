@@ -5,12 +5,12 @@
 //! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): what is slow has hardly any part in φᵀMw/ω².
 
 use nalgebra::{DMatrix, DVector, Dyn, Matrix3, SVD, SymmetricEigen, Vector3};
-use symdiff::{Expr, Graph, math};
+use symdiff::{Expr, math, slopes};
 
 use super::control::Schedule;
 use super::excitations::{Excitation, Watched, excitations};
 use super::simulator::Simulator;
-use crate::compile::Coefficients;
+use crate::compile::{Coefficients, equations_of_motion};
 
 /// Largest mechanism whose modes are looked at, in coordinates.
 const MOST_COORDINATES: usize = 400;
@@ -76,7 +76,7 @@ struct Linearised {
     mass: DMatrix<f64>,
     damping: DMatrix<f64>,
     stiffness: DMatrix<f64>,
-    /// Φ_q.
+    /// Φ_q, and Ψ_v below it.
     constraint: DMatrix<f64>,
     velocity: DVector<f64>,
     acceleration: DVector<f64>,
@@ -88,19 +88,8 @@ impl Linearised {
     fn at_start(simulator: &Simulator) -> Self {
         let (system, layout) = (&simulator.system, &simulator.program.layout);
         let mut graph = system.graph.clone();
-        let constraint = jacobian(&mut graph, &system.constraint, &system.q);
-        let mut motion: Vec<Expr> = Vec::with_capacity(system.q.len());
-        for (&inertia, &force) in system.inertia.iter().zip(&system.force) {
-            motion.push(graph.sub(inertia, force));
-        }
-        for &(row, column, value) in &constraint {
-            let force = graph.mul(value, system.lambda[row]);
-            motion[column] = graph.add(motion[column], force);
-        }
+        let (motion, constraint) = equations_of_motion(system, &mut graph);
         let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
-        let by = [&system.q, &system.v, &system.w, &system.lambda];
-        let [stiffness, damping, mass] = [0, 1, 2].map(|place| jacobian(&mut graph, &motion, by[place]));
-        let of_outputs = by.map(|by| jacobian(&mut graph, &outputs, by));
         let registers =
             [(&system.q, &layout.q), (&system.v, &layout.v), (&system.w, &layout.w), (&system.lambda, &layout.lambda)];
         let mut values = rustc_hash::FxHashMap::default();
@@ -112,26 +101,33 @@ impl Linearised {
         }
         // The time is zero.
         let number = |expr: Expr| values.get(&expr).copied().unwrap_or(0.0);
-        let dense = |entries: &[(usize, usize, Expr)], rows: usize, columns: usize| {
-            let roots: Vec<Expr> = entries.iter().map(|&(_, _, value)| value).collect();
-            let mut matrix = DMatrix::zeros(rows, columns);
-            for (&(row, column, _), value) in entries.iter().zip(graph.evaluate(&roots, number)) {
-                matrix[(row, column)] += value;
-            }
-            matrix
+        let by = [&system.q, &system.v, &system.w, &system.lambda].map(Vec::as_slice);
+        let all = by.concat();
+        let derivatives = |of: &[Expr]| {
+            let rows = slopes(&graph, of, &all, number);
+            let mut first = 0;
+            by.map(|by| {
+                first += by.len();
+                DMatrix::from_fn(of.len(), by.len(), |row, column| rows[row][first - by.len() + column])
+            })
         };
-        let (n, m) = (system.q.len(), system.lambda.len());
+        let mut jacobian = DMatrix::zeros(system.lambda.len(), system.q.len());
+        let entries: Vec<(usize, usize, Expr)> = constraint.entries().collect();
+        let values: Vec<Expr> = entries.iter().map(|&(_, _, value)| value).collect();
+        for (&(row, column, _), value) in entries.iter().zip(graph.evaluate(&values, number)) {
+            jacobian[(row, column)] = value;
+        }
         let vector =
             |registers: &std::ops::Range<usize>| DVector::from_column_slice(&simulator.nominal[registers.clone()]);
-        let columns = [n, n, n, m];
+        let [stiffness, damping, mass, _] = derivatives(&motion);
         Self {
-            mass: dense(&mass, n, n),
-            damping: dense(&damping, n, n),
-            stiffness: dense(&stiffness, n, n),
-            constraint: dense(&constraint, m, n),
+            mass,
+            damping,
+            stiffness,
+            constraint: jacobian,
             velocity: vector(&layout.v),
             acceleration: vector(&layout.w),
-            outputs: [0, 1, 2, 3].map(|place| dense(&of_outputs[place], outputs.len(), columns[place])),
+            outputs: derivatives(&outputs),
         }
     }
 
@@ -217,10 +213,6 @@ impl Linearised {
             .collect();
         (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
     }
-}
-
-fn jacobian(graph: &mut Graph, of: &[Expr], by: &[Expr]) -> Vec<(usize, usize, Expr)> {
-    graph.jacobian(of, by).entries().collect()
 }
 
 /// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`: from the spectral

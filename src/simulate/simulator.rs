@@ -81,7 +81,13 @@ impl Assembled {
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
             assembly.assemble_nominal().map_err(|worst| {
-                assembly_error(&system, &worst, &parameters).because(over_constrained(&system, start, &guess))
+                // What follows from a term that is none is none either.
+                let finite = |value: &f64| if value.is_finite() { *value } else { 0.0 };
+                let state: Vec<f64> = assembly.tile().values()[..layout.registers()].iter().map(finite).collect();
+                let not_a_number = worst.residual.is_nan().then(|| no_number(&state));
+                not_a_number.flatten().unwrap_or_else(|| {
+                    assembly_error(&system, &worst, &parameters).because(over_constrained(&system, start, &guess))
+                })
             })?;
             assembly.shift_accelerations(scheme.coefficients().shift() * h);
             Ok(assembly.tile().values()[..layout.registers()].to_vec())

@@ -13,9 +13,10 @@ use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularW
 use super::comparison::{instructions, starts_alike};
 use super::{RunError, first_step, loop_cuts, scheme};
 
-/// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the plane and in space. Planar
-/// chains break even at 3, spatial ones never; but M, with as many entries for each body, is written down to be looked at.
-const DEEPEST: [usize; 2] = [25, 50];
+/// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the plane and in space. Long planar
+/// chains are as short in absolute coordinates; in space they never are, but deep loops couple all that is between their ends.
+const DEEPEST: [usize; 2] = [25, usize::MAX];
+const DEEPEST_OF_LOOPS: [usize; 2] = [25, 50];
 
 /// Absolute coordinates are given up where the start's three eliminations, or the step's one, take so many times the
 /// operations that a step takes in joint coordinates, and more than no one has to wait for.
@@ -80,6 +81,11 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     };
     // What is singular in one formulation may be regular in the other.
     let Ok(mut joint) = compile(joint) else { return Ok(compile(absolute)?) };
+    if joint.system.space.spatial && joint.system.is_mass_left_out() {
+        joint.system.formulation.why =
+            "long trees in space take several times as many instructions in absolute ones".to_owned();
+        return Ok(joint);
+    }
     let absolute = match within(absolute, enough(&joint)) {
         Ok(absolute) => absolute,
         Err(why) => {
@@ -173,7 +179,8 @@ fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
 
 /// Joints from the root beyond which joint coordinates are not tried.
 fn deepest(description: &Description) -> usize {
-    DEEPEST[usize::from(description.space.spatial)]
+    let deepest = if assemble::closes_loops(description) { DEEPEST_OF_LOOPS } else { DEEPEST };
+    deepest[usize::from(description.space.spatial)]
 }
 
 /// Operations after which the other formulation is given up.
@@ -212,11 +219,14 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
     if assemble::closes_loops(description) {
         return of_system(assemble::in_absolute_coordinates(description)?);
     }
-    match assemble::in_joint_coordinates(description, Some(deepest(description)), None)? {
-        // Shallow trees are short in joint coordinates.
-        Ok(joint) => of_system(joint),
-        Err(why) => of_system(because(assemble::in_absolute_coordinates(description)?, why)),
-    }
+    let why = match assemble::in_joint_coordinates(description, Some(deepest(description)), None)? {
+        Ok(joint) => match of_system(joint) {
+            Err(RunError::Simulation(SimulationError::TooLong)) => "joint coordinates take too long".to_owned(),
+            assembled => return assembled,
+        },
+        Err(why) => why,
+    };
+    of_system(because(assemble::in_absolute_coordinates(description)?, why))
 }
 
 /// Whether [`assembled`] leaves it to [`compiled`] to find the shorter formulation.

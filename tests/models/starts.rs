@@ -365,3 +365,19 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
     // Here height and side share what the plane leaves open.
     assert_eq!(shared("ground.high", "[1, 1, 2]"), ["ball.y", "ball.z"]);
 }
+
+/// A term of the constraints that is no number is told by the constraint that it is in.
+#[test]
+fn a_disc_that_lies_flat_has_no_lowest_point() {
+    let description = read(
+        "
+bodies: { disc: { mass: 1, inertia: 0.01 } }
+joints: { roll: { rolling_on_plane: { between: [ground, disc], axle: z, radius: 0.1 } } }
+initial: { disc.x: 0, disc.y: 0, disc.orientation: { rpy: [0, 0, 0] }, disc.omega: [0, 0, 1] }
+outputs: { x: disc.x }
+simulation: { duration: 0.1, step: 1e-3 }
+",
+    );
+    let error = study::run(&description, Options::default()).unwrap_err().to_string();
+    assert!(error.contains("in `roll.along` is not a finite number"), "{error}");
+}

@@ -27,6 +27,7 @@ pub mod eval;
 mod expr;
 pub mod formula;
 mod lower;
+mod slopes;
 
 pub use eval::interval::Interval;
 pub use eval::jet::JetMemory;
@@ -36,3 +37,4 @@ pub use eval::{Ranges, Vectorise, instruction_set, interval, jet, math, sincos, 
 pub use expr::{Binary, Builder, Expr, Graph, Node, Scalar, SparseMatrix, Spline, SplineError, Unary};
 pub use formula::{Formula, SyntaxError};
 pub use lower::{Guard, Input, Lowered, Op, Operands, Outputs, Stages, Tape, lower, lower_where, with_reciprocals};
+pub use slopes::slopes;
