@@ -366,6 +366,25 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
     assert_eq!(shared("ground.high", "[1, 1, 2]"), ["ball.y", "ball.z"]);
 }
 
+/// Where a turntable moves, a ball on it may move along or spin.
+#[test]
+fn rotations_that_are_left_open_are_called_as_initial_calls_them() {
+    let description = read(
+        "
+bodies: { table: { mass: 1, inertia: 1 }, ball: { mass: 1, inertia: 0.01 } }
+joints:
+  bearing: { revolute: { between: [ground, table], axis: z } }
+  drive: { motor: { on: bearing, speed: 2 } }
+  roll: { rolling_on_plane: { between: [table, ball], radius: 0.1 } }
+initial: { ball.x: 0.4, ball.y: 0 }
+outputs: { x: ball.x }
+simulation: { duration: 0.1, step: 1e-3 }
+",
+    );
+    let shared = study::run(&description, Options::default()).unwrap().1.shared_start;
+    assert_eq!(shared, ["the rate of ball.y", "ball.omega"]);
+}
+
 /// A term of the constraints that is no number is told by the constraint that it is in.
 #[test]
 fn a_disc_that_lies_flat_has_no_lowest_point() {

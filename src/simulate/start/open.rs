@@ -62,12 +62,21 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
         let distances = if is_open { distances(system, &start.layout, nominal, kind) } else { Vec::new() };
         let is_far = |(distance, value): &(&Distance, f64)| (value / distance.scale).abs() > APART;
         let far: Vec<&Distance> = distances.iter().filter(|distance| is_far(distance)).map(|(far, _)| *far).collect();
-        shared.extend(open_of(system, start, nominal, (kind, far)).map(|distance| match kind {
-            Kind::Position => distance.name.clone(),
-            Kind::Velocity => format!("the rate of {}", distance.name),
-        }));
+        shared.extend(open_of(system, start, nominal, (kind, far)).map(|distance| known_as(&distance.name, kind)));
     }
+    shared.dedup();
     shared
+}
+
+/// What people call a coordinate, or its rate: Euler parameters are no names of `initial`.
+fn known_as(name: &str, kind: Kind) -> String {
+    let of_rotation = name.rsplit_once('.').filter(|(_, coordinate)| ["p0", "p1", "p2", "p3"].contains(coordinate));
+    match (kind, of_rotation) {
+        (Kind::Position, Some((body, _))) => format!("{body}.orientation"),
+        (Kind::Velocity, Some((body, _))) => format!("{body}.omega"),
+        (Kind::Position, None) => name.to_owned(),
+        (Kind::Velocity, None) => format!("the rate of {name}"),
+    }
 }
 
 /// Those of some distances that what is known at the start does not determine.
