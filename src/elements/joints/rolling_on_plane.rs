@@ -7,10 +7,10 @@
 //! w = n − (n · u) u,   s = −radius w/|w|                             ball: w = n
 //! ```
 //!
-//! B is the centre, u the axle and n the normal of the plane through A. t₁ = u × n/|w| is the way the disc rolls, t₂ = n × t₁; of a ball they are any two directions
-//! in the plane. s goes from the centre to the lowest point
-//! of the rim, which has no velocity against the plane. Ψ is no derivative of positions: a disc that is rolled about comes back elsewhere, so
-//! that it may be put anywhere on the plane, at any angle, and moves from there in three ways.
+//! B is the centre, u the axle and n the normal of the plane through A. t₁ = u × n/|w| is the way the disc rolls, t₂ = n × t₁; of a ball they are
+//! any two directions in the plane. s goes from the centre to the lowest point of the rim, which has no velocity against the plane. Ψ is no
+//! derivative of positions: a disc that is rolled about comes back elsewhere, so that it may be put anywhere on the plane, at any angle, and
+//! moves from there in three ways.
 //!
 //! The forces −λ n, −λ₁ t₁ and −λ₂ t₂ are on the disc where it touches: −Φ_qᵀ λ − Ψ_vᵀ (λ₁, λ₂). The plane's body has the opposites there. All hold
 //! whatever their size: `friction` of a `contact` says when a wheel slips or leaves the plane. A disc that lies flat has no lowest point.
@@ -31,8 +31,8 @@ use super::{Joint, JointElement, Kinematics, Orientation, Placement, Row, RowDoc
     keyword = "rolling_on_plane",
     what = "a disc that rolls on a plane",
     equation = "n · (r_B − r_A) − radius |n − (n · u) u| = 0",
-    equation = "t₁ · Δv = 0",
-    equation = "t₂ · Δv = 0",
+    equation = "t₁ · (v_B + ω_B × s − v_A − ω_A × (r_B + s − r_A)) = 0, s from the centre to where it touches",
+    equation = "t₂ · (v_B + ω_B × s − v_A − ω_A × (r_B + s − r_A)) = 0",
     source = "Neimark & Fufaev, Dynamics of Nonholonomic Systems (1972), ch. 1",
     example = "{ between: [ground, disc], axle: y, radius: 0.1 }"
 )]
