@@ -35,6 +35,24 @@ fn from_triangle(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     sides
 }
 
+fn triangles(points: &[Point]) -> impl Iterator<Item = [Point; 3]> + '_ {
+    let after = |place: usize| place + 1..points.len();
+    let pairs = (0..points.len()).flat_map(move |i| after(i).map(move |j| (i, j)));
+    pairs.flat_map(move |(i, j)| after(j).map(move |k| [points[i], points[j], points[k]]))
+}
+
+/// Whether no plane through three of the points has all others on one side and this one on the other.
+fn is_inside(p: Point, points: &[Point]) -> bool {
+    triangles(points).all(|[a, b, c]| {
+        let (u, v) = (minus(b, a), minus(c, a));
+        let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let side = |point: Point| dot(normal, minus(point, a));
+        let (low, high) = points.iter().fold((0.0_f64, 0.0_f64), |(low, high), &point| (low.min(side(point)), high.max(side(point))));
+        let is_face = high - low > 1e-9 && (low > -1e-12 || high < 1e-12);
+        !is_face || (low - 1e-12..=high + 1e-12).contains(&side(p))
+    })
+}
+
 fn written(points: &[Point]) -> String {
     let points: Vec<String> = points.iter().map(|[x, y, z]| format!("[{x}, {y}, {z}]")).collect();
     format!("[{}]", points.join(", "))
@@ -94,14 +112,8 @@ fn gaps_are_the_least_distances() {
             let [x, y, z, gap] = ["x", "y", "z", "gap"].map(|name| curve(&bounds, name));
             for row in 0..gap.len() {
                 let place = [x[row], y[row], z[row]];
-                let mut distance = f64::INFINITY;
-                for i in 0..points.len() {
-                    for j in i + 1..points.len() {
-                        for k in j + 1..points.len() {
-                            distance = distance.min(from_triangle(place, [points[i], points[j], points[k]]));
-                        }
-                    }
-                }
+                let distance =
+                    triangles(points).map(|triangle| from_triangle(place, triangle)).fold(f64::INFINITY, f64::min);
                 let found = gap[row] + 0.03;
                 if found > 0.0 {
                     outside += 1;
@@ -195,4 +207,101 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.1 }}
     assert!((last("force") - 2.0 * 9.81).abs() < 1e-3, "{}", last("force"));
     assert!((last("z") - (0.101 - 2.0 * 9.81 / 4e5)).abs() < 1e-7, "{}", last("z"));
     assert!((last("held").abs() - 7.0 * 9.81).abs() < 1e-2, "{}", last("held"));
+}
+
+/// A capsule that flies past, turning: its gap is the least distance of its line from all triangles.
+#[test]
+fn gaps_of_capsules_are_the_least_distances() {
+    // Features this near to one another are mixed.
+    const LENGTH: f64 = 0.461;
+    for points in [&TETRAHEDRON[..], &OCTAHEDRON, &WEDGE] {
+        let (mut outside, mut inside) = (0, 0);
+        for (from, speed, spin) in [
+            ([-0.7, -0.5, -0.4], [1.5, 1.3, 1.2], [3.0, 1.0, -2.0]),
+            ([0.3, 0.2, 1.0], [0.05, 0.1, -0.6], [0.0, 0.0, 4.0]),
+            ([0.2, -0.8, 0.3], [0.1, 1.7, -0.1], [2.0, -4.0, 1.0]),
+            ([0.9, 0.5, -0.6], [-1.4, -0.5, 1.2], [0.0, 5.0, 0.5]),
+        ] {
+            let bounds = nominal(&read(&format!(
+                "
+space: spatial
+bodies: {{ rod: {{ mass: 1, inertia: [1, 1, 1], points: {{ A: [-0.2, 0, 0], B: [0.25, 0.1, 0] }} }} }}
+effects:
+  it: {{ contact: {{ between: [ground, rod], hull: {}, rounding: 0.01, radius: 0.02, line: [[-0.2, 0, 0], [0.25, 0.1, 0]], impact: {{ stiffness: 1e-9, exponent: 1 }} }} }}
+initial: {{ rod.x: {}, rod.y: {}, rod.z: {}, rod.vx: {}, rod.vy: {}, rod.vz: {}, rod.omega: {spin:?} }}
+outputs: {{ ax: rod.A.x, ay: rod.A.y, az: rod.A.z, bx: rod.B.x, by: rod.B.y, bz: rod.B.z, gap: it.gap }}
+simulation: {{ duration: 1, step: 5e-3, output_step: 5e-3 }}
+",
+                written(points),
+                from[0],
+                from[1],
+                from[2],
+                speed[0],
+                speed[1],
+                speed[2]
+            )));
+            let [ax, ay, az, bx, by, bz, gap] =
+                ["ax", "ay", "az", "bx", "by", "bz", "gap"].map(|name| curve(&bounds, name));
+            for row in 0..gap.len() {
+                let (a, b) = ([ax[row], ay[row], az[row]], [bx[row], by[row], bz[row]]);
+                let along = |share: f64| [0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis]));
+                let distance = |share: f64| {
+                    let place = along(share);
+                    triangles(points).map(|triangle| from_triangle(place, triangle)).fold(f64::INFINITY, f64::min)
+                };
+                if (0..=200).any(|share| is_inside(along(f64::from(share) / 200.0), points)) {
+                    inside += 1;
+                    assert!(gap[row] + 0.03 < 1e-9, "{a:?} {b:?}: {} within", gap[row] + 0.03);
+                    continue;
+                }
+                // Outside, the distance is convex along the line.
+                let (mut low, mut high) = (0.0, 1.0);
+                for _ in 0..60 {
+                    let [first, second] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+                    if distance(first) < distance(second) { high = second } else { low = first }
+                }
+                let least = distance(0.5 * (low + high)).min(distance(0.0)).min(distance(1.0));
+                if least > 1e-3 {
+                    outside += 1;
+                    assert!((-1e-9..0.5e-4 * LENGTH).contains(&(gap[row] + 0.03 - least)), "{a:?} {b:?}: {} not {least}", gap[row] + 0.03);
+                }
+            }
+        }
+        assert!(outside > 400 && inside > 5, "{outside}, {inside}");
+    }
+}
+
+/// A capsule on a face stands still, and tips where its middle is beyond an edge.
+#[test]
+fn a_capsule_lies_on_a_face_or_tips_over_its_edge() {
+    let box_of = "[[-0.2, -0.1, -0.1], [0.2, -0.1, -0.1], [-0.2, 0.1, -0.1], [0.2, 0.1, -0.1], [-0.2, -0.1, 0], [0.2, -0.1, 0], [-0.2, 0.1, 0], [0.2, 0.1, 0]]";
+    for (middle, falls) in [(0.0, false), (0.1, false), (0.19, false), (0.21, true)] {
+        let bounds = nominal(&read(&format!(
+            "
+space: spatial
+bodies: {{ rod: {{ mass: 0.4, inertia: [1e-4, 3e-3, 3e-3], points: {{ A: [-0.15, 0, 0], B: [0.15, 0, 0] }} }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }}
+  it:
+    contact:
+      between: [ground, rod]
+      hull: {box_of}
+      rounding: 1 mm
+      radius: 0.02
+      line: [[-0.15, 0, 0], [0.15, 0, 0]]
+      impact: {{ stiffness: 1e5, exponent: 1, dissipation: 30 }}
+      friction: {{ coefficient: 0.5, transition_velocity: 1e-3 }}
+initial: {{ rod.x: {middle}, rod.y: 0, rod.z: 0.021, rod.vx: 0, rod.vy: 0, rod.vz: 0, rod.orientation: {{ rpy: [0, 0, 0] }}, rod.omega: [0, 0, 0] }}
+outputs: {{ tilt: rod.B.z - rod.A.z, force: it.force, z: rod.z }}
+simulation: {{ duration: 0.4, step: 2e-4, output_step: 0.02 }}
+"
+        )));
+        let tilt = largest(curve(&bounds, "tilt").iter().copied());
+        assert_eq!(tilt > 0.01, falls, "{middle}: {tilt}");
+        if !falls {
+            assert!(tilt < 1e-3, "{middle}: {tilt}");
+            let force = curve(&bounds, "force").last().unwrap();
+            assert!((force - 0.4 * 9.81).abs() < 0.05, "{middle}: {force}");
+        }
+    }
 }

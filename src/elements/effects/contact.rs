@@ -35,7 +35,7 @@ use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Vector};
 
-/// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block or edges on one body with a circle, sphere, cylinder or point on another.
+/// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block, a hull or edges on one body with a circle, sphere, capsule, cylinder or point on another.
 #[derive(Clone, Debug, Element)]
 #[element(
     keyword = "contact",

@@ -50,29 +50,38 @@ fn unit(a: Point) -> Point {
 
 /// A plane that all points are below.
 #[derive(Clone, Debug)]
-struct Face {
-    normal: Point,
-    height: f64,
+pub(super) struct Face {
+    pub normal: Point,
+    pub height: f64,
     /// Points in it.
     corners: Vec<usize>,
 }
 
 /// The line between two corners.
 #[derive(Clone, Debug)]
-struct Edge {
-    ends: [usize; 2],
+pub(super) struct Edge {
+    pub ends: [usize; 2],
     /// From the first end.
-    along: Point,
+    pub along: Point,
+    /// Numbers of both faces.
+    faces: [usize; 2],
     /// In each of both faces, across the edge to the inside.
-    inward: [Point; 2],
+    pub inward: [Point; 2],
+}
+
+impl Edge {
+    /// In a face, across the edge to the inside, where it is one of that face.
+    pub fn inward_of(&self, face: usize) -> Option<Point> {
+        self.faces.iter().zip(self.inward).find(|(number, _)| **number == face).map(|(_, inward)| inward)
+    }
 }
 
 /// A convex hull.
 #[derive(Clone, Debug)]
 pub(super) struct Hull {
-    points: Vec<Point>,
-    faces: Vec<Face>,
-    edges: Vec<Edge>,
+    pub points: Vec<Point>,
+    pub faces: Vec<Face>,
+    pub edges: Vec<Edge>,
 }
 
 impl Hull {
@@ -105,7 +114,7 @@ impl Hull {
         }
         let mut edges = Vec::new();
         for (place, first) in faces.iter().enumerate() {
-            for second in &faces[place + 1..] {
+            for (other, second) in faces.iter().enumerate().skip(place + 1) {
                 let both: Vec<usize> =
                     first.corners.iter().copied().filter(|corner| second.corners.contains(corner)).collect();
                 let Some(ends) = farthest(&points, &both) else { continue };
@@ -116,14 +125,14 @@ impl Hull {
                         face.corners.iter().map(|&corner| dot(across, minus(points[corner], points[ends[0]]))).sum();
                     scaled(across, side.signum())
                 });
-                edges.push(Edge { ends, along, inward });
+                edges.push(Edge { ends, along, faces: [place, other], inward });
             }
         }
         (faces.len() >= 4).then_some(Self { points, faces, edges })
     }
 
     /// The radius of a ball about the origin that holds it.
-    fn radius(&self) -> f64 {
+    pub fn radius(&self) -> f64 {
         self.points.iter().map(|&point| dot(point, point)).fold(0.0, f64::max).sqrt()
     }
 
@@ -145,6 +154,15 @@ impl Hull {
         let around = g.number(self.radius()) + reach;
         let near = around * around - place.dot(place);
         Gap { gap, normal, overlap: near.select(-gap, near) }
+    }
+
+    /// Unit vectors along the edges that end at a corner, away from it.
+    pub fn edges_from(&self, corner: usize) -> impl Iterator<Item = Point> {
+        self.edges.iter().filter_map(move |edge| match edge.ends {
+            [first, _] if first == corner => Some(edge.along),
+            [_, second] if second == corner => Some(scaled(edge.along, -1.0)),
+            _ => None,
+        })
     }
 
     /// The greatest height over a face, and that face's normal.
@@ -184,12 +202,7 @@ impl Hull {
         }
         for (corner, &point) in self.points.iter().enumerate() {
             let from = place - constant(g, point);
-            let outward = self.edges.iter().filter_map(|edge| match edge.ends {
-                [first, _] if first == corner => Some(edge.along),
-                [_, second] if second == corner => Some(scaled(edge.along, -1.0)),
-                _ => None,
-            });
-            let beside = outward.map(|along| -constant(g, along).dot(from)).reduce(Scalar::min);
+            let beside = self.edges_from(corner).map(|along| -constant(g, along).dot(from)).reduce(Scalar::min);
             if let Some(beside) = beside {
                 take(from, beside);
             }
@@ -198,7 +211,7 @@ impl Hull {
     }
 }
 
-fn constant(g: &Builder, point: Point) -> Vector<'_> {
+pub(super) fn constant(g: &Builder, point: Point) -> Vector<'_> {
     point.map(|part| g.number(part)).into()
 }
 

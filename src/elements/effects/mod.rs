@@ -3,6 +3,7 @@
 //! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema, documentation,
 //! what it refers to, its forces, what it costs.
 
+mod along_hull;
 mod arc;
 mod beside;
 mod course;

@@ -9,15 +9,17 @@
 //!
 //! Of a cylinder with p = b + t v + l, l across v, the nearest point to a ball's centre p has t within 0 … M and |l| within r.
 //!
-//! Against a block see `beside`. Lines that cross have one nearest pair of points. Parallel ones have many: m is the middle of what they have beside one another,
+//! Against a block see `beside`, against a hull `along_hull`. Lines that cross have one nearest pair of points. Parallel ones have many: m is the middle of what they have beside one another,
 //! and ε = 10⁻⁴ the angle at which it takes over. At φ = 0 each face's deepest point touches, so that a cylinder rolls on the line
 //! between two of them and tips about its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the
 //! body turns into that of the deepest point. The pushes at ±120° are alike, and their torques about the axis cancel.
 
 use symdiff::Scalar;
 
+use super::along_hull::nearest_to_hull;
 use super::beside::nearest_to_block;
 use super::course::Points;
+use super::hull::Hull;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::multibody::{Pair, Vector};
 
@@ -70,10 +72,13 @@ impl<'g> Rod<'g> {
     /// The point that is nearest to a block about the first point; `reach` is ρ + r.
     pub fn nearest_to_block(&self, pair: &Pair<'g>, half: [Option<Scalar<'g>>; 3], reach: Scalar<'g>) -> Vector<'g> {
         let (start, along) = self.outward(pair);
-        let offset = start - pair.first.point.position;
-        let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(reach.builder(), axis)));
-        let local = |vector: Vector<'g>| Vector::from(axes.map(|axis| axis.dot(vector)));
-        start + nearest_to_block((local(offset), local(along), self.length), half, reach) * along
+        start + nearest_to_block(self.in_first(pair), half, reach) * along
+    }
+
+    /// The point that is nearest to a hull in the first frame.
+    pub fn nearest_to_hull(&self, pair: &Pair<'g>, hull: &Hull) -> Vector<'g> {
+        let (start, along) = self.outward(pair);
+        start + nearest_to_hull(hull, self.in_first(pair)) * along
     }
 
     /// Positive where the line may be within `reach` of a body that a ball of some radius about the first point holds.
@@ -133,6 +138,14 @@ impl<'g> Rod<'g> {
         (pair.second.point.position + pair.outward_of_second(self.start), pair.outward_of_second(self.tangent))
     }
 
+    /// Start, direction and length in the first frame.
+    fn in_first(&self, pair: &Pair<'g>) -> (Vector<'g>, Vector<'g>, Scalar<'g>) {
+        let (start, along) = self.outward(pair);
+        let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(self.length.builder(), axis)));
+        let local = |vector: Vector<'g>| Vector::from(axes.map(|axis| axis.dot(vector)));
+        (local(start - pair.first.point.position), local(along), self.length)
+    }
+
     fn within(&self, place: Scalar<'g>) -> Scalar<'g> {
         place.max(self.length.builder().number(0.0)).min(self.length)
     }
@@ -154,8 +167,8 @@ pub(super) fn check_corners<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: 
 const TOUCHED: [(&str, &[&str], &str); 2] = [
     (
         "line",
-        &["plane", "circle", "hollow", "capsule", "block"],
-        "a `line` touches a `plane`, `circle` (without `axis`), `hollow`, `capsule` or `block`",
+        &["plane", "circle", "hollow", "capsule", "block", "hull"],
+        "a `line` touches a `plane`, `circle` (without `axis`), `hollow`, `capsule`, `block` or `hull`",
     ),
     ("cylinder", &["plane", "circle"], "a `cylinder` touches a `plane` or a `circle` (without `axis`)"),
 ];

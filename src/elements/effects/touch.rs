@@ -31,6 +31,9 @@ impl<'g> Surface<'g> {
     pub fn is_near(&self, line: &Rod<'g>, pair: &Pair<'g>) -> Option<Scalar<'g>> {
         match self {
             Self::Whole(Shape::Solid(solid, reach)) => Some(line.is_near(pair, solid.radius(reach.builder()), *reach)),
+            Self::Whole(Shape::Hull(hull, reach)) => {
+                Some(line.is_near(pair, reach.builder().number(hull.radius()), *reach))
+            }
             _ => None,
         }
     }
@@ -38,6 +41,7 @@ impl<'g> Surface<'g> {
     /// Centres on a line of the second body that are nearest.
     pub fn centres_on(&self, line: &Rod<'g>, pair: &Pair<'g>) -> Vec<Vector<'g>> {
         match *self {
+            Self::Whole(Shape::Hull(ref hull, _)) => vec![line.nearest_to_hull(pair, hull)],
             Self::Whole(Shape::Solid(Solid::Capsule { start, tangent, length }, _)) => {
                 vec![line.nearest_to_line(pair, (start, tangent, length))]
             }
