@@ -16,6 +16,7 @@ pub(super) fn links_of<'g>(
 ) -> Vec<Link> {
     let applied: Vec<Vec<Wrench>> = applied.iter().map(|forces| forces.with_children(m)).collect();
     let mut links = Vec::new();
+    let mut link_of: Vec<Option<usize>> = vec![None; m.bodies.len()];
     for &index in &m.tree.order {
         let body = &m.bodies[index];
         let Some(relative) = &body.relative_motion else { continue };
@@ -25,10 +26,16 @@ pub(super) fn links_of<'g>(
             values.extend((0..3).flat_map(|i| (0..3).map(move |j| matrix[i][j])));
             values.extend([omega, alpha].into_iter().flat_map(Vector::components));
         }
-        let wrenches = applied.iter().map(|wrenches| wrenches[index]).chain([inertial.wrenches[index]]);
-        values.extend(wrenches.flat_map(|wrench| [wrench.force, wrench.torque]).flat_map(Vector::components));
+        values.extend(applied.iter().flat_map(|wrenches| components(wrenches[index])));
+        let inertial_forces = Scalar::exprs(&components(inertial.wrenches[index]));
         let coordinates = relative.dofs.iter().map(|dof| dof.index).collect();
-        links.push(Link { coordinates, values: Scalar::exprs(&values) });
+        let parent = link_of[relative.parent];
+        link_of[index] = Some(links.len());
+        links.push(Link { parent, coordinates, values: Scalar::exprs(&values), inertial_forces });
     }
     links
+}
+
+fn components<'g>(wrench: Wrench<'g>) -> Vec<Scalar<'g>> {
+    [wrench.force, wrench.torque].into_iter().flat_map(Vector::components).collect()
 }

@@ -132,10 +132,14 @@ pub struct SampledState {
 /// A child of the trees: all that bodies before it feel of it, and it of them, goes through a few values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
+    /// The one before it; `None` where its parent is a root.
+    pub parent: Option<usize>,
     /// The coordinates of its inboard joint.
     pub coordinates: Vec<usize>,
-    /// How it moves, and the forces on it and on all its children.
+    /// How it moves, and the forces applied to it and to all its children.
     pub values: Vec<Expr>,
+    /// The inertial forces and torques of it and of all its children.
+    pub inertial_forces: Vec<Expr>,
 }
 
 /// A parameter that is an interval.

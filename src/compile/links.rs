@@ -85,9 +85,17 @@ impl Linked {
             }
         }
         let mut found: Vec<(Expr, usize)> = Vec::new();
+        // What several links share belongs to the one before. But inertial forces that are the same for a link and its parent belong to the
+        // child: one may be the whole residual of the child's coordinate, which has no pivot before it is eliminated.
+        for (link, child) in system.links.iter().enumerate().rev() {
+            let of_parent = child.parent.map_or(&[][..], |parent| &system.links[parent].inertial_forces);
+            let shared =
+                child.inertial_forces.iter().filter(|force| of_parent.contains(force) && depends.remove(force));
+            found.extend(shared.map(|&force| (force, link)));
+        }
         for (link, of_link) in system.links.iter().enumerate() {
-            // What two links share belongs to the one before.
-            found.extend(of_link.values.iter().filter(|value| depends.remove(value)).map(|&value| (value, link)));
+            let values = of_link.values.iter().chain(&of_link.inertial_forces).filter(|value| depends.remove(value));
+            found.extend(values.map(|&value| (value, link)));
         }
         found.sort_unstable();
         let symbols: Vec<Expr> = (0..found.len()).map(|place| graph.symbol(&format!("link:{place}"))).collect();

@@ -108,7 +108,10 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         Err(SimulationError::TooLong) => {
             return other_way(description, Formulation::Joint, &|joint| Ok(within(joint, MOST)?));
         }
-        compiled => compiled?,
+        Err(singular) => {
+            return regular_in_joint_coordinates(description, &|joint| within(joint, MOST)).ok_or(singular.into());
+        }
+        Ok(absolute) => absolute,
     };
     let keep = |mut absolute: Simulator, why: String| {
         absolute.system.formulation.why = why;
@@ -145,6 +148,16 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         }
         Err(_) => keep(absolute, "joint coordinates have no start".to_owned()),
     }
+}
+
+/// Loops in joint coordinates, where absolute ones have no start: bodies without mass, as between the axes of an MJCF's body, are singular there
+/// where constraints are redundant.
+fn regular_in_joint_coordinates<T>(
+    description: &Description,
+    of_system: &dyn Fn(System) -> Result<T, SimulationError>,
+) -> Option<T> {
+    let joint = assemble::in_joint_coordinates(description, Some(deepest(description)), None).ok()?.ok()?;
+    of_system(because(joint, "absolute coordinates are singular at the start".to_owned())).ok()
 }
 
 /// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates amplify rounding more the
@@ -202,11 +215,11 @@ fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
 /// As for [`compiled`].
 pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError> {
     let within = |system: System, operations: usize| {
-        Ok(Assembled::within(system, scheme(description), first_step(description), Some(operations))?)
+        Assembled::within(system, scheme(description), first_step(description), Some(operations))
     };
     let of_system = |system: System| {
         let operations = if system.formulation.joint { MOST_TO_CHECK } else { MOST };
-        within(system, operations)
+        Ok(within(system, operations)?)
     };
     if description.simulation.formulation != Formulation::Auto {
         return within_budget(description, MOST_TO_CHECK, &of_system);
@@ -217,7 +230,10 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
         return Ok(Assembled { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations });
     }
     if assemble::closes_loops(description) {
-        return of_system(assemble::in_absolute_coordinates(description)?);
+        let absolute = assemble::in_absolute_coordinates(description)?;
+        return within(absolute, MOST).or_else(|singular| {
+            regular_in_joint_coordinates(description, &|joint| within(joint, MOST_TO_CHECK)).ok_or(singular.into())
+        });
     }
     let why = match assemble::in_joint_coordinates(description, Some(deepest(description)), None)? {
         Ok(joint) => match of_system(joint) {

@@ -116,9 +116,17 @@ fn chains_of_160_links_cost_four_times_as_much_as_of_40() {
     }
 }
 
+/// A chain in space whose links bend and twist in turn: the torque about an axis of twist is the same sum for two links.
+fn twisting_chain(links: usize) -> String {
+    AXES.iter().enumerate().fold(chain(links, true), |text, (place, axis)| {
+        let other = ["[0, 1, 0]", "[1, 0, 0]"][place % 2];
+        text.replace(&format!("axis: {axis:?}"), &format!("axis: {other}"))
+    })
+}
+
 #[test]
 fn link_by_link_and_as_a_whole_the_steps_are_the_same() {
-    for description in [read(&chain(12, true)), read(&chain(16, false)), branched()] {
+    for description in [read(&chain(12, true)), read(&chain(16, false)), read(&twisting_chain(24)), branched()] {
         let simulators = both(&description);
         let [by_links, whole] = [&simulators[0], &simulators[1]].map(instructions);
         assert!(by_links < whole, "{by_links} instructions instead of {whole}");

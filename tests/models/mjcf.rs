@@ -10,15 +10,19 @@ use mbint::inner::model::{self, Description, Reading};
 use crate::common::{Findings, curve, distance, largest, load, nominal, row, rows};
 
 /// Files of the tests with commands to their actuators.
-const ROBOTS: [(&str, &str); 8] = [
+const ROBOTS: [(&str, &str); 12] = [
     ("actuators", "controls: { hold: 0.5*sin(3*t), turn: 0.8, push: 0.15*cos(5*t), spring: 0.3 }"),
     ("ball_and_free", ""),
     ("cart_pole", ""),
+    ("coupled", "controls: { drive: 1.5*sin(4*t) }"),
     ("double_pendulum", ""),
+    ("floating_base", "controls: { hold_left: 0.4*sin(3*t), kick: -2*cos(6*t), push_right: 0.5*sin(5*t) }"),
     ("frames", ""),
+    ("linkage", ""),
     ("several_joints", ""),
     ("spatial_arm", ""),
     ("tendons", "controls: { muscle: -0.3*t }"),
+    ("welded", ""),
 ];
 
 fn folder() -> PathBuf {
