@@ -108,6 +108,43 @@ fn inertias_of_geoms_follow_the_mass() {
     assert!(distance(&angles("2"), &angles("7")) < 1e-9);
 }
 
+/// What a flag disables moves as what is not in the file.
+#[test]
+fn flags_leave_out_what_they_disable() {
+    let robot = |flags: &str, joint: &str, rest: &str| {
+        Files::new(&format!(
+            "<mujoco><option><flag {flags}/></option><worldbody><body name='a'><joint name='one' axis='0 1 0' {joint}/>\
+             <geom type='capsule' size='0.03' fromto='0 0 0 0.4 0 0' mass='1'/><body name='b' pos='0.4 0 0'>\
+             <joint name='two' axis='0 1 0'/><geom type='capsule' size='0.03' fromto='0 0 0 0.3 0 0.1' mass='1'/></body></body></worldbody>{rest}</mujoco>"
+        ))
+    };
+    let motion = |files: Files, yaml: &str| curve(&nominal(&description(files.with(yaml))), "one").to_vec();
+    let coupled = "<equality><joint joint1='two' joint2='one' polycoef='0 0.5 0 0 0'/></equality>";
+    let driven = "<actuator><motor name='drive' joint='one' ctrlrange='-1 1'/></actuator>";
+    let tendon = "<tendon><fixed name='t' stiffness='8' damping='0.4'><joint joint='two' coef='1'/></fixed></tendon>";
+    let bare = motion(robot("", "", ""), "");
+    for (flags, joint, rest) in [
+        ("damper='disable'", "damping='0.4'", ""),
+        ("spring='disable'", "stiffness='5'", ""),
+        ("passive='disable'", "stiffness='5' damping='0.4'", tendon),
+        ("frictionloss='disable'", "frictionloss='0.4'", ""),
+        ("equality='disable'", "", coupled),
+        ("constraint='disable'", "frictionloss='0.4'", coupled),
+        ("actuation='disable'", "", driven),
+    ] {
+        let apart = distance(&motion(robot(flags, joint, rest), ""), &bare);
+        assert!(apart < 1e-12, "{flags}: {apart:e}");
+        assert!(distance(&motion(robot("", joint, rest), ""), &bare) > 1e-3 || rest == driven, "{flags}");
+    }
+    let three = "controls: { drive: 3 }";
+    let clamped = motion(robot("", "", driven), three);
+    let free = motion(robot("clampctrl='disable'", "", driven), three);
+    let wide = motion(robot("", "", &driven.replace("-1 1", "-4 4")), three);
+    assert!(distance(&free, &wide) < 1e-12 && distance(&clamped, &wide) > 1e-3);
+    let weightless = motion(robot("gravity='disable'", "", ""), "");
+    assert!(weightless.iter().all(|angle| angle.abs() < 1e-12));
+}
+
 #[test]
 fn the_model_gives_points_to_bodies() {
     let files = Files::new(

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Attribute, Item};
+use super::flags::on;
 use super::robot::{Actuator, At, Body, Coupling, Equality, Law, Length, Names, Robot, Tendon};
 use super::values::Values;
 use crate::model::robots::algebra::{self, Pose, Value};
@@ -14,10 +15,11 @@ use crate::syntax::suggest::{self, clip};
 pub fn read(root: &Item, values: &mut Values, robot: &mut Robot, names: &Names) {
     let mut reader = Reader { values, robot, names, tendons: HashMap::new(), taken: HashSet::new() };
     root.of("tendon").flat_map(|section| section.of("fixed")).for_each(|item| reader.tendon(item));
-    root.of("equality").flat_map(|section| &section.items).for_each(|item| {
+    let flags = reader.values.settings.flags;
+    root.of("equality").filter(|_| flags.equalities).flat_map(|section| &section.items).for_each(|item| {
         reader.equality(item);
     });
-    root.of("actuator").flat_map(|section| &section.items).for_each(|item| {
+    root.of("actuator").filter(|_| flags.actuators).flat_map(|section| &section.items).for_each(|item| {
         reader.actuator(item);
     });
 }
@@ -84,12 +86,13 @@ impl Reader<'_, '_, '_> {
         let reference: f64 =
             terms.iter().map(|&(joint, by): &(usize, f64)| by * self.robot.joints[joint].reference).sum();
         let class = self.values.class_of(item, None, "class");
-        let mut number = |key: &str, unit| {
+        let flags = self.values.settings.flags;
+        let mut number = |key: &str, acts: bool| {
             let found = self.values.get(item, class, &["tendon"], key);
-            let value = found.and_then(|found| self.values.exact::<1>(found)).map_or(0.0, |[value]| value);
-            self.values.number(item, found, format!("tendon.{name}.{key}"), value, unit)
+            let value = found.and_then(|found| self.values.exact::<1>(found)).map_or(0.0, |[value]| on(acts) * value);
+            self.values.number(item, found, format!("tendon.{name}.{key}"), value, "")
         };
-        let (stiffness, damping) = (number("stiffness", ""), number("damping", ""));
+        let (stiffness, damping) = (number("stiffness", flags.springs), number("damping", flags.dampers));
         let ends = self.values.get(item, class, &["tendon"], "springlength");
         let ends = ends.and_then(|found| self.values.parsed(found, 2)).unwrap_or_else(|| vec![-1.0]);
         // A length of −1 is that in the file's configuration.
@@ -278,6 +281,7 @@ impl Reader<'_, '_, '_> {
         let first = gear.as_ref().and_then(|found| self.values.parsed(found, 6)).map_or(1.0, |gear| gear[0]);
         let gear = self.values.number(item, gear.as_ref(), format!("actuator.{name}.gear"), first, "");
         let control = self.range(item, &get, "ctrlrange", "ctrllimited");
+        let control = control.filter(|_| self.values.settings.flags.clamps_controls);
         let force = self.range(item, &get, "forcerange", "forcelimited");
         self.robot.actuators.push(Actuator { name, span: item.span.clone(), on, offset, gear, law, control, force });
         Some(())

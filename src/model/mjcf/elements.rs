@@ -65,16 +65,11 @@ pub const SECTIONS: &[Rule] = &[
         ..rule("option", "mujoco")
     },
     Rule {
-        supported: "gravity spring damper passive",
+        supported: "gravity spring damper passive constraint equality frictionloss limit clampctrl actuation",
         ignored: &[
             ("contact filterparent refsafe midphase nativeccd multiccd diagexact island sleep override ipc", CONTACT),
             ("sensor energy fwdinv invdiscrete eulerdamp autoreset warmstart speculative", SOLVER),
         ],
-        refused: &[(
-            "constraint equality frictionloss limit clampctrl actuation",
-            "enable",
-            "leave out what should not act: `without: [NAME]`",
-        )],
         ..rule("flag", "option")
     },
     ignored("size", "mujoco", "it is memory"),

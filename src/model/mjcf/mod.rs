@@ -10,6 +10,7 @@ mod couplings;
 mod document;
 mod effects;
 mod elements;
+mod flags;
 mod format;
 mod geoms;
 mod read;

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::couplings;
 use super::document::{Attribute, Item};
+use super::flags::on;
 use super::geoms::{self, Solid};
 use super::robot::{Body, Joint, Kind, Mass, Names, Robot, Site};
 use super::values::Values;
@@ -66,21 +67,8 @@ fn gravity(root: &Item, values: &mut Values) -> [f64; 3] {
         if let Some(found) = option.get("gravity").and_then(|found| values.exact(found)) {
             gravity = found;
         }
-        for flag in option.of("flag") {
-            let acts = [("enable", true), ("disable", false)];
-            if values.choice(flag, "gravity", &acts) == Some(false) {
-                gravity = [0.0; 3];
-            }
-            for name in ["spring", "damper", "passive"] {
-                if values.choice(flag, name, &acts) == Some(false) {
-                    let span = flag.get(name).map_or_else(|| flag.span.clone(), |found| found.span.clone());
-                    let help = "leave out what should not act: `without: [NAME]`".to_owned();
-                    values.error(span, format!("`{name}` cannot be disabled"), help);
-                }
-            }
-        }
     }
-    gravity
+    if values.settings.flags.gravity { gravity } else { [0.0; 3] }
 }
 
 /// What is around an element.
@@ -254,13 +242,14 @@ impl<'i> Reader<'_, 'i, '_> {
         let reference = {
             get(self.values, "ref").and_then(|found| self.values.exact::<1>(found)).map_or(0.0, |[value]| value * angle)
         };
-        let damping = number(self.values, "damping", 1.0, 0.0, units[0]);
-        let friction = number(self.values, "frictionloss", 1.0, 0.0, units[1]);
+        let flags = self.values.settings.flags;
+        let damping = number(self.values, "damping", on(flags.dampers), 0.0, units[0]);
+        let friction = number(self.values, "frictionloss", on(flags.friction), 0.0, units[1]);
         let armature = number(self.values, "armature", 1.0, 0.0, units[2]);
-        let stiffness = number(self.values, "stiffness", 1.0, 0.0, units[3]);
+        let stiffness = number(self.values, "stiffness", on(flags.springs), 0.0, units[3]);
         let spring_at = number(self.values, "springref", angle, reference, units[4]);
         let range = self.range(item, get(self.values, "range"), get(self.values, "limited"));
-        let range = range.filter(|_| matches!(kind, Kind::Hinge | Kind::Slide)).map(|ends| {
+        let range = range.filter(|_| flags.limits && matches!(kind, Kind::Hinge | Kind::Slide)).map(|ends| {
             let end = |i: usize| {
                 let name = format!("joint.{name}.range.{}", ["lower", "upper"][i]);
                 self.values.number(item, get(self.values, "range"), name, ends[i] * angle - reference, units[4])

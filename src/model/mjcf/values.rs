@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use symdiff::math;
 
 use super::document::{Attribute, Item};
+use super::flags::Flags;
 use crate::model::robots::algebra::{self, Quaternion, Value};
 use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
@@ -41,6 +42,8 @@ pub struct Settings {
     pub least_inertia: f64,
     pub balance: bool,
     pub total_mass: Option<f64>,
+    /// What acts.
+    pub flags: Flags,
 }
 
 impl<'i, 'd> Values<'i, 'd> {
@@ -55,6 +58,7 @@ impl<'i, 'd> Values<'i, 'd> {
             least_inertia: 0.0,
             balance: false,
             total_mass: None,
+            flags: Flags::ALL,
         };
         let mut values = Self { diagnostics, classes: Vec::new(), by_name: HashMap::new(), settings };
         for item in root.of("default") {
@@ -63,6 +67,7 @@ impl<'i, 'd> Values<'i, 'd> {
         for item in root.of("compiler") {
             values.compiler(item);
         }
+        values.settings.flags = Flags::of(root, &mut values);
         values
     }
 
