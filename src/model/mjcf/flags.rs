@@ -1,8 +1,5 @@
 //! `<flag>`: which forces and constraints of the file act.
 
-use super::document::Item;
-use super::values::Values;
-
 /// What acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flags {
@@ -29,22 +26,19 @@ impl Flags {
         actuators: true,
     };
 
-    /// What a file leaves on.
-    pub fn of(root: &Item, values: &mut Values) -> Self {
-        let mut flags = Self::ALL;
-        for flag in root.of("option").flat_map(|option| option.of("flag")) {
-            let mut is_off = |name| values.choice(flag, name, &[("enable", false), ("disable", true)]) == Some(true);
-            let [passive, constraint] = ["passive", "constraint"].map(&mut is_off);
-            flags.gravity &= !is_off("gravity");
-            flags.springs &= !(is_off("spring") || passive);
-            flags.dampers &= !(is_off("damper") || passive);
-            flags.equalities &= !(is_off("equality") || constraint);
-            flags.friction &= !(is_off("frictionloss") || constraint);
-            flags.limits &= !(is_off("limit") || constraint);
-            flags.clamps_controls &= !is_off("clampctrl");
-            flags.actuators &= !is_off("actuation");
+    /// What a `<flag>` leaves on; `is_off` says whether it disables a name.
+    pub fn after(self, is_off: &mut dyn FnMut(&str) -> bool) -> Self {
+        let [passive, constraint] = ["passive", "constraint"].map(&mut *is_off);
+        Self {
+            gravity: self.gravity && !is_off("gravity"),
+            springs: self.springs && !is_off("spring") && !passive,
+            dampers: self.dampers && !is_off("damper") && !passive,
+            equalities: self.equalities && !is_off("equality") && !constraint,
+            friction: self.friction && !is_off("frictionloss") && !constraint,
+            limits: self.limits && !is_off("limit") && !constraint,
+            clamps_controls: self.clamps_controls && !is_off("clampctrl"),
+            actuators: self.actuators && !is_off("actuation"),
         }
-        flags
     }
 }
 

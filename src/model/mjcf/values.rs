@@ -67,7 +67,11 @@ impl<'i, 'd> Values<'i, 'd> {
         for item in root.of("compiler") {
             values.compiler(item);
         }
-        values.settings.flags = Flags::of(root, &mut values);
+        for item in root.of("option").flat_map(|option| option.of("flag")) {
+            let words = [("enable", false), ("disable", true)];
+            let flags = values.settings.flags;
+            values.settings.flags = flags.after(&mut |name| values.choice(item, name, &words) == Some(true));
+        }
         values
     }
 
