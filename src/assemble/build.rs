@@ -16,7 +16,7 @@ use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, System};
 use super::tree::Tree;
 use crate::grammar::Sensor;
-use crate::model::{Analysis, Description, Formulation};
+use crate::model::{Analysis, Description, Formulation, Joint};
 use crate::multibody::BuildError;
 
 /// Links of trees from which M is left out: it has an entry for every pair of them.
@@ -96,6 +96,12 @@ fn in_this_tree(
 /// Whether joints close loops, in joint coordinates.
 pub fn closes_loops(description: &Description) -> bool {
     Tree::spanning(description, |_| true).closes_loops(description)
+}
+
+/// Whether joint coordinates have ones that formulas have no names for.
+pub fn has_joints_of_several_axes(description: &Description) -> bool {
+    let several = |joint: &Joint| joint.kind.mobilizer().is_some_and(|mobilizer| !mobilizer.has_one_axis());
+    description.joints.iter().any(several)
 }
 
 /// Least number of multiplications that an elimination takes in joint coordinates, before anything is written down.

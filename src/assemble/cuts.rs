@@ -2,16 +2,18 @@
 //!
 //! A mechanism with loops has a tree for every choice of the joints that close them (Wittenburg, *Dynamics of Systems of Rigid Bodies*
 //! (1977), ch. 5.3). Every tree is reached from every other by exchanges: a joint that closes a loop becomes an inboard joint, and another
-//! of its loop closes it.
+//! of its loop closes it. Joints of several axes can be constraints where they close no loop, too: the bodies behind them have coordinates of
+//! their own then.
 
 use super::tree::Tree;
+use crate::elements::joints::Mobilizer;
 use crate::model::Description;
 
 /// Of more bodies only the cut of the shallowest trees is looked at.
 const MOST_BODIES: usize = 50;
 
-/// The cuts that differ from a description's own in one exchange, each with all joints that close a loop; first those that promise the
-/// fewest operations; none of large mechanisms.
+/// The cuts that differ from a description's own in one exchange, or by all joints of several axes or all spherical ones, each with all
+/// joints that are constraints; first those that promise the fewest operations; none of large mechanisms.
 pub fn other_cuts(description: &Description) -> Vec<Vec<usize>> {
     if description.bodies.len() > MOST_BODIES {
         return Vec::new();
@@ -32,6 +34,19 @@ pub fn other_cuts(description: &Description) -> Vec<Vec<usize>> {
             exchanged.cut_at(&other);
             cuts.push((effort(&exchanged), other));
         }
+    }
+    let of_several_axes = |of: fn(&Mobilizer) -> bool| -> Vec<usize> {
+        let joints = description.joints.iter().enumerate().filter(|(joint, _)| tree.contains(*joint));
+        let found = joints.filter(|(_, joint)| joint.kind.mobilizer().is_some_and(|mobilizer| of(&mobilizer)));
+        found.map(|(joint, _)| joint).collect()
+    };
+    let spherical = of_several_axes(|mobilizer| matches!(mobilizer, Mobilizer::FreeRotation));
+    let several = of_several_axes(|mobilizer| !mobilizer.has_one_axis());
+    for joints in [spherical, several].into_iter().filter(|joints| !joints.is_empty()) {
+        let mut other = [&cut[..], &joints].concat();
+        other.sort_unstable();
+        exchanged.cut_at(&other);
+        cuts.push((effort(&exchanged), other));
     }
     cuts.sort();
     cuts.into_iter().map(|(_, cut)| cut).collect()

@@ -28,7 +28,8 @@ pub(super) fn links_of<'g>(
         let wrenches = applied.iter().map(|wrenches| wrenches[index]).chain([inertial.wrenches[index]]);
         values.extend(wrenches.flat_map(|wrench| [wrench.force, wrench.torque]).flat_map(Vector::components));
         let coordinates = relative.dofs.iter().map(|dof| dof.index).collect();
-        links.push(Link { coordinates, values: Scalar::exprs(&values) });
+        let normalisation = m.normalisations.get(&relative.joint).copied();
+        links.push(Link { coordinates, normalisation, values: Scalar::exprs(&values) });
     }
     links
 }

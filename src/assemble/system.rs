@@ -134,6 +134,8 @@ pub struct SampledState {
 pub struct Link {
     /// The coordinates of its inboard joint.
     pub coordinates: Vec<usize>,
+    /// Place in the constraints of the one on these coordinates alone: the normalisation of Euler parameters.
+    pub normalisation: Option<usize>,
     /// How it moves, and the forces on it and on all its children.
     pub values: Vec<Expr>,
 }

@@ -96,7 +96,24 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
             return Ok(joint);
         }
     };
+    if !assemble::has_joints_of_several_axes(description) {
+        return Ok(shorter(absolute, joint));
+    }
+    // What the start says of bodies behind such joints are conditions.
+    if !starts_alike(&absolute, &joint) {
+        return Ok(kept(absolute, "outputs start elsewhere in joint coordinates".to_owned()));
+    }
+    let joint = loop_cuts::shortest(description, joint, |other, best| {
+        let system = assemble::in_joint_coordinates(other, None, None).ok()?.ok()?;
+        within(system, enough(best)).ok()
+    });
     Ok(shorter(absolute, joint))
+}
+
+/// A simulator in absolute coordinates, with the reason.
+fn kept(mut absolute: Simulator, why: String) -> Simulator {
+    absolute.system.formulation.why = why;
+    absolute
 }
 
 /// Compiles a model in which joints close loops in the shorter formulation.
@@ -110,10 +127,7 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         }
         compiled => compiled?,
     };
-    let keep = |mut absolute: Simulator, why: String| {
-        absolute.system.formulation.why = why;
-        Ok(absolute)
-    };
+    let keep = |absolute: Simulator, why: String| Ok(kept(absolute, why));
     if !absolute.mobility.singular_at_start.is_empty() {
         return keep(absolute, "the start is singular".to_owned());
     }
