@@ -9,7 +9,7 @@ use symdiff::{Builder, Expr, Graph, Scalar};
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
-use super::cuts::other_cuts;
+use super::cuts::{cuts_of_several_axes, other_cuts};
 use super::links::links_of;
 use super::mechanism::Mechanism;
 use super::recursion;
@@ -53,7 +53,7 @@ pub fn in_absolute_coordinates(description: &Description) -> Result<System, Buil
 /// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With `deepest`, not
 /// where a body is more joints than that from its root on average. Loops are closed from where absolute coordinates begin to
 /// look, or from an assembled start in absolute coordinates (their values) where it is known. Where the tree cannot be used
-/// and the description leaves its cut open, the first that can and differs in one joint takes its place: a reaction that a force
+/// and the description leaves its cut open, the first that can and differs in one joint, or in those of several axes, takes its place: a reaction that a force
 /// depends on is known where its joint closes a loop.
 ///
 /// # Errors
@@ -68,7 +68,7 @@ pub fn in_joint_coordinates(
         built => return Ok(built),
     };
     let mut exchanged = description.clone();
-    for cut in other_cuts(description) {
+    for cut in other_cuts(description).into_iter().chain(cuts_of_several_axes(description)) {
         exchanged.cut_at(&cut);
         if let Ok(system) = in_this_tree(&exchanged, deepest, assembled)? {
             return Ok(Ok(system));

@@ -57,7 +57,7 @@ pub use crate::multibody::{BuildError, ConditionId, ConstraintId, CoordinateId, 
 pub use build::{
     build, closes_loops, has_joints_of_several_axes, in_absolute_coordinates, in_joint_coordinates, joint_elimination,
 };
-pub use cuts::other_cuts;
+pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inventory::Inventory;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, SampledState,

@@ -10,7 +10,7 @@ use super::system::{Distance, Start};
 use super::tree::Tree;
 use crate::grammar::{Coordinate, JointCoordinate, OnJoint, TimeOrder};
 use crate::model::Description;
-use crate::multibody::{BuildError, Context, Quaternion};
+use crate::multibody::{BuildError, Context};
 
 impl<'g> Mechanism<'g, '_> {
     /// The distances that are smallest at the start, of coordinates that `start` does not keep, in a model of size `length`.
@@ -53,10 +53,11 @@ impl<'g> Mechanism<'g, '_> {
             }
             // p and −p are one rotation.
             let [.., p0, p1, p2, p3] = guess.map(|value| self.g.number(value));
-            let left = (Quaternion::from([p0, p1, p2, p3]).conjugate() * placed.euler()).vector_part();
-            for axis in 0..3 {
-                let owner = Owner::Body(body, Coordinate::Euler(axis + 1));
-                add(owner, format!("{name}.{}", owner.suffix()), left[axis], None);
+            let p = placed.euler();
+            let sign = p.dot([p0, p1, p2, p3].into()).select(self.g.number(1.0), self.g.number(-1.0));
+            for (component, guess) in [p0, p1, p2, p3].into_iter().enumerate() {
+                let owner = Owner::Body(body, Coordinate::Euler(component));
+                add(owner, format!("{name}.{}", owner.suffix()), sign * p[component] - guess, None);
             }
         }
         for joint in tree.order.iter().filter(|&&body| !tree.merges(body)).filter_map(|&body| tree.inboard[body]) {

@@ -58,7 +58,7 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
             return Ok(first);
         }
         let why = first.system.formulation.why.clone();
-        let mut shortest = loop_cuts::shortest(description, first, |other, best| {
+        let mut shortest = loop_cuts::shortest(description, first, false, |other, best| {
             within(assemble::build(other).ok()?, enough(best)).ok()
         });
         shortest.system.formulation.why = why;
@@ -103,7 +103,7 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     if !starts_alike(&absolute, &joint) {
         return Ok(kept(absolute, "outputs start elsewhere in joint coordinates".to_owned()));
     }
-    let joint = loop_cuts::shortest(description, joint, |other, best| {
+    let joint = loop_cuts::shortest(description, joint, true, |other, best| {
         let system = assemble::in_joint_coordinates(other, None, None).ok()?.ok()?;
         within(system, enough(best)).ok()
     });
@@ -146,7 +146,7 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
             if passes_singular(description, &absolute) {
                 return keep(absolute, "the nominal motion passes singular configurations".to_owned());
             }
-            let joint = loop_cuts::shortest(description, joint, |other, best| {
+            let joint = loop_cuts::shortest(description, joint, true, |other, best| {
                 let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
                 within(system, enough(best)).ok()
             });
