@@ -9,7 +9,9 @@ use symdiff::{Builder, Scalar};
 
 use super::mechanism::Mechanism;
 use crate::grammar::{JointCoordinate, OnJoint, Sensor};
-use crate::multibody::{BuildError, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates, Vector, Wrench};
+use crate::multibody::{
+    AxisMotion, BuildError, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates, Vector, Wrench,
+};
 
 /// What is added to: a component of a body's wrench (0 to 5), or a coordinate of its own: of a joint, a mode, a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -158,9 +160,23 @@ impl<'g> AppliedForces<'g> {
         let mut force = vec![self.g.number(0.0); m.q.len()];
         for (body, wrench) in m.bodies.iter().zip(self.with_children(m)) {
             if let Some(motion) = &body.relative_motion {
-                let axis = body.rotate(motion.axis);
-                let at_joint = wrench.torque_about(body.rotate(motion.outboard_in_child));
-                let (about, along) = (axis.dot(at_joint), axis.dot(wrench.force));
+                let (about, along) = match (motion.rotations.as_slice(), motion.translations.as_slice()) {
+                    ([rotation], [translation]) => {
+                        let [about, along] = [rotation, translation].map(|axis| body.rotate(axis.in_child));
+                        let at_joint = wrench.torque_about(body.rotate(motion.outboard_in_child));
+                        (vec![about.dot(at_joint)], vec![along.dot(wrench.force)])
+                    }
+                    // The forces are turned where axes are many.
+                    (rotations, translations) => {
+                        let inward = body.matrix().transposed();
+                        let torque = inward * wrench.torque_about(body.rotate(motion.outboard_in_child));
+                        let force = inward * wrench.force;
+                        let parts = |axes: &[AxisMotion<'g>], of: Vector<'g>| {
+                            axes.iter().map(|axis| axis.in_child.dot(of)).collect()
+                        };
+                        (parts(rotations, torque), parts(translations, force))
+                    }
+                };
                 for (row, part) in motion.generalised(about, along) {
                     force[row] = part;
                 }

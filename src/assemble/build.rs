@@ -9,14 +9,14 @@ use symdiff::{Builder, Expr, Graph, Scalar};
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
-use super::cuts::other_cuts;
+use super::cuts::{cuts_of_several_axes, other_cuts};
 use super::links::links_of;
 use super::mechanism::Mechanism;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, System};
 use super::tree::Tree;
 use crate::grammar::Sensor;
-use crate::model::{Analysis, Description, Formulation};
+use crate::model::{Analysis, Description, Formulation, Joint};
 use crate::multibody::BuildError;
 
 /// Links of trees from which M is left out: it has an entry for every pair of them.
@@ -53,7 +53,7 @@ pub fn in_absolute_coordinates(description: &Description) -> Result<System, Buil
 /// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With `deepest`, not
 /// where a body is more joints than that from its root on average. Loops are closed from where absolute coordinates begin to
 /// look, or from an assembled start in absolute coordinates (their values) where it is known. Where the tree cannot be used
-/// and the description leaves its cut open, the first that can and differs in one joint takes its place: a reaction that a force
+/// and the description leaves its cut open, the first that can and differs in one joint, or in those of several axes, takes its place: a reaction that a force
 /// depends on is known where its joint closes a loop.
 ///
 /// # Errors
@@ -68,7 +68,7 @@ pub fn in_joint_coordinates(
         built => return Ok(built),
     };
     let mut exchanged = description.clone();
-    for cut in other_cuts(description) {
+    for cut in other_cuts(description).into_iter().chain(cuts_of_several_axes(description)) {
         exchanged.cut_at(&cut);
         if let Ok(system) = in_this_tree(&exchanged, deepest, assembled)? {
             return Ok(Ok(system));
@@ -96,6 +96,12 @@ fn in_this_tree(
 /// Whether joints close loops, in joint coordinates.
 pub fn closes_loops(description: &Description) -> bool {
     Tree::spanning(description, |_| true).closes_loops(description)
+}
+
+/// Whether joint coordinates have ones that formulas have no names for.
+pub fn has_joints_of_several_axes(description: &Description) -> bool {
+    let several = |joint: &Joint| joint.kind.mobilizer().is_some_and(|mobilizer| !mobilizer.has_one_axis());
+    description.joints.iter().any(several)
 }
 
 /// Least number of multiplications that an elimination takes in joint coordinates, before anything is written down.

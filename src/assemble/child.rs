@@ -1,4 +1,4 @@
-//! A child's place and motion by the coordinates of its joint.
+//! A child's place and motion by the coordinates of its joint; [`super::mobilizers`] for joints of more axes than one.
 //!
 //! With F₁, F₂ the joint's frames, A₁, A₂ their rotations in their bodies, u the axis, φ the angle, s the displacement, the
 //! second body is rotated by A₁ R(u, φ) A₂ᵀ against the first, and F₂'s origin is u s from that of F₁. Seen from the parent
@@ -18,7 +18,7 @@ use super::tree::InboardJoint;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::JointCoordinate;
 use crate::multibody::{
-    ANGLE, Attitude, Body, BuildError, Context, DegreeOfFreedom, EULER, Matrix, Quaternion, RelativeMotion,
+    ANGLE, Attitude, AxisMotion, Body, BuildError, Context, DegreeOfFreedom, EULER, Matrix, Quaternion, RelativeMotion,
     RotationCoordinates, Vector, rotation,
 };
 
@@ -26,7 +26,7 @@ use crate::multibody::{
 const ROUNDING: f64 = 1e-15;
 
 /// The matrix of a rotation that does not change. A quarter turn has zeros and ones, which cost nothing.
-fn constant_matrix(p: Quaternion<'_>) -> Matrix<'_> {
+pub(super) fn constant_matrix(p: Quaternion<'_>) -> Matrix<'_> {
     let rows = p.matrix().rows().map(|row| {
         row.map(|entry| match entry.as_constant() {
             Some(value) if (value - value.round()).abs() < ROUNDING => entry.builder().number(value.round()),
@@ -37,9 +37,11 @@ fn constant_matrix(p: Quaternion<'_>) -> Matrix<'_> {
 }
 
 /// A rotation against the parent: as Euler parameters, and in the plane as an angle.
-struct RelativeRotation<'g> {
-    euler: Quaternion<'g>,
-    angle: Scalar<'g>,
+pub(super) struct RelativeRotation<'g> {
+    /// In space.
+    pub euler: Quaternion<'g>,
+    /// In the plane.
+    pub angle: Scalar<'g>,
 }
 
 impl<'g> Mechanism<'g, '_> {
@@ -48,15 +50,30 @@ impl<'g> Mechanism<'g, '_> {
         let joints = self.joints;
         // A joint of the tree has a mobilizer; without one a body would be welded.
         let Some(mobilizer) = joints[inboard.joint].kind.mobilizer() else { return Ok(()) };
-        let dofs = self.degrees_of_freedom(&mobilizer, inboard)?;
+        let (motion, rotation) = if mobilizer.has_one_axis() {
+            self.motion_by_one_axis(&mobilizer, inboard)?
+        } else {
+            self.motion_by_axes(&mobilizer, inboard)?
+        };
+        self.set_motion(body, motion, rotation);
+        Ok(())
+    }
+
+    /// The motion by an angle about an axis and a displacement along it.
+    fn motion_by_one_axis(
+        &mut self,
+        mobilizer: &Mobilizer,
+        inboard: InboardJoint,
+    ) -> Result<(RelativeMotion<'g>, RelativeRotation<'g>), BuildError> {
+        let dofs = self.degrees_of_freedom(mobilizer, inboard)?;
         let g = self.g;
         let total = |list: &[Scalar<'g>], part: fn(&DegreeOfFreedom<'g>) -> Scalar<'g>| {
             g.sum(dofs.iter().map(|dof| part(dof) * list[dof.index]))
         };
-        let angle = total(&self.q, |dof| dof.rotation);
-        let angular = [total(&self.v, |dof| dof.rotation), total(&self.w, |dof| dof.rotation)];
-        let displacement = total(&self.q, |dof| dof.translation);
-        let sliding = [total(&self.v, |dof| dof.translation), total(&self.w, |dof| dof.translation)];
+        let angle = total(&self.q, |dof| dof.rotation[0]);
+        let angular = [total(&self.v, |dof| dof.rotation[0]), total(&self.w, |dof| dof.rotation[0])];
+        let displacement = total(&self.q, |dof| dof.translation[0]);
+        let sliding = [total(&self.v, |dof| dof.translation[0]), total(&self.w, |dof| dof.translation[0])];
 
         let axis = match mobilizer.axis() {
             Some(axis) => self.unit_vector(axis, Context::Parameters)?,
@@ -80,22 +97,22 @@ impl<'g> Mechanism<'g, '_> {
         let axis_in_child = r_after.transposed() * axis;
 
         let moved = displacement * axis_in_parent;
+        let along = |rates| vec![AxisMotion { in_parent: axis_in_parent, in_child: axis_in_child, rates }];
         let motion = RelativeMotion {
             parent: inboard.parent.body,
             joint: inboard.joint,
             rotation: relative,
             outboard_in_parent: self.local(inboard.parent) + moved,
             outboard_in_child: self.local(inboard.child),
-            axis: axis_in_child,
-            axis_in_parent,
-            angular,
-            sliding,
+            rotations: along(angular),
+            translations: along(sliding),
+            gyration: None,
+            drift: None,
             dofs,
         };
         let euler = before * Quaternion::about(axis, angle) * after;
         let angle = if inboard.reversed { angle - rest } else { angle + rest };
-        self.set_motion(body, motion, RelativeRotation { euler, angle });
-        Ok(())
+        Ok((motion, RelativeRotation { euler, angle }))
     }
 
     /// The coordinates of a joint of the tree; φ and s count from the parent.
@@ -120,7 +137,7 @@ impl<'g> Mechanism<'g, '_> {
                 (None, JointCoordinate::Displacement) => (zero, one),
             };
             let index = self.add_joint_coordinate(inboard.joint, coordinate);
-            dofs.push(DegreeOfFreedom { index, rotation, translation });
+            dofs.push(DegreeOfFreedom { index, rotation: vec![rotation], translation: vec![translation] });
         }
         Ok(dofs)
     }
@@ -130,25 +147,29 @@ impl<'g> Mechanism<'g, '_> {
         let parent = &self.bodies[motion.parent];
         let mut body = self.bodies[index].clone();
         let arm = parent.rotate(motion.outboard_in_parent);
-        let axis = parent.rotate(motion.axis_in_parent);
         let (joint, joint_velocity) = (parent.position_of(arm), parent.velocity_of(arm));
         let joint_acceleration = parent.acceleration_of(arm);
         let omega = parent.angular_velocity();
         match body.rotation_coordinates {
             RotationCoordinates::Angle => {
                 body.position[ANGLE] = parent.position[ANGLE] + relative.angle;
-                body.velocity[ANGLE] = parent.velocity[ANGLE] + motion.angular[0];
-                body.acceleration[ANGLE] = parent.acceleration[ANGLE] + motion.angular[1];
+                let rate = |derivative: usize| self.g.sum(motion.rotations.iter().map(|axis| axis.rates[derivative]));
+                body.velocity[ANGLE] = parent.velocity[ANGLE] + rate(0);
+                body.acceleration[ANGLE] = parent.acceleration[ANGLE] + rate(1);
             }
-            RotationCoordinates::Euler => set_orientation(&mut body, parent, &motion, axis, relative.euler),
+            RotationCoordinates::Euler => set_orientation(&mut body, parent, &motion, relative.euler),
         }
 
         // The outboard frame moves with the parent and slides; the child's origin follows from it.
-        let slip = motion.sliding[0] * axis;
+        let sliding = |derivative| motion.rates(&motion.translations, derivative, |axis| parent.rotate(axis));
+        let slip = sliding(0);
         let joint_velocity = joint_velocity + slip;
-        let gain = motion.sliding[1] * axis;
+        let gain = sliding(1);
         let coriolis = 2.0 * omega.cross(slip);
-        let joint_acceleration = joint_acceleration + gain + coriolis;
+        let mut joint_acceleration = joint_acceleration + gain + coriolis;
+        if let Some(drift) = motion.drift {
+            joint_acceleration += parent.rotate(drift);
+        }
         let arm = body.rotate(-motion.outboard_in_child);
         set_origin(&mut body, [joint, joint_velocity, joint_acceleration]);
         let origin = [body.position_of(arm), body.velocity_of(arm), body.acceleration_of(arm)];
@@ -158,22 +179,20 @@ impl<'g> Mechanism<'g, '_> {
     }
 }
 
-/// Euler parameters and their derivatives of a child in space; `axis` is the joint's in the ground's axes.
-fn set_orientation<'g>(
-    body: &mut Body<'g>,
-    parent: &Body<'g>,
-    motion: &RelativeMotion<'g>,
-    axis: Vector<'g>,
-    relative: Quaternion<'g>,
-) {
+/// Euler parameters and their derivatives of a child in space.
+fn set_orientation<'g>(body: &mut Body<'g>, parent: &Body<'g>, motion: &RelativeMotion<'g>, relative: Quaternion<'g>) {
     let p = parent.orientation() * relative;
     let matrix = parent.matrix() * motion.rotation;
     let omega_of_parent = parent.angular_velocity();
-    let own = motion.angular[0] * axis;
+    let turning = |derivative| motion.rates(&motion.rotations, derivative, |axis| parent.rotate(axis));
+    let own = turning(0);
     let omega = omega_of_parent + own;
     let alpha_of_parent = parent.angular_acceleration();
-    let (gain, gyration) = (motion.angular[1] * axis, omega_of_parent.cross(own));
-    let alpha = alpha_of_parent + gain + gyration;
+    let (gain, gyration) = (turning(1), omega_of_parent.cross(own));
+    let mut alpha = alpha_of_parent + gain + gyration;
+    if let Some([in_parent, _]) = motion.gyration {
+        alpha += parent.rotate(in_parent);
+    }
     let rates = p.ground_rates();
     let velocity = rates.transposed_times(0.5, omega);
     let acceleration = rates.transposed_times(0.5, alpha);

@@ -2,12 +2,12 @@
 //!
 //! A guess of a body without coordinates of its own says where its body would be looked for if every body had coordinates: walked from the ground with what is named, as in
 //! absolute coordinates. What the inboard joints measure there is where their coordinates are looked for: those of all children, so that
-//! a loop is closed from the same place. It is closed in the same branch where the assembled start in absolute coordinates is known.
+//! a loop is closed from the same place, and those of joints whose coordinates have no names, so that what the start says of their bodies is where they are looked for. It is closed in the same branch where the assembled start in absolute coordinates is known.
 
-use symdiff::Builder;
+use symdiff::{Builder, Scalar};
 
 use super::at_guess::AtGuess;
-use super::mechanism::Mechanism;
+use super::mechanism::{Mechanism, RelativeCoordinate};
 use crate::grammar::{JointCoordinate, OnJoint};
 use crate::model::{Description, StartValue};
 use crate::multibody::BuildError;
@@ -23,7 +23,8 @@ impl Mechanism<'_, '_> {
             StartValue::Coordinate { body, .. } | StartValue::Orientation { body, .. } => Some(*body),
             _ => None,
         });
-        if !self.tree.closes_loops(description) && !named.any(|body| self.is_child(body)) {
+        let unnamed: Vec<(usize, RelativeCoordinate, usize)> = self.unnamed_coordinates().collect();
+        if !self.tree.closes_loops(description) && unnamed.is_empty() && !named.any(|body| self.is_child(body)) {
             return Ok(());
         }
         let builder = Builder::new();
@@ -40,6 +41,22 @@ impl Mechanism<'_, '_> {
                 let measured = absolute.measured_coordinate(OnJoint { joint, coordinate })?.expr();
                 let value = at_guess.values(&builder.graph(), &[measured])[0];
                 self.child_guesses.push((place, value));
+            }
+        }
+        for (joint, coordinate, place) in unnamed {
+            let kind = &self.joints[joint].kind;
+            let (Some(between), Some(mobilizer)) = (kind.between(), kind.mobilizer()) else { continue };
+            let pair = absolute.pair(between);
+            let offset = pair.first.orientation.matrix().transposed() * pair.offset();
+            let measured = absolute.relative_coordinate(&mobilizer, coordinate, pair.relative(), offset)?.expr();
+            self.child_guesses.push((place, at_guess.values(&builder.graph(), &[measured])[0]));
+        }
+        for (body, inboard) in self.tree.inboard.iter().enumerate() {
+            if inboard.is_some_and(|inboard| self.has_no_names(inboard.joint)) {
+                let position = Scalar::exprs(&absolute.bodies[body].position);
+                let values = at_guess.values(&builder.graph(), &position);
+                let guess = std::array::from_fn(|place| values[place]);
+                self.body_guesses.insert(body, guess);
             }
         }
         Ok(())

@@ -9,7 +9,7 @@ use super::teeth::reactions_are_asked;
 use crate::elements::joints::Row;
 use crate::grammar::JointCoordinate;
 use crate::model::Description;
-use crate::multibody::{Body, BuildError, EULER, RotationCoordinates};
+use crate::multibody::{Body, BuildError, EULER, Quaternion, RotationCoordinates};
 
 /// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
 /// only.
@@ -52,6 +52,12 @@ impl<'g> Constraints<'g> {
                 let (name, joint) = (format!("{}.norm", body.name), body.name.clone());
                 constraints.positions.add(ConstraintInfo { name, joint, unit: ResidualUnit::Number }, value);
             }
+        }
+        for (joint, p) in m.euler_parameters() {
+            let owner = m.joints[joint].name.clone();
+            m.normalisations.insert(joint, constraints.positions.values.len());
+            let info = ConstraintInfo { name: format!("{owner}.norm"), joint: owner, unit: ResidualUnit::Number };
+            constraints.positions.add(info, normalised(p));
         }
         let with_teeth = reactions_are_asked(description);
         for (index, joint) in m.joints.iter().enumerate() {
@@ -127,8 +133,12 @@ impl<'g> Rows<'g> {
 /// (pᵀp − 1) / 2 of a body that turns by Euler parameters.
 fn normalisation<'g>(body: &Body<'g>) -> Option<Scalar<'g>> {
     body.index[EULER + 1].filter(|_| body.rotation_coordinates == RotationCoordinates::Euler)?;
-    let p = body.euler();
-    Some(0.5 * (p.dot(p) - 1.0))
+    Some(normalised(body.euler()))
+}
+
+/// (pᵀp − 1) / 2
+fn normalised(p: Quaternion<'_>) -> Scalar<'_> {
+    0.5 * (p.dot(p) - 1.0)
 }
 
 /// Unit of a row's Φ: m where its multiplier is a force, rad where it is a torque alone.

@@ -41,6 +41,8 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             bodies: Vec::new(),
             tree: Tree::absolute(description),
             joint_coordinates: BTreeMap::new(),
+            normalisations: BTreeMap::new(),
+            body_guesses: BTreeMap::new(),
             reactions: Vec::new(),
             multipliers: Vec::new(),
             potentials: Vec::new(),

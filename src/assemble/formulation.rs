@@ -54,7 +54,9 @@ impl Mechanism<'_, '_> {
                 | StartValue::RollPitchYaw { .. }
                 | StartValue::Point { .. } => None,
             };
-            let body = body.filter(|body| self.tree.inboard[**body].is_some())?;
+            // Where a joint's coordinates have no names, those of the body are its place in the tree.
+            let inboard = self.tree.inboard[*body?].filter(|inboard| !self.has_no_names(inboard.joint));
+            let body = body.filter(|_| inboard.is_some())?;
             let name = &d.bodies[*body].name;
             Some(format!("the start names a coordinate of body `{name}`, whose place follows from its joint's"))
         })

@@ -29,9 +29,10 @@ pub(super) fn links_of<'g>(
         values.extend(applied.iter().flat_map(|wrenches| components(wrenches[index])));
         let inertial_forces = Scalar::exprs(&components(inertial.wrenches[index]));
         let coordinates = relative.dofs.iter().map(|dof| dof.index).collect();
+        let normalisation = m.normalisations.get(&relative.joint).copied();
         let parent = link_of[relative.parent];
         link_of[index] = Some(links.len());
-        links.push(Link { parent, coordinates, values: Scalar::exprs(&values), inertial_forces });
+        links.push(Link { parent, coordinates, normalisation, values: Scalar::exprs(&values), inertial_forces });
     }
     links
 }

@@ -11,7 +11,7 @@ use super::tree::Tree;
 use crate::elements::joints::ToothForce;
 use crate::grammar::{Coordinate, JointCoordinate, OnJoint, PointRef, Sensor, TimeOrder};
 use crate::model::{Joint, LineMass, ReducedInertia};
-use crate::multibody::{ANGLE, Body, EULER, Frame, MaterialPoint, Pair, Quaternion, Vector};
+use crate::multibody::{ANGLE, Body, DEGREES_OF_FREEDOM, EULER, Frame, MaterialPoint, Pair, Quaternion, Vector};
 
 /// A coordinate's place in its body's list.
 pub fn dof(coordinate: Coordinate) -> usize {
@@ -24,6 +24,17 @@ pub fn dof(coordinate: Coordinate) -> usize {
     }
 }
 
+/// A coordinate of a joint of a tree that formulas have no name for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RelativeCoordinate {
+    /// About the first or the second axis of two, rad.
+    Angle(usize),
+    /// Along the first or the second direction of a plane, m.
+    Displacement(usize),
+    /// Euler parameter p0 to p3 of the second frame against the first.
+    Euler(usize),
+}
+
 /// What one of q is a coordinate of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
@@ -31,6 +42,8 @@ pub enum Owner {
     Body(usize, Coordinate),
     /// Of a joint: of a tree's, or defined by a constraint, without inertia.
     Joint(usize, JointCoordinate),
+    /// Of a tree's joint, without a name in formulas.
+    Relative(usize, RelativeCoordinate),
     /// Of a mode of a flexible body.
     Mode,
     /// Of a state, which is its velocity.
@@ -43,6 +56,7 @@ impl Owner {
         match self {
             Self::Body(_, coordinate) => coordinate.is_length(),
             Self::Joint(_, coordinate) => coordinate == JointCoordinate::Displacement,
+            Self::Relative(_, coordinate) => matches!(coordinate, RelativeCoordinate::Displacement(_)),
             Self::Mode => true,
             Self::State => false,
         }
@@ -60,7 +74,11 @@ impl Owner {
             Self::Body(_, Coordinate::Y) => "y",
             Self::Body(_, Coordinate::Z) => "z",
             Self::Body(_, Coordinate::Angle) | Self::Joint(_, JointCoordinate::Angle) => "angle",
-            Self::Body(_, Coordinate::Euler(index)) => ["p0", "p1", "p2", "p3"][index],
+            Self::Body(_, Coordinate::Euler(index)) | Self::Relative(_, RelativeCoordinate::Euler(index)) => {
+                ["p0", "p1", "p2", "p3"][index]
+            }
+            Self::Relative(_, RelativeCoordinate::Angle(index)) => ["angle_1", "angle_2"][index],
+            Self::Relative(_, RelativeCoordinate::Displacement(index)) => ["displacement_1", "displacement_2"][index],
             Self::Joint(_, JointCoordinate::Displacement) => "displacement",
             Self::Mode | Self::State => "",
         }
@@ -107,6 +125,10 @@ pub struct Mechanism<'g, 'd> {
     pub tree: Tree,
     /// Places in `q` of the coordinates of joints that are coordinates of their own.
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
+    /// Places in the constraints of the normalisations of joints' Euler parameters.
+    pub normalisations: BTreeMap<usize, usize>,
+    /// Where the bodies behind joints without names for their coordinates are looked for: x, y, z, then the Euler parameters.
+    pub body_guesses: BTreeMap<usize, [f64; DEGREES_OF_FREEDOM]>,
     /// Of the joints built so far.
     pub reactions: Vec<Reaction<'g>>,
     /// The same joints' multipliers, of those with one constraint.
@@ -135,7 +157,7 @@ impl<'g> Mechanism<'g, '_> {
         // A joint may be called like a body.
         let prefix = match owner {
             Owner::Body(..) => "",
-            Owner::Joint(..) => "joint:",
+            Owner::Joint(..) | Owner::Relative(..) => "joint:",
             Owner::Mode => "mode:",
             Owner::State => "state:",
         };

@@ -35,6 +35,7 @@ mod links;
 mod massless;
 mod mechanism;
 mod merging;
+mod mobilizers;
 mod names;
 mod nearest;
 mod placement;
@@ -53,8 +54,10 @@ pub(crate) mod tests;
 mod tree;
 
 pub use crate::multibody::{BuildError, ConditionId, ConstraintId, CoordinateId, EquationId, OutputId};
-pub use build::{build, closes_loops, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
-pub use cuts::other_cuts;
+pub use build::{
+    build, closes_loops, has_joints_of_several_axes, in_absolute_coordinates, in_joint_coordinates, joint_elimination,
+};
+pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inventory::Inventory;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, SampledState,

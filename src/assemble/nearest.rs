@@ -1,14 +1,14 @@
 //! What the start is nearest to where the model leaves it open: the coordinates of the inboard joints, at zero.
 //!
 //! These are the inboard joints of joint coordinates, so that the start does not depend on the formulation, nor on what is
-//! observed. A root stays near the place where assembly begins to look.
+//! observed. A root stays near the place where assembly begins to look, and so does a body behind a joint whose coordinates have no names.
 
 use symdiff::Scalar;
 
 use super::mechanism::{Mechanism, Owner};
 use super::system::{Distance, Start};
 use super::tree::Tree;
-use crate::grammar::{JointCoordinate, OnJoint, TimeOrder};
+use crate::grammar::{Coordinate, JointCoordinate, OnJoint, TimeOrder};
 use crate::model::Description;
 use crate::multibody::{BuildError, Context};
 
@@ -23,7 +23,8 @@ impl<'g> Mechanism<'g, '_> {
         length: f64,
         start: &Start,
     ) -> Result<Vec<Distance>, BuildError> {
-        let tree = Tree::spanning(description, |mobilizer| self.is_time_independent(mobilizer));
+        let tree =
+            Tree::spanning(description, |mobilizer| mobilizer.has_one_axis() && self.is_time_independent(mobilizer));
         let guessed = self.guessed_of_joints(description)?;
         let mut distances = Vec::new();
         let mut add = |owner: Owner, name: String, value: Scalar<'g>, place: Option<usize>| {
@@ -41,6 +42,22 @@ impl<'g> Mechanism<'g, '_> {
             if matches!(owner, Owner::Body(body, _) if tree.inboard[body].is_none()) {
                 let value = self.q[place] - self.g.scalar(start.guess[place]);
                 add(owner, self.coordinate_names[place].clone(), value, Some(place));
+            }
+        }
+        for (&body, guess) in self.body_guesses.iter().filter(|(body, _)| tree.inboard[**body].is_none()) {
+            let name = &description.bodies[body].name;
+            let placed = &self.bodies[body];
+            for (axis, coordinate) in [Coordinate::X, Coordinate::Y, Coordinate::Z].into_iter().enumerate() {
+                let owner = Owner::Body(body, coordinate);
+                add(owner, format!("{name}.{}", owner.suffix()), placed.position[axis] - guess[axis], None);
+            }
+            // p and −p are one rotation.
+            let [.., p0, p1, p2, p3] = guess.map(|value| self.g.number(value));
+            let p = placed.euler();
+            let sign = p.dot([p0, p1, p2, p3].into()).select(self.g.number(1.0), self.g.number(-1.0));
+            for (component, guess) in [p0, p1, p2, p3].into_iter().enumerate() {
+                let owner = Owner::Body(body, Coordinate::Euler(component));
+                add(owner, format!("{name}.{}", owner.suffix()), sign * p[component] - guess, None);
             }
         }
         for joint in tree.order.iter().filter(|&&body| !tree.merges(body)).filter_map(|&body| tree.inboard[body]) {
@@ -66,7 +83,7 @@ impl<'g> Mechanism<'g, '_> {
 
     /// Whether all distances are coordinates of the mechanism: those of the inboard joints alone.
     pub fn has_distances(&self) -> bool {
-        !self.coordinates.iter().any(|owner| matches!(owner, Owner::Body(..)))
+        !self.coordinates.iter().any(|owner| matches!(owner, Owner::Body(..) | Owner::Relative(..)))
     }
 
     /// A joint's coordinate, whether it is a coordinate of the mechanism or not: then an angle of space is between −π and π.

@@ -14,14 +14,14 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Unit, UnitQuaternion, Vector3};
 use symdiff::{Formula, Scalar};
 
-use super::mechanism::{Mechanism, Owner, dof};
+use super::mechanism::{Mechanism, Owner, RelativeCoordinate, dof};
 use crate::elements::joints::{Orientation, Separation};
 use crate::grammar::{JointCoordinate, PointRef};
 use crate::model::{LineMass, ReducedInertia, Standing};
-use crate::multibody::{ANGLE, Body, BuildError, Context, EULER, RotationCoordinates};
+use crate::multibody::{ANGLE, Body, BuildError, Context, EULER, Quaternion, RotationCoordinates, Vector};
 
 /// A frame against another, in numbers.
 #[derive(Clone, Copy, Default)]
@@ -127,6 +127,7 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
                     }
                 }
                 Owner::Joint(joint, coordinate) => self.joint(joint, coordinate)?,
+                Owner::Relative(joint, coordinate) => self.relative(joint, coordinate)?,
                 Owner::Mode | Owner::State => 0.0,
             });
         }
@@ -143,6 +144,19 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
             JointCoordinate::Angle => angle_about(&relative.orientation, &axis),
             JointCoordinate::Displacement => relative.position.dot(&axis),
         })
+    }
+
+    fn relative(&self, joint: usize, coordinate: RelativeCoordinate) -> Result<f64, BuildError> {
+        let m = self.mechanism;
+        let kind = &m.joints[joint].kind;
+        let (Some(between), Some(mobilizer)) = (kind.between(), kind.mobilizer()) else { return Ok(0.0) };
+        let [first, second] = between.map(|point| self.pose(point.body).then(&local(m, point)));
+        let Pose { position, orientation } = first.inverse().then(&second);
+        let [x, y, z, w] = orientation.coords.into();
+        let rotation = Quaternion::from([w, x, y, z].map(|component| m.g.number(component)));
+        let offset = Vector::from(<[f64; 3]>::from(position).map(|component| m.g.number(component)));
+        let value = m.relative_coordinate(&mobilizer, coordinate, rotation, offset)?;
+        Ok(m.nominal([value])[0])
     }
 
     fn direction(&self, axis: &[Formula; 3]) -> Result<Vector3<f64>, BuildError> {
@@ -305,7 +319,7 @@ fn known_of<'g>(m: &Mechanism<'g, '_>, body: &Body<'g>, values: &[Option<f64>]) 
         }
         RotationCoordinates::Euler => {
             let p: Option<Vec<f64>> = (EULER..EULER + 4).map(value).collect();
-            p.map(|p| UnitQuaternion::from_quaternion(Quaternion::new(p[0], p[1], p[2], p[3])))
+            p.map(|p| UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(p[0], p[1], p[2], p[3])))
         }
     };
     Known { position: [0, 1, 2].map(value), orientation }
@@ -322,5 +336,5 @@ fn local(m: &Mechanism, point: PointRef) -> Pose {
     let position = m.local(point);
     let frame = m.local_frame(point);
     let (position, [p0, p1, p2, p3]) = (m.nominal(position.components()), m.nominal(frame.components()));
-    Pose::at(Vector3::from(position), UnitQuaternion::from_quaternion(Quaternion::new(p0, p1, p2, p3)))
+    Pose::at(Vector3::from(position), UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(p0, p1, p2, p3)))
 }

@@ -3,11 +3,11 @@
 //! In each body's own axes, with ω, ω̇ and the acceleration a of its origin, outwards from a root
 //!
 //! ```text
-//! U = ω̇̃ + ω̃ ω̃          ω_c = Rᵣᵀ ω_p + u φ̇          ω̇_c = Rᵣᵀ ω̇_p + u φ̈ + (Rᵣᵀ ω_p) × u φ̇
-//! a_c = Rᵣᵀ (a_p + U_p ρ + 2 ω_p × e ṡ + e s̈) − U_c f
+//! U = ω̇̃ + ω̃ ω̃          ω_c = Rᵣᵀ ω_p + Ω          ω̇_c = Rᵣᵀ ω̇_p + Ω̇ + (Rᵣᵀ ω_p) × Ω
+//! a_c = Rᵣᵀ (a_p + U_p ρ + 2 ω_p × ρ̇ + ρ̈) − U_c f
 //! ```
 //!
-//! u and e being the joint's axis in the body's and in its parent's frame, and back, m s being the body's first and
+//! with the relative motion Ω = Σ u φ̇, ρ̇ = Σ e ṡ of the joint ([`crate::multibody::RelativeMotion`]), and back, m s being the body's first and
 //! Σ = ½ tr J₀ 1 − J₀ its second moment of mass about the origin,
 //!
 //! ```text
@@ -24,8 +24,12 @@ use symdiff::Scalar;
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
 use super::reaction::Reaction;
+use crate::elements::joints::Mobilizer;
 use crate::grammar::JointCoordinate;
-use crate::multibody::{Body, Matrix, RelativeMotion, RotationCoordinates, Vector, Wrench};
+use crate::multibody::{Body, Matrix, Quaternion, RelativeMotion, RotationCoordinates, Vector, Wrench};
+
+/// Coordinates of a joint that turns by them; no other joint has as many.
+const EULER_PARAMETERS: usize = 4;
 
 /// How a body's frame moves, in its own axes.
 #[derive(Clone, Copy)]
@@ -52,15 +56,21 @@ impl<'g> Motion<'g> {
 
     fn of_child(motion: &RelativeMotion<'g>, parent: &Self) -> Self {
         let back = motion.rotation.transposed();
-        let (inherited, own) = (back * parent.omega, motion.angular[0] * motion.axis);
+        let (inherited, own) = (back * parent.omega, motion.turning(0));
         let omega = inherited + own;
         let gyration = inherited.cross(own);
-        let alpha = back * parent.alpha + motion.angular[1] * motion.axis + gyration;
+        let mut alpha = back * parent.alpha + motion.turning(1) + gyration;
+        if let Some([_, in_child]) = motion.gyration {
+            alpha += in_child;
+        }
 
         let rotational = parent.acceleration + parent.spread * motion.outboard_in_parent;
-        let slip = motion.sliding[0] * motion.axis_in_parent;
+        let slip = motion.sliding(0);
         let coriolis = 2.0 * parent.omega.cross(slip);
-        let at_joint = rotational + coriolis + motion.sliding[1] * motion.axis_in_parent;
+        let mut at_joint = rotational + coriolis + motion.sliding(1);
+        if let Some(drift) = motion.drift {
+            at_joint += drift;
+        }
         let at_joint = Self::new(omega, alpha, back * at_joint);
         let acceleration = at_joint.acceleration - at_joint.spread * motion.outboard_in_child;
         Self { acceleration, ..at_joint }
@@ -100,9 +110,13 @@ pub fn inertial_forces<'g>(m: &Mechanism<'g, '_>, field: Vector<'g>) -> Inertial
         let Some(relative) = &m.bodies[index].relative_motion else { continue };
         let wrench = forces.wrenches[index];
         let at_joint = wrench.torque_about(relative.outboard_in_child);
-        let (about, along) = (relative.axis.dot(at_joint), relative.axis.dot(wrench.force));
+        let about = relative.rotations.iter().map(|axis| axis.in_child.dot(at_joint)).collect();
+        let along = relative.translations.iter().map(|axis| axis.in_child.dot(wrench.force)).collect();
         for (row, part) in relative.generalised(about, along) {
             forces.generalised[row] = part;
+        }
+        if relative.dofs.len() == EULER_PARAMETERS {
+            add_along_euler(m, &m.bodies[index], relative, &mut forces.generalised);
         }
         let force = relative.rotation * wrench.force;
         let torque = relative.rotation * at_joint + relative.outboard_in_parent.cross(force);
@@ -154,6 +168,24 @@ fn inertial_wrench<'g>(body: &Body<'g>, motion: &Motion<'g>) -> Wrench<'g> {
         }
     };
     Wrench { force, torque: first.cross(motion.acceleration) + Vector::from(rotational) }
+}
+
+/// 4 μ r rᵀ r̈ on Euler parameters r of a joint, μ a third of the trace of the inertia about it: M knows nothing else of a change of
+/// |r|. It changes no motion, since the multiplier of rᵀr = 1 takes it up.
+fn add_along_euler<'g>(
+    m: &Mechanism<'g, '_>,
+    body: &Body<'g>,
+    relative: &RelativeMotion<'g>,
+    generalised: &mut [Scalar<'g>],
+) {
+    let arm = body.center - relative.outboard_in_child;
+    let inertia = body.inertia.trace() + 2.0 * (body.mass * arm.dot(arm));
+    let [r, second_derivative]: [Quaternion; 2] =
+        [&m.q, &m.w].map(|list| std::array::from_fn(|place| list[relative.dofs[place].index]).into());
+    let along = (4.0 / 3.0 * inertia) * r.dot(second_derivative);
+    for (dof, &component) in relative.dofs.iter().zip(&r.components()) {
+        generalised[dof.index] += along * component;
+    }
 }
 
 /// What a root's own coordinates feel of its children.
@@ -211,21 +243,29 @@ impl<'g> Mechanism<'g, '_> {
         let (force, torque) = (body.rotate(inertial.force), body.rotate(inertial.torque));
         let wrench = Wrench { force: force - applied.force, torque: torque - applied.torque };
         let (mut force, mut torque) = (wrench.force, wrench.torque_about(body.rotate(motion.outboard_in_child)));
-        let axis = body.rotate(motion.axis);
-        let kind = &self.joints[motion.joint].kind;
-        let free = |coordinate| kind.axis_of(coordinate).is_some();
-        let is_helix = kind.mobilizer().is_some_and(|mobilizer| mobilizer.pitch().is_some());
-        if free(JointCoordinate::Angle) {
-            torque = across(torque, axis);
-        }
-        match motion.dofs.as_slice() {
-            // A thread pushes along its axis, and turns by as much as does no work with that.
-            [dof] if is_helix => {
-                let push = force.dot(axis);
-                let twist = dof.rotation * dof.translation * push;
-                torque = torque - twist * axis;
+        let axes: Vec<Vector> = motion.rotations.iter().map(|axis| body.rotate(axis.in_child)).collect();
+        match (self.joints[motion.joint].kind.mobilizer()?, axes.as_slice()) {
+            (Mobilizer::FreeRotation, _) => torque = Vector::zero(self.g),
+            (Mobilizer::TwoRotations { .. }, &[first, second]) => torque = along(torque, first.cross(second)),
+            (Mobilizer::PlanarMotion { .. }, &[normal]) => {
+                torque = across(torque, normal);
+                force = along(force, normal);
             }
-            _ if free(JointCoordinate::Displacement) => force = across(force, axis),
+            (mobilizer, &[axis]) => {
+                if mobilizer.axis_of(JointCoordinate::Angle).is_some() {
+                    torque = across(torque, axis);
+                }
+                match motion.dofs.as_slice() {
+                    // A thread pushes along its axis, and turns by as much as does no work with that.
+                    [dof] if mobilizer.pitch().is_some() => {
+                        let push = force.dot(axis);
+                        let twist = dof.rotation[0] * dof.translation[0] * push;
+                        torque = torque - twist * axis;
+                    }
+                    _ if mobilizer.axis_of(JointCoordinate::Displacement).is_some() => force = across(force, axis),
+                    _ => {}
+                }
+            }
             _ => {}
         }
         if inboard.reversed {
@@ -237,6 +277,11 @@ impl<'g> Mechanism<'g, '_> {
         }
         Some((motion.joint, Reaction { force, magnitude: force.norm(), torque, about_axis: None }))
     }
+}
+
+/// The part of a vector along a unit vector.
+fn along<'g>(a: Vector<'g>, axis: Vector<'g>) -> Vector<'g> {
+    a.dot(axis) * axis
 }
 
 /// The part of a vector across a unit vector.

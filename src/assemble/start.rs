@@ -77,7 +77,8 @@ impl<'g> Mechanism<'g, '_> {
         let value = |&owner: &Owner| match owner {
             Owner::Body(body, coordinate) => placement.value(body, coordinate),
             Owner::Joint(joint, coordinate) => placement.joint(self, joint, coordinate),
-            Owner::Mode | Owner::State => 0.0,
+            // Joints of the plane have one axis.
+            Owner::Relative(..) | Owner::Mode | Owner::State => 0.0,
         };
         Ok(self.coordinates.iter().map(value).collect())
     }
@@ -152,7 +153,7 @@ impl<'g> Mechanism<'g, '_> {
         });
         (named.is_some() || motion.parent == 0).then_some(InboardAngle {
             index: dof.index,
-            rotation: dof.rotation,
+            rotation: *dof.rotation.first()?,
             parent: named,
         })
     }

@@ -136,6 +136,8 @@ pub struct Link {
     pub parent: Option<usize>,
     /// The coordinates of its inboard joint.
     pub coordinates: Vec<usize>,
+    /// Place in the constraints of the one on these coordinates alone: the normalisation of Euler parameters.
+    pub normalisation: Option<usize>,
     /// How it moves, and the forces applied to it and to all its children.
     pub values: Vec<Expr>,
     /// The inertial forces and torques of it and of all its children.

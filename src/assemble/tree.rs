@@ -145,6 +145,14 @@ impl Tree {
         first
     }
 
+    /// The root of a body's tree.
+    pub fn root_of(&self, mut body: usize) -> usize {
+        while let Some(inboard) = self.inboard[body] {
+            body = inboard.parent.body;
+        }
+        body
+    }
+
     fn joints_to_root(&self, mut body: usize) -> Vec<usize> {
         let mut joints = Vec::new();
         while let Some(inboard) = self.inboard[body] {

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! whose right side is zero for z, since residuals are computed through z. It is eliminated link by link from the leaves: forces,
-//! then motions, each with the pivot −1, and then the coordinates of the link's joint, whose pivots are those of articulated
+//! then motions, each with the pivot −1, and then the coordinates of the link's joint, with the multiplier that normalises them, whose pivots are those of articulated
 //! bodies (Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 7). What is left on the link before is as large for a
 //! long chain as for a short one. (Vertices in the sense of Griewank & Walther, *Evaluating Derivatives*, 2nd ed., ch. 9.)
 
@@ -159,7 +159,11 @@ impl Linked {
             of_link[value.link].push(size + place);
         }
         let links = system.links.iter().zip(of_link).rev();
-        let pivots = links.flat_map(|(link, values)| values.into_iter().chain(link.coordinates.iter().copied()));
+        let n = system.q.len();
+        let pivots = links.flat_map(|(link, values)| {
+            let multiplier = link.normalisation.map(|constraint| n + constraint);
+            values.into_iter().chain(link.coordinates.iter().copied()).chain(multiplier)
+        });
         pivots.map(|pivot| (pivot, pivot)).collect()
     }
 }

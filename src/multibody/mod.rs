@@ -25,7 +25,7 @@ pub use own_function::OwnFunction;
 pub use pair::Pair;
 pub use point::{Frame, MaterialPoint};
 pub use relative_displacement::RelativeDisplacement;
-pub use relative_motion::{DegreeOfFreedom, RelativeMotion};
+pub use relative_motion::{AxisMotion, DegreeOfFreedom, RelativeMotion};
 pub use rotation::Quaternion;
 pub use vector::Vector;
 pub use wrench::Wrench;

@@ -58,7 +58,7 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
             return Ok(first);
         }
         let why = first.system.formulation.why.clone();
-        let mut shortest = loop_cuts::shortest(description, first, |other, best| {
+        let mut shortest = loop_cuts::shortest(description, first, false, |other, best| {
             within(assemble::build(other).ok()?, enough(best)).ok()
         });
         shortest.system.formulation.why = why;
@@ -96,7 +96,24 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
             return Ok(joint);
         }
     };
+    if !assemble::has_joints_of_several_axes(description) {
+        return Ok(shorter(absolute, joint));
+    }
+    // What the start says of bodies behind such joints are conditions.
+    if !starts_alike(&absolute, &joint) {
+        return Ok(kept(absolute, "outputs start elsewhere in joint coordinates".to_owned()));
+    }
+    let joint = loop_cuts::shortest(description, joint, true, |other, best| {
+        let system = assemble::in_joint_coordinates(other, None, None).ok()?.ok()?;
+        within(system, enough(best)).ok()
+    });
     Ok(shorter(absolute, joint))
+}
+
+/// A simulator in absolute coordinates, with the reason.
+fn kept(mut absolute: Simulator, why: String) -> Simulator {
+    absolute.system.formulation.why = why;
+    absolute
 }
 
 /// Compiles a model in which joints close loops in the shorter formulation.
@@ -113,10 +130,7 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         }
         Ok(absolute) => absolute,
     };
-    let keep = |mut absolute: Simulator, why: String| {
-        absolute.system.formulation.why = why;
-        Ok(absolute)
-    };
+    let keep = |absolute: Simulator, why: String| Ok(kept(absolute, why));
     if !absolute.mobility.singular_at_start.is_empty() {
         return keep(absolute, "the start is singular".to_owned());
     }
@@ -135,7 +149,7 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
             if passes_singular(description, &absolute) {
                 return keep(absolute, "the nominal motion passes singular configurations".to_owned());
             }
-            let joint = loop_cuts::shortest(description, joint, |other, best| {
+            let joint = loop_cuts::shortest(description, joint, true, |other, best| {
                 let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
                 within(system, enough(best)).ok()
             });

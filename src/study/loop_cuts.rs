@@ -13,11 +13,13 @@ use crate::simulate::Simulator;
 /// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
 const BUDGET: usize = 20_000;
 
-/// The first, or one with another cut and a shorter step that starts alike. `compile` makes one of a description that says its cut, and gives
+/// The first, or one with another cut and a shorter step that starts alike; `with_roots`, also one in which bodies behind joints of several axes have
+/// coordinates of their own. `compile` makes one of a description that says its cut, and gives
 /// up where it takes many times the operations of the best so far. Redundant constraints and a singular start depend on the cut, and are left with the first.
 pub(super) fn shortest(
     description: &Description,
     first: Simulator,
+    with_roots: bool,
     compile: impl Fn(&Description, &Simulator) -> Option<Simulator>,
 ) -> Simulator {
     let is_regular = |simulator: &Simulator| {
@@ -33,7 +35,8 @@ pub(super) fn shortest(
     'exchanges: loop {
         let least = instructions(&best);
         exchanged.cut_at(&best.system.formulation.cut);
-        for cut in assemble::other_cuts(&exchanged) {
+        let roots = if with_roots { assemble::cuts_of_several_axes(&exchanged) } else { Vec::new() };
+        for cut in assemble::other_cuts(&exchanged).into_iter().chain(roots) {
             if spent + least > BUDGET {
                 return best;
             }

@@ -35,6 +35,7 @@ mod honesty_search;
 mod humanoid;
 mod indexing;
 mod invariants;
+mod joints_of_several_axes;
 mod kept;
 mod kinematics;
 mod linkages;

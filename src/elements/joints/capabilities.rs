@@ -41,8 +41,7 @@ pub trait Joint: Debug {
         None
     }
 
-    /// The relative motion, where that is a rotation about and a translation along one axis, so that the joint can
-    /// give a body its place in joint coordinates.
+    /// The relative motion, where the joint can give a body its place in joint coordinates.
     fn mobilizer(&self) -> Option<Mobilizer<'_>> {
         None
     }
@@ -135,6 +134,9 @@ pub trait Joint: Debug {
             Some(Mobilizer::RotationAndTranslation { .. }) => Glyph::Cylinder,
             Some(Mobilizer::Helix { .. }) => Glyph::Screw,
             Some(Mobilizer::Rotation { .. }) => Glyph::Pin,
+            Some(Mobilizer::TwoRotations { .. }) => Glyph::Universal,
+            Some(Mobilizer::PlanarMotion { .. }) => Glyph::Plane,
+            Some(Mobilizer::FreeRotation) => Glyph::Ball,
             None => Glyph::Nothing,
         }
     }
@@ -177,13 +179,20 @@ pub enum Mobilizer<'a> {
     RotationAndTranslation { axis: &'a [Formula; 3] },
     /// Rotation about the axis with a translation of `pitch` in a turn, m.
     Helix { axis: &'a [Formula; 3], pitch: &'a Formula },
+    /// Rotations about an axis of the first frame and about one of the second, which stay perpendicular.
+    TwoRotations { axes: [&'a [Formula; 3]; 2] },
+    /// Translations across the normal and rotation about it.
+    PlanarMotion { normal: &'a [Formula; 3] },
+    /// Any rotation; no translation.
+    FreeRotation,
 }
 
 impl<'a> Mobilizer<'a> {
-    /// The axis; `None` of a weld.
+    /// The one axis about which it turns or along which it slides, of a planar motion the normal; `None` where there is none, or two.
     pub fn axis(&self) -> Option<&'a [Formula; 3]> {
         match *self {
-            Self::Weld { .. } => None,
+            Self::Weld { .. } | Self::TwoRotations { .. } | Self::FreeRotation => None,
+            Self::PlanarMotion { normal } => Some(normal),
             Self::Rotation { axis }
             | Self::Translation { axis, .. }
             | Self::RotationAndTranslation { axis }
@@ -194,9 +203,13 @@ impl<'a> Mobilizer<'a> {
     /// The axis, where the motion has the coordinate.
     pub fn axis_of(&self, coordinate: JointCoordinate) -> Option<&'a [Formula; 3]> {
         let absent = match self {
-            Self::Rotation { .. } => Some(JointCoordinate::Displacement),
+            Self::Rotation { .. } | Self::PlanarMotion { .. } => Some(JointCoordinate::Displacement),
             Self::Translation { .. } => Some(JointCoordinate::Angle),
-            Self::Weld { .. } | Self::RotationAndTranslation { .. } | Self::Helix { .. } => None,
+            Self::Weld { .. }
+            | Self::RotationAndTranslation { .. }
+            | Self::Helix { .. }
+            | Self::TwoRotations { .. }
+            | Self::FreeRotation => None,
         };
         self.axis().filter(|_| absent != Some(coordinate))
     }
@@ -211,7 +224,20 @@ impl<'a> Mobilizer<'a> {
     pub fn twist(&self) -> Option<&'a Formula> {
         match *self {
             Self::Weld { twist } | Self::Translation { twist, .. } => Some(twist),
-            Self::Rotation { .. } | Self::RotationAndTranslation { .. } | Self::Helix { .. } => None,
+            _ => None,
+        }
+    }
+
+    /// Whether its coordinates are an angle about an axis and a displacement along it, or fewer.
+    pub fn has_one_axis(&self) -> bool {
+        !matches!(self, Self::TwoRotations { .. } | Self::PlanarMotion { .. } | Self::FreeRotation)
+    }
+
+    /// The axes of two rotations.
+    fn two_axes(&self) -> Option<[&'a [Formula; 3]; 2]> {
+        match *self {
+            Self::TwoRotations { axes } => Some(axes),
+            _ => None,
         }
     }
 
@@ -225,7 +251,8 @@ impl<'a> Mobilizer<'a> {
 
     /// Every formula in it.
     pub fn formulas(&self) -> impl Iterator<Item = &'a Formula> {
-        self.axis().into_iter().flatten().chain(self.twist()).chain(self.pitch())
+        let axes = self.axis().into_iter().chain(self.two_axes().into_iter().flatten());
+        axes.flatten().chain(self.twist()).chain(self.pitch())
     }
 }
 

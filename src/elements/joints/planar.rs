@@ -9,13 +9,11 @@
 //! on the second body and the opposite on the first, at the same place; the others carry the torque across the normal.
 
 use mbint_derive::Element;
-use symdiff::Formula;
 
 
-use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
-use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::Frames;
 
 /// The second point moves in a plane through the first, and the bodies turn about its normal.
@@ -50,16 +48,12 @@ impl Joint for Planar {
         Some(self.between)
     }
 
+    fn mobilizer(&self) -> Option<Mobilizer<'_>> {
+        Some(Mobilizer::PlanarMotion { normal: &self.normal })
+    }
+
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::AboutAxis })
-    }
-
-    fn glyph(&self) -> Glyph {
-        Glyph::Plane
-    }
-
-    fn direction(&self) -> Option<&[Formula; 3]> {
-        Some(&self.normal)
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

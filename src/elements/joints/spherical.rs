@@ -9,10 +9,9 @@
 use mbint_derive::Element;
 
 
-use crate::elements::Glyph;
 use crate::grammar::{PointRef};
 
-use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, RowDocs, Rows, Separation};
 use super::rows::coincident;
 
 /// Two points coincide.
@@ -42,12 +41,12 @@ impl Joint for Spherical {
         Some(self.between)
     }
 
-    fn placement(&self) -> Option<Placement<'_>> {
-        Some(Placement { separation: Separation::Coincident, orientation: Orientation::Free })
+    fn mobilizer(&self) -> Option<Mobilizer<'_>> {
+        Some(Mobilizer::FreeRotation)
     }
 
-    fn glyph(&self) -> Glyph {
-        Glyph::Ball
+    fn placement(&self) -> Option<Placement<'_>> {
+        Some(Placement { separation: Separation::Coincident, orientation: Orientation::Free })
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -12,12 +12,11 @@
 use mbint_derive::Element;
 
 
-use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
 use crate::multibody::Vector;
 
-use super::{Joint, JointElement, Kinematics, Orientation, Placement, Row, RowDocs, Rows, Separation};
+use super::{Joint, JointElement, Kinematics, Mobilizer, Orientation, Placement, Row, RowDocs, Rows, Separation};
 use super::rows::{Frames, coincident};
 
 /// Two points coincide, and an axis of the first frame stays perpendicular to one of the second.
@@ -52,12 +51,13 @@ impl Joint for Universal {
         Some(self.between)
     }
 
-    fn placement(&self) -> Option<Placement<'_>> {
-        Some(Placement { separation: Separation::Coincident, orientation: Orientation::AboutAxis })
+    fn mobilizer(&self) -> Option<Mobilizer<'_>> {
+        let [first, second] = &self.axes;
+        Some(Mobilizer::TwoRotations { axes: [first, second] })
     }
 
-    fn glyph(&self) -> Glyph {
-        Glyph::Universal
+    fn placement(&self) -> Option<Placement<'_>> {
+        Some(Placement { separation: Separation::Coincident, orientation: Orientation::AboutAxis })
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {
