@@ -3,6 +3,7 @@
 use symdiff::Formula;
 
 use crate::grammar::{Coordinate, Rotation};
+use crate::syntax::mirrors::Mirrors;
 
 /// Elements of a body's inertia tensor about its centre of mass, along its frame's axes, kg m². I_xy = −∫ x y dm, as in
 /// URDF. A body that only turns about z needs no more than zz.
@@ -58,8 +59,8 @@ pub struct Body {
 pub struct Standing {
     /// The body that its ground is.
     pub ground: usize,
-    /// The axis across which it is mirrored, before it is placed.
-    pub mirror: Option<usize>,
+    /// The axes across which it is mirrored, before it is placed.
+    pub mirrors: Mirrors,
 }
 
 impl Body {
