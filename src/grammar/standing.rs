@@ -7,7 +7,7 @@ use symdiff::{Formula, Unary};
 
 use super::reader::Reader;
 use super::symbols::{Coordinate, JointCoordinate, Sensor, Symbol, SymbolTable, TimeOrder};
-use crate::syntax::frame::{Frame, Turned, signed};
+use crate::syntax::frame::{Frame, PLACE, Turned, signed};
 use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Node;
 
@@ -18,7 +18,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// A formula of an instance as one of the model.
     pub(super) fn in_model(&self, formula: Formula, scope: &Scope) -> Formula {
         match scope.frame() {
-            Some(frame) => formula.with_names(|name| self.of_model(name, frame, &scope.full("place."))),
+            Some(frame) => formula.with_names(|name| self.of_model(name, frame, &scope.full(PLACE))),
             None => formula,
         }
     }

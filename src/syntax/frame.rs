@@ -1,7 +1,7 @@
 //! How an instance stands in the model: mirrored, then turned, then moved.
 //!
-//! A place s of the instance is at r = g + R D s: D has the signs of its mirrors, R and g are what its parameters `place.x`, `place.y`,
-//! `place.z`, and `place.angle` or the Euler parameters `place.p0` … `place.p3` say. Here are the formulas of that, as text.
+//! A place s of the instance is at r = g + R D s: D has the signs of its mirrors, R and g are what its parameters `at.model.x`, `at.model.y`,
+//! `at.model.z`, and `at.model.angle` or the Euler parameters `at.model.p0` … `at.model.p3` say. Here are the formulas of that, as text.
 
 use super::mirrors::Mirrors;
 
@@ -30,6 +30,9 @@ pub enum Turned {
     /// By Euler parameters of length 1.
     InSpace,
 }
+
+/// What stands before the names of the parameters of a frame, in the instance itself.
+pub const PLACE: &str = "at.model.";
 
 /// Names of the components of g.
 const POSITION: [&str; 3] = ["x", "y", "z"];

@@ -69,6 +69,11 @@ impl Body {
         self.prescribed_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
     }
 
+    /// Whether it is the ground of an instance.
+    pub fn is_ground_of_instance(&self) -> bool {
+        self.coordinates.is_empty() && self.name.ends_with(".ground")
+    }
+
     /// Whether nothing of it is prescribed, so that a joint alone may say where it is.
     pub fn is_free(&self, spatial: bool) -> bool {
         let has = |coordinate: &Coordinate| self.coordinates.contains(coordinate);

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::placement::{AXES, GROUND, PLACE, scalar};
+use super::placement::{AXES, GROUND, scalar};
 use super::{Writer, mirror, patterns};
-use crate::syntax::frame::{self, Frame, Turned, Vector, about, product, signed, sum};
+use crate::syntax::frame::{self, Frame, PLACE, Turned, Vector, about, product, signed, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -388,7 +388,9 @@ fn scope_of(node: &Node, instance: &Arc<Scope>) -> Arc<Scope> {
             Value::Mapping(entries) => entries.iter().find_map(|entry| found(&entry.value)),
         }
     }
-    Arc::new(found(node).unwrap_or(instance).with_sign(false))
+    // What a mirror wrote out by itself has no names, and no prefix.
+    let own = found(node).filter(|scope| scope.prefix() == instance.prefix());
+    Arc::new(own.unwrap_or(instance).with_sign(false))
 }
 
 /// The formula of a number, its sign included; nothing for what is no number, which its reader reports.

@@ -19,6 +19,9 @@ const MAX_DEPTH: usize = 20;
 /// Sections whose entries an instance has under its own name.
 const NAMED: [&str; 6] = ["bodies", "joints", "effects", "states", "initial", "guess"];
 
+/// What stands before the numbers of an instance's place.
+const AT: &str = "at";
+
 /// An instance to be written out.
 struct New {
     /// Its full name.
@@ -89,7 +92,7 @@ impl Writer<'_, '_> {
 
     /// Writes out an instance, whose entry is that of a copy already; `around` are the assemblies that it is in.
     fn instance(&mut self, outer: &str, entry: &Entry, around: &mut Vec<String>) {
-        if self.is_full || !self.reader.name(entry, "an instance") {
+        if self.is_full || !self.reader.name(entry, "an instance") || !self.is_free(entry, !outer.is_empty()) {
             return;
         }
         let Some(fields) = self.reader.fields::<file::InstanceFile>(&entry.value, entry.key_span.clone()) else {
@@ -181,6 +184,9 @@ impl Writer<'_, '_> {
         let copies = NAMED.map(|section| self.repeated(&entries_of(section), shift, Some(scope)));
         let [bodies, joints, effects, states, initial, guess] = copies;
         let (ground, bodies): (Vec<Entry>, Vec<Entry>) = bodies.into_iter().partition(|body| body.key == GROUND);
+        for part in [&bodies, &joints, &effects, &states].into_iter().flatten() {
+            self.is_free(part, true);
+        }
         if scope.has_ground() {
             let points = ground.first().and_then(|ground| ground.value.get("points")).cloned();
             self.ground(prefix, at, points, scope);
@@ -200,6 +206,18 @@ impl Writer<'_, '_> {
             start..self.entries(section).len()
         });
         Places { bodies, joints, effects, starts: [("initial", initial), ("guess", guess)] }
+    }
+
+    /// Whether an instance or a part of one may be called so.
+    fn is_free(&mut self, entry: &Entry, is_part: bool) -> bool {
+        let why = match entry.key.as_str() {
+            GROUND => "what does not move is called so",
+            AT if is_part => "numbers of the instance's place are called so: `left.at.x`",
+            _ => return true,
+        };
+        let message = format!("`{}` cannot be the name of a part or an instance", entry.key);
+        self.reader.error(entry.key_span.clone(), message, why.to_owned());
+        false
     }
 
     /// Reports instances that are called like something else, and names that are there twice.

@@ -1,14 +1,14 @@
 //! `at` and `mirror` of instances: where an assembly's ground is in the model.
 //!
 //! What an instance says of its place are its parameters `at.x` and so on, in the frame of the instance that it is in. Where it is in the
-//! model follows: `place.x`, … ([`crate::syntax::frame`]).
+//! model follows: `at.model.x`, … ([`crate::syntax::frame`]).
 
 use std::sync::Arc;
 
 use super::{Writer, mirror};
 use crate::grammar::reader::Fields;
 use crate::model::file;
-use crate::syntax::frame::{Frame, Turned, about, about_z, product, signed, sum};
+use crate::syntax::frame::{Frame, PLACE, Turned, about, about_z, product, signed, sum};
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
@@ -124,35 +124,7 @@ impl Writer<'_, '_> {
                 let [roll, pitch, yaw] = [0, 1, 2].map(|axis| about(axis, &own(ANGLES[axis])));
                 product(&yaw, &product(&pitch, &roll))
             }
-            "axis" => {
-                let angle = self.reader.required(&fields, "angle")?;
-                let mut axis = value.clone();
-                mirror::written_out(&mut axis);
-                if let Value::Sequence(items) = &mut axis.value
-                    && items.len() == 2
-                {
-                    items.push(plain("0", &value.span));
-                }
-                let items = self.reader.list_of(&axis, 3)?;
-                let is_zero = |item: &Node| item.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0));
-                if items.iter().all(is_zero) {
-                    self.reader.error(value.span.clone(), "a direction of length zero points nowhere", None);
-                    return None;
-                }
-                placement.numbers.push(("angle".to_owned(), angle.clone(), "rad"));
-                if let Some(letter) =
-                    value.scalar().and_then(|scalar| AXES.iter().position(|axis| *axis == scalar.text))
-                {
-                    about(letter, &own("angle"))
-                } else {
-                    let names = AXES.map(|axis| format!("axis_{axis}"));
-                    let numbers = names.iter().zip(items).map(|(name, item)| (name.clone(), item.clone(), ""));
-                    placement.numbers.extend(numbers);
-                    let ([x, y, z], angle) = (names.map(|name| own(&name)), own("angle"));
-                    let part = |component: &String| format!("{component}*sin({angle}/2)/sqrt({x}^2 + {y}^2 + {z}^2)");
-                    [format!("cos({angle}/2)"), part(&x), part(&y), part(&z)]
-                }
-            }
+            "axis" => return self.about_axis(placement, prefix, &fields, value),
             _ => {
                 let names = ["p0", "p1", "p2", "p3"];
                 list(&names, "")?;
@@ -164,7 +136,30 @@ impl Writer<'_, '_> {
         Some(())
     }
 
-    /// The parameters that say where an instance is: `front_left.at.x` as it says itself, `front_left.place.x` in the model.
+    /// Reads a rotation about an axis; that about z is an angle, as in the plane.
+    fn about_axis(&mut self, placement: &mut Placement, prefix: &str, fields: &Fields, axis: &Node) -> Option<()> {
+        let angle = self.reader.required(fields, "angle")?;
+        placement.numbers.push(("angle".to_owned(), angle.clone(), "rad"));
+        let angle = format!("{prefix}at.angle");
+        if let Some(letter) = axis.scalar().and_then(|scalar| AXES.iter().position(|axis| *axis == scalar.text)) {
+            placement.quaternion = (letter < 2).then(|| about(letter, &angle));
+            return Some(());
+        }
+        let items = self.reader.list_of(axis, 3)?;
+        if items.iter().all(|item| item.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0))) {
+            self.reader.error(axis.span.clone(), "a direction of length zero points nowhere", None);
+            return None;
+        }
+        let names = AXES.map(|axis| format!("axis_{axis}"));
+        let numbers = names.iter().zip(items).map(|(name, item)| (name.clone(), item.clone(), ""));
+        placement.numbers.extend(numbers);
+        let [x, y, z] = names.map(|name| format!("{prefix}at.{name}"));
+        let part = |component: &String| format!("{component}*sin({angle}/2)/sqrt({x}^2 + {y}^2 + {z}^2)");
+        placement.quaternion = Some([format!("cos({angle}/2)"), part(&x), part(&y), part(&z)]);
+        Some(())
+    }
+
+    /// The parameters that say where an instance is: `front_left.at.x` as it says itself, `front_left.at.model.x` in the model.
     pub(super) fn parameters_of(
         &mut self,
         prefix: &str,
@@ -186,7 +181,7 @@ impl Writer<'_, '_> {
         for (key, text) in in_model(placement, prefix, outer, frame) {
             let span = placement.span.clone();
             let entry =
-                Entry { key: format!("{prefix}place.{key}"), key_span: span.clone(), value: plain(&text, &span) };
+                Entry { key: format!("{prefix}{PLACE}{key}"), key_span: span.clone(), value: plain(&text, &span) };
             self.add("parameters", entry);
         }
     }
@@ -203,7 +198,7 @@ impl Writer<'_, '_> {
         let mut held: Vec<Entry> = coordinates.map(|(axis, origin)| field(axis, name(origin))).collect();
         match frame.turned {
             Turned::Not => {}
-            Turned::ByAngle => held.push(field("angle", name("place.angle"))),
+            Turned::ByAngle => held.push(field("angle", name(&format!("{PLACE}angle")))),
             Turned::InSpace => {
                 let p = frame.quaternion(PLACE).map(|p| name(&p));
                 held.push(field("orientation", mapping(vec![field("quaternion", sequence(p.into()))])));
@@ -221,9 +216,6 @@ impl Writer<'_, '_> {
         self.add("bodies", field(&format!("{prefix}{GROUND}"), mapping(keys)));
     }
 }
-
-/// What stands before the names of the parameters of a frame, in the instance itself.
-pub(super) const PLACE: &str = "place.";
 
 /// The parameters of an instance's frame in the model, with their formulas.
 fn in_model(placement: &Placement, prefix: &str, outer: Option<&Scope>, frame: Frame) -> Vec<(String, String)> {
