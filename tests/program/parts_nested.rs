@@ -1,5 +1,8 @@
 //! Instances within instances that are placed and mirrored, against the same mechanisms written by hand.
 
+use std::fs;
+use std::path::Path;
+
 use mbint::inner::model::{self, Description, Override};
 use mbint::inner::results::Bounds;
 use mbint::inner::study::{self, Options};
@@ -49,7 +52,7 @@ assemblies:
     parameters: { l: 0.3 m ± 1% }
     bodies:
       ground: { points: { A: [0.1, 0.2], D: [0.5, 0.3] } }
-      bar: { mass: 2, inertia: 2*l^2/12, center_of_mass: [0.01, 0.02], points: { A: [-l/2, 0.01], B: [l/2, 0.03] } }
+      bar: { mass: 2, inertia: 2 kg * l^2/12, center_of_mass: [0.01, 0.02], points: { A: [-l/2, 0.01], B: [l/2, 0.03] } }
       slide: { mass: 1, inertia: 0.01 }
       bob: { mass: 0.5, coordinates: [x, y], points: { P: [0.1, 0.02] } }
     joints:
@@ -108,7 +111,7 @@ fn corner(name: &str, at: Planar) -> [String; 5] {
     let push = force(format!("1 N + 1 N/m*{}", x(&bar)), format!("3 N - 2 N*s/m*{}", vy(&format!("{bar}.B"))));
     let hold = force(format!("-20 N/m*{} - 2 N*s/m*{}", x(&bob), vx(&bob)), format!("-30 N/m*({} - 0.1 m)", y(&bob)));
     let bodies = format!(
-        "  {name}_bar: {{ mass: 2, inertia: 2*l^2/12, center_of_mass: [0.01, {s}*0.02], points: {{ A: [-l/2, {s}*0.01], B: [l/2, {s}*0.03], tip: [l/2, {s}*0.05] }} }}
+        "  {name}_bar: {{ mass: 2, inertia: 2 kg * l^2/12, center_of_mass: [0.01, {s}*0.02], points: {{ A: [-l/2, {s}*0.01], B: [l/2, {s}*0.03], tip: [l/2, {s}*0.05] }} }}
   {name}_slide: {{ mass: 1, inertia: 0.01 }}
   {name}_bob: {{ mass: 0.5, coordinates: [x, y], held: {{ angle: {phi} }}, points: {{ P: [0.1, {s}*0.02] }} }}
 "
@@ -515,6 +518,42 @@ outputs: {{ h1: one.hip.angle, h2: -two.hip.angle, k1: one.knee.angle, k2: -two.
         let [one, two] = ["1", "2"].map(|number| courses(&found, &format!("{name}{number}")));
         for (one, two) in one.iter().flatten().zip(two.iter().flatten()) {
             assert!((one - two).abs() < 1e-9, "{name}: {one} and {two}");
+        }
+    }
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The gripper of the guide is that of the models, whose fingers are written without parts.
+#[test]
+fn a_gripper_of_linkages_is_the_gripper() {
+    let file = "docs/examples/gripper_of_parts.yaml";
+    let page = fs::read_to_string(root().join("docs/guides/parts.md")).unwrap();
+    assert!(page.contains(&fs::read_to_string(root().join(file)).unwrap()));
+    let [parts, whole] = [file, "models/gripper.yaml"].map(|file| {
+        let model = model::load(&root().join(file), &[]).unwrap();
+        study::run(&model, Options::default()).unwrap().0
+    });
+    same(&parts, &whole);
+}
+
+/// Legs that differ by their places alone move alike, and start where plane geometry says.
+#[test]
+fn legs_around_a_body_move_alike() {
+    let model = model::load(&root().join("docs/examples/hexapod.yaml"), &[]).unwrap();
+    let (found, _) = study::run(&model, Options::default()).unwrap();
+    let bend = 80_f64.to_radians();
+    for (output, start) in [("foot", -0.16 * bend.sin()), ("reach", 0.1 + 0.12 + 0.16 * bend.cos())] {
+        let first = courses(&found, &format!("{output}_1"));
+        assert!((first[0][0] - start).abs() < 1e-12);
+        assert!(first[2][0] > first[1][0] + 1e-4, "shins differ");
+        for leg in 2..=6 {
+            let other = courses(&found, &format!("{output}_{leg}"));
+            for (one, other) in first.iter().flatten().zip(other.iter().flatten()) {
+                assert!((one - other).abs() < 1e-9, "{output}_{leg}: {one} and {other}");
+            }
         }
     }
 }

@@ -1,11 +1,12 @@
-//! What an assembly says of its parts, as it is in the model: images in mirrors, and numbers in the model's frame.
+//! Bodies, joints and effects of an assembly, as they are in the model: images in mirrors, and directions of the model.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::placement::{AXES, GROUND, scalar};
+use super::turned::{euler, quaternion, text, turn};
 use super::{Writer, mirror, patterns};
-use crate::syntax::frame::{self, Frame, PLACE, Turned, Vector, about, product, signed, sum};
+use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -23,15 +24,6 @@ pub(super) struct Places {
 /// Effects with vectors along the axes of the ground.
 const DIRECTED: [(&str, &str); 4] =
     [("spring_damper", "along"), ("force", "value"), ("drag", "wind"), ("torque", "value")];
-
-/// What a start value is of.
-enum Of {
-    /// A body, or a point of one.
-    Place,
-    /// A body's rate of rotation, by its parts.
-    Rate,
-    Joint,
-}
 
 impl Writer<'_, '_> {
     /// Makes images of bodies, joints and effects, and turns directions of the ground.
@@ -95,151 +87,6 @@ impl Writer<'_, '_> {
         Some(some)
     }
 
-    /// Gives start values of bodies in the model's frame, and those of joints in a mirror.
-    pub(super) fn starts(&mut self, places: &Places, scope: &Arc<Scope>) {
-        let Some(frame) = scope.frame() else { return };
-        for (section, range) in &places.starts {
-            let said = self.taken(section, range);
-            let mut starts = said.clone();
-            for (index, start) in starts.iter_mut().enumerate() {
-                let Some((owner, _)) = said[index].key.rsplit_once('.') else { continue };
-                match self.of(owner) {
-                    Some(Of::Joint) => {
-                        let is_angle = start.key.ends_with(".angle") || start.key.ends_with(".angular_velocity");
-                        if is_angle && frame.mirrors.is_odd() {
-                            mirror::negate(&mut start.value);
-                        }
-                    }
-                    Some(of) => self.start(start, &of, &said, (frame, scope)),
-                    None => {}
-                }
-            }
-            self.put(section, range, starts);
-        }
-    }
-
-    /// What something is that has start values.
-    fn of(&self, owner: &str) -> Option<Of> {
-        let target = |name: &str| self.parts.port(name).unwrap_or(name).to_owned();
-        let is_body = |name: &str| self.bodies.contains(target(name).as_str());
-        if is_body(owner) {
-            return Some(Of::Place);
-        }
-        if self.turning.contains_key(owner) {
-            return Some(Of::Joint);
-        }
-        match owner.rsplit_once('.') {
-            Some((body, "omega" | "omega_body")) if is_body(body) => Some(Of::Rate),
-            _ => target(owner).rsplit_once('.').filter(|(body, _)| is_body(body)).map(|_| Of::Place),
-        }
-    }
-
-    fn start(&mut self, start: &mut Entry, of: &Of, said: &[Entry], (frame, scope): (Frame, &Arc<Scope>)) {
-        let Some((owner, coordinate)) = start.key.rsplit_once('.').map(|(a, b)| (a.to_owned(), b.to_owned())) else {
-            return;
-        };
-        let mirrors = frame.mirrors;
-        match (of, coordinate.as_str()) {
-            (Of::Place, "omega_body") | (Of::Rate, _)
-                if coordinate == "omega_body" || owner.ends_with(".omega_body") =>
-            {
-                match AXES.iter().position(|axis| *axis == coordinate) {
-                    Some(axis) if mirrors.turns_back(axis) => mirror::negate(&mut start.value),
-                    Some(_) => {}
-                    None => mirrors.axes().for_each(|axis| mirror::axial(&mut start.value, axis)),
-                }
-            }
-            (Of::Place, "omega") => {
-                mirrors.axes().for_each(|axis| mirror::axial(&mut start.value, axis));
-                if frame.is_turned() {
-                    turn(&mut start.value, frame, scope);
-                }
-            }
-            (Of::Place, "orientation") => {
-                mirrors.axes().for_each(|axis| mirror::rotation(&mut start.value, axis));
-                if frame.is_turned() {
-                    orient(&mut start.value, frame, scope);
-                }
-            }
-            (Of::Place, "roll" | "pitch" | "yaw") if frame.is_turned() => {
-                let message = format!("`{}` is about an axis of the model, but the instance is turned", start.key);
-                self.reader.error(
-                    start.key_span.clone(),
-                    message,
-                    "give `orientation`, or coordinates of joints".to_owned(),
-                );
-            }
-            (Of::Place, "roll" | "pitch" | "yaw") => {
-                let axis = usize::from(coordinate == "pitch") + 2 * usize::from(coordinate == "yaw");
-                if mirrors.turns_back(axis) {
-                    mirror::negate(&mut start.value);
-                }
-            }
-            (Of::Place, "angle" | "angular_velocity") => self.angle(start, coordinate == "angle", (frame, scope)),
-            _ => self.component(start, &owner, &coordinate, said, (frame, scope)),
-        }
-    }
-
-    /// The start of a body's angle or of its rate.
-    fn angle(&mut self, start: &mut Entry, is_angle: bool, (frame, scope): (Frame, &Arc<Scope>)) {
-        if frame.turned == Turned::InSpace {
-            let message = format!("`{}` is about the model's z, but the instance is turned in space", start.key);
-            self.reader.error(start.key_span.clone(), message, "give coordinates of joints".to_owned());
-            return;
-        }
-        if frame.mirrors.turns_back(2) {
-            mirror::negate(&mut start.value);
-        }
-        if is_angle && frame.turned == Turned::ByAngle {
-            let Some(text) = text(&start.value) else { return };
-            replace(&mut start.value, &sum([format!("{PLACE}angle"), text].iter()), scope);
-        }
-    }
-
-    /// The start of a component of a place, of its velocity, or of a body's rate of rotation.
-    fn component(
-        &mut self,
-        start: &mut Entry,
-        owner: &str,
-        coordinate: &str,
-        said: &[Entry],
-        (frame, scope): (Frame, &Arc<Scope>),
-    ) {
-        let (is_velocity, letter) = match coordinate.strip_prefix('v') {
-            Some(letter) => (true, letter),
-            None => (owner.ends_with(".omega"), coordinate),
-        };
-        let Some(axis) = AXES.iter().position(|axis| *axis == letter) else { return };
-        let is_rate = owner.ends_with(".omega");
-        let row = frame.rotation(PLACE)[axis].clone();
-        let mut vector: Vector = ["0"; 3].map(str::to_owned);
-        for other in (0..3).filter(|&other| row[other] != "0") {
-            let key = format!("{owner}.{}{}", &coordinate[..coordinate.len() - 1], AXES[other]);
-            let Some(found) = said.iter().find(|known| known.key == key) else {
-                let name = key.rsplit('.').next().unwrap_or(&key);
-                let message = format!("`{}` is given without `{name}`, but the instance is turned", start.key);
-                let all = if frame.turned == Turned::InSpace { "all three" } else { "both" };
-                self.reader.error(start.key_span.clone(), message, format!("give {all}, or the coordinates of joints"));
-                return;
-            };
-            let is_negative = if is_rate { frame.mirrors.turns_back(other) } else { frame.mirrors.flips(other) };
-            let Some(text) = text(&found.value) else { return };
-            vector[other] = signed(&text, is_negative);
-        }
-        let origin = frame.origin(PLACE)[axis].clone();
-        if !frame.is_turned() && (is_velocity || origin == "0") {
-            // Nothing but its sign can be another.
-            let is_negative = if is_rate { frame.mirrors.turns_back(axis) } else { frame.mirrors.flips(axis) };
-            if is_negative {
-                mirror::negate(&mut start.value);
-            }
-            return;
-        }
-        let origin = if is_velocity { "0".to_owned() } else { origin };
-        let seen = frame.turn(PLACE, &vector)[axis].clone();
-        replace(&mut start.value, &sum([origin, seen].iter()), scope);
-    }
-
     /// Holds the coordinates that a body does not have where the instance has them.
     fn hold(&mut self, body: &mut Entry, frame: Frame, scope: &Arc<Scope>) {
         let Value::Mapping(keys) = &mut body.value.value else { return };
@@ -247,57 +94,28 @@ impl Writer<'_, '_> {
         let (span, at) = (coordinates.value.span.clone(), coordinates.key_span.clone());
         let Value::Sequence(items) = &coordinates.value.value else { return };
         let is_free = |name: &str| items.iter().any(|item| item.scalar().is_some_and(|scalar| scalar.text == name));
-        let free = AXES.map(is_free);
-        let (has_angle, has_orientation) = (is_free("angle"), is_free("orientation"));
+        let (free, turns) = (AXES.map(is_free), ["angle", "orientation"].map(is_free));
         let is_mixed = match frame.turned {
             Turned::Not => false,
             Turned::ByAngle => free[0] != free[1],
-            Turned::InSpace => has_angle || free != [free[0]; 3],
+            Turned::InSpace => turns[0] || free != [free[0]; 3],
         };
         if is_mixed {
-            let name = body.key.rsplit('.').next().unwrap_or_default();
+            let name = body.key.strip_prefix(scope.prefix()).unwrap_or(&body.key);
             let message = format!("the coordinates of `{name}` are along the model's axes, but the instance is turned");
             let help = "give it all coordinates, and guide it by a joint such as `prismatic`".to_owned();
             self.reader.error(span, message, help);
             return;
         }
-        let held = keys.iter().find(|key| key.key == "held").map(|key| key.value.clone());
-        let mut held: Vec<Entry> = match held.map(|node| node.value) {
-            Some(Value::Mapping(entries)) => entries,
+        let mut held: Vec<Entry> = match keys.iter().find(|key| key.key == "held").map(|key| &key.value.value) {
+            Some(Value::Mapping(entries)) => entries.clone(),
             Some(_) => return,
             None => Vec::new(),
         };
-        let number = |name: &str| match held.iter().find(|key| key.key == name) {
-            Some(key) => text(&key.value),
-            None => Some("0".to_owned()),
-        };
-        let [Some(x), Some(y), Some(z), Some(own_angle)] = ["x", "y", "z", "angle"].map(number) else { return };
-        let (origin, seen) = (frame.origin(PLACE), frame.turn(PLACE, &[x, y, z]));
-        let mut wanted: Vec<(&str, Node)> = Vec::new();
-        for axis in (0..3).filter(|&axis| !free[axis] && (frame.is_turned() || origin[axis] != "0")) {
-            let value = sum([origin[axis].clone(), seen[axis].clone()].iter());
-            if value != "0" {
-                wanted.push((AXES[axis], scalar(&value, scope, &span)));
-            }
-        }
-        let orientation = held.iter().find(|key| key.key == "orientation").map(|key| key.value.clone());
-        if !has_angle && !has_orientation && frame.is_turned() {
-            if frame.turned == Turned::ByAngle && orientation.is_none() {
-                let angle = sum([format!("{PLACE}angle"), own_angle].iter());
-                wanted.push(("angle", scalar(&angle, scope, &span)));
-            } else {
-                let own = match &orientation {
-                    Some(node) => quaternion(node),
-                    None => Some(frame::about_z(&own_angle)),
-                };
-                let Some(own) = own else { return };
-                held.retain(|key| key.key != "angle");
-                let p = product(&frame.quaternion(PLACE), &own).map(|p| scalar(&p, scope, &span));
-                wanted.push(("orientation", euler(p, &span)));
-            }
-        }
+        // What is not well formed its reader reports.
+        let Some(wanted) = held_in_model(&held, frame, free, turns.contains(&true), (scope, &span)) else { return };
         for (name, value) in wanted {
-            held.retain(|key| key.key != name);
+            held.retain(|key| key.key != name && !(name == "orientation" && key.key == "angle"));
             held.push(Entry { key: name.to_owned(), key_span: at.clone(), value });
         }
         if held.is_empty() {
@@ -307,6 +125,40 @@ impl Writer<'_, '_> {
         let value = Node { span, value: Value::Mapping(held) };
         keys.push(Entry { key: "held".to_owned(), key_span: at, value });
     }
+}
+
+/// What is held in the model's frame, of a body that has some lengths as coordinates, and perhaps turns.
+fn held_in_model(
+    held: &[Entry],
+    frame: Frame,
+    free: [bool; 3],
+    turns: bool,
+    (scope, span): (&Arc<Scope>, &Span),
+) -> Option<Vec<(&'static str, Node)>> {
+    let of = |name: &str| held.iter().find(|key| key.key == name).map(|key| &key.value);
+    let number = |name: &str| of(name).map_or_else(|| Some("0".to_owned()), text);
+    let (origin, angle) = (frame.origin(PLACE), number("angle")?);
+    let seen = frame.turn(PLACE, &[number("x")?, number("y")?, number("z")?]);
+    let mut wanted = Vec::new();
+    for axis in (0..3).filter(|&axis| !free[axis] && (frame.is_turned() || origin[axis] != "0")) {
+        let value = sum([origin[axis].clone(), seen[axis].clone()].iter());
+        if value != "0" {
+            wanted.push((AXES[axis], scalar(&value, scope, span)));
+        }
+    }
+    if turns || !frame.is_turned() {
+        return Some(wanted);
+    }
+    let orientation = of("orientation");
+    if frame.turned == Turned::ByAngle && orientation.is_none() {
+        let angle = sum([format!("{PLACE}angle"), angle].iter());
+        wanted.push(("angle", scalar(&angle, scope, span)));
+        return Some(wanted);
+    }
+    let own = orientation.map_or_else(|| Some(about_z(&angle)), quaternion)?;
+    let p = product(&frame.quaternion(PLACE), &own).map(|p| scalar(&p, scope, span));
+    wanted.push(("orientation", euler(p, span)));
+    Some(wanted)
 }
 
 /// The kind of joints that turn, with an angle that a mirror counts the other way.
@@ -322,90 +174,4 @@ fn turn_directions(effect: &mut Entry, frame: Frame, scope: &Arc<Scope>) {
         mirror::written_out(&mut key.value);
         turn(&mut key.value, frame, scope);
     }
-}
-
-/// Turns a list of components; a number stays, and so does a list that is none.
-fn turn(node: &mut Node, frame: Frame, scope: &Arc<Scope>) {
-    let span = node.span.clone();
-    let scope = scope_of(node, scope);
-    let Value::Sequence(items) = &mut node.value else { return };
-    let Some(mut parts) = texts(items).filter(|parts| (2..=3).contains(&parts.len())) else { return };
-    let count = if frame.turned == Turned::InSpace { 3 } else { items.len() };
-    let z = if parts.len() == 3 { parts.remove(2) } else { "0".to_owned() };
-    let [x, y] = [parts.remove(0), parts.remove(0)];
-    let turned = frame.turn(PLACE, &[x, y, z]);
-    *items = turned.iter().take(count).map(|text| scalar(text, &scope, &span)).collect();
-}
-
-/// Turns an orientation.
-fn orient(node: &mut Node, frame: Frame, scope: &Arc<Scope>) {
-    let Some(own) = quaternion(node) else { return };
-    let scope = scope_of(node, scope);
-    let span = node.span.clone();
-    let p = product(&frame.quaternion(PLACE), &own).map(|p| scalar(&p, &scope, &span));
-    *node = euler(p, &span);
-}
-
-/// A rotation by its Euler parameters.
-fn euler(p: [Node; 4], span: &Span) -> Node {
-    let value = Node { span: span.clone(), value: Value::Sequence(p.into()) };
-    let key = Entry { key: "quaternion".to_owned(), key_span: span.clone(), value };
-    Node { span: span.clone(), value: Value::Mapping(vec![key]) }
-}
-
-/// The Euler parameters of a rotation, of any length; nothing where it is not well formed, which its reader reports.
-fn quaternion(node: &Node) -> Option<[String; 4]> {
-    let list = |node: &Node| match &node.value {
-        Value::Sequence(items) => texts(items),
-        _ => None,
-    };
-    if let Some(p) = node.get("quaternion") {
-        return list(p)?.try_into().ok();
-    }
-    if let Some(angles) = node.get("rpy") {
-        let [roll, pitch, yaw]: [String; 3] = list(angles)?.try_into().ok()?;
-        return Some(product(&about(2, &yaw), &product(&about(1, &pitch), &about(0, &roll))));
-    }
-    let angle = text(node.get("angle")?)?;
-    let mut axis = node.get("axis")?.clone();
-    if let Some(letter) = axis.scalar().and_then(|scalar| AXES.iter().position(|axis| *axis == scalar.text)) {
-        return Some(about(letter, &angle));
-    }
-    mirror::written_out(&mut axis);
-    let mut axis = list(&axis)?;
-    axis.resize(3, "0".to_owned());
-    let length = format!("sqrt(({})^2 + ({})^2 + ({})^2)", axis[0], axis[1], axis[2]);
-    let part = |component: &String| format!("({component})*sin(({angle})/2)/{length}");
-    Some([format!("cos(({angle})/2)"), part(&axis[0]), part(&axis[1]), part(&axis[2])])
-}
-
-/// The scope of the numbers of a node, without their signs; the instance's where they have none.
-fn scope_of(node: &Node, instance: &Arc<Scope>) -> Arc<Scope> {
-    fn found(node: &Node) -> Option<&Scope> {
-        match &node.value {
-            Value::Scalar(scalar) => scalar.scope.as_deref(),
-            Value::Sequence(items) => items.iter().find_map(found),
-            Value::Mapping(entries) => entries.iter().find_map(|entry| found(&entry.value)),
-        }
-    }
-    // What a mirror wrote out by itself has no names, and no prefix.
-    let own = found(node).filter(|scope| scope.prefix() == instance.prefix());
-    Arc::new(own.unwrap_or(instance).with_sign(false))
-}
-
-/// The formula of a number, its sign included; nothing for what is no number, which its reader reports.
-fn text(node: &Node) -> Option<String> {
-    let scalar = node.scalar()?;
-    let is_negated = scalar.scope.as_ref().is_some_and(|scope| scope.is_negated());
-    let text = if scalar.text.parse() == Ok(0.0) { "0" } else { scalar.text.trim() };
-    Some(signed(text, is_negated))
-}
-
-fn texts(items: &[Node]) -> Option<Vec<String>> {
-    items.iter().map(text).collect()
-}
-
-/// Writes another formula instead of a number.
-fn replace(node: &mut Node, text: &str, scope: &Arc<Scope>) {
-    *node = scalar(text, &scope_of(node, scope), &node.span.clone());
 }

@@ -14,6 +14,8 @@ pub mod patterns;
 mod placement;
 mod ports;
 mod repeat;
+mod starts;
+mod turned;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;

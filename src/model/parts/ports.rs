@@ -37,7 +37,7 @@ impl Writer<'_, '_> {
             if matches!(entry.value.value, Value::Mapping(_)) {
                 mirrors.axes().for_each(|axis| mirror::frame(&mut entry.value, axis));
             }
-            if !self.reader.name(&entry, "a port") {
+            if !self.reader.name(&entry, "a port") || !self.is_free(&entry, true) {
                 continue;
             }
             let name = format!("{prefix}{}", entry.key);
