@@ -42,7 +42,7 @@ impl Inventory {
             inventory.constraints += rows - drives;
             inventory.joints += usize::from(rows > drives);
         }
-        for body in &description.bodies[1..] {
+        for body in description.bodies[1..].iter().filter(|body| !body.is_ground_of_instance()) {
             let [held, driven] = held(description, body);
             inventory.held += held;
             inventory.drives += driven;

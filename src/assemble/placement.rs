@@ -74,21 +74,21 @@ pub struct PlanarPoses {
 #[derive(Clone, Copy, Default)]
 struct Frame {
     pose: [f64; DEGREES_OF_FREEDOM],
-    /// The axis across which the instance is mirrored.
-    mirror: Option<usize>,
+    /// Whether the instance is mirrored along x and along y.
+    is_flipped: [bool; 2],
 }
 
 impl Frame {
     /// A vector along the instance's x.
     fn along(self, length: f64) -> [f64; 2] {
-        let length = if self.mirror == Some(0) { -length } else { length };
+        let length = if self.is_flipped[0] { -length } else { length };
         at([0.0, 0.0, self.pose[ANGLE]], [length, 0.0])
     }
 
     /// How high a direction points.
     fn height(self, direction: f64) -> f64 {
         let height = math::sin(direction - self.pose[ANGLE]);
-        if self.mirror == Some(1) { -height } else { height }
+        if self.is_flipped[1] { -height } else { height }
     }
 }
 
@@ -111,8 +111,11 @@ impl PlanarPoses {
         }
         let poses: Vec<_> = given.iter().map(|given| Some([given[0]?, given[1]?, given[ANGLE]?])).collect();
         let frame = |standing: &Option<Standing>| {
-            let found = standing.and_then(|found| Some(Frame { pose: poses[found.ground]?, mirror: found.mirror }));
-            found.unwrap_or_default()
+            let frame = |found: &Standing| {
+                let is_flipped = [0, 1].map(|axis| found.mirrors.flips(axis));
+                Some(Frame { pose: poses[found.ground]?, is_flipped })
+            };
+            standing.as_ref().and_then(frame).unwrap_or_default()
         };
         let frames = standing.iter().map(frame).collect();
         let mut placement = Self { links: links(m, known)?, given, poses, frames };

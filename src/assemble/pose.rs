@@ -82,8 +82,8 @@ pub struct Poses<'m, 'g, 'd> {
     poses: Vec<Option<Pose>>,
     /// In which the bodies are looked for: the grounds of their instances.
     frames: Vec<Pose>,
-    /// The axes across which the instances are mirrored.
-    mirrors: Vec<Option<usize>>,
+    /// Whether along x the instances are mirrored.
+    is_flipped: Vec<bool>,
 }
 
 impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
@@ -102,9 +102,10 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
         let poses: Vec<Option<Pose>> = known.iter().map(complete).collect();
         let frame = |standing: &Option<Standing>| standing.and_then(|found| poses[found.ground]).unwrap_or_default();
         let frames = standing.iter().map(frame).collect();
-        let mirrors = standing.iter().map(|standing| standing.and_then(|found| found.mirror)).collect();
+        let flips = |standing: &Option<Standing>| standing.is_some_and(|found| found.mirrors.flips(0));
+        let is_flipped = standing.iter().map(flips).collect();
         let links = vec![Vec::new(); m.bodies.len()];
-        let mut placed = Self { mechanism: m, known, values, links, poses, frames, mirrors };
+        let mut placed = Self { mechanism: m, known, values, links, poses, frames, is_flipped };
         placed.find_links()?;
         placed.walk();
         Ok(placed)
@@ -277,7 +278,7 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
             LinkKind::Axis(across) => here.then(&across).position,
             LinkKind::Ball => here.position,
             LinkKind::Loose(distance) => {
-                let distance = if self.mirrors[link.other] == Some(0) { -distance } else { distance };
+                let distance = if self.is_flipped[link.other] { -distance } else { distance };
                 here.position + frame * (distance * Vector3::x())
             }
         };

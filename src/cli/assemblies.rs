@@ -17,9 +17,10 @@ fn line(of: &AssemblySummary) -> String {
         if more > 0 { format!("{shown} and {more} more") } else { shown }
     };
     let instances = count(of.instances.len(), "instance", "instances");
+    let owner = if of.instances.len() == 1 { "its" } else { "their" };
     let independent = match of.independent.as_slice() {
-        [] => "no tolerance of their own".to_owned(),
-        own => format!("{} of their own ({})", count(own.len(), "tolerance", "tolerances"), names(own)),
+        [] => format!("no tolerance of {owner} own"),
+        own => format!("{} of {owner} own ({})", count(own.len(), "tolerance", "tolerances"), names(own)),
     };
     let shared = match of.shared.as_slice() {
         [] => String::new(),

@@ -14,7 +14,6 @@ use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
 use super::unknown;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::scope::Stands;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Node, Scalar};
@@ -100,9 +99,9 @@ impl<S: SymbolTable> Reader<'_, S> {
                 self.error(node.span.clone(), message, "split it into parameters".to_owned());
                 None
             }
-            Ok(formula) => Some(match own_names.map(|names| names.scope.stands()) {
-                Some(Stands::Mirrored) => self.in_mirror(&formula),
-                _ => formula,
+            Ok(formula) => Some(match own_names {
+                Some(names) => self.in_model(formula, names.scope),
+                None => formula,
             }),
             Err(error) => {
                 let span = part.start + error.span.start..part.start + error.span.end;
@@ -134,14 +133,14 @@ impl<S: SymbolTable> Reader<'_, S> {
                         *used = true;
                     }
                 }
-                Ok(symbol) if self.is_of_frame(node, symbol) => {
+                Ok(symbol) if self.is_of_model(node, symbol) => {
                     all_known = false;
                     let part = offset + span.start..offset + span.end;
                     let place =
                         node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
                     let message = format!("`{}` is in the model's frame, not in that of the instance", clip(name));
                     let help =
-                        "in an assembly that is placed or mirrored, use coordinates of joints and lengths of effects";
+                        "in an assembly that is turned or mirrored, use coordinates of joints, or points of the body";
                     self.error(place, message, help.to_owned());
                 }
                 Ok(_) => {}

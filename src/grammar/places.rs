@@ -100,6 +100,12 @@ impl<S: SymbolTable> Reader<'_, S> {
             return Some(found);
         }
         let bodies = || self.model.bodies();
+        // Braces that could not be filled in.
+        let filled = node.scalar().filter(|_| name.contains('{')).and_then(|scalar| scalar.filled().err());
+        if let Some(error) = filled {
+            self.error(node.span.clone(), error.message, error.help);
+            return None;
+        }
         let (message, help) = match self.model.parts_of_beam(name) {
             Some(parts) => (format!("`{name}` is a beam, but one of its nodes belongs here"), Some(parts)),
             None => (format!("unknown body `{}`", clip(name)), suggest::help(name, "bodies", bodies())),

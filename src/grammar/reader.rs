@@ -279,11 +279,11 @@ impl<S: SymbolTable> Reader<'_, S> {
             && letters.all(|c| c.is_alphanumeric() || c == '_');
         if !well_formed {
             let message = format!("`{}` cannot be the name of {what}", clip(name));
-            self.error(
-                entry.key_span.clone(),
-                message,
-                "a name is made of letters, digits and `_`, a letter first".to_owned(),
-            );
+            let help = match name.contains('{') {
+                true => "an index stands in the name of what is repeated: `repeat: { i: 1..6 }`",
+                false => "a name is made of letters, digits and `_`, a letter first",
+            };
+            self.error(entry.key_span.clone(), message, help.to_owned());
         } else if names::is_reserved(name) {
             let message = format!("`{name}` cannot be the name of {what}: it has a meaning of its own in formulas");
             self.error(entry.key_span.clone(), message, None);

@@ -55,6 +55,8 @@ pub trait SymbolTable {
     fn instances(&self) -> impl Iterator<Item = &str> + Clone;
     /// The body or the point of a body that a port of an instance is.
     fn port(&self, name: &str) -> Option<&str>;
+    /// Whether an effect of an instance is on a joint that turns.
+    fn is_on_turning_joint(&self, effect: &str) -> bool;
 
     /// The parameter of a name.
     fn parameter(&self, name: &str) -> Option<usize> {

@@ -4,6 +4,7 @@ use super::motions::{ANGULAR_MOTIONS, JOINT_MOTIONS, MOTIONS, is_motion};
 use super::names::{Context, ENERGIES, NameError, OF_TRAJECTORY, motions};
 use super::quantity::Dimension;
 use super::symbols::{Sensor, SymbolTable};
+use crate::syntax::frame::PLACE;
 use crate::syntax::suggest;
 
 /// What to say of a part that an effect does not have.
@@ -38,6 +39,11 @@ pub fn unknown(table: &impl SymbolTable, name: &str, context: Context) -> NameEr
     }
 }
 
+/// Whether a parameter is one that the model says, and not one that follows from places of instances.
+fn is_said(parameter: &str) -> bool {
+    !parameter.contains(PLACE)
+}
+
 /// Why a name of an instance stands for nothing.
 fn in_instance(table: &impl SymbolTable, name: &str, instance: &str, context: Context) -> NameError {
     let is_owner =
@@ -49,7 +55,7 @@ fn in_instance(table: &impl SymbolTable, name: &str, instance: &str, context: Co
     let start = instance.len() + 1;
     let rest = &name[start..];
     let within = |known: &str| Some(known.strip_prefix(instance)?.strip_prefix('.')?.to_owned());
-    let parameters = table.parameters().filter_map(within);
+    let parameters = table.parameters().filter(|known| is_said(known)).filter_map(within);
     let known: Vec<String> = match context {
         Context::Constant => parameters.collect(),
         _ => parameters.chain(table.parts_of(instance)).chain(table.joints().filter_map(within)).collect(),
@@ -80,7 +86,7 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
         let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
         return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
     }
-    let parameters = table.parameters();
+    let parameters = table.parameters().filter(|known| is_said(known));
     let energies = if context == Context::Output { ENERGIES.map(|(energy, _)| energy).to_vec() } else { Vec::new() };
     let help = match name {
         "time" if context != Context::Constant => Some("the time is `t`".to_owned()),

@@ -6,7 +6,7 @@ use super::formulas::Written;
 use super::names::Context;
 use super::plane;
 use super::quantity::Dimension;
-use super::reader::Reader;
+use super::reader::{Fields, Reader};
 use super::symbols::{Rotation, SymbolTable};
 use super::values;
 use crate::syntax::source::Span;
@@ -42,21 +42,21 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.error(node.span.clone(), "this leaves the plane, but the model is planar", help);
     }
 
+    /// A list of `count` numbers, three or four.
+    pub fn list_of<'n>(&mut self, node: &'n Node, count: usize) -> Option<&'n [Node]> {
+        let found = match &node.value {
+            Value::Sequence(items) if items.len() == count => return Some(items),
+            Value::Sequence(items) => format!("a list of {}", items.len()),
+            _ => node.kind().to_owned(),
+        };
+        let wanted = if count == 3 { "three" } else { "four" };
+        self.error(node.span.clone(), format!("a list of {wanted} numbers belongs here, but here is {found}"), None);
+        None
+    }
+
     /// Three formulas of a dimension.
     pub fn three(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
-        let Value::Sequence(items) = &node.value else {
-            self.error(
-                node.span.clone(),
-                format!("a list of three numbers belongs here, but here is {}", node.kind()),
-                None,
-            );
-            return None;
-        };
-        let [x, y, z] = items.as_slice() else {
-            let message = format!("a list of three numbers belongs here, but here is a list of {}", items.len());
-            self.error(node.span.clone(), message, None);
-            return None;
-        };
+        let [x, y, z] = self.list_of(node, 3)? else { return None };
         let [x, y, z] = [x, y, z].map(|node| self.formula(node, context, wanted));
         Some([x?, y?, z?])
     }
@@ -110,10 +110,10 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(axis)
     }
 
-    /// A rotation of parameters; `at` is where to say that something is missing.
-    pub fn rotation(&mut self, node: &Node, at: Span) -> Option<Rotation> {
+    /// By what a rotation is given, `rpy`, `axis` or `quaternion`, and its keys; `at` is where to say that something is missing.
+    pub fn kind_of_rotation<'n>(&mut self, node: &'n Node, at: Span) -> Option<(&'static str, Fields<'n>)> {
         let fields = self.fields::<values::Rotation>(node, at)?;
-        let given: Vec<&str> =
+        let given: Vec<&'static str> =
             ["rpy", "axis", "quaternion"].into_iter().filter(|key| fields.get(key).is_some()).collect();
         let [kind] = given.as_slice() else {
             let help = "e.g. `{ rpy: [0, 90 deg, 0] }`, `{ axis: z, angle: 30 deg }` or `{ quaternion: [1, 0, 0, 0] }`";
@@ -125,8 +125,14 @@ impl<S: SymbolTable> Reader<'_, S> {
             self.error(fields.key_span("angle"), format!("`angle` goes with `axis`, not with `{kind}`"), None);
             return None;
         }
+        Some((kind, fields))
+    }
+
+    /// A rotation of parameters; `at` is where to say that something is missing.
+    pub fn rotation(&mut self, node: &Node, at: Span) -> Option<Rotation> {
+        let (kind, fields) = self.kind_of_rotation(node, at)?;
         let value = fields.get(kind)?;
-        match *kind {
+        match kind {
             "rpy" => Some(Rotation::RollPitchYaw(self.three(value, Context::Constant, Dimension::ANGLE)?)),
             "axis" => {
                 let axis = self.rotation_axis(value);

@@ -81,6 +81,8 @@ pub struct Description {
     pub instances: Vec<Instance>,
     /// Ports of instances: the body or the point that each is.
     pub ports: BTreeMap<String, String>,
+    /// Effects of instances on joints that turn: what they measure along the joint has the other sign in a mirror.
+    pub turning_effects: BTreeSet<String>,
     /// Effects that are states, or have some.
     pub states: BTreeSet<String>,
     /// Functions of the time by their points.
@@ -225,6 +227,7 @@ impl Description {
             statistics: Statistics::default(),
             instances: Vec::new(),
             ports: BTreeMap::new(),
+            turning_effects: BTreeSet::new(),
             states: BTreeSet::new(),
             trajectories: Vec::new(),
             places: Places::default(),

@@ -107,6 +107,12 @@ impl SymbolTable for Description {
         self.ports.get(name).map(String::as_str)
     }
 
+    fn is_on_turning_joint(&self, effect: &str) -> bool {
+        // Of an effect on many, each is called after it.
+        let mut ends = effect.match_indices('.').map(|(end, _)| end).chain([effect.len()]);
+        !self.turning_effects.is_empty() && ends.any(|end| self.turning_effects.contains(&effect[..end]))
+    }
+
     fn parts_of(&self, instance: &str) -> Vec<String> {
         let names = self.ports.keys().map(String::as_str).chain(self.bodies());
         let within = names.filter_map(|name| name.strip_prefix(instance)?.strip_prefix('.'));

@@ -1,6 +1,9 @@
 //! Numbers with tolerances, written in one piece, as the fields of a parameter's long form.
 
+use crate::grammar::quantity::Dimension;
 use crate::grammar::tolerance::{self, Deviation, Toleranced};
+use crate::grammar::unit::{Unit, number_and_unit};
+use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// The fields `value`, `tolerance`, `interval`, `plus` and `minus` that a number in one piece stands for. What cannot be read is
@@ -28,6 +31,26 @@ pub fn fields_of_parameter(node: &Node) -> Vec<Entry> {
             entries.iter().flat_map(of_entry).collect()
         }
         _ => fields(node),
+    }
+}
+
+/// The dimension of a number that is written with its unit; nothing of a formula.
+pub fn dimension(node: &Node) -> Option<Dimension> {
+    let fields = fields_of_parameter(node);
+    let text =
+        |key: &str| fields.iter().find(|field| field.key == key)?.value.scalar().map(|scalar| scalar.text.as_str());
+    if let Some(unit) = text("unit") {
+        return Unit::parse(unit).ok().map(|unit| unit.dimension);
+    }
+    let (_, unit, _) = number_and_unit(text("value")?)?;
+    Unit::parse(unit).ok().map(|unit| unit.dimension)
+}
+
+/// Whether a number that is given instead of a parameter's own has such a unit; reported where it has another.
+pub fn fits(reader: &mut Reader, given: &Node, own: &Node) -> bool {
+    match (dimension(given), dimension(own)) {
+        (Some(given_as), Some(wanted)) => reader.check_fits(&given.span, given_as, wanted),
+        _ => true,
     }
 }
 

@@ -15,7 +15,7 @@ use symdiff::Formula;
 use self::spec::Spec;
 use super::description::{Parameter, ParameterValue};
 use super::overrides::Override;
-use super::{mjcf, urdf};
+use super::{mjcf, notation, urdf};
 use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::{Written, evaluate};
@@ -108,7 +108,7 @@ fn find_overrides<'o>(
 fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Draft {
     let name_span = entry.key_span.clone();
     let mut spec = Spec::read(reader, entry);
-    if let Some(wanted) = replaced {
+    if let Some(wanted) = replaced.filter(|wanted| notation::fits(reader, &wanted.value, &entry.value)) {
         spec.replace(reader, &wanted.value);
     }
     if spec.value.is_none() && spec.interval.is_none() && !spec.contradictory {

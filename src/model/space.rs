@@ -23,7 +23,10 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     }
     let entries = |key: &str| fields.get(key).map_or(&[][..], mapping);
     let bodies = entries("bodies").iter().find_map(|body| Some((body, body_leaves(&body.value)?)));
-    let bodies = bodies.map(|(body, why)| format!("{why} of body `{}` leaves the plane", body.key));
+    let bodies = bodies.map(|(body, why)| match body.key.strip_suffix(".ground") {
+        Some(instance) => format!("{why} of instance `{instance}` leaves the plane"),
+        None => format!("{why} of body `{}` leaves the plane", body.key),
+    });
     let joints = entries("joints").iter().find_map(|joint| Some((joint, joint_leaves(&joint.value)?)));
     let joints = joints.map(|(joint, why)| format!("{why} of joint `{}` leaves the plane", joint.key));
     let effects = entries("effects").iter().find_map(|effect| Some((effect, effect_leaves(&effect.value)?)));

@@ -114,10 +114,11 @@ impl Reduction {
             Part::Joint(joint) => format!("joint {}", whole.joints[joint].name),
             Part::Effect(effect) => format!("effect {}", whole.effects[effect].name),
         };
+        let moves = |part: &&Part| !matches!(part, Part::Body(body) if whole.bodies[*body].is_ground_of_instance());
         let simulated = |joint: &Weld| !left_out.contains(&Part::Joint(joint.joint));
         let welds = welds.into_iter().filter(simulated);
         Self {
-            left_out: left_out.iter().map(name).collect(),
+            left_out: left_out.iter().filter(moves).map(name).collect(),
             welds: welds.map(|weld| (whole.joints[weld.joint].name.clone(), weld.obstacle)).collect(),
             subsystems,
         }

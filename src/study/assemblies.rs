@@ -26,10 +26,15 @@ pub fn of(description: &Description) -> Vec<AssemblySummary> {
     found
 }
 
+/// Whether a parameter is one of the instance itself, or a number of its place.
+fn is_own(name: &str) -> bool {
+    !name.strip_prefix("at.").unwrap_or(name).contains('.')
+}
+
 /// The uncertain parameters of an instance, and those outside on which its parameters depend.
 fn uncertain(description: &Description, prefix: &str) -> (Vec<String>, Vec<String>) {
     let parameters = &description.parameters;
-    let own = |name: &str| name.strip_prefix(prefix).is_some_and(|rest| !rest.contains('.'));
+    let own = |name: &str| name.strip_prefix(prefix).is_some_and(is_own);
     let mut needed: Vec<bool> = parameters.iter().map(|parameter| own(&parameter.name)).collect();
     // Each depends on earlier ones only.
     for index in (0..parameters.len()).rev() {

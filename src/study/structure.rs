@@ -53,7 +53,7 @@ pub fn structure(description: &Description) -> Result<(Assembled, Structure), Ru
 
 fn mobility(description: &Description, inventory: &Inventory, assembled: &Assembled) -> MobilityCount {
     let spatial = description.space.spatial;
-    let bodies = description.bodies.len();
+    let bodies = description.bodies.iter().filter(|body| !body.is_ground_of_instance()).count();
     let &Inventory { joints, constraints, held, drives, .. } = inventory;
     let freedoms = if spatial { 6 } else { 3 } * (bodies - 1);
     MobilityCount {

@@ -122,9 +122,11 @@ impl Diagnostics {
         Self { sources, ..Self::default() }
     }
 
-    /// Adds one; of a copy, with the place of the instance that it is of, and of those around it.
+    /// Adds one that is not there yet; of a copy, with the place of the instance that it is of, and of those around it.
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
-        if self.names_lost && diagnostic.is_of_unknown_name() {
+        // One text may be read several times, one after the other: for each component of what it is turned into.
+        let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.message == diagnostic.message;
+        if self.names_lost && diagnostic.is_of_unknown_name() || self.items.iter().rev().take(8).any(is_same) {
             return;
         }
         let mut place = diagnostic.span.clone();

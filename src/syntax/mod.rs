@@ -2,8 +2,10 @@
 
 mod commas;
 pub(crate) mod diagnostic;
+pub(crate) mod frame;
 mod habit;
 mod harmless;
+pub(crate) mod mirrors;
 mod not_yaml;
 mod render;
 pub(crate) mod scope;

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use symdiff::formula::indices::{self, Index};
 
+use super::frame::Frame;
+
 /// The instance and the indices of a copy.
 ///
 /// In an instance every name is one of the instance, but for the ground of a part that is not placed; what means something by itself
@@ -21,20 +23,8 @@ pub struct Scope {
     counts: Arc<HashMap<String, i64>>,
     /// Whether the number has the other sign, in a mirror.
     is_negated: bool,
-    /// How the instance stands against the ground.
-    stands: Stands,
-}
-
-/// How an instance stands against the ground of the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Stands {
-    /// As the assembly is written.
-    #[default]
-    AsWritten,
-    /// Elsewhere.
-    Placed,
-    /// Mirrored, and perhaps elsewhere.
-    Mirrored,
+    /// How the instance stands in the model, if that is not as its assembly is written.
+    frame: Option<Frame>,
 }
 
 /// What does not move.
@@ -53,18 +43,18 @@ impl Scope {
 
     /// The same, standing so.
     #[must_use]
-    pub fn standing(self, stands: Stands) -> Self {
-        Self { stands, ..self }
+    pub fn standing(self, frame: Option<Frame>) -> Self {
+        Self { frame, ..self }
     }
 
-    /// How the instance stands.
-    pub fn stands(&self) -> Stands {
-        self.stands
+    /// How the instance stands in the model, if that is not as its assembly is written.
+    pub fn frame(&self) -> Option<Frame> {
+        self.frame
     }
 
-    /// What `ground` is, where it is not the model's.
-    pub fn ground(&self) -> Option<&str> {
-        self.ground.as_deref()
+    /// Whether the instance has a ground of its own.
+    pub fn has_ground(&self) -> bool {
+        self.ground.is_some()
     }
 
     /// Whether the number has the other sign.

@@ -3,6 +3,9 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use symdiff::formula::SyntaxError;
+use symdiff::formula::indices;
+
 use super::scope::Scope;
 use super::source::Span;
 
@@ -68,6 +71,14 @@ impl Scalar {
             None => Cow::Borrowed(self.text.as_str()),
             Some(scope) => Cow::Owned(scope.reference(&self.text)),
         }
+    }
+
+    /// The text with the values of its indices.
+    ///
+    /// # Errors
+    /// For what is wrong in its braces.
+    pub fn filled(&self) -> Result<String, SyntaxError> {
+        indices::fill(&self.text, &|name| self.scope.as_ref()?.whole(name))
     }
 
     /// The place of a part of [`Self::name`]; of the whole node where the name is not as it is written.

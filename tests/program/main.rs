@@ -13,6 +13,7 @@ mod everyday;
 mod faults;
 mod old_models;
 mod parts;
+mod parts_nested;
 mod parts_placed;
 mod place;
 mod readme;

@@ -225,7 +225,7 @@ fn an_error_names_file_instance_and_definition() {
     assert_eq!((first.line, first.column, first.instance.as_deref()), (Some(5), Some(21), Some("right")));
     let text = report.render(false);
     assert!(text.contains("parts/arm.yaml:5:21"), "{text}");
-    assert!(text.contains("parts-inside.yaml:26:3"), "{text}");
+    assert!(text.contains("parts-inside.yaml:23:3"), "{text}");
     assert!(text.contains("in `right`, an instance of `arm`"), "{text}");
 }
 

@@ -3,6 +3,7 @@
 use symdiff::Formula;
 
 use crate::grammar::{Coordinate, Rotation};
+use crate::syntax::mirrors::Mirrors;
 
 /// Elements of a body's inertia tensor about its centre of mass, along its frame's axes, kg m². I_xy = −∫ x y dm, as in
 /// URDF. A body that only turns about z needs no more than zz.
@@ -58,14 +59,19 @@ pub struct Body {
 pub struct Standing {
     /// The body that its ground is.
     pub ground: usize,
-    /// The axis across which it is mirrored, before it is placed.
-    pub mirror: Option<usize>,
+    /// The axes across which it is mirrored, before it is placed.
+    pub mirrors: Mirrors,
 }
 
 impl Body {
     /// Whether its orientation is that of Euler parameters, and not an angle about z.
     pub fn has_orientation(&self) -> bool {
         self.prescribed_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
+    }
+
+    /// Whether it is the ground of an instance.
+    pub fn is_ground_of_instance(&self) -> bool {
+        self.coordinates.is_empty() && self.name.ends_with(".ground")
     }
 
     /// Whether nothing of it is prescribed, so that a joint alone may say where it is.

@@ -49,7 +49,7 @@ grammar! {
     InstanceFile is "an instance" {
         /// The assembly.
         of: String,
-        /// Where the assembly's ground is, and where its bodies start: a position, or a frame. Its numbers are parameters, `front_left.at.x`.
+        /// Where the assembly's ground is, and where its bodies start: a position, or a frame, in that of the instance around it. Its numbers are parameters, `front_left.at.x`.
         at: Option<AtFile>,
         /// The axis across which it is mirrored, before it is placed.
         mirror: Option<AxisName>,
@@ -61,9 +61,9 @@ grammar! {
     PlaceFile is "`at`" {
         /// Of the assembly's origin, m.
         position: Option<Components>,
-        /// About z, rad; in the plane.
+        /// About z, rad.
         angle: Option<Number>,
-        /// In space.
+        /// In space; that about z is the same as `angle`.
         rotation: Option<Rotation>,
     }
 

@@ -26,7 +26,10 @@ struct Included {
 /// Reads the files that a model includes, and notes their assemblies.
 pub(super) fn read(writer: &mut Writer, entries: &[Entry]) {
     let Some(entry) = entries.iter().find(|entry| entry.key == "include") else { return };
-    names(writer, &entry.value, Path::new(""), &mut Included::default());
+    // The model itself includes no assemblies of its own again.
+    let model = writer.reader.diagnostics.sources.first();
+    let open = model.and_then(|model| Path::new(&model.name).file_name()).map(PathBuf::from).into_iter().collect();
+    names(writer, &entry.value, Path::new(""), &mut Included { open, read: Vec::new() });
 }
 
 /// The files of an `include`, whose names are from a folder within the model's.

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::Writer;
+use super::in_model::{Places, REVOLUTE};
 use super::parameters::{is_shared, scope_of_shared};
 use super::placement::{GROUND, Placement};
 use crate::model::description::{Instance, InstanceKind};
 use crate::model::file;
-use crate::syntax::scope::{Scope, Stands};
+use crate::syntax::scope::Scope;
 use crate::syntax::source::{Span, Within};
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -17,6 +18,9 @@ const MAX_DEPTH: usize = 20;
 
 /// Sections whose entries an instance has under its own name.
 const NAMED: [&str; 6] = ["bodies", "joints", "effects", "states", "initial", "guess"];
+
+/// What stands before the numbers of an instance's place.
+const AT: &str = "at";
 
 /// An instance to be written out.
 struct New {
@@ -88,7 +92,7 @@ impl Writer<'_, '_> {
 
     /// Writes out an instance, whose entry is that of a copy already; `around` are the assemblies that it is in.
     fn instance(&mut self, outer: &str, entry: &Entry, around: &mut Vec<String>) {
-        if self.is_full || !self.reader.name(entry, "an instance") {
+        if self.is_full || !self.reader.name(entry, "an instance") || !self.is_free(entry, !outer.is_empty()) {
             return;
         }
         let Some(fields) = self.reader.fields::<file::InstanceFile>(&entry.value, entry.key_span.clone()) else {
@@ -118,14 +122,8 @@ impl Writer<'_, '_> {
         }
         let name = format!("{outer}{}", entry.key);
         let given = fields.get("parameters").map_or(&[][..], |node| self.reader.entries(node, "parameters")).to_vec();
-        let Some(placement) = self.placement(&fields) else { return };
+        let Some(placement) = self.placement(&format!("{name}."), &fields) else { return };
         let outer = scalar.scope.clone();
-        if let Some(outer) = outer.as_ref().filter(|outer| placement.is_one() && outer.stands() != Stands::AsWritten) {
-            let message = format!("`{}` is placed already", outer.prefix().trim_end_matches('.'));
-            let help = "only one of instances within each other can have `at` and `mirror`".to_owned();
-            self.reader.error(entry.key_span.clone(), message, help);
-            return;
-        }
         around.push(of.clone());
         let new = New { name, of, definition, given, placement, outer };
         self.written_out(&new, entry, around);
@@ -159,92 +157,67 @@ impl Writer<'_, '_> {
         for parameter in parameters {
             self.add("parameters", parameter);
         }
-        self.parameters_of(&prefix, placement);
+        let frame = placement.frame_in(new.outer.as_ref().and_then(|outer| outer.frame()));
+        self.parameters_of(&prefix, placement, new.outer.as_deref(), frame);
         let has_points = definition.value.get("bodies").and_then(|bodies| bodies.get(GROUND)).is_some();
-        let own = format!("{prefix}{GROUND}");
-        let (ground, stands) = match &new.outer {
-            _ if placement.mirror().is_some() => (Some(own), Stands::Mirrored),
-            _ if placement.is_one() => (Some(own), Stands::Placed),
-            Some(outer) if outer.stands() != Stands::AsWritten => (outer.ground().map(str::to_owned), outer.stands()),
-            _ => (has_points.then_some(own), Stands::AsWritten),
-        };
-        let scope = Arc::new(Scope::of_instance(name, ground, counts).standing(stands));
-        if stands == Stands::Mirrored && placement.mirror().is_none() {
-            let message = "an assembly with instances within cannot be mirrored";
-            self.reader.error(entry.key_span.clone(), message, "mirror the instances within".to_owned());
-        }
-        self.sections_of(&prefix, &entries_of, placement, shift, &scope);
+        let ground = (has_points || frame.is_some()).then(|| format!("{prefix}{GROUND}"));
+        let scope = Arc::new(Scope::of_instance(name, ground, counts).standing(frame));
+        let places = self.sections_of(&prefix, &entries_of, &placement.span, shift, &scope);
         for instance in self.repeated(&entries_of("instances"), shift, Some(&scope)) {
             self.instance(&prefix, &instance, around);
         }
+        self.image(&places, &scope);
         let ports = self.repeated(&entries_of("ports"), shift, Some(&scope));
-        self.ports(&prefix, ports, placement);
+        self.ports(&prefix, ports, frame.unwrap_or_default().mirrors);
+        self.starts(&places, &scope);
     }
 
-    /// Adds bodies, joints, effects and start values of an instance.
+    /// Adds bodies, joints, effects and start values of an instance as its assembly says them.
     fn sections_of(
         &mut self,
         prefix: &str,
         entries_of: &dyn Fn(&str) -> Vec<Entry>,
-        placement: &Placement,
+        at: &Span,
         shift: usize,
         scope: &Arc<Scope>,
-    ) {
+    ) -> Places {
         let copies = NAMED.map(|section| self.repeated(&entries_of(section), shift, Some(scope)));
-        let [bodies, mut joints, mut effects, states, initial, guess] = copies;
-        let (ground, mut bodies): (Vec<Entry>, Vec<Entry>) = bodies.into_iter().partition(|body| body.key == GROUND);
-        if scope.ground().is_some_and(|ground| ground.strip_prefix(prefix) == Some(GROUND)) {
+        let [bodies, joints, effects, states, initial, guess] = copies;
+        let (ground, bodies): (Vec<Entry>, Vec<Entry>) = bodies.into_iter().partition(|body| body.key == GROUND);
+        for part in [&bodies, &joints, &effects, &states].into_iter().flatten() {
+            self.is_free(part, true);
+        }
+        if scope.has_ground() {
             let points = ground.first().and_then(|ground| ground.value.get("points")).cloned();
-            self.ground(prefix, placement, points, scope);
-            self.parts.grounds.insert(prefix.to_owned(), placement.mirror());
-        } else if let Some(ground) = ground.first() {
-            let message = "the ground of an instance within a placed one has no points of its own";
-            self.reader.error(ground.key_span.clone(), message, "give them to the assembly that is placed".to_owned());
+            self.ground(prefix, at, points, scope);
+            self.parts.grounds.insert(prefix.to_owned(), scope.frame().unwrap_or_default().mirrors);
         }
-        let turning: Vec<String> = joints
-            .iter()
-            .filter(|joint| joint.value.get("revolute").is_some())
-            .map(|joint| joint.key.clone())
-            .collect();
-        let names: Vec<String> = bodies.iter().map(|body| body.key.clone()).collect();
-        let initial = self.start(placement, initial, &names, scope);
-        let guess = self.start(placement, guess, &names, scope);
-        if let Some(axis) = placement.mirror() {
-            bodies = bodies.into_iter().map(|body| self.image_of_body(body, axis)).collect();
-            for entries in [&mut joints, &mut effects] {
-                let turns = |joint: &str| turning.iter().any(|known| known == joint);
-                let image = |entry| self.image_of_kind(entry, axis, &turns);
-                *entries = std::mem::take(entries).into_iter().map(image).collect();
-            }
-        }
-        if placement.turns() {
-            self.refuse_directions(&effects);
-        }
-        for (section, entries) in NAMED.into_iter().zip([bodies, joints, effects, states, initial, guess]) {
+        self.bodies.extend(bodies.iter().map(|body| scope.full(&body.key)));
+        let turns = |joint: &Entry| (scope.full(&joint.key), joint.value.get(REVOLUTE).is_some());
+        self.turning.extend(joints.iter().map(turns));
+        let all = [bodies, joints, effects, states, initial, guess];
+        let [bodies, joints, effects, _, initial, guess] = std::array::from_fn(|index| {
+            let (section, entries) = (NAMED[index], &all[index]);
+            let start = self.entries(section).len();
             for entry in entries {
                 let key = scope.full(&entry.key);
-                self.add(section, Entry { key, ..entry });
+                self.add(section, Entry { key, ..entry.clone() });
             }
-        }
+            start..self.entries(section).len()
+        });
+        Places { bodies, joints, effects, starts: [("initial", initial), ("guess", guess)] }
     }
 
-    /// Reports directions of the ground in effects of an instance that is turned.
-    fn refuse_directions(&mut self, effects: &[Entry]) {
-        const DIRECTIONS: [(&str, &str); 4] =
-            [("spring_damper", "along"), ("force", "value"), ("drag", "wind"), ("torque", "value")];
-        for effect in effects {
-            for (kind, key) in DIRECTIONS {
-                let Some(node) = effect.value.get(kind) else { continue };
-                let in_body = node.get("frame").and_then(Node::scalar).is_some_and(|frame| frame.text == "body");
-                let is_number = kind == "torque" && node.get(key).is_some_and(|value| value.scalar().is_some());
-                if let Some(value) = node.get(key).filter(|_| !in_body && !is_number) {
-                    let message =
-                        format!("`{key}` of a `{kind}` is along the model's axes, but the instance is turned");
-                    let help = "use `frame: body` or an element between points, or turn the assembly's own directions";
-                    self.reader.error(value.span.clone(), message, help.to_owned());
-                }
-            }
-        }
+    /// Whether an instance or a part of one may be called so.
+    pub(super) fn is_free(&mut self, entry: &Entry, is_part: bool) -> bool {
+        let why = match entry.key.as_str() {
+            GROUND => "what does not move is called so",
+            AT if is_part => "numbers of the instance's place are called so: `left.at.x`",
+            _ => return true,
+        };
+        let message = format!("`{}` cannot be the name of a part or an instance", entry.key);
+        self.reader.error(entry.key_span.clone(), message, why.to_owned());
+        false
     }
 
     /// Reports instances that are called like something else, and names that are there twice.

@@ -5,6 +5,7 @@
 //! so their angles count the other way, in the plane and in space.
 
 use super::Writer;
+use crate::syntax::mirrors::Mirrors;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
@@ -91,9 +92,6 @@ const KINDS: [(&str, &[(&str, Image)]); 41] = [
 const REFUSED: [(&str, &str); 4] =
     [("contact", "height"), ("bushing", "stiffness_matrix"), ("bushing", "damping_matrix"), ("preload", "on")];
 
-/// Keys of torques by which the kind is one of a joint.
-const JOINT: &str = "on";
-
 /// The image of a point, or of an arc to one, which turns the other way.
 fn point_or_arc(item: &mut Node, axis: usize) {
     let Value::Mapping(keys) = &mut item.value else { return polar(item, axis) };
@@ -107,15 +105,15 @@ fn point_or_arc(item: &mut Node, axis: usize) {
 }
 
 impl Writer<'_, '_> {
-    /// The image of a joint or an effect; `turns` says of a joint of the instance whether it turns.
-    pub(super) fn image_of_kind(&mut self, mut entry: Entry, axis: usize, turns: &dyn Fn(&str) -> bool) -> Entry {
-        let Value::Mapping(kinds) = &mut entry.value.value else { return entry };
-        let [kind] = kinds.as_mut_slice() else { return entry };
+    /// The image of a joint or an effect; `is_turning` says whether it is on a joint that turns, if on one.
+    pub(super) fn image_of_kind(&mut self, entry: &mut Entry, mirrors: Mirrors, is_turning: Option<bool>) {
+        let Value::Mapping(kinds) = &mut entry.value.value else { return };
+        let [kind] = kinds.as_mut_slice() else { return };
         let Some((_, images)) = KINDS.iter().find(|(keyword, _)| *keyword == kind.key) else {
             let message = format!("`{}` cannot be mirrored", clip(&kind.key));
             let help = "write the mirrored assembly out, or give the parts that differ to the model".to_owned();
             self.reader.error(kind.key_span.clone(), message, help);
-            return entry;
+            return;
         };
         if let Value::Sequence(_) = kind.value.value {
             // The short form, of which the axis may need to be said.
@@ -123,88 +121,107 @@ impl Writer<'_, '_> {
                 Entry { key: "between".to_owned(), key_span: kind.key_span.clone(), value: kind.value.clone() };
             kind.value.value = Value::Mapping(vec![between]);
         }
-        let Value::Mapping(keys) = &mut kind.value.value else { return entry };
+        let Value::Mapping(keys) = &mut kind.value.value else { return };
         for (_, key) in REFUSED.iter().filter(|(keyword, _)| *keyword == kind.key) {
             if let Some(found) = keys.iter().find(|known| known.key == *key) {
                 let message = format!("`{key}` of a `{}` cannot be mirrored", kind.key);
                 self.reader.error(found.key_span.clone(), message, None);
             }
         }
-        let on = keys.iter().find(|key| key.key == JOINT).and_then(|on| on.value.scalar()).map(|on| on.text.clone());
-        let is_turning = on.as_deref().is_none_or(turns);
-        let is_of_joint = kind.key == "torque" && on.as_deref().is_some_and(turns);
-        for key in keys.iter_mut() {
-            let Some((_, image)) = images.iter().find(|(known, _)| *known == key.key) else { continue };
-            match image {
-                Polar => polar(&mut key.value, axis),
-                Axial if is_of_joint => negate(&mut key.value),
-                Axial => axial(&mut key.value, axis),
-                Polars => {
-                    if let Value::Sequence(items) = &mut key.value.value {
-                        items.iter_mut().for_each(|item| point_or_arc(item, axis));
-                    }
+        let is_of_joint = kind.key == "torque" && is_turning == Some(true);
+        let is_directed = matches!(kind.key.as_str(), "revolute" | "clearance_joint");
+        let place = kind.key_span.clone();
+        for axis in mirrors.axes() {
+            for key in keys.iter_mut() {
+                let Some((_, image)) = images.iter().find(|(known, _)| *known == key.key) else { continue };
+                match image {
+                    Axial if is_of_joint => negate(&mut key.value),
+                    Turning | End if is_turning == Some(false) => {}
+                    image => image_of_key(key, *image, axis),
                 }
-                Directed => {
-                    if let Value::Mapping(keys) = &mut key.value.value {
-                        keys.iter_mut()
-                            .filter(|key| key.key == "direction")
-                            .for_each(|key| polar(&mut key.value, axis));
-                    }
-                }
-                Turning if is_turning => negate(&mut key.value),
-                End if is_turning => {
-                    negate(&mut key.value);
-                    key.key = if key.key == "lower" { "upper" } else { "lower" }.to_owned();
-                }
-                Turning | End => {}
+            }
+            // An axis along z that is not written is reflected, too.
+            if is_directed && axis == 2 && !keys.iter().any(|key| key.key == "axis") {
+                let number = |text| Node { span: place.clone(), value: Value::Scalar(Scalar::plain(text, None)) };
+                let value = Node { span: place.clone(), value: Value::Sequence(["0", "0", "-1"].map(number).into()) };
+                keys.push(Entry { key: "axis".to_owned(), key_span: place.clone(), value });
             }
         }
-        // An axis along z that is not written is reflected, too.
-        let has_axis = images.contains(&("axis", Polar)) && matches!(kind.key.as_str(), "revolute" | "clearance_joint");
-        if has_axis && axis == 2 && !keys.iter().any(|key| key.key == "axis") {
-            let at = kind.key_span.clone();
-            let numbers =
-                ["0", "0", "-1"].map(|text| Node { span: at.clone(), value: Value::Scalar(Scalar::plain(text, None)) });
-            let value = Node { span: at.clone(), value: Value::Sequence(numbers.into()) };
-            keys.push(Entry { key: "axis".to_owned(), key_span: at, value });
-        }
-        entry
     }
 
     /// The image of a body.
-    pub(super) fn image_of_body(&mut self, mut entry: Entry, axis: usize) -> Entry {
-        let Value::Mapping(keys) = &mut entry.value.value else { return entry };
-        for key in keys {
-            match key.key.as_str() {
-                "center_of_mass" => polar(&mut key.value, axis),
-                "inertia" => products(&mut key.value, axis),
-                "points" => {
-                    let Value::Mapping(points) = &mut key.value.value else { continue };
-                    points.iter_mut().for_each(|point| frame(&mut point.value, axis));
+    pub(super) fn image_of_body(&mut self, entry: &mut Entry, mirrors: Mirrors) {
+        let Value::Mapping(keys) = &mut entry.value.value else { return };
+        if let Some(beam) = keys.iter().find(|key| key.key == "beam" && mirrors.axes().next().is_some()) {
+            self.reader.error(beam.key_span.clone(), "a beam that bends cannot be mirrored", None);
+        }
+        for axis in mirrors.axes() {
+            keys.iter_mut().for_each(|key| image_of_part(key, axis));
+        }
+    }
+}
+
+/// The image of what a key of a body says.
+fn image_of_part(key: &mut Entry, axis: usize) {
+    match (key.key.as_str(), &mut key.value.value) {
+        ("center_of_mass", _) => polar(&mut key.value, axis),
+        ("inertia", _) => products(&mut key.value, axis),
+        ("points", Value::Mapping(points)) => points.iter_mut().for_each(|point| frame(&mut point.value, axis)),
+        ("held", Value::Mapping(held)) => {
+            for value in held {
+                match value.key.as_str() {
+                    "orientation" => rotation(&mut value.value, axis),
+                    coordinate if counts_back(coordinate, axis) => negate(&mut value.value),
+                    _ => {}
                 }
-                "held" => {
-                    let Value::Mapping(held) = &mut key.value.value else { continue };
-                    for value in held {
-                        match value.key.as_str() {
-                            "orientation" => rotation(&mut value.value, axis),
-                            coordinate if counts_back(coordinate, axis) => negate(&mut value.value),
-                            _ => {}
-                        }
-                    }
-                }
-                "beam" => {
-                    let message = "a beam that bends cannot be mirrored";
-                    self.reader.error(key.key_span.clone(), message, None);
-                }
-                _ => {}
             }
         }
-        entry
+        _ => {}
+    }
+}
+
+/// Whether the image of an effect is another where it is on a joint that turns.
+pub(super) fn tells_turns(effect: &Entry) -> bool {
+    has_image(effect, &[Turning, End])
+}
+
+/// Whether what an effect measures along a joint that turns counts the other way in a mirror.
+pub(super) fn measures_turns(effect: &Entry) -> bool {
+    has_image(effect, &[Turning])
+}
+
+fn has_image(effect: &Entry, wanted: &[Image]) -> bool {
+    let Value::Mapping(kinds) = &effect.value.value else { return false };
+    let images = KINDS.iter().find(|(keyword, _)| kinds.first().is_some_and(|kind| kind.key == *keyword));
+    images.is_some_and(|(_, images)| images.iter().any(|(_, image)| wanted.contains(image)))
+}
+
+/// The image of what stands behind a key.
+fn image_of_key(key: &mut Entry, image: Image, axis: usize) {
+    match image {
+        Polar => polar(&mut key.value, axis),
+        Axial => axial(&mut key.value, axis),
+        Polars => {
+            if let Value::Sequence(items) = &mut key.value.value {
+                items.iter_mut().for_each(|item| point_or_arc(item, axis));
+            }
+        }
+        Directed => {
+            if let Value::Mapping(keys) = &mut key.value.value {
+                let directions = keys.iter_mut().filter(|key| key.key == "direction");
+                directions.for_each(|key| polar(&mut key.value, axis));
+            }
+        }
+        Turning => negate(&mut key.value),
+        End => {
+            negate(&mut key.value);
+            key.key = if key.key == "lower" { "upper" } else { "lower" }.to_owned();
+        }
     }
 }
 
 /// Whether a coordinate of a body, or its rate, changes sign.
-pub(super) fn counts_back(coordinate: &str, axis: usize) -> bool {
+fn counts_back(coordinate: &str, axis: usize) -> bool {
     let letter = ["x", "y", "z"][axis];
     match coordinate {
         "angle" | "angular_velocity" => axis != 2,
@@ -275,7 +292,7 @@ pub(super) fn axial(node: &mut Node, axis: usize) {
 }
 
 /// An axis by its letter as a list.
-fn written_out(node: &mut Node) {
+pub(super) fn written_out(node: &mut Node) {
     let Some(place) = node.scalar().and_then(|scalar| ["x", "y", "z"].iter().position(|axis| *axis == scalar.text))
     else {
         return;

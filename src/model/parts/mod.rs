@@ -4,6 +4,7 @@
 //! sources, which know the instance. Names stay as they are written; a [`Scope`] at each scalar says what they stand for. So all
 //! that comes after reads the tree as if it were written out.
 
+mod in_model;
 mod include;
 mod instances;
 mod many;
@@ -13,14 +14,18 @@ pub mod patterns;
 mod placement;
 mod ports;
 mod repeat;
+mod starts;
+mod turned;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::description::{Instance, Standing};
 use super::overrides::Override;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -41,7 +46,9 @@ pub struct Parts {
     counts: BTreeSet<String>,
     ports: Vec<Port>,
     /// Instances with a ground of their own by the prefix of their names, with the axes across which they are mirrored.
-    grounds: HashMap<String, Option<usize>>,
+    grounds: HashMap<String, Mirrors>,
+    /// Effects of instances on joints that turn.
+    turning_effects: BTreeSet<String>,
 }
 
 /// A tree that is written out.
@@ -65,6 +72,8 @@ pub fn write_out(reader: &mut Reader, root: &Node, text: &str, overrides: &[(Ove
         model: Arc::default(),
         parts: Parts::default(),
         sections: Vec::new(),
+        bodies: HashSet::new(),
+        turning: HashMap::new(),
         nodes: 0,
         is_full: false,
     };
@@ -102,6 +111,10 @@ struct Writer<'w, 'd> {
     parts: Parts,
     /// Sections of the tree.
     sections: Vec<Entry>,
+    /// Bodies of instances.
+    bodies: HashSet<String>,
+    /// Joints of instances, and whether they turn.
+    turning: HashMap<String, bool>,
     /// How many there are so far.
     nodes: usize,
     /// Whether that is too many, as was reported.
@@ -140,6 +153,18 @@ impl Writer<'_, '_> {
         }
     }
 
+    /// Copies of some entries of a section.
+    fn taken(&self, section: &str, range: &Range<usize>) -> Vec<Entry> {
+        self.entries(section).get(range.clone()).unwrap_or_default().to_vec()
+    }
+
+    /// Puts entries in the places of others.
+    fn put(&mut self, section: &str, range: &Range<usize>, entries: Vec<Entry>) {
+        if let Some(found) = self.section(section, &(0..0)).and_then(|found| found.get_mut(range.clone())) {
+            found.iter_mut().zip(entries).for_each(|(place, entry)| *place = entry);
+        }
+    }
+
     /// Reports that a name is there twice.
     fn twice(&mut self, name: &str, span: &Span, first: &Span) {
         let message = format!("`{}` is given twice", crate::syntax::suggest::clip(name));
@@ -173,19 +198,27 @@ impl Parts {
         overrides.into_iter().flat_map(follow).collect()
     }
 
-    /// Says of the bodies, which are declared, how their instances stand.
+    /// The body or the point that a port of an instance is.
+    fn port(&self, name: &str) -> Option<&str> {
+        let port = self.ports.iter().find(|port| port.is(name))?;
+        Some(self.port(port.target()).unwrap_or(port.target()))
+    }
+
+    /// Says of the bodies, which are declared, how their instances stand, and of effects which are on joints that turn.
     pub fn stand(&self, reader: &mut Reader) {
+        reader.model.turning_effects.clone_from(&self.turning_effects);
         if self.grounds.is_empty() {
             return;
         }
         let numbers: HashMap<String, usize> =
             reader.model.bodies.iter().enumerate().map(|(index, body)| (body.name.clone(), index)).collect();
         for body in &mut reader.model.bodies {
-            let mut ends = body.name.match_indices('.').map(|(end, _)| &body.name[..=end]);
+            // The innermost instance around it.
+            let mut ends = body.name.rmatch_indices('.').map(|(end, _)| &body.name[..=end]);
             let found = ends.find_map(|prefix| {
-                let mirror = *self.grounds.get(prefix)?;
+                let mirrors = *self.grounds.get(prefix)?;
                 let ground = *numbers.get(&format!("{prefix}{}", placement::GROUND))?;
-                Some(Standing { ground, mirror })
+                Some(Standing { ground, mirrors })
             });
             body.standing = found;
         }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use symdiff::formula::indices::{self, Index};
 
 use super::Writer;
+use crate::model::notation;
 use crate::model::scenes::draft::overridden;
 use crate::syntax::scope::Scope;
 use crate::syntax::suggest::{self, clip};
@@ -63,6 +64,7 @@ impl Writer<'_, '_> {
             let key = format!("{prefix}{}", entry.key);
             let follows = format!("{definition}.{}", entry.key);
             let mut entry = if let Some(given) = given.iter().find(|given| given.key == entry.key) {
+                notation::fits(self.reader, &given.value, &entry.value);
                 overridden(&entry, given)
             } else if is_shared(&entry.key) {
                 let value = Value::Scalar(Scalar::plain(follows, None));

@@ -1,10 +1,15 @@
-//! `at` and `mirror` of instances: where an assembly's ground is in the model, and where its bodies start.
+//! `at` and `mirror` of instances: where an assembly's ground is in the model.
+//!
+//! What an instance says of its place are its parameters `at.x` and so on, in the frame of the instance that it is in. Where it is in the
+//! model follows: `at.model.x`, … ([`crate::syntax::frame`]).
 
 use std::sync::Arc;
 
 use super::{Writer, mirror};
 use crate::grammar::reader::Fields;
 use crate::model::file;
+use crate::syntax::frame::{Frame, PLACE, Turned, about, about_z, product, signed, sum};
+use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -17,46 +22,54 @@ pub fn is_ground(name: &str) -> bool {
     name.ends_with(".ground")
 }
 
-/// Parameters of the place.
-const PLACE: [&str; 3] = ["x", "y", "z"];
+/// Names of axes.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Where an instance is.
+/// Names of the angles of `rpy`.
+const ANGLES: [&str; 3] = ["roll", "pitch", "yaw"];
+
+/// What an instance says of its place.
 #[derive(Clone, Default)]
 pub(super) struct Placement {
-    /// The axis across which it is mirrored.
-    pub(super) mirror: Option<usize>,
-    /// Components of its position.
-    position: Vec<Node>,
-    /// In the plane.
-    angle: Option<Node>,
-    /// In space.
-    rotation: Option<Node>,
-    span: Span,
+    mirrors: Mirrors,
+    /// Its numbers with the names of their parameters behind `at.`, and their units.
+    numbers: Vec<(String, Node, &'static str)>,
+    /// The Euler parameters by those, where they are not those of an angle about z.
+    quaternion: Option<[String; 4]>,
+    pub(super) span: Span,
 }
 
 impl Placement {
-    /// Whether it has a ground of its own.
-    pub fn is_one(&self) -> bool {
-        self.mirror.is_some() || !self.position.is_empty() || self.turns()
+    fn has(&self, name: &str) -> bool {
+        self.numbers.iter().any(|(known, ..)| known == name)
     }
 
-    /// The axis of the mirror.
-    pub fn mirror(&self) -> Option<usize> {
-        self.mirror
+    /// The frame by itself.
+    fn frame(&self) -> Frame {
+        let turned = match self.quaternion {
+            Some(_) => Turned::InSpace,
+            None if self.has("angle") => Turned::ByAngle,
+            None => Turned::Not,
+        };
+        Frame { mirrors: self.mirrors, moved: AXES.map(|axis| self.has(axis)), turned }
     }
 
-    /// Whether directions of the ground are others.
-    pub fn turns(&self) -> bool {
-        self.angle.is_some() || self.rotation.is_some()
+    /// The frame in the model of an instance that is in another.
+    pub fn frame_in(&self, outer: Option<Frame>) -> Option<Frame> {
+        let own = self.frame();
+        match outer {
+            Some(outer) => Some(outer.within(own)),
+            None => (own != Frame::default()).then_some(own),
+        }
     }
 }
 
 impl Writer<'_, '_> {
-    /// Reads where an instance is.
-    pub(super) fn placement(&mut self, fields: &Fields) -> Option<Placement> {
+    /// Reads where an instance is; `prefix` stands before the names of its parts.
+    pub(super) fn placement(&mut self, prefix: &str, fields: &Fields) -> Option<Placement> {
         let mut placement = Placement { span: fields.at.clone(), ..Placement::default() };
         if let Some(node) = fields.get("mirror") {
-            placement.mirror = Some(self.reader.choice(node, &[("x", 0), ("y", 1), ("z", 2)])?);
+            placement.mirrors = Mirrors::across(self.reader.choice(node, &[("x", 0), ("y", 1), ("z", 2)])?);
             placement.span = fields.key_span("mirror");
         }
         let Some(node) = fields.get("at") else { return Some(placement) };
@@ -64,11 +77,13 @@ impl Writer<'_, '_> {
         let position = match &node.value {
             Value::Mapping(_) => {
                 let at = self.reader.fields::<file::PlaceFile>(node, fields.key_span("at"))?;
-                placement.angle = at.get("angle").cloned();
-                placement.rotation = at.get("rotation").cloned();
-                if placement.turns() && at.get("angle").is_some() && at.get("rotation").is_some() {
+                if at.get("angle").is_some() && at.get("rotation").is_some() {
                     self.reader.error(at.key_span("angle"), "`angle` and `rotation` exclude each other", None);
                     return None;
+                }
+                placement.numbers.extend(at.get("angle").map(|angle| ("angle".to_owned(), angle.clone(), "rad")));
+                if let Some(rotation) = at.get("rotation") {
+                    self.rotation(&mut placement, prefix, rotation, at.key_span("rotation"))?;
                 }
                 at.get("position").cloned()
             }
@@ -76,7 +91,10 @@ impl Writer<'_, '_> {
         };
         if let Some(position) = position {
             match &position.value {
-                Value::Sequence(items) if (2..=3).contains(&items.len()) => placement.position.clone_from(items),
+                Value::Sequence(items) if (2..=3).contains(&items.len()) => {
+                    let named = AXES.into_iter().zip(items).map(|(axis, item)| (axis.to_owned(), item.clone(), "m"));
+                    placement.numbers.extend(named);
+                }
                 _ => {
                     let help = "e.g. `at: [0.5 m, 0]`, or `at: { position: [0.5 m, 0], angle: 30 deg }`".to_owned();
                     let message =
@@ -89,177 +107,164 @@ impl Writer<'_, '_> {
         Some(placement)
     }
 
-    /// The parameters that say where an instance is: `front_left.at.x`.
-    pub(super) fn parameters_of(&mut self, prefix: &str, placement: &Placement) {
-        let position = PLACE.into_iter().zip(&placement.position).map(|(axis, node)| (axis, node, "m"));
-        let angle = placement.angle.iter().map(|node| ("angle", node, "rad"));
-        let all: Vec<_> = position.chain(angle).map(|(key, node, unit)| (key, node.clone(), unit)).collect();
-        for (key, node, unit) in all {
+    /// Reads the rotation of a place; its numbers are parameters, too.
+    fn rotation(&mut self, placement: &mut Placement, prefix: &str, node: &Node, at: Span) -> Option<()> {
+        let (kind, fields) = self.reader.kind_of_rotation(node, at)?;
+        let value = fields.get(kind)?;
+        let own = |name: &str| format!("{prefix}at.{name}");
+        let mut list = |names: &[&str], unit| {
+            let items = self.reader.list_of(value, names.len())?;
+            let numbers = names.iter().zip(items).map(|(name, item)| ((*name).to_owned(), item.clone(), unit));
+            placement.numbers.extend(numbers);
+            Some(())
+        };
+        placement.quaternion = Some(match kind {
+            "rpy" => {
+                list(&ANGLES, "rad")?;
+                let [roll, pitch, yaw] = [0, 1, 2].map(|axis| about(axis, &own(ANGLES[axis])));
+                product(&yaw, &product(&pitch, &roll))
+            }
+            "axis" => return self.about_axis(placement, prefix, &fields, value),
+            _ => {
+                let names = ["p0", "p1", "p2", "p3"];
+                list(&names, "")?;
+                let p = names.map(own);
+                let length = format!("sqrt({}^2 + {}^2 + {}^2 + {}^2)", p[0], p[1], p[2], p[3]);
+                p.map(|name| format!("{name}/{length}"))
+            }
+        });
+        Some(())
+    }
+
+    /// Reads a rotation about an axis; that about z is an angle, as in the plane.
+    fn about_axis(&mut self, placement: &mut Placement, prefix: &str, fields: &Fields, axis: &Node) -> Option<()> {
+        let angle = self.reader.required(fields, "angle")?;
+        placement.numbers.push(("angle".to_owned(), angle.clone(), "rad"));
+        let angle = format!("{prefix}at.angle");
+        if let Some(letter) = axis.scalar().and_then(|scalar| AXES.iter().position(|axis| *axis == scalar.text)) {
+            placement.quaternion = (letter < 2).then(|| about(letter, &angle));
+            return Some(());
+        }
+        let items = self.reader.list_of(axis, 3)?;
+        if items.iter().all(|item| item.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0))) {
+            self.reader.error(axis.span.clone(), "a direction of length zero points nowhere", None);
+            return None;
+        }
+        let names = AXES.map(|axis| format!("axis_{axis}"));
+        let numbers = names.iter().zip(items).map(|(name, item)| (name.clone(), item.clone(), ""));
+        placement.numbers.extend(numbers);
+        let [x, y, z] = names.map(|name| format!("{prefix}at.{name}"));
+        let part = |component: &String| format!("{component}*sin({angle}/2)/sqrt({x}^2 + {y}^2 + {z}^2)");
+        placement.quaternion = Some([format!("cos({angle}/2)"), part(&x), part(&y), part(&z)]);
+        Some(())
+    }
+
+    /// The parameters that say where an instance is: `front_left.at.x` as it says itself, `front_left.at.model.x` in the model.
+    pub(super) fn parameters_of(
+        &mut self,
+        prefix: &str,
+        placement: &Placement,
+        outer: Option<&Scope>,
+        frame: Option<Frame>,
+    ) {
+        for (key, node, unit) in &placement.numbers {
             let span = node.span.clone();
-            let unit = Node { span: span.clone(), value: Value::Scalar(Scalar::plain(unit, None)) };
             let field = |key: &str, value: Node| Entry { key: key.to_owned(), key_span: span.clone(), value };
-            let value = Value::Mapping(vec![field("value", node), field("unit", unit)]);
-            let key = format!("{prefix}at.{key}");
-            self.add("parameters", Entry { key, key_span: span.clone(), value: Node { span: span.clone(), value } });
+            let mut fields = vec![field("value", node.clone())];
+            if !unit.is_empty() {
+                fields.push(field("unit", plain(unit, &span)));
+            }
+            let value = Node { span: span.clone(), value: Value::Mapping(fields) };
+            self.add("parameters", Entry { key: format!("{prefix}at.{key}"), key_span: span, value });
+        }
+        let Some(frame) = frame else { return };
+        for (key, text) in in_model(placement, prefix, outer, frame) {
+            let span = placement.span.clone();
+            let entry =
+                Entry { key: format!("{prefix}{PLACE}{key}"), key_span: span.clone(), value: plain(&text, &span) };
+            self.add("parameters", entry);
         }
     }
 
     /// The body that the instance's ground is, with the points that the assembly gives it.
-    pub(super) fn ground(&mut self, prefix: &str, placement: &Placement, points: Option<Node>, scope: &Arc<Scope>) {
-        let at = placement.span.clone();
+    pub(super) fn ground(&mut self, prefix: &str, at: &Span, points: Option<Node>, scope: &Arc<Scope>) {
         let field = |key: &str, value: Node| Entry { key: key.to_owned(), key_span: at.clone(), value };
-        let name = |key: &str| scalar(&format!("at.{key}"), scope, &at);
-        let mut held: Vec<Entry> =
-            PLACE.into_iter().take(placement.position.len()).map(|axis| field(axis, name(axis))).collect();
-        held.extend(placement.angle.iter().map(|_| field("angle", name("angle"))));
-        held.extend(placement.rotation.iter().map(|rotation| field("orientation", rotation.clone())));
+        let name = |text: &str| scalar(text, scope, at);
+        let frame = scope.frame().unwrap_or_default();
+        let sequence = |items: Vec<Node>| Node { span: at.clone(), value: Value::Sequence(items) };
         let mapping = |entries: Vec<Entry>| Node { span: at.clone(), value: Value::Mapping(entries) };
-        let none = Node { span: at.clone(), value: Value::Sequence(Vec::new()) };
-        let mut keys = vec![field("coordinates", none), field("held", mapping(held))];
+        let origin = frame.origin(PLACE);
+        let coordinates = AXES.into_iter().zip(&origin).filter(|(_, origin)| *origin != "0");
+        let mut held: Vec<Entry> = coordinates.map(|(axis, origin)| field(axis, name(origin))).collect();
+        match frame.turned {
+            Turned::Not => {}
+            Turned::ByAngle => held.push(field("angle", name(&format!("{PLACE}angle")))),
+            Turned::InSpace => {
+                let p = frame.quaternion(PLACE).map(|p| name(&p));
+                held.push(field("orientation", mapping(vec![field("quaternion", sequence(p.into()))])));
+            }
+        }
+        let mut keys = vec![field("coordinates", sequence(Vec::new())), field("held", mapping(held))];
         if let Some(mut points) = points {
-            if let (Some(axis), Value::Mapping(points)) = (placement.mirror(), &mut points.value) {
-                points.iter_mut().for_each(|point| mirror::frame(&mut point.value, axis));
+            if let Value::Mapping(points) = &mut points.value {
+                points
+                    .iter_mut()
+                    .for_each(|point| frame.mirrors.axes().for_each(|axis| mirror::frame(&mut point.value, axis)));
             }
             keys.push(field("points", points));
         }
         self.add("bodies", field(&format!("{prefix}{GROUND}"), mapping(keys)));
     }
-
-    /// The start values of an instance's bodies in the model's frame, by their names in the instance; `bodies` are its bodies.
-    pub(super) fn start(
-        &mut self,
-        placement: &Placement,
-        entries: Vec<Entry>,
-        bodies: &[String],
-        scope: &Arc<Scope>,
-    ) -> Vec<Entry> {
-        let all = entries.clone();
-        let value_of = |body: &str, coordinate: &str| {
-            all.iter().find(|entry| entry.key == format!("{body}.{coordinate}")).map(|entry| entry.value.clone())
-        };
-        let mut written = Vec::with_capacity(entries.len());
-        for mut entry in entries {
-            let Some((owner, coordinate)) = entry.key.rsplit_once('.').map(|(a, b)| (a.to_owned(), b.to_owned()))
-            else {
-                written.push(entry);
-                continue;
-            };
-            let is_part = |rest: &&str| rest.is_empty() || rest.starts_with('.');
-            let part = bodies.iter().find_map(|body| owner.strip_prefix(body.as_str()).filter(is_part));
-            let Some(part) = part else {
-                // Of a joint: its angle counts the other way.
-                if placement.mirror.is_some() && matches!(coordinate.as_str(), "angle" | "angular_velocity") {
-                    mirror::negate(&mut entry.value);
-                }
-                written.push(entry);
-                continue;
-            };
-            // `omega` and `omega_body`, whole or by their parts.
-            let rate = part.strip_prefix('.').unwrap_or(&coordinate);
-            if rate == "omega_body" || rate == "omega" && !placement.turns() {
-                match placement.mirror {
-                    Some(axis) if part.is_empty() => mirror::axial(&mut entry.value, axis),
-                    Some(axis) if coordinate != PLACE[axis] => mirror::negate(&mut entry.value),
-                    _ => {}
-                }
-                written.push(entry);
-                continue;
-            }
-            let is_absolute =
-                matches!(coordinate.as_str(), "x" | "y" | "z" | "vx" | "vy" | "vz" | "angle" | "angular_velocity");
-            let turned = placement.rotation.is_some() || placement.angle.is_some() && !is_absolute;
-            if turned || !is_absolute && coordinate != "orientation" && placement.mirror.is_some() {
-                let message = format!("`{}` is in the ground's frame, which is turned or mirrored here", entry.key);
-                let help = "give the coordinates of joints".to_owned();
-                self.reader.error(entry.key_span.clone(), message, help);
-                continue;
-            }
-            if let Some(axis) = placement.mirror {
-                match coordinate.as_str() {
-                    "orientation" => mirror::rotation(&mut entry.value, axis),
-                    _ if mirror::counts_back(&coordinate, axis) => mirror::negate(&mut entry.value),
-                    _ => {}
-                }
-            }
-            if is_absolute {
-                let other = match coordinate.as_str() {
-                    "x" => value_of(&owner, "y"),
-                    "y" => value_of(&owner, "x"),
-                    "vx" => value_of(&owner, "vy"),
-                    "vy" => value_of(&owner, "vx"),
-                    _ => None,
-                };
-                let other = other.map(|mut node| {
-                    if let Some(axis) = placement.mirror
-                        && mirror::counts_back(other_of(&coordinate), axis)
-                    {
-                        mirror::negate(&mut node);
-                    }
-                    node
-                });
-                self.moved(placement, &mut entry, &coordinate, other.as_ref(), scope);
-            }
-            written.push(entry);
-        }
-        written
-    }
-
-    /// A start value of a body in the model's frame.
-    fn moved(
-        &mut self,
-        placement: &Placement,
-        entry: &mut Entry,
-        coordinate: &str,
-        other: Option<&Node>,
-        scope: &Arc<Scope>,
-    ) {
-        let Some(own) = text(&entry.value) else { return };
-        let place = match coordinate {
-            "x" | "y" | "z" => PLACE.iter().take(placement.position.len()).any(|axis| *axis == coordinate),
-            "angle" => placement.angle.is_some(),
-            _ => false,
-        };
-        let mut value = own.clone();
-        if placement.angle.is_some() && matches!(coordinate, "x" | "y" | "vx" | "vy") {
-            let Some(other) = other.and_then(text) else {
-                let message =
-                    format!("`{}` is given without `{}`, but the instance is turned", entry.key, other_of(coordinate));
-                let help = "give both, or the coordinates of joints".to_owned();
-                self.reader.error(entry.key_span.clone(), message, help);
-                return;
-            };
-            let sign = if coordinate.ends_with('x') { '-' } else { '+' };
-            value = format!("cos(at.angle)*({own}) {sign} sin(at.angle)*({other})");
-        }
-        if place {
-            value = format!("at.{coordinate} + ({value})");
-        }
-        if value != own {
-            let scope =
-                entry.value.scalar().and_then(|scalar| scalar.scope.clone()).unwrap_or_else(|| Arc::clone(scope));
-            let scope = Arc::new(scope.with_sign(false));
-            entry.value = scalar(&value, &scope, &entry.value.span);
-        }
-    }
 }
 
-fn other_of(coordinate: &str) -> &'static str {
-    match coordinate {
-        "x" => "y",
-        "y" => "x",
-        "vx" => "vy",
-        _ => "vx",
+/// The parameters of an instance's frame in the model, with their formulas.
+fn in_model(placement: &Placement, prefix: &str, outer: Option<&Scope>, frame: Frame) -> Vec<(String, String)> {
+    let own = placement.frame();
+    let (around, place) = match outer.and_then(|outer| Some((outer.frame()?, outer.full(PLACE)))) {
+        Some(found) => found,
+        None => (Frame::default(), String::new()),
+    };
+    // The place of an image is the image of the place.
+    let position = [0, 1, 2].map(|axis| {
+        let text = if own.moved[axis] { format!("{prefix}at.{}", AXES[axis]) } else { "0".to_owned() };
+        signed(&text, around.mirrors.flips(axis))
+    });
+    let (origin, seen) = (around.origin(&place), around.turn(&place, &position));
+    let mut parameters = Vec::new();
+    for axis in (0..3).filter(|&axis| frame.moved[axis]) {
+        parameters.push((AXES[axis].to_owned(), sum([origin[axis].clone(), seen[axis].clone()].iter())));
     }
+    let angle = format!("{prefix}at.angle");
+    match frame.turned {
+        Turned::Not => {}
+        Turned::ByAngle => {
+            let outer = if around.is_turned() { format!("{place}angle") } else { "0".to_owned() };
+            let inner = if own.is_turned() { signed(&angle, around.mirrors.turns_back(2)) } else { "0".to_owned() };
+            parameters.push(("angle".to_owned(), sum([outer, inner].iter())));
+        }
+        Turned::InSpace => {
+            let inner = match (&placement.quaternion, own.turned) {
+                (Some(p), _) => p.clone(),
+                (None, Turned::ByAngle) => about_z(&angle),
+                _ => Frame::default().quaternion(""),
+            };
+            let [p0, x, y, z] = inner;
+            let image = [(x, 0), (y, 1), (z, 2)].map(|(text, axis)| signed(&text, around.mirrors.turns_back(axis)));
+            let [x, y, z] = image;
+            let p = product(&around.quaternion(&place), &[p0, x, y, z]);
+            parameters.extend((0..4).zip(p).map(|(index, text)| (format!("p{index}"), text)));
+        }
+    }
+    parameters
 }
 
-/// The formula of a number, its sign included.
-fn text(node: &Node) -> Option<String> {
-    let scalar = node.scalar()?;
-    let is_negated = scalar.scope.as_ref().is_some_and(|scope| scope.is_negated());
-    Some(if is_negated { format!("-({})", scalar.text) } else { scalar.text.clone() })
+/// A text without quotes.
+fn plain(text: &str, span: &Span) -> Node {
+    Node { span: span.clone(), value: Value::Scalar(Scalar::plain(text, None)) }
 }
 
-fn scalar(text: &str, scope: &Arc<Scope>, span: &Span) -> Node {
+/// The same whose names are those of an instance.
+pub(super) fn scalar(text: &str, scope: &Arc<Scope>, span: &Span) -> Node {
     let scalar = Scalar { scope: Some(Arc::clone(scope)), ..Scalar::plain(text, None) };
     Node { span: span.clone(), value: Value::Scalar(scalar) }
 }

@@ -1,10 +1,10 @@
 //! `ports:`, bodies and points by which others hold an instance.
 
-use super::placement::Placement;
 use super::{Writer, mirror};
 use crate::grammar::SymbolTable;
 use crate::model::file;
 use crate::model::names::Reader;
+use crate::syntax::mirrors::Mirrors;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -20,14 +20,24 @@ pub(super) struct Port {
     span: Span,
 }
 
+impl Port {
+    pub(super) fn is(&self, name: &str) -> bool {
+        self.name == name
+    }
+
+    pub(super) fn target(&self) -> &str {
+        &self.target
+    }
+}
+
 impl Writer<'_, '_> {
     /// Notes the ports of an instance; one with a place of its own becomes a point of its body.
-    pub(super) fn ports(&mut self, prefix: &str, entries: Vec<Entry>, placement: &Placement) {
+    pub(super) fn ports(&mut self, prefix: &str, entries: Vec<Entry>, mirrors: Mirrors) {
         for mut entry in entries {
-            if let Some(axis) = placement.mirror().filter(|_| matches!(entry.value.value, Value::Mapping(_))) {
-                mirror::frame(&mut entry.value, axis);
+            if matches!(entry.value.value, Value::Mapping(_)) {
+                mirrors.axes().for_each(|axis| mirror::frame(&mut entry.value, axis));
             }
-            if !self.reader.name(&entry, "a port") {
+            if !self.reader.name(&entry, "a port") || !self.is_free(&entry, true) {
                 continue;
             }
             let name = format!("{prefix}{}", entry.key);

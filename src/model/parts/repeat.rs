@@ -68,10 +68,7 @@ impl Writer<'_, '_> {
             let first = written.len();
             match entry.value.get(REPEAT) {
                 Some(repeat) => self.copies(entry, repeat, (shift, scope), &mut written),
-                None => {
-                    let copy = self.entry(entry, &entry.value, shift, scope);
-                    written.push(copy);
-                }
+                None => written.extend(self.entry(entry, &entry.value, shift, scope)),
             }
             for copy in written.split_off(first) {
                 match places.get(&copy.key).cloned() {
@@ -86,8 +83,8 @@ impl Writer<'_, '_> {
         written
     }
 
-    /// An entry with a value, copied.
-    fn entry(&mut self, entry: &Entry, value: &Node, shift: usize, scope: Option<&Arc<Scope>>) -> Entry {
+    /// An entry with a value, copied; nothing where the braces of its name are wrong, as is reported.
+    fn entry(&mut self, entry: &Entry, value: &Node, shift: usize, scope: Option<&Arc<Scope>>) -> Option<Entry> {
         let key_span = entry.key_span.start + shift..entry.key_span.end + shift;
         let value = self.node(value, shift, scope);
         let key = match scope.filter(|_| entry.key.contains('{')) {
@@ -99,13 +96,13 @@ impl Writer<'_, '_> {
                     Err(error) => {
                         let verbatim = key_span.len() == entry.key.len();
                         let part = key_span.start + error.span.start..key_span.start + error.span.end;
-                        self.reader.error(if verbatim { part } else { key_span.clone() }, error.message, error.help);
-                        entry.key.clone()
+                        self.reader.error(if verbatim { part } else { key_span }, error.message, error.help);
+                        return None;
                     }
                 }
             }
         };
-        Entry { key, key_span, value }
+        Some(Entry { key, key_span, value })
     }
 
     /// The copies of an entry.
@@ -118,7 +115,7 @@ impl Writer<'_, '_> {
             if self.is_full {
                 return;
             }
-            let copy = self.entry(entry, &value, shift, Some(&scope));
+            let Some(copy) = self.entry(entry, &value, shift, Some(&scope)) else { return };
             let is_named = copy.key != entry.key;
             let span = copy.key_span.clone();
             written.push(copy);

@@ -1,0 +1,177 @@
+//! Bodies, joints and effects of an assembly, as they are in the model: images in mirrors, and directions of the model.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::placement::{AXES, GROUND, scalar};
+use super::turned::{euler, quaternion, text, turn};
+use super::{Writer, mirror, patterns};
+use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
+use crate::syntax::scope::Scope;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::{Entry, Node, Value};
+
+/// Where the entries of an instance are in the sections of the model.
+#[derive(Default)]
+pub(super) struct Places {
+    pub(super) bodies: Range<usize>,
+    pub(super) joints: Range<usize>,
+    pub(super) effects: Range<usize>,
+    pub(super) starts: [(&'static str, Range<usize>); 2],
+}
+
+/// Effects with vectors along the axes of the ground.
+const DIRECTED: [(&str, &str); 4] =
+    [("spring_damper", "along"), ("force", "value"), ("drag", "wind"), ("torque", "value")];
+
+impl Writer<'_, '_> {
+    /// Makes images of bodies, joints and effects, and turns directions of the ground.
+    pub(super) fn image(&mut self, places: &Places, scope: &Arc<Scope>) {
+        let effects = self.taken("effects", &places.effects);
+        let mut images = Vec::with_capacity(effects.len());
+        let frame = scope.frame().unwrap_or_default();
+        for mut effect in effects {
+            let is_turning = self.is_on_turning(&effect, scope);
+            if is_turning != Some(false) && mirror::measures_turns(&effect) {
+                self.parts.turning_effects.insert(effect.key.clone());
+            }
+            if frame.mirrors.axes().next().is_some() {
+                self.image_of_kind(&mut effect, frame.mirrors, is_turning);
+            }
+            if frame.is_turned() {
+                turn_directions(&mut effect, frame, scope);
+            }
+            images.push(effect);
+        }
+        self.put("effects", &places.effects, images);
+        if scope.frame().is_none() {
+            return;
+        }
+        let mut joints = self.taken("joints", &places.joints);
+        if frame.mirrors.axes().next().is_some() {
+            for joint in &mut joints {
+                let is_turning = self.is_on_turning(joint, scope);
+                self.image_of_kind(joint, frame.mirrors, is_turning);
+            }
+        }
+        self.put("joints", &places.joints, joints);
+        let mut bodies = self.taken("bodies", &places.bodies);
+        for body in bodies.iter_mut().filter(|body| body.key != scope.full(GROUND)) {
+            self.image_of_body(body, frame.mirrors);
+            self.hold(body, frame, scope);
+        }
+        self.put("bodies", &places.bodies, bodies);
+    }
+
+    /// Whether an effect or a drive is on joints that turn; nothing where it is on nothing.
+    fn is_on_turning(&mut self, entry: &Entry, scope: &Scope) -> Option<bool> {
+        let Value::Mapping(kinds) = &entry.value.value else { return None };
+        let on = kinds.first()?.value.get("on")?.scalar()?;
+        let Some(wanted) = on.text.trim().strip_prefix("all ").map(str::trim) else {
+            return Some(self.turning.get(on.name().as_ref()) == Some(&true));
+        };
+        if !patterns::is_pattern(wanted) {
+            return Some(wanted == REVOLUTE);
+        }
+        let matches =
+            |name: &str| name.strip_prefix(scope.prefix()).is_some_and(|name| patterns::matches(wanted, name));
+        let turns = |which: bool| self.turning.iter().any(|(name, turns)| *turns == which && matches(name));
+        let (some, others) = (turns(true), turns(false));
+        let is_odd = scope.frame().is_some_and(|frame| frame.mirrors.is_odd());
+        if some && others && is_odd && mirror::tells_turns(entry) {
+            let message = format!("`{}` is joints that turn and others, which have other images", clip(&on.text));
+            let at = kinds.first()?.value.get("on")?.span.clone();
+            self.reader.error(at, message, "write an effect for those that turn and one for the others".to_owned());
+        }
+        Some(some)
+    }
+
+    /// Holds the coordinates that a body does not have where the instance has them.
+    fn hold(&mut self, body: &mut Entry, frame: Frame, scope: &Arc<Scope>) {
+        let Value::Mapping(keys) = &mut body.value.value else { return };
+        let Some(coordinates) = keys.iter().find(|key| key.key == "coordinates") else { return };
+        let (span, at) = (coordinates.value.span.clone(), coordinates.key_span.clone());
+        let Value::Sequence(items) = &coordinates.value.value else { return };
+        let is_free = |name: &str| items.iter().any(|item| item.scalar().is_some_and(|scalar| scalar.text == name));
+        let (free, turns) = (AXES.map(is_free), ["angle", "orientation"].map(is_free));
+        let is_mixed = match frame.turned {
+            Turned::Not => false,
+            Turned::ByAngle => free[0] != free[1],
+            Turned::InSpace => turns[0] || free != [free[0]; 3],
+        };
+        if is_mixed {
+            let name = body.key.strip_prefix(scope.prefix()).unwrap_or(&body.key);
+            let message = format!("the coordinates of `{name}` are along the model's axes, but the instance is turned");
+            let help = "give it all coordinates, and guide it by a joint such as `prismatic`".to_owned();
+            self.reader.error(span, message, help);
+            return;
+        }
+        let mut held: Vec<Entry> = match keys.iter().find(|key| key.key == "held").map(|key| &key.value.value) {
+            Some(Value::Mapping(entries)) => entries.clone(),
+            Some(_) => return,
+            None => Vec::new(),
+        };
+        // What is not well formed its reader reports.
+        let Some(wanted) = held_in_model(&held, frame, free, turns.contains(&true), (scope, &span)) else { return };
+        for (name, value) in wanted {
+            held.retain(|key| key.key != name && !(name == "orientation" && key.key == "angle"));
+            held.push(Entry { key: name.to_owned(), key_span: at.clone(), value });
+        }
+        if held.is_empty() {
+            return;
+        }
+        keys.retain(|key| key.key != "held");
+        let value = Node { span, value: Value::Mapping(held) };
+        keys.push(Entry { key: "held".to_owned(), key_span: at, value });
+    }
+}
+
+/// What is held in the model's frame, of a body that has some lengths as coordinates, and perhaps turns.
+fn held_in_model(
+    held: &[Entry],
+    frame: Frame,
+    free: [bool; 3],
+    turns: bool,
+    (scope, span): (&Arc<Scope>, &Span),
+) -> Option<Vec<(&'static str, Node)>> {
+    let of = |name: &str| held.iter().find(|key| key.key == name).map(|key| &key.value);
+    let number = |name: &str| of(name).map_or_else(|| Some("0".to_owned()), text);
+    let (origin, angle) = (frame.origin(PLACE), number("angle")?);
+    let seen = frame.turn(PLACE, &[number("x")?, number("y")?, number("z")?]);
+    let mut wanted = Vec::new();
+    for axis in (0..3).filter(|&axis| !free[axis] && (frame.is_turned() || origin[axis] != "0")) {
+        let value = sum([origin[axis].clone(), seen[axis].clone()].iter());
+        if value != "0" {
+            wanted.push((AXES[axis], scalar(&value, scope, span)));
+        }
+    }
+    if turns || !frame.is_turned() {
+        return Some(wanted);
+    }
+    let orientation = of("orientation");
+    if frame.turned == Turned::ByAngle && orientation.is_none() {
+        let angle = sum([format!("{PLACE}angle"), angle].iter());
+        wanted.push(("angle", scalar(&angle, scope, span)));
+        return Some(wanted);
+    }
+    let own = orientation.map_or_else(|| Some(about_z(&angle)), quaternion)?;
+    let p = product(&frame.quaternion(PLACE), &own).map(|p| scalar(&p, scope, span));
+    wanted.push(("orientation", euler(p, span)));
+    Some(wanted)
+}
+
+/// The kind of joints that turn, with an angle that a mirror counts the other way.
+pub(super) const REVOLUTE: &str = "revolute";
+
+/// Turns the directions of the ground that an effect has.
+fn turn_directions(effect: &mut Entry, frame: Frame, scope: &Arc<Scope>) {
+    let Value::Mapping(kinds) = &mut effect.value.value else { return };
+    let [kind] = kinds.as_mut_slice() else { return };
+    let in_body = kind.value.get("frame").and_then(Node::scalar).is_some_and(|frame| frame.text == "body");
+    let Value::Mapping(keys) = &mut kind.value.value else { return };
+    for key in keys.iter_mut().filter(|key| !in_body && DIRECTED.contains(&(kind.key.as_str(), key.key.as_str()))) {
+        mirror::written_out(&mut key.value);
+        turn(&mut key.value, frame, scope);
+    }
+}
