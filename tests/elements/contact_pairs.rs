@@ -85,7 +85,7 @@ fn apart(first: &Body, second: &Body, rotation: [Point; 3], position: Point) -> 
             return 0.0;
         }
         let next = farthest(nearest.map(|part| -part));
-        if distance - dot(nearest, next) / distance < 1e-9 {
+        if distance - dot(nearest, next) / distance < 1e-9 || kept.contains(&next) {
             return distance;
         }
         simplex = kept;
@@ -121,7 +121,7 @@ fn seconds() -> [(&'static str, Body); 5] {
 fn firsts() -> [(&'static str, Body); 5] {
     let tetrahedron = [[-0.2, -0.1, -0.1], [0.3, -0.1, -0.1], [0.0, 0.3, -0.1], [0.0, 0.0, 0.25]];
     [
-        ("plane", rounded("plane: z", &[[1e3, 0.0, 0.0], [-1e3, 1e3, 0.0], [-1e3, -1e3, 0.0], [0.0, 0.0, -1e3]], 0.0)),
+        ("plane", rounded("plane: z", &[[8.0, 0.0, 0.0], [-8.0, 8.0, 0.0], [-8.0, -8.0, 0.0], [0.0, 0.0, -8.0]], 0.0)),
         ("sphere", rounded("circle: 0.12", &[[0.0; 3]], 0.12)),
         ("capsule", rounded("capsule: [[-0.2, 0.1, 0], [0.25, 0, 0.1]], rounding: 0.05", &[[-0.2, 0.1, 0.0], [0.25, 0.0, 0.1]], 0.05)),
         ("block", rounded("block: [0.5, 0.3, 0.24], rounding: 0.03", &corners([0.25, 0.15, 0.12]), 0.03)),

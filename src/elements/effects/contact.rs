@@ -34,7 +34,7 @@ use super::ground::Ground;
 use super::hull::{self, Hull};
 use super::impact::Push;
 use super::outline::Outline;
-use super::polyhedron::Polyhedron;
+use super::polyhedron::{self, Polyhedron};
 use super::rod::{self, Rod};
 use super::solid::{self, Solid};
 use super::touch::{Law, Shape, Surface, Touch};
@@ -316,6 +316,11 @@ impl Checked for Contact {
             if let Some(points) = points {
                 hull::check(reader, fields, (key, points));
             }
+        }
+        if let Some(key) = ["box", "polyhedron"].into_iter().find(|key| fields.get(key).is_some())
+            && (self.block.is_some() || self.hull.is_some())
+        {
+            polyhedron::check_edges(reader, fields.key_span(key), self.hull.as_ref(), self.polyhedron.as_ref());
         }
         for (key, lengths) in [("block", &self.block), ("box", &self.r#box)] {
             if let Some(lengths) = lengths {

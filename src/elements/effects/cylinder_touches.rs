@@ -5,7 +5,7 @@
 //! circle             its centre, where the cylinder is nearest
 //! capsule            the point of its line that is nearest
 //! block, hull        three points of each rim, for the normal n of the face that is farthest away;
-//!                    each corner; the point of each edge that is nearest, by what it is deeper than its corners
+//!                    the point of each edge that is nearest
 //! ```
 //!
 //! A face that touches meets a rim: the distances of all of these have the least distance of both bodies among them.
@@ -41,12 +41,8 @@ pub(super) fn touches<'g>(surface: &Surface<'g>, cylinder: &Cylinder<'g>, pair: 
     };
     let facing = pair.outward(facets.facing(reach, lowest));
     let place = |corner: Vector<'g>| origin + pair.outward(corner);
-    let corners: Vec<Touch<'g>> =
-        facets.corners.iter().map(|&corner| cylinder.touch(pair, place(corner), reach)).collect();
-    let edges = facets.edges.iter().map(|edge| {
-        let (start, along, length) = facets.line(edge);
-        let nearest = cylinder.nearest_on(pair, (place(start), pair.outward(along), length), reach);
-        cylinder.touch(pair, nearest, reach).beyond(edge.ends.map(|end| corners[end]))
+    let edges = facets.edges.iter().map(|&(start, along, length)| {
+        cylinder.touch(pair, cylinder.nearest_on(pair, (place(start), pair.outward(along), length), reach), reach)
     });
-    on_rims(facing).chain(corners.iter().copied()).chain(edges).collect()
+    on_rims(facing).chain(edges).collect()
 }

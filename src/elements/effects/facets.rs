@@ -9,19 +9,11 @@ use crate::multibody::Vector;
 /// Lengths as shares of the reach: normals of faces that are this equally far from a body are mixed.
 const MIXED: f64 = 0.1;
 
-/// An edge: the numbers of the corners it is between, and its direction and length from the first.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Edge<'g> {
-    pub ends: [usize; 2],
-    along: Vector<'g>,
-    length: Scalar<'g>,
-}
-
 /// A polyhedron in its body's frame.
 #[derive(Clone, Debug)]
 pub(super) struct Facets<'g> {
     pub corners: Vec<Vector<'g>>,
-    pub edges: Vec<Edge<'g>>,
+    pub edges: Vec<Segment<'g>>,
     /// Normals, and how far the faces are from the frame's origin along them.
     faces: Vec<(Vector<'g>, Scalar<'g>)>,
 }
@@ -34,11 +26,7 @@ impl<'g> Facets<'g> {
         let corner = |number: usize| Vector::from([0, 1, 2].map(|axis| sign(number, axis) * half[axis]));
         let edges = (0..3).flat_map(|axis| {
             let starts = (0..8).filter(move |corner| corner >> axis & 1 == 0);
-            starts.map(move |start| Edge {
-                ends: [start, start | 1 << axis],
-                along: Vector::along(g, axis),
-                length: 2.0 * half[axis],
-            })
+            starts.map(move |start| (corner(start), Vector::along(g, axis), 2.0 * half[axis]))
         });
         let faces = (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| (sign * Vector::along(g, axis), half[axis])));
         Self { corners: (0..8).map(corner).collect(), edges: edges.collect(), faces: faces.collect() }
@@ -46,21 +34,14 @@ impl<'g> Facets<'g> {
 
     /// Of a convex hull.
     pub fn of_hull(hull: &Hull, g: &'g Builder) -> Self {
-        let edges = hull.edges.iter().map(|edge| Edge {
-            ends: edge.ends,
-            along: constant(g, edge.along),
-            length: g.number(hull.length(edge)),
+        let edges = hull.edges.iter().map(|edge| {
+            (constant(g, hull.points[edge.ends[0]]), constant(g, edge.along), g.number(hull.length(edge)))
         });
         Self {
             corners: hull.points.iter().map(|&point| constant(g, point)).collect(),
             edges: edges.collect(),
             faces: hull.faces.iter().map(|face| (constant(g, face.normal), g.number(face.height))).collect(),
         }
-    }
-
-    /// An edge as a line.
-    pub fn line(&self, edge: &Edge<'g>) -> Segment<'g> {
-        (self.corners[edge.ends[0]], edge.along, edge.length)
     }
 
     /// The normal of the face that a convex body is farthest from; `lowest` is the least of n · p over the body's points. While the body is

@@ -13,7 +13,7 @@
 //!
 //! Which faces there are follows from the points, so these are the same for all samples.
 
-use symdiff::{Builder, Scalar};
+use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use super::solid::Gap;
@@ -254,14 +254,7 @@ pub(super) fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<
         reader.error(at, format!("a `{key}` has at most {MOST} points, not {}", points.len()), None);
         return;
     }
-    let numbers: Option<Vec<Point>> = points
-        .iter()
-        .map(|point| {
-            let [x, y, z] = [0, 1, 2].map(|axis| reader.evaluate(&point[axis], 0));
-            Some([x?, y?, z?])
-        })
-        .collect();
-    let Some(numbers) = numbers else { return };
+    let Some(numbers) = numbers(reader, points) else { return };
     if numbers.len() < 4 || Hull::of(numbers).is_none() {
         let help = if key == "hull" {
             "a plate of no thickness is a `polygon` that extends along z, or a thin `block`"
@@ -271,4 +264,19 @@ pub(super) fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<
         let message = format!("a `{key}` needs four points or more that do not lie in one plane");
         reader.error(at, message, help.to_owned());
     }
+}
+
+/// Points that are the same for all samples.
+fn numbers<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> Option<Vec<Point>> {
+    let number = |point: &[Formula; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|axis| reader.evaluate(&point[axis], 0));
+        Some([x?, y?, z?])
+    };
+    points.iter().map(number).collect()
+}
+
+/// How many edges the hull of points has; none where they make none.
+pub(super) fn edges<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> usize {
+    let hull = numbers(reader, points).filter(|points| (4..=MOST).contains(&points.len())).and_then(Hull::of);
+    hull.map_or(0, |hull| hull.edges.len())
 }

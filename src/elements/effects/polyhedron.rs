@@ -4,23 +4,31 @@
 //! plane, hollow      each corner
 //! circle             the ball's centre, where the polyhedron is nearest
 //! capsule            the point of its line that is nearest to the polyhedron
-//! block, hull        each corner of both, where the other is nearest; each two edges, where they are nearest,
-//!                    by what they are deeper than their four corners
+//! block, hull        each corner of both, where the other is nearest; each two edges, where they are nearest
 //! ```
 //!
 //! Two convex polyhedra are nearest at a corner of one of them or where two edges cross. Where faces lie on one another these are the
-//! corners of what both faces share. Distances of edges have no sign: crossing edges may be as deep as ρ + r.
+//! corners of what both faces share. Distances of edges have no sign: crossing edges may be as deep as ρ + r. Each push is the
+//! gradient of an energy of its own distance, so that the sum keeps energy, also while a corner passes over an edge.
 
 use std::rc::Rc;
 
 use symdiff::Scalar;
 
+use super::course::Points;
 use super::facets::Facets;
-use super::hull::Hull;
+use super::hull::{self, Hull};
 use super::rod::Rod;
 use super::solid::Solid;
 use super::touch::{Shape, Surface, Touch};
+use crate::grammar::{Reader, Span, SymbolTable};
 use crate::multibody::{Pair, Vector};
+
+/// Most pairs of edges: each has instructions of its own. Two boxes have 144.
+const MOST: usize = 400;
+
+/// Edges of a box.
+const EDGES: usize = 12;
 
 /// A polyhedron of the second body.
 #[derive(Clone, Debug)]
@@ -80,23 +88,17 @@ impl<'g> Polyhedron<'g> {
             }
             Shape::Solid(..) | Shape::Ground(_) => return Vec::new(),
         };
-        let second = on_corners();
-        let first: Vec<Touch<'g>> = facets
-            .corners
-            .iter()
-            .map(|&corner| self.shape(reach).touch(&back, origin + pair.outward(corner), reach - self.radius, None))
-            .map(Touch::reversed)
-            .collect();
-        let mut all: Vec<Touch<'g>> = second.iter().chain(&first).copied().collect();
-        for edge in &facets.edges {
-            let (start, tangent, length) = facets.line(edge);
+        let mut all = on_corners();
+        let body = self.shape(reach);
+        all.extend(facets.corners.iter().map(|&corner| {
+            body.touch(&back, origin + pair.outward(corner), reach - self.radius, None).reversed()
+        }));
+        for &(start, tangent, length) in &facets.edges {
             let capsule = Shape::Solid(Solid::Capsule { start, tangent, length }, reach);
-            for other in &self.facets.edges {
-                let (from, along, its_length) = self.facets.line(other);
+            all.extend(self.facets.edges.iter().map(|&(from, along, its_length)| {
                 let centre = Rod::along(from, along, its_length).nearest_to_line(pair, (start, tangent, length));
-                let corners = edge.ends.map(|end| first[end]).into_iter().chain(other.ends.map(|end| second[end]));
-                all.push(capsule.touch(pair, centre, self.radius, None).beyond(corners));
-            }
+                capsule.touch(pair, centre, self.radius, None)
+            }));
         }
         all.into_iter().map(|touch| self.near(touch, reach, radius, pair)).collect()
     }
@@ -118,5 +120,23 @@ impl<'g> Polyhedron<'g> {
         };
         let sum = radius + its_radius + reach;
         touch.only_within(Some(sum * sum - pair.offset().dot(pair.offset())))
+    }
+}
+
+/// Reports two polyhedra of too many edges; of a box there are no points.
+pub(super) fn check_edges<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    at: Span,
+    first: Option<&Points>,
+    second: Option<&Points>,
+) {
+    let [first, second] = [first, second].map(|points| points.map_or(EDGES, |points| hull::edges(reader, points)));
+    if first * second > MOST {
+        let message = format!(
+            "polyhedra of {first} and {second} edges have {} pairs of edges that may touch; a contact has at most {MOST}",
+            first * second
+        );
+        let help = "leave out points, or say `corners` instead, which touch alone".to_owned();
+        reader.error(at, message, help);
     }
 }

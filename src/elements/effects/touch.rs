@@ -84,7 +84,7 @@ impl<'g> Law<'g> {
         &self,
         forces: &mut dyn Forces<'g>,
         pair: &Pair<'g>,
-        Touch { gap: Gap { gap, normal, overlap, near }, place, moving, spared }: Touch<'g>,
+        Touch { gap: Gap { gap, normal, overlap, near }, place, moving }: Touch<'g>,
     ) -> Felt<'g> {
         let [first, second] = [pair.first, pair.second].map(|frame| forces.point_at(frame.point.body, place));
         let mut velocity = second.velocity - first.velocity;
@@ -92,8 +92,7 @@ impl<'g> Law<'g> {
             velocity = velocity - moving;
         }
         let parting = normal.dot(velocity);
-        let depth = spared.map_or(-gap, |spared| -gap - spared);
-        let approach = -parting;
+        let (depth, approach) = (-gap, -parting);
         match near {
             Some(near) => forces.only_within(near, overlap),
             None => forces.only_where(overlap),
@@ -135,14 +134,12 @@ pub(super) struct Touch<'g> {
     pub place: Vector<'g>,
     /// The first surface's velocity beyond its body's.
     pub moving: Option<Vector<'g>>,
-    /// A depth that others bear, m: an edge pushes by what it is deeper than its corners.
-    pub spared: Option<Scalar<'g>>,
 }
 
 impl<'g> Touch<'g> {
     /// Of surfaces at rest on their bodies.
     pub fn at(place: Vector<'g>, gap: Gap<'g>) -> Self {
-        Self { gap, place, moving: None, spared: None }
+        Self { gap, place, moving: None }
     }
 
     /// Of the same surfaces, with the first and the second exchanged.
@@ -155,12 +152,6 @@ impl<'g> Touch<'g> {
     pub fn only_within(mut self, near: Option<Scalar<'g>>) -> Self {
         self.gap.near = near.or(self.gap.near);
         self
-    }
-
-    /// The same but for what others bear.
-    pub fn beyond(self, others: impl IntoIterator<Item = Touch<'g>>) -> Self {
-        let zero = self.gap.gap.builder().number(0.0);
-        Self { spared: Some(others.into_iter().fold(zero, |most, other| most.max(-other.gap.gap))), ..self }
     }
 }
 
