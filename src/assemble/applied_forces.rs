@@ -94,7 +94,8 @@ impl<'g> AppliedForces<'g> {
 
     /// The conditions under which something acts.
     pub fn conditions(&self) -> Vec<Scalar<'g>> {
-        let mut conditions: Vec<_> = self.guarded.iter().map(|Guarded { guard, .. }| guard.within.unwrap_or(guard.condition)).collect();
+        let mut conditions: Vec<_> =
+            self.guarded.iter().map(|Guarded { guard, .. }| guard.within.unwrap_or(guard.condition)).collect();
         conditions.dedup();
         conditions
     }

@@ -20,9 +20,8 @@ use crate::multibody::{Pair, Vector};
 pub(super) fn touches<'g>(surface: &Surface<'g>, cylinder: &Cylinder<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
     let Surface::Whole(shape) = surface else { return Vec::new() };
     let point = cylinder.radius.builder().number(0.0);
-    let on_rims = |normal: Vector<'g>| {
-        cylinder.rims(pair, normal).into_iter().map(|place| shape.touch(pair, place, point, None))
-    };
+    let on_rims =
+        |normal: Vector<'g>| cylinder.rims(pair, normal).into_iter().map(|place| shape.touch(pair, place, point, None));
     let origin = pair.first.point.position;
     let (facets, reach) = match *shape {
         Shape::Plane(normal) => return on_rims(pair.outward(normal)).collect(),

@@ -34,9 +34,10 @@ impl<'g> Facets<'g> {
 
     /// Of a convex hull.
     pub fn of_hull(hull: &Hull, g: &'g Builder) -> Self {
-        let edges = hull.edges.iter().map(|edge| {
-            (constant(g, hull.points[edge.ends[0]]), constant(g, edge.along), g.number(hull.length(edge)))
-        });
+        let edges = hull
+            .edges
+            .iter()
+            .map(|edge| (constant(g, hull.points[edge.ends[0]]), constant(g, edge.along), g.number(hull.length(edge))));
         Self {
             corners: hull.points.iter().map(|&point| constant(g, point)).collect(),
             edges: edges.collect(),
@@ -53,9 +54,8 @@ impl<'g> Facets<'g> {
         let zero = g.number(0.0);
         let width = MIXED * reach;
         let shares = apart.into_iter().zip(&self.faces);
-        let sum = shares.fold(Vector::zero(g), |sum, (apart, face)| {
-            sum + (width - (farthest - apart)).max(zero) * face.0
-        });
+        let sum =
+            shares.fold(Vector::zero(g), |sum, (apart, face)| sum + (width - (farthest - apart)).max(zero) * face.0);
         let least = 1e-6 * width * width;
         sum / sum.dot(sum).max(least).sqrt()
     }

@@ -245,8 +245,9 @@ pub(super) fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<
     if points.iter().flatten().any(|formula| reader.is_uncertain(formula)) {
         let other = if key == "hull" { "block" } else { "box" };
         let help = format!("which faces it has would depend on them; a `{other}` may have uncertain lengths");
-        let message =
-            format!("points of a `{key}` are the same for all samples, so they cannot depend on an uncertain parameter");
+        let message = format!(
+            "points of a `{key}` are the same for all samples, so they cannot depend on an uncertain parameter"
+        );
         reader.error(at, message, help);
         return;
     }

@@ -60,7 +60,8 @@ impl<'g> Polyhedron<'g> {
     pub fn touches(&self, surface: &Surface<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
         let Surface::Whole(shape) = surface else { return Vec::new() };
         let on_corners = || {
-            let corners = self.facets.corners.iter().map(|&corner| pair.second.point.position + pair.outward_of_second(corner));
+            let corners =
+                self.facets.corners.iter().map(|&corner| pair.second.point.position + pair.outward_of_second(corner));
             corners.map(|corner| shape.touch(pair, corner, self.radius, None)).collect::<Vec<_>>()
         };
         let back = Pair { first: pair.second, second: pair.first };
@@ -90,9 +91,12 @@ impl<'g> Polyhedron<'g> {
         };
         let mut all = on_corners();
         let body = self.shape(reach);
-        all.extend(facets.corners.iter().map(|&corner| {
-            body.touch(&back, origin + pair.outward(corner), reach - self.radius, None).reversed()
-        }));
+        all.extend(
+            facets
+                .corners
+                .iter()
+                .map(|&corner| body.touch(&back, origin + pair.outward(corner), reach - self.radius, None).reversed()),
+        );
         for &(start, tangent, length) in &facets.edges {
             let capsule = Shape::Solid(Solid::Capsule { start, tangent, length }, reach);
             all.extend(self.facets.edges.iter().map(|&(from, along, its_length)| {

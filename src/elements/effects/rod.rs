@@ -166,7 +166,9 @@ pub(super) fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fi
         ("cylinder", "in the plane it is a ball: give its `radius` alone"),
         ("box", "in the plane name its `corners`"),
     ];
-    if let Some((key, help)) = planar.into_iter().find(|(key, _)| fields.get(key).is_some() && !reader.model.is_spatial()) {
+    if let Some((key, help)) =
+        planar.into_iter().find(|(key, _)| fields.get(key).is_some() && !reader.model.is_spatial())
+    {
         reader.error(fields.key_span(key), format!("a `{key}` needs `space: spatial`"), help.to_owned());
     }
     let Some((key, surfaces, help)) = TOUCHED.into_iter().find(|(key, ..)| fields.get(key).is_some()) else { return };

@@ -78,7 +78,12 @@ impl<'g> Solid<'g> {
         let distance = square.select(square, g.number(1.0)).sqrt();
         let normal = away.map(|part| part / distance);
         let Self::Block { half } = self else {
-            return Gap { gap: square.select(distance, g.number(0.0)) - reach, normal: outward(normal), overlap, near: None };
+            return Gap {
+                gap: square.select(distance, g.number(0.0)) - reach,
+                normal: outward(normal),
+                overlap,
+                near: None,
+            };
         };
         let (depth, face) = inside(place, half, g.number(0.0));
         let chosen = [0, 1, 2].map(|axis| square.select(normal[axis], face[axis]));
@@ -155,7 +160,11 @@ pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (
 }
 
 /// Reports a block that is flat somewhere in the box of parameters.
-pub(super) fn check_lengths<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (key, lengths): (&str, &[Formula; 3])) {
+pub(super) fn check_lengths<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    at: Span,
+    (key, lengths): (&str, &[Formula; 3]),
+) {
     let needed = if reader.model.is_spatial() { 3 } else { 2 };
     for corner in 0..reader.corners.len() {
         let lengths = lengths[..needed].iter().map(|length| reader.evaluate(length, corner));
