@@ -302,3 +302,38 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
         }
     }
 }
+
+/// A mirrored instance has mirrored boxes, polyhedra and cylinders.
+#[test]
+fn an_image_moves_as_the_mirror_shows() {
+    let rock = "hull: [[-0.3, -0.2, 0.2], [0.4, -0.1, 0.25], [0, 0.3, 0.3], [0.05, 0.05, 0.35], [0, 0, 0]], rounding: 0.02";
+    for (axis, surface, shape) in [
+        ("x", "block: [0.5, 0.3, 0.2], rounding: 0.02", "polyhedron: [[0.15, 0, 0], [-0.1, 0.05, 0], [0, 0.2, 0.1], [0, -0.15, 0], [0, 0, -0.2]], radius: 0.01"),
+        ("y", rock, "box: [0.2, 0.1, 0.3], radius: 0.01"),
+        ("y", rock, "cylinder: [[-0.1, 0.02, 0], [0.1, 0.05, 0.1]], radius: 0.05"),
+    ] {
+        let sign = |letter: &str| if letter == axis { -1.0 } else { 1.0 };
+        let bounds = nominal(&read(&format!(
+            "
+assemblies:
+  yard:
+    bodies:
+      foot: {{ mass: 1e3, inertia: [10, 10, 10], points: {{ at: {{ position: [0.1, 0.05, 0], rotation: {{ rpy: [0.3, -0.2, 0.4] }} }} }} }}
+      it: {{ mass: 1, inertia: [0.01, 0.02, 0.03], points: {{ at: {{ position: [0.01, 0.02, 0], rotation: {{ rpy: [0.5, 0.1, -0.4] }} }} }} }}
+    joints: {{ base: {{ fixed: [ground, foot] }} }}
+    effects:
+      e: {{ contact: {{ between: [foot.at, it.at], {surface}, {shape}, impact: {{ stiffness: 1e5, dissipation: 0.3 }}, friction: {{ coefficient: 0.2 }} }} }}
+    initial: {{ it.x: 0.08, it.y: 0.1, it.z: 0.6, it.vz: -1 }}
+instances: {{ one: {{ of: yard }}, two: {{ of: yard, mirror: {axis} }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }} }}
+outputs: {{ x: one.it.x, y: one.it.y, z: one.it.z, a: two.it.x, b: two.it.y, c: two.it.z, force: one.e.force }}
+simulation: {{ duration: 0.3, step: 1e-4, output_step: 0.01 }}
+"
+        )));
+        for (name, image) in [("x", "a"), ("y", "b"), ("z", "c")] {
+            let off = largest(curve(&bounds, name).iter().zip(curve(&bounds, image)).map(|(a, b)| a - sign(name) * b));
+            assert!(off < 1e-6, "{axis} {shape} {name}: {off:e}");
+        }
+        assert!(curve(&bounds, "force").iter().any(|force| *force > 1.0), "{shape}");
+    }
+}

@@ -10,10 +10,13 @@
 //! place = face − r (k cos φ + v × k sin φ),   φ = 0, ±120°
 //! ```
 //!
-//! n pushes the cylinder. g grows with τ: sixteen halvings find its root, and two steps of Newton's method from there make it smooth. Where the line is parallel to the side or to a face many points are as near:
-//! m, the middle of what is beside it, takes over within an angle of 10⁻⁴. At φ = 0 each rim's deepest point touches, so that a cylinder rolls on the line
-//! between two of them and tips about its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the
-//! body turns into that of the deepest point. The pushes at ±120° are alike, and their torques about the axis cancel.
+//! n pushes the cylinder. g grows with τ: sixteen halvings find its root, and two steps of Newton's method from there make it smooth.
+//! Where the line is parallel to the side or to a face many points are as near: m, the middle of what is beside it, takes over within an
+//! angle of 10⁻⁴.
+//!
+//! At φ = 0 each rim's deepest point touches, so that a cylinder rolls on the line between two of them and tips about its rim; on a face
+//! it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the body turns into that of the deepest point. The
+//! pushes at ±120° are alike, and their torques about the axis cancel.
 
 use symdiff::Scalar;
 
@@ -53,13 +56,15 @@ impl<'g> Cylinder<'g> {
         let ahead = along.dot(from);
         let aside = from - ahead * along;
         let square = aside.dot(aside);
-        let share = self.radius / square.max(self.radius * self.radius).sqrt();
-        let nearest = start + ahead.max(zero).min(height) * along + share * aside;
-        let way = nearest - ball;
+        let distance = square.select(square, one).sqrt();
+        // Exactly zero inside.
+        let over = (distance - self.radius).max(zero) / distance;
+        let past = (ahead - height).max(zero) + ahead.min(zero);
+        let way = -(over * aside) - past * along;
+        let nearest = ball + way;
         let square_of_way = way.dot(way);
         let outside = square_of_way.select(square_of_way, one).sqrt();
         // Inside, the nearest of the side and both faces.
-        let distance = square.select(square, one).sqrt();
         let beside = square.select(distance, zero) - self.radius;
         let beyond = (-ahead).max(ahead - height);
         let is_below = height - 2.0 * ahead;
