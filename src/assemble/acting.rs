@@ -113,6 +113,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
         self.applied.only_where(condition);
     }
 
+    fn only_within(&mut self, within: Scalar<'g>, condition: Scalar<'g>) {
+        self.applied.only_within(within, condition);
+    }
+
     fn at(&mut self, point: &MaterialPoint<'g>, force: Vector<'g>) {
         self.applied.add_force(point, force);
     }

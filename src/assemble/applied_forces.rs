@@ -20,10 +20,17 @@ enum Target {
     Coordinate(usize),
 }
 
+/// Something acts only where both are positive; `within` is what is cheap to compute.
+#[derive(Clone, Copy)]
+struct Guard<'g> {
+    within: Option<Scalar<'g>>,
+    condition: Scalar<'g>,
+}
+
 /// What acts only where a condition is positive.
 #[derive(Clone, Copy)]
 struct Guarded<'g> {
-    condition: Scalar<'g>,
+    guard: Guard<'g>,
     target: Target,
     part: Scalar<'g>,
 }
@@ -47,7 +54,7 @@ pub struct AppliedForces<'g> {
     /// What was measured since then.
     measured: Vec<(Sensor, Scalar<'g>)>,
     /// The condition of what is added now, if it has one.
-    guard: Option<Scalar<'g>>,
+    guard: Option<Guard<'g>>,
     /// What acts under conditions.
     guarded: Vec<Guarded<'g>>,
 }
@@ -79,12 +86,18 @@ impl<'g> AppliedForces<'g> {
     /// What the effect adds from now on acts only where `condition` is positive, whatever its expressions are elsewhere, and is
     /// not computed where no sample of a tile needs it. It vanishes continuously as the condition does.
     pub fn only_where(&mut self, condition: Scalar<'g>) {
-        self.guard = Some(condition);
+        self.guard = Some(Guard { within: None, condition });
+    }
+
+    /// The same, and where `within` is not positive the condition itself is not computed.
+    pub fn only_within(&mut self, within: Scalar<'g>, condition: Scalar<'g>) {
+        self.guard = Some(Guard { within: Some(within), condition });
     }
 
     /// The conditions under which something acts.
     pub fn conditions(&self) -> Vec<Scalar<'g>> {
-        let mut conditions: Vec<_> = self.guarded.iter().map(|guarded| guarded.condition).collect();
+        let mut conditions: Vec<_> =
+            self.guarded.iter().map(|Guarded { guard, .. }| guard.within.unwrap_or(guard.condition)).collect();
         conditions.dedup();
         conditions
     }
@@ -92,9 +105,10 @@ impl<'g> AppliedForces<'g> {
     /// All that acts, each under its condition.
     pub fn with_guarded(&self) -> Self {
         let mut all = Self { guarded: Vec::new(), guard: None, ..self.clone() };
-        for &Guarded { condition, target, part } in &self.guarded {
+        for &Guarded { guard: Guard { within, condition }, target, part } in &self.guarded {
             let total = all.total(target);
-            *total = condition.select(*total + part, *total);
+            let more = condition.select(*total + part, *total);
+            *total = within.map_or(more, |within| within.select(more, *total));
         }
         all
     }
@@ -284,7 +298,7 @@ impl<'g> AppliedForces<'g> {
         }
         self.touched.insert(target);
         match self.guard {
-            Some(condition) => self.guarded.push(Guarded { condition, target, part }),
+            Some(guard) => self.guarded.push(Guarded { guard, target, part }),
             None => *self.total(target) += part,
         }
     }

@@ -155,6 +155,29 @@ simulation: {{ duration: 4, step: 1e-3, output_step: 0.01 }}
     }
 }
 
+/// A centre within a cylinder is pushed out through the nearest of its side and faces; all of K δ²/2 becomes speed.
+#[test]
+fn a_centre_inside_is_pushed_out() {
+    for ([x, y, z], depth, along) in
+        [([0.07, 0.0, 0.1], 0.03, "x"), ([0.021, 0.034, 0.2371], 0.0129, "z"), ([0.003, -0.0817, -0.117], 0.1 - 0.003_f64.hypot(0.0817), "y")]
+    {
+        let bounds = nominal(&read(&format!(
+            "
+bodies: {{ ball: {{ mass: 2, inertia: [0.01, 0.01, 0.01] }}, body: {{ mass: 1e6, inertia: [1e6, 1e6, 1e6] }} }}
+effects: {{ it: {{ contact: {{ between: [ball, body], circle: 0.05, {UPRIGHT}, impact: {{ stiffness: 1e4, exponent: 1 }} }} }} }}
+initial: {{ ball.x: {x}, ball.y: {y}, ball.z: {z}, body.x: 0, body.y: 0, body.z: 0, body.vx: 0, body.vy: 0, body.vz: 0 }}
+outputs: {{ x: ball.vx, y: ball.vy, z: ball.vz, gap: it.gap }}
+simulation: {{ duration: 0.1, step: 2e-5, output_step: 0.01 }}
+"
+        )));
+        let expected = (1e4_f64 / 2.0).sqrt() * (depth + 0.05);
+        let speed = ["x", "y", "z"].map(|name| last(&bounds, name).powi(2)).iter().sum::<f64>().sqrt();
+        assert!((curve(&bounds, "gap")[0] + depth + 0.05).abs() < 1e-12, "{}", curve(&bounds, "gap")[0]);
+        assert!((speed - expected).abs() < 1e-3 * expected, "{speed}, not {expected}");
+        assert!(last(&bounds, along).abs() > 0.99 * expected, "not along {along}");
+    }
+}
+
 /// A ball and the side of a cylinder reflect as two balls of the same masses: along the common normal through both centres.
 #[test]
 fn a_cylinder_and_a_ball_exchange_their_velocities() {

@@ -36,6 +36,8 @@ fn touching(between: [PointRef; 2]) -> Contact {
         corners: None,
         line: None,
         cylinder: None,
+        r#box: None,
+        polyhedron: None,
         rounding: formula("0"),
         radius: formula("0.9"),
         axis: None,

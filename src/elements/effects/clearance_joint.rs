@@ -11,7 +11,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::touch::{Shape, Touch};
+use super::touch::{Law, Shape};
 use super::impact::Push;
 use super::felt::SENSORS;
 use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
@@ -62,7 +62,8 @@ impl ForceElement for ClearanceJoint {
         let shape = Shape::Hollow(clearance);
         let pair = forces.pair(self.between);
         let centre = pair.second.point.position;
-        Touch { shape, radius, axis, impact, friction, along: None, near: None }.act(forces, (&pair, centre)).measured(forces);
+        let law = Law { impact, friction, along: None };
+        law.act(forces, &pair, shape.touch(&pair, centre, radius, axis)).measured(forces);
         Ok(())
     }
 }

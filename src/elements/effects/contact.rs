@@ -8,7 +8,9 @@
 //! edges, rounding ρ:            see `outline`
 //! capsule, block, rounding ρ:   see `solid`
 //! hull, rounding ρ:             see `hull`
-//! line, cylinder of the second: see `rod`
+//! of the second, a line:        see `rod`
+//! cylinder:                     see `cylinder`, `cylinder_touches`
+//! box, polyhedron:              see `polyhedron`
 //! F_B = f(−gap) n − R_μ v_t,    F_A = −F_B          N, both at r_B − r n
 //! ```
 //!
@@ -19,21 +21,26 @@
 //! centres meet, is no contact that this can tell. Apart the force and its derivatives are exactly zero, and of a tile of samples that
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
+use std::rc::Rc;
+
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
 use super::course::{Course, Points, placed};
+use super::cylinder::Cylinder;
+use super::cylinder_touches;
 use super::felt::{Felt, SENSORS};
 use super::ground::Ground;
 use super::hull::{self, Hull};
 use super::impact::Push;
 use super::outline::Outline;
+use super::polyhedron::{self, Polyhedron};
 use super::rod::{self, Rod};
 use super::solid::{self, Solid};
-use super::touch::{Shape, Surface, Touch};
+use super::touch::{Law, Shape, Surface, Touch};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
-use crate::multibody::{BuildError, Vector};
+use crate::multibody::{BuildError, Pair, Vector};
 
 /// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block, a hull or edges on one body with a circle, sphere, capsule, cylinder or point on another.
 #[derive(Clone, Debug, Element)]
@@ -89,6 +96,12 @@ pub struct Contact {
     /// In space: centres of both faces of a cylinder on the second body, in the second point's frame; its radius is the `radius`.
     #[quantity(unit = "m", constant, otherwise = "no cylinder")]
     pub cylinder: Option<Points>,
+    /// In space: lengths of a box on the second body along the axes of the second point's frame, about that point; its surface is the `radius` outside.
+    #[quantity(unit = "m", constant, otherwise = "no box")]
+    pub r#box: Option<Components>,
+    /// In space: points whose convex hull is on the second body, in the second point's frame; its surface is the `radius` outside.
+    #[quantity(unit = "m", constant, otherwise = "no polyhedron")]
+    pub polyhedron: Option<Points>,
     /// In space: axis of two parallel cylinders, in the first point's frame.
     #[key(otherwise = "they are spheres")]
     pub axis: Option<Axis>,
@@ -111,18 +124,43 @@ impl ForceElement for Contact {
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let radius = forces.prescribed(&self.radius)?;
-        let direction = |formulas: &[Formula; 3]| forces.prescribed_vector(formulas).map(Vector::unit);
-        let axis = self.axis.as_ref().filter(|_| forces.is_spatial()).map(|axis| direction(axis)).transpose()?;
-        let corners = self.corners.as_ref().map(|corners| placed(forces, corners)).transpose()?;
-        let line = self.rod(forces, self.line.as_ref())?;
-        let cylinder = self.rod(forces, self.cylinder.as_ref())?;
-        let surface = if let Some(normal) = &self.plane {
-            Surface::Whole(Shape::Plane(direction(normal)?))
+        let Some(surface) = self.surface(forces, radius)? else { return Ok(()) };
+        let impact = Push::of(forces, &self.impact)?;
+        let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
+        let along = match &self.friction_along {
+            Some(along) => Some((direction(forces, &along.direction)?, forces.value(&along.coefficient)?)),
+            None => None,
+        };
+        let pair = forces.pair(self.between);
+        let felt: Vec<Felt<'g>> = if let Surface::Edges(outline) = &surface {
+            let centres = self.corners(forces, &pair)?.into_iter();
+            centres.map(|centre| outline.apply(forces, (&pair, centre), &impact, friction.as_ref())).collect()
+        } else {
+            let law = Law { impact, friction, along };
+            let touches = self.touches(forces, &surface, radius, &pair)?.into_iter();
+            touches.map(|touch| law.act(forces, &pair, touch)).collect()
+        };
+        if let Some(felt) = felt.into_iter().reduce(Felt::and) {
+            felt.measured(forces);
+        }
+        Ok(())
+    }
+}
+
+/// A unit vector.
+fn direction<'g>(forces: &dyn Forces<'g>, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError> {
+    forces.prescribed_vector(formulas).map(Vector::unit)
+}
+
+impl Contact {
+    /// Of the first body.
+    fn surface<'g>(&self, forces: &dyn Forces<'g>, radius: Scalar<'g>) -> Result<Option<Surface<'g>>, BuildError> {
+        // A cylinder's axis is no line that all of it is about.
+        let around = if self.cylinder.is_some() { forces.graph().number(0.0) } else { radius };
+        Ok(Some(if let Some(normal) = &self.plane {
+            Surface::Whole(Shape::Plane(direction(forces, normal)?))
         } else if let Some(outer) = &self.circle {
-            let outer = forces.prescribed(outer)?;
-            // A ball's centre within the cylinder has no nearest side.
-            let ball = || Shape::Solid(Solid::point(forces.graph()), outer);
-            Surface::Whole(if cylinder.is_some() { ball() } else { Shape::Round(outer) })
+            Surface::Whole(Shape::Round(forces.prescribed(outer)?))
         } else if let Some(bore) = &self.hollow {
             Surface::Whole(Shape::Hollow(forces.prescribed(bore)? - radius))
         } else if let Some(points) = &self.path {
@@ -132,49 +170,54 @@ impl ForceElement for Contact {
         } else if let Some(height) = &self.height {
             Surface::Whole(Shape::Ground(Ground::of(forces, height, radius)?))
         } else if let Some(solid) = self.solid(forces)? {
-            Surface::Whole(Shape::Solid(solid, forces.prescribed(&self.rounding)? + radius))
-        } else if let Some(hull) = self.hull(forces)? {
-            Surface::Whole(Shape::Hull(hull.into(), forces.prescribed(&self.rounding)? + radius))
+            Surface::Whole(Shape::Solid(solid, forces.prescribed(&self.rounding)? + around))
+        } else if let Some(hull) = hull_of(forces, self.hull.as_ref())? {
+            Surface::Whole(Shape::Hull(hull, forces.prescribed(&self.rounding)? + around))
         } else {
-            return Ok(());
-        };
-        let impact = Push::of(forces, &self.impact)?;
-        let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
-        let along = match &self.friction_along {
-            Some(along) => Some((direction(&along.direction)?, forces.value(&along.coefficient)?)),
-            None => None,
-        };
-        let pair = forces.pair(self.between);
-        let centre = pair.second.point.position;
-        let mut reach = radius;
-        let centres = if let Some(corners) = corners {
-            corners.into_iter().map(|corner| centre + pair.outward_of_second(corner)).collect()
-        } else if let Some(line) = &line {
-            surface.centres_on(line, &pair)
-        } else if let Some(cylinder) = cylinder {
-            reach = forces.graph().number(0.0);
-            match surface {
-                Surface::Whole(Shape::Plane(normal)) => cylinder.rims(&pair, normal, radius),
-                _ => vec![cylinder.nearest_in_cylinder(&pair, pair.first.point.position, radius)],
-            }
-        } else {
-            vec![centre]
-        };
-        let near = line.and_then(|line| surface.is_near(&line, &pair));
-        let felt = centres.into_iter().map(|centre| match &surface {
-            Surface::Whole(shape) => {
-                Touch { shape: shape.clone(), radius: reach, axis, impact, friction, along, near }.act(forces, (&pair, centre))
-            }
-            Surface::Edges(outline) => outline.apply(forces, (&pair, centre), &impact, friction.as_ref()),
-        });
-        if let Some(felt) = felt.reduce(Felt::and) {
-            felt.measured(forces);
-        }
-        Ok(())
+            return Ok(None);
+        }))
     }
-}
 
-impl Contact {
+    /// Where the surface touches what the second body has.
+    fn touches<'g>(
+        &self,
+        forces: &dyn Forces<'g>,
+        surface: &Surface<'g>,
+        radius: Scalar<'g>,
+        pair: &Pair<'g>,
+    ) -> Result<Vec<Touch<'g>>, BuildError> {
+        if let Some(axis) = self.rod(forces, self.cylinder.as_ref())? {
+            let near = surface.is_near(&axis, radius, pair);
+            let touches = cylinder_touches::touches(surface, &Cylinder { axis, radius }, pair).into_iter();
+            return Ok(touches.map(|touch| touch.only_within(near)).collect());
+        }
+        if let Some(lengths) = &self.r#box {
+            let half = forces.prescribed_vector(lengths)?.map(|length| 0.5 * length).components();
+            return Ok(Polyhedron::block(half, radius).touches(surface, pair));
+        }
+        if let Some(hull) = hull_of(forces, self.polyhedron.as_ref())? {
+            return Ok(Polyhedron::hull(hull, radius).touches(surface, pair));
+        }
+        let axis = self.axis.as_ref().filter(|_| forces.is_spatial());
+        let axis = axis.map(|axis| direction(forces, axis)).transpose()?;
+        let line = self.rod(forces, self.line.as_ref())?;
+        let centres = match &line {
+            Some(line) => surface.centres_on(line, pair),
+            None => self.corners(forces, pair)?,
+        };
+        let near = line.and_then(|line| surface.is_near(&line, forces.graph().number(0.0), pair));
+        let Surface::Whole(shape) = surface else { return Ok(Vec::new()) };
+        Ok(centres.into_iter().map(|centre| shape.touch(pair, centre, radius, axis).only_within(near)).collect())
+    }
+
+    /// Points of the second body, in the ground's frame.
+    fn corners<'g>(&self, forces: &dyn Forces<'g>, pair: &Pair<'g>) -> Result<Vec<Vector<'g>>, BuildError> {
+        let centre = pair.second.point.position;
+        let Some(corners) = &self.corners else { return Ok(vec![centre]) };
+        let corners = placed(forces, corners)?.into_iter();
+        Ok(corners.map(|corner| centre + pair.outward_of_second(corner)).collect())
+    }
+
     fn rod<'g>(&self, forces: &dyn Forces<'g>, ends: Option<&Points>) -> Result<Option<Rod<'g>>, BuildError> {
         let ends = ends.map(|ends| placed(forces, ends)).transpose()?.unwrap_or_default();
         Ok(ends.first().zip(ends.last()).map(|(start, end)| Rod::between(*start, *end)))
@@ -191,13 +234,6 @@ impl Contact {
         Ok(Some(Solid::Block { half: [x, y, z.filter(|_| forces.is_spatial())] }))
     }
 
-    fn hull<'g>(&self, forces: &dyn Forces<'g>) -> Result<Option<Hull>, BuildError> {
-        let Some(points) = &self.hull else { return Ok(None) };
-        // The reader lets numbers through only.
-        let number = |point: Vector| point.components().map(|part| part.as_constant().unwrap_or(f64::NAN));
-        Ok(Hull::of(placed(forces, points)?.into_iter().map(number).collect()))
-    }
-
     fn outline<'g>(
         &self,
         forces: &dyn Forces<'g>,
@@ -208,6 +244,13 @@ impl Contact {
         let (rounding, radius) = (forces.prescribed(&self.rounding)?, forces.prescribed(&self.radius)?);
         Ok(Outline::through(&corners, closed, rounding, radius))
     }
+}
+
+/// The convex hull of points; the reader lets numbers through only.
+fn hull_of<'g>(forces: &dyn Forces<'g>, points: Option<&Points>) -> Result<Option<Rc<Hull>>, BuildError> {
+    let Some(points) = points else { return Ok(None) };
+    let number = |point: Vector| point.components().map(|part| part.as_constant().unwrap_or(f64::NAN));
+    Ok(Hull::of(placed(forces, points)?.into_iter().map(number).collect()).map(Rc::new))
 }
 
 impl Checked for Contact {
@@ -269,11 +312,20 @@ impl Checked for Contact {
                 solid::check_ends(reader, fields.key_span(key), (key, ends));
             }
         }
-        if let Some(points) = &self.hull {
-            hull::check(reader, fields, points);
+        for (key, points) in [("hull", &self.hull), ("polyhedron", &self.polyhedron)] {
+            if let Some(points) = points {
+                hull::check(reader, fields, (key, points));
+            }
         }
-        if let Some(lengths) = &self.block {
-            solid::check_lengths(reader, fields.key_span("block"), lengths);
+        if let Some(key) = ["box", "polyhedron"].into_iter().find(|key| fields.get(key).is_some())
+            && (self.block.is_some() || self.hull.is_some())
+        {
+            polyhedron::check_edges(reader, fields.key_span(key), self.hull.as_ref(), self.polyhedron.as_ref());
+        }
+        for (key, lengths) in [("block", &self.block), ("box", &self.r#box)] {
+            if let Some(lengths) = lengths {
+                solid::check_lengths(reader, fields.key_span(key), (key, lengths));
+            }
         }
     }
 }

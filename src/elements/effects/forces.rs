@@ -60,6 +60,8 @@ pub trait Forces<'g> {
     /// From now on the effect acts only where the condition is positive, whatever its expressions are elsewhere. They are not
     /// computed where no sample of a tile needs them, so they have to vanish continuously as the condition does.
     fn only_where(&mut self, condition: Scalar<'g>);
+    /// The same, for a condition that is costly: it is not computed either where `within` is not positive.
+    fn only_within(&mut self, within: Scalar<'g>, condition: Scalar<'g>);
     /// A force at a point, N.
     fn at(&mut self, point: &MaterialPoint<'g>, force: Vector<'g>);
     /// A force at one point and its opposite at another, N.

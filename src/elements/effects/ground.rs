@@ -73,7 +73,7 @@ impl<'g> Ground<'g> {
         let mut normal = Vector::along(self.radius.builder(), self.up);
         normal[0] = -slope;
         let gap = distance - self.radius;
-        Gap { gap, normal: pair.outward(normal / steep), overlap: -gap }
+        Gap { gap, normal: pair.outward(normal / steep), overlap: -gap, near: None }
     }
 
     /// How fast it moves at the foot against its body, in the ground's axes.

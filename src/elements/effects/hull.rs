@@ -13,7 +13,7 @@
 //!
 //! Which faces there are follows from the points, so these are the same for all samples.
 
-use symdiff::{Builder, Scalar};
+use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use super::solid::Gap;
@@ -136,8 +136,7 @@ impl Hull {
         self.points.iter().map(|&point| dot(point, point)).fold(0.0, f64::max).sqrt()
     }
 
-    /// The gap to a centre at `offset` from the first point; `reach` is ρ + r. Where that lies outside of a ball about the hull, the sign
-    /// of `overlap` tells it at once.
+    /// The gap to a centre at `offset` from the first point; `reach` is ρ + r.
     pub fn gap<'g>(&self, pair: &Pair<'g>, offset: Vector<'g>, reach: Scalar<'g>) -> Gap<'g> {
         let g = reach.builder();
         let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(g, axis)));
@@ -153,7 +152,13 @@ impl Hull {
         let normal = axes.into_iter().zip(normal).fold(Vector::zero(g), |sum, (axis, part)| sum + part * axis);
         let around = g.number(self.radius()) + reach;
         let near = around * around - place.dot(place);
-        Gap { gap, normal, overlap: near.select(-gap, near) }
+        Gap { gap, normal, overlap: near.select(-gap, near), near: Some(near) }
+    }
+
+    /// The length of an edge, m.
+    pub fn length(&self, edge: &Edge) -> f64 {
+        let [from, to] = edge.ends.map(|end| self.points[end]);
+        dot(minus(to, from), edge.along)
     }
 
     /// Unit vectors along the edges that end at a corner, away from it.
@@ -230,35 +235,49 @@ fn farthest(points: &[Point], some: &[usize]) -> Option<[usize; 2]> {
 }
 
 /// Reports points that make no hull, and those that are not the same for all samples.
-pub(super) fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, points: &Points) {
-    let at = fields.key_span("hull");
+pub(super) fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, (key, points): (&str, &Points)) {
+    let at = fields.key_span(key);
     if !reader.model.is_spatial() {
-        reader.error(at, "a `hull` needs `space: spatial`", "in the plane it is a `polygon`".to_owned());
+        let help = if key == "hull" { "in the plane it is a `polygon`" } else { "in the plane name its `corners`" };
+        reader.error(at, format!("a `{key}` needs `space: spatial`"), help.to_owned());
         return;
     }
     if points.iter().flatten().any(|formula| reader.is_uncertain(formula)) {
-        let help = "which faces it has would depend on them; a `block` may have uncertain lengths".to_owned();
-        reader.error(
-            at,
-            "points of a `hull` are the same for all samples, so they cannot depend on an uncertain parameter",
-            help,
+        let other = if key == "hull" { "block" } else { "box" };
+        let help = format!("which faces it has would depend on them; a `{other}` may have uncertain lengths");
+        let message = format!(
+            "points of a `{key}` are the same for all samples, so they cannot depend on an uncertain parameter"
         );
+        reader.error(at, message, help);
         return;
     }
     if points.len() > MOST {
-        reader.error(at, format!("a `hull` has at most {MOST} points, not {}", points.len()), None);
+        reader.error(at, format!("a `{key}` has at most {MOST} points, not {}", points.len()), None);
         return;
     }
-    let numbers: Option<Vec<Point>> = points
-        .iter()
-        .map(|point| {
-            let [x, y, z] = [0, 1, 2].map(|axis| reader.evaluate(&point[axis], 0));
-            Some([x?, y?, z?])
-        })
-        .collect();
-    let Some(numbers) = numbers else { return };
+    let Some(numbers) = numbers(reader, points) else { return };
     if numbers.len() < 4 || Hull::of(numbers).is_none() {
-        let help = "a plate of no thickness is a `polygon` that extends along z, or a thin `block`".to_owned();
-        reader.error(at, "a `hull` needs four points or more that do not lie in one plane", help);
+        let help = if key == "hull" {
+            "a plate of no thickness is a `polygon` that extends along z, or a thin `block`"
+        } else {
+            "a plate of no thickness is a thin `box`"
+        };
+        let message = format!("a `{key}` needs four points or more that do not lie in one plane");
+        reader.error(at, message, help.to_owned());
     }
+}
+
+/// Points that are the same for all samples.
+fn numbers<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> Option<Vec<Point>> {
+    let number = |point: &[Formula; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|axis| reader.evaluate(&point[axis], 0));
+        Some([x?, y?, z?])
+    };
+    points.iter().map(number).collect()
+}
+
+/// How many edges the hull of points has; none where they make none.
+pub(super) fn edges<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> usize {
+    let hull = numbers(reader, points).filter(|points| (4..=MOST).contains(&points.len())).and_then(Hull::of);
+    hull.map_or(0, |hull| hull.edges.len())
 }

@@ -1,18 +1,12 @@
-//! What the second body of a contact touches with: capsules and cylinders about a line in its frame.
+//! What the second body of a contact touches with: a capsule about a line in its frame.
 //!
 //! ```text
 //! line from b along v, length M, against one from a along u, length L; r = a − b:
 //! s = (v·r u·v − u·r + ε² m)/(|u × v|² + ε²) within 0 … L,    t = v·r + s u·v within 0 … M,    centre = b + t v
-//! faces of a cylinder of radius r about b and b + M v, plane with the normal n:
-//! p = n − (n·v) v,    q = p + w e,   w = ε³/(ε² + p²),    c = q/√(q² + w²/100),    place = face − r (c cos φ + v × c sin φ),   φ = 0, ±120°
 //! ```
 //!
-//! Of a cylinder with p = b + t v + l, l across v, the nearest point to a ball's centre p has t within 0 … M and |l| within r.
-//!
-//! Against a block see `beside`, against a hull `along_hull`. Lines that cross have one nearest pair of points. Parallel ones have many: m is the middle of what they have beside one another,
-//! and ε = 10⁻⁴ the angle at which it takes over. At φ = 0 each face's deepest point touches, so that a cylinder rolls on the line
-//! between two of them and tips about its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the
-//! body turns into that of the deepest point. The pushes at ±120° are alike, and their torques about the axis cancel.
+//! Against a block see `beside`, against a hull `along_hull`. Lines that cross have one nearest pair of points. Parallel ones have many: m
+//! is the middle of what they have beside one another, and ε = 10⁻⁴ the angle at which it takes over.
 
 use symdiff::Scalar;
 
@@ -20,14 +14,12 @@ use super::along_hull::nearest_to_hull;
 use super::beside::nearest_to_block;
 use super::course::Points;
 use super::hull::Hull;
+use super::solid::Segment;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::multibody::{Pair, Vector};
 
 /// ε of two lines.
 const PARALLEL: f64 = 1e-4;
-
-/// ε of a face and a plane.
-const FLAT: f64 = 1e-3;
 
 /// A line in the second frame.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +28,7 @@ pub(super) struct Rod<'g> {
     /// v
     tangent: Vector<'g>,
     /// M, m
-    length: Scalar<'g>,
+    pub length: Scalar<'g>,
 }
 
 impl<'g> Rod<'g> {
@@ -45,6 +37,11 @@ impl<'g> Rod<'g> {
         let way = end - start;
         let length = way.norm();
         Self { start, tangent: way / length, length }
+    }
+
+    /// From a point along a unit vector.
+    pub fn along(start: Vector<'g>, tangent: Vector<'g>, length: Scalar<'g>) -> Self {
+        Self { start, tangent, length }
     }
 
     /// Both ends.
@@ -57,16 +54,6 @@ impl<'g> Rod<'g> {
     pub fn nearest_to_point(&self, pair: &Pair<'g>, point: Vector<'g>) -> Vector<'g> {
         let (start, along) = self.outward(pair);
         start + self.within(along.dot(point - start)) * along
-    }
-
-    /// The point of a cylinder with flat ends that is nearest to one; in it, the same.
-    pub fn nearest_in_cylinder(&self, pair: &Pair<'g>, point: Vector<'g>, radius: Scalar<'g>) -> Vector<'g> {
-        let (start, along) = self.outward(pair);
-        let offset = point - start;
-        let ahead = along.dot(offset);
-        let aside = offset - ahead * along;
-        let share = radius / aside.dot(aside).max(radius * radius).sqrt();
-        start + self.within(ahead) * along + share * aside
     }
 
     /// The point that is nearest to a block about the first point; `reach` is ρ + r.
@@ -90,11 +77,7 @@ impl<'g> Rod<'g> {
     }
 
     /// The point that is nearest to a line of the first frame: from a point along a unit vector.
-    pub fn nearest_to_line(
-        &self,
-        pair: &Pair<'g>,
-        (from, tangent, length): (Vector<'g>, Vector<'g>, Scalar<'g>),
-    ) -> Vector<'g> {
+    pub fn nearest_to_line(&self, pair: &Pair<'g>, (from, tangent, length): Segment<'g>) -> Vector<'g> {
         let (start, along) = self.outward(pair);
         let across = pair.outward(tangent);
         let offset = pair.first.point.position + pair.outward(from) - start;
@@ -108,25 +91,8 @@ impl<'g> Rod<'g> {
         start + self.within(ahead + cosine * on_first(place)) * along
     }
 
-    /// Points of both rims of a cylinder that touch a plane with a normal in the first frame.
-    pub fn rims(&self, pair: &Pair<'g>, normal: Vector<'g>, radius: Scalar<'g>) -> Vec<Vector<'g>> {
-        let (_, along) = self.outward(pair);
-        let normal = pair.outward(normal);
-        let lean = normal - along.dot(normal) * along;
-        let square = lean.dot(lean);
-        let small = FLAT * FLAT;
-        let upright = FLAT * small / (square + small);
-        let toward = lean + upright * pair.outward_of_second(self.aside());
-        let size = (toward.dot(toward) + 0.01 * upright * upright).sqrt();
-        let down = radius * (toward / size);
-        let side = along.cross(down);
-        let third = 0.5 * 3.0_f64.sqrt();
-        let arms = [down, -0.5 * down + third * side, -0.5 * down - third * side];
-        self.ends(pair).into_iter().flat_map(|face| arms.map(|arm| face - arm)).collect()
-    }
-
-    /// A unit vector across it (Duff et al., J. Comput. Graph. Tech. 6 (2017) 1).
-    fn aside(&self) -> Vector<'g> {
+    /// A unit vector across it, in the second frame (Duff et al., J. Comput. Graph. Tech. 6 (2017) 1).
+    pub fn aside(&self) -> Vector<'g> {
         let [x, y, z] = self.tangent.components();
         let one = z.builder().number(1.0);
         let sign = z.select(one, -one);
@@ -134,12 +100,13 @@ impl<'g> Rod<'g> {
         Vector::from([1.0 + sign * x * x * factor, sign * x * y * factor, -(sign * x)])
     }
 
-    fn outward(&self, pair: &Pair<'g>) -> (Vector<'g>, Vector<'g>) {
+    /// Start and direction in the ground's frame.
+    pub fn outward(&self, pair: &Pair<'g>) -> (Vector<'g>, Vector<'g>) {
         (pair.second.point.position + pair.outward_of_second(self.start), pair.outward_of_second(self.tangent))
     }
 
     /// Start, direction and length in the first frame.
-    fn in_first(&self, pair: &Pair<'g>) -> (Vector<'g>, Vector<'g>, Scalar<'g>) {
+    fn in_first(&self, pair: &Pair<'g>) -> Segment<'g> {
         let (start, along) = self.outward(pair);
         let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(self.length.builder(), axis)));
         let local = |vector: Vector<'g>| Vector::from(axes.map(|axis| axis.dot(vector)));
@@ -164,33 +131,56 @@ pub(super) fn check_corners<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: 
 }
 
 /// Surfaces that a key of the second body goes with.
-const TOUCHED: [(&str, &[&str], &str); 2] = [
+const TOUCHED: [(&str, &[&str], &str); 4] = [
     (
         "line",
         &["plane", "circle", "hollow", "capsule", "block", "hull"],
         "a `line` touches a `plane`, `circle` (without `axis`), `hollow`, `capsule`, `block` or `hull`",
     ),
-    ("cylinder", &["plane", "circle"], "a `cylinder` touches a `plane` or a `circle` (without `axis`)"),
+    (
+        "cylinder",
+        &["plane", "circle", "capsule", "block", "hull"],
+        "a `cylinder` touches a `plane`, `circle` (without `axis`), `capsule`, `block` or `hull`",
+    ),
+    (
+        "box",
+        &["plane", "circle", "hollow", "capsule", "block", "hull"],
+        "a `box` touches a `plane`, `circle` (without `axis`), `hollow`, `capsule`, `block` or `hull`; elsewhere name its `corners`",
+    ),
+    (
+        "polyhedron",
+        &["plane", "circle", "hollow", "capsule", "block", "hull"],
+        "a `polyhedron` touches a `plane`, `circle` (without `axis`), `hollow`, `capsule`, `block` or `hull`; elsewhere name its `corners`",
+    ),
 ];
 
 /// Reports shapes of the second body that exclude each other, that lack a radius, and surfaces that they do not touch.
 pub(super) fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, all: &[&'static str]) {
-    let shapes: Vec<&str> =
-        ["corners", "line", "cylinder"].into_iter().filter(|key| fields.get(key).is_some()).collect();
+    let shapes = ["corners", "line", "cylinder", "box", "polyhedron"].into_iter();
+    let shapes: Vec<&str> = shapes.filter(|key| fields.get(key).is_some()).collect();
     if let [first, second, ..] = shapes.as_slice() {
         reader.error(fields.key_span(second), format!("`{first}` and `{second}` exclude each other"), None);
         return;
     }
-    if fields.get("cylinder").is_some() && !reader.model.is_spatial() {
-        reader.error(
-            fields.key_span("cylinder"),
-            "a `cylinder` needs `space: spatial`",
-            "in the plane it is a ball: give its `radius` alone".to_owned(),
-        );
+    let planar = [
+        ("cylinder", "in the plane it is a ball: give its `radius` alone"),
+        ("box", "in the plane name its `corners`"),
+    ];
+    if let Some((key, help)) =
+        planar.into_iter().find(|(key, _)| fields.get(key).is_some() && !reader.model.is_spatial())
+    {
+        reader.error(fields.key_span(key), format!("a `{key}` needs `space: spatial`"), help.to_owned());
     }
     let Some((key, surfaces, help)) = TOUCHED.into_iter().find(|(key, ..)| fields.get(key).is_some()) else { return };
-    if fields.lacks_all(&["radius"]) {
+    if matches!(key, "line" | "cylinder") && fields.lacks_all(&["radius"]) {
         reader.error(fields.key_span(key), format!("a `{key}` needs its `radius`"), None);
+    }
+    if key == "cylinder"
+        && let Some(edges) = ["block", "hull"].into_iter().find(|edges| fields.get(edges).is_some())
+        && fields.lacks_all(&["rounding"])
+    {
+        let message = format!("a `{edges}` that a `cylinder` touches needs `rounding`");
+        reader.error(fields.key_span(edges), message, "surfaces are told apart to that depth".to_owned());
     }
     let others = all.iter().copied().filter(|surface| !surfaces.contains(surface));
     let is_turned = fields.get("circle").is_some();

@@ -25,7 +25,12 @@ pub(super) struct Gap<'g> {
     pub normal: Vector<'g>,
     /// Positive where they overlap; as few operations as tell.
     pub overlap: Scalar<'g>,
+    /// Not positive where both are so far apart that nothing else is needed, if there is anything so cheap.
+    pub near: Option<Scalar<'g>>,
 }
+
+/// A line: from a point along a unit vector, with a length.
+pub(super) type Segment<'g> = (Vector<'g>, Vector<'g>, Scalar<'g>);
 
 /// A convex body in the first frame.
 #[derive(Clone, Copy, Debug)]
@@ -58,11 +63,6 @@ impl<'g> Solid<'g> {
         }
     }
 
-    /// A capsule without length.
-    pub fn point(g: &'g Builder) -> Self {
-        Self::Capsule { start: Vector::zero(g), tangent: Vector::along(g, 0), length: g.number(0.0) }
-    }
-
     /// The gap to a centre at `offset` from the first point; `reach` is ρ + r.
     pub fn gap(&self, pair: &Pair<'g>, offset: Vector<'g>, reach: Scalar<'g>) -> Gap<'g> {
         let g = reach.builder();
@@ -78,11 +78,16 @@ impl<'g> Solid<'g> {
         let distance = square.select(square, g.number(1.0)).sqrt();
         let normal = away.map(|part| part / distance);
         let Self::Block { half } = self else {
-            return Gap { gap: square.select(distance, g.number(0.0)) - reach, normal: outward(normal), overlap };
+            return Gap {
+                gap: square.select(distance, g.number(0.0)) - reach,
+                normal: outward(normal),
+                overlap,
+                near: None,
+            };
         };
         let (depth, face) = inside(place, half, g.number(0.0));
         let chosen = [0, 1, 2].map(|axis| square.select(normal[axis], face[axis]));
-        Gap { gap: square.select(distance, depth) - reach, normal: outward(chosen), overlap }
+        Gap { gap: square.select(distance, depth) - reach, normal: outward(chosen), overlap, near: None }
     }
 
     /// e
@@ -155,7 +160,11 @@ pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (
 }
 
 /// Reports a block that is flat somewhere in the box of parameters.
-pub(super) fn check_lengths<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, lengths: &[Formula; 3]) {
+pub(super) fn check_lengths<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    at: Span,
+    (key, lengths): (&str, &[Formula; 3]),
+) {
     let needed = if reader.model.is_spatial() { 3 } else { 2 };
     for corner in 0..reader.corners.len() {
         let lengths = lengths[..needed].iter().map(|length| reader.evaluate(length, corner));
@@ -163,7 +172,7 @@ pub(super) fn check_lengths<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span
         {
             let (axis, length) = (["x", "y", "z"][axis], length.unwrap_or_default());
             let label = &reader.corners[corner].label;
-            let message = format!("a `block` has a length above 0 along {axis}, not {length}{label}");
+            let message = format!("a `{key}` has a length above 0 along {axis}, not {length}{label}");
             reader.error(at, message, None);
             return;
         }

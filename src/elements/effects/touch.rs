@@ -27,15 +27,15 @@ pub(super) enum Surface<'g> {
 }
 
 impl<'g> Surface<'g> {
-    /// Positive where a line of the second body may touch a solid; `None` of other surfaces, which are found at once.
-    pub fn is_near(&self, line: &Rod<'g>, pair: &Pair<'g>) -> Option<Scalar<'g>> {
-        match self {
-            Self::Whole(Shape::Solid(solid, reach)) => Some(line.is_near(pair, solid.radius(reach.builder()), *reach)),
-            Self::Whole(Shape::Hull(hull, reach)) => {
-                Some(line.is_near(pair, reach.builder().number(hull.radius()), *reach))
-            }
-            _ => None,
-        }
+    /// Positive where what lies within a radius about a line of the second body may touch a solid; `None` of other surfaces, which are found at
+    /// once.
+    pub fn is_near(&self, line: &Rod<'g>, radius: Scalar<'g>, pair: &Pair<'g>) -> Option<Scalar<'g>> {
+        let (solid, reach) = match self {
+            Self::Whole(Shape::Solid(solid, reach)) => (solid.radius(reach.builder()), *reach),
+            Self::Whole(Shape::Hull(hull, reach)) => (reach.builder().number(hull.radius()), *reach),
+            _ => return None,
+        };
+        Some(line.is_near(pair, solid, reach + radius))
     }
 
     /// Centres on a line of the second body that are nearest.
@@ -69,36 +69,34 @@ pub(super) enum Shape<'g> {
     Hull(Rc<Hull>, Scalar<'g>),
 }
 
-/// Two surfaces and what they do to one another.
-#[derive(Clone, Debug)]
-pub(super) struct Touch<'g> {
-    pub shape: Shape<'g>,
-    /// r, m
-    pub radius: Scalar<'g>,
-    /// A unit vector in the first frame across which centres are apart.
-    pub axis: Option<Vector<'g>>,
+/// What two surfaces do to one another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Law<'g> {
     pub impact: Push<'g>,
     pub friction: Option<Resistance<'g>>,
     /// A unit vector in the first frame and the coefficient of friction along it.
     pub along: Option<(Vector<'g>, Scalar<'g>)>,
-    /// Not positive where both are so far apart that nothing else is needed.
-    pub near: Option<Scalar<'g>>,
 }
 
-impl<'g> Touch<'g> {
-    /// Adds the forces on a circle or point about `centre`, which belongs to the second body.
-    pub fn act(&self, forces: &mut dyn Forces<'g>, (pair, centre): (&Pair<'g>, Vector<'g>)) -> Felt<'g> {
-        let Gap { gap, normal, overlap } = self.gap(pair, centre);
-        let overlap = self.near.map_or(overlap, |near| near.select(overlap, near));
-        let place = centre - self.radius * normal;
+impl<'g> Law<'g> {
+    /// Adds the forces at a place; `moving` is the first surface's velocity beyond its body's.
+    pub fn act(
+        &self,
+        forces: &mut dyn Forces<'g>,
+        pair: &Pair<'g>,
+        Touch { gap: Gap { gap, normal, overlap, near }, place, moving }: Touch<'g>,
+    ) -> Felt<'g> {
         let [first, second] = [pair.first, pair.second].map(|frame| forces.point_at(frame.point.body, place));
         let mut velocity = second.velocity - first.velocity;
-        if let Shape::Ground(ground) = &self.shape {
-            velocity = velocity - ground.velocity(pair, centre - pair.first.point.position);
+        if let Some(moving) = moving {
+            velocity = velocity - moving;
         }
         let parting = normal.dot(velocity);
         let (depth, approach) = (-gap, -parting);
-        forces.only_where(overlap);
+        match near {
+            Some(near) => forces.only_within(near, overlap),
+            None => forces.only_where(overlap),
+        }
         let push = self.impact.force(depth, approach).only_where(depth);
         let mut force = push * normal;
         let mut felt_friction = None;
@@ -127,47 +125,94 @@ impl<'g> Touch<'g> {
         forces.potential(&[self.impact.stiffness], potential);
         Felt { gap, rate: parting, force: push, friction: felt_friction }
     }
+}
 
-    fn gap(&self, pair: &Pair<'g>, centre: Vector<'g>) -> Gap<'g> {
+/// Where two surfaces touch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch<'g> {
+    pub gap: Gap<'g>,
+    pub place: Vector<'g>,
+    /// The first surface's velocity beyond its body's.
+    pub moving: Option<Vector<'g>>,
+}
+
+impl<'g> Touch<'g> {
+    /// Of surfaces at rest on their bodies.
+    pub fn at(place: Vector<'g>, gap: Gap<'g>) -> Self {
+        Self { gap, place, moving: None }
+    }
+
+    /// Of the same surfaces, with the first and the second exchanged.
+    pub fn reversed(mut self) -> Self {
+        self.gap.normal = -self.gap.normal;
+        self
+    }
+
+    /// None where `near` is not positive: both are so far apart then that nothing else is needed.
+    pub fn only_within(mut self, near: Option<Scalar<'g>>) -> Self {
+        self.gap.near = near.or(self.gap.near);
+        self
+    }
+}
+
+impl<'g> Shape<'g> {
+    /// Where it touches a circle, sphere or point of a radius about `centre`, which belongs to the second body. Across the axis, a unit
+    /// vector in the first frame, centres are apart.
+    pub fn touch(
+        &self,
+        pair: &Pair<'g>,
+        centre: Vector<'g>,
+        radius: Scalar<'g>,
+        axis: Option<Vector<'g>>,
+    ) -> Touch<'g> {
+        let gap = self.gap(pair, centre, radius, axis);
+        let moving = match self {
+            Self::Ground(ground) => Some(ground.velocity(pair, centre - pair.first.point.position)),
+            _ => None,
+        };
+        Touch { moving, ..Touch::at(centre - radius * gap.normal, gap) }
+    }
+
+    fn gap(&self, pair: &Pair<'g>, centre: Vector<'g>, radius: Scalar<'g>, axis: Option<Vector<'g>>) -> Gap<'g> {
         let offset = centre - pair.first.point.position;
-        match self.shape {
-            Shape::Hull(ref hull, reach) => hull.gap(pair, offset, reach),
-            Shape::Plane(normal) => {
+        match *self {
+            Self::Hull(ref hull, reach) => hull.gap(pair, offset, reach),
+            Self::Plane(normal) => {
                 let normal = pair.outward(normal);
                 let height = normal.dot(offset);
-                Gap { gap: height - self.radius, normal, overlap: self.radius - height }
+                Gap { gap: height - radius, normal, overlap: radius - height, near: None }
             }
-            Shape::Round(outer) => {
-                let (across, square) = self.across(pair, offset);
+            Self::Round(outer) => {
+                let (across, square) = across(pair, offset, axis);
                 let distance = square.sqrt();
                 let normal = across / distance;
-                let together = outer + self.radius;
+                let together = outer + radius;
                 let square_of_sum = together * together;
-                Gap { gap: distance - together, normal, overlap: square_of_sum - square }
+                Gap { gap: distance - together, normal, overlap: square_of_sum - square, near: None }
             }
-            Shape::Hollow(clearance) => {
-                let (across, square) = self.across(pair, offset);
+            Self::Hollow(clearance) => {
+                let (across, square) = across(pair, offset, axis);
                 let centred = CENTRED * clearance;
                 let smooth = square + centred * centred;
                 let distance = smooth.sqrt();
                 let outward = across / distance;
                 let square_of_clearance = clearance * clearance;
-                Gap { gap: clearance - distance, overlap: smooth - square_of_clearance, normal: -outward }
+                Gap { gap: clearance - distance, overlap: smooth - square_of_clearance, normal: -outward, near: None }
             }
-            Shape::Ground(ground) => ground.gap(pair, offset),
-            Shape::Solid(solid, reach) => solid.gap(pair, offset, reach),
+            Self::Ground(ground) => ground.gap(pair, offset),
+            Self::Solid(solid, reach) => solid.gap(pair, offset, reach),
         }
     }
+}
 
-    /// d, and its square.
-    fn across(&self, pair: &Pair<'g>, offset: Vector<'g>) -> (Vector<'g>, Scalar<'g>) {
-        let across = match self.axis {
-            Some(axis) => {
-                let axis = pair.outward(axis);
-                offset - axis.dot(offset) * axis
-            }
-            None => offset,
-        };
-        (across, across.dot(across))
-    }
+/// d, and its square.
+fn across<'g>(pair: &Pair<'g>, offset: Vector<'g>, axis: Option<Vector<'g>>) -> (Vector<'g>, Scalar<'g>) {
+    let across = match axis {
+        Some(axis) => {
+            let axis = pair.outward(axis);
+            offset - axis.dot(offset) * axis
+        }
+        None => offset,
+    };
+    (across, across.dot(across))
 }

@@ -1,0 +1,47 @@
+//! Where surfaces touch a cylinder of the second body.
+//!
+//! ```text
+//! plane              three points of each rim
+//! circle             its centre, where the cylinder is nearest
+//! capsule            the point of its line that is nearest
+//! block, hull        three points of each rim, for the normal n of the face that is farthest away;
+//!                    the point of each edge that is nearest
+//! ```
+//!
+//! A face that touches meets a rim: the distances of all of these have the least distance of both bodies among them.
+
+use super::cylinder::Cylinder;
+use super::facets::Facets;
+use super::solid::Solid;
+use super::touch::{Shape, Surface, Touch};
+use crate::multibody::{Pair, Vector};
+
+/// All places where they may touch.
+pub(super) fn touches<'g>(surface: &Surface<'g>, cylinder: &Cylinder<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
+    let Surface::Whole(shape) = surface else { return Vec::new() };
+    let point = cylinder.radius.builder().number(0.0);
+    let on_rims =
+        |normal: Vector<'g>| cylinder.rims(pair, normal).into_iter().map(|place| shape.touch(pair, place, point, None));
+    let origin = pair.first.point.position;
+    let (facets, reach) = match *shape {
+        Shape::Plane(normal) => return on_rims(pair.outward(normal)).collect(),
+        Shape::Round(outer) => return vec![cylinder.touch(pair, origin, outer)],
+        Shape::Solid(Solid::Capsule { start, tangent, length }, reach) => {
+            let line = (origin + pair.outward(start), pair.outward(tangent), length);
+            return vec![cylinder.touch(pair, cylinder.nearest_on(pair, line, reach), reach)];
+        }
+        Shape::Solid(Solid::Block { half: [Some(x), Some(y), Some(z)] }, reach) => (Facets::of_block([x, y, z]), reach),
+        Shape::Hull(ref hull, reach) => (Facets::of_hull(hull, reach.builder()), reach),
+        Shape::Solid(..) | Shape::Hollow(_) | Shape::Ground(_) => return Vec::new(),
+    };
+    let lowest = |normal: Vector<'g>| {
+        let normal = pair.outward(normal);
+        cylinder.lowest(pair, normal) - normal.dot(origin)
+    };
+    let facing = pair.outward(facets.facing(reach, lowest));
+    let place = |corner: Vector<'g>| origin + pair.outward(corner);
+    let edges = facets.edges.iter().map(|&(start, along, length)| {
+        cylinder.touch(pair, cylinder.nearest_on(pair, (place(start), pair.outward(along), length), reach), reach)
+    });
+    on_rims(facing).chain(edges).collect()
+}
