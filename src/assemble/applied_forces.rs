@@ -9,7 +9,9 @@ use symdiff::{Builder, Scalar};
 
 use super::mechanism::Mechanism;
 use crate::grammar::{JointCoordinate, OnJoint, Sensor};
-use crate::multibody::{AxisMotion, BuildError, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates, Vector, Wrench};
+use crate::multibody::{
+    AxisMotion, BuildError, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates, Vector, Wrench,
+};
 
 /// What is added to: a component of a body's wrench (0 to 5), or a coordinate of its own: of a joint, a mode, a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -180,12 +180,7 @@ impl<'g> Mechanism<'g, '_> {
 }
 
 /// Euler parameters and their derivatives of a child in space.
-fn set_orientation<'g>(
-    body: &mut Body<'g>,
-    parent: &Body<'g>,
-    motion: &RelativeMotion<'g>,
-    relative: Quaternion<'g>,
-) {
+fn set_orientation<'g>(body: &mut Body<'g>, parent: &Body<'g>, motion: &RelativeMotion<'g>, relative: Quaternion<'g>) {
     let p = parent.orientation() * relative;
     let matrix = parent.matrix() * motion.rotation;
     let omega_of_parent = parent.angular_velocity();

@@ -87,8 +87,12 @@ impl<'g> Mechanism<'g, '_> {
             rates: [self.v[index], self.w[index]],
         });
         let translations: Vec<AxisMotion> = translations.collect();
-        let mut places: Vec<usize> =
-            frames.rotations.iter().map(|rotation| rotation.0).chain(frames.translations.iter().map(|one| one.0)).collect();
+        let mut places: Vec<usize> = frames
+            .rotations
+            .iter()
+            .map(|rotation| rotation.0)
+            .chain(frames.translations.iter().map(|one| one.0))
+            .collect();
         places.sort_unstable();
         places.dedup();
         let share = |own: usize, of: usize, factor: Scalar<'g>| if own == of { factor } else { g.number(0.0) };
@@ -125,8 +129,10 @@ impl<'g> Mechanism<'g, '_> {
         let cross = self.perpendicular([first, second]);
         let [about_first, about_second] = places.map(|place| self.q[place]);
         let euler = Quaternion::about(first, about_first) * cross * Quaternion::about(second, about_second);
-        let [before, after] =
-            [rotation::matrix_about(first, about_first) * constant_matrix(cross), rotation::matrix_about(second, about_second)];
+        let [before, after] = [
+            rotation::matrix_about(first, about_first) * constant_matrix(cross),
+            rotation::matrix_about(second, about_second),
+        ];
         let second_in_first = before * second;
         let first_in_second = after.transposed() * (constant_matrix(cross).transposed() * first);
         let rates = self.v[places[0]] * self.v[places[1]];
@@ -186,8 +192,7 @@ impl<'g> Mechanism<'g, '_> {
             let [slides, rate] = [places.map(|place| self.v[place]), [self.v[turning]; 2]];
             let sliding = slides[0] * first + slides[1] * second;
             motion.offset = back(motion.offset);
-            motion.translations =
-                vec![(places[0], first), (places[1], second), (turning, motion.offset.cross(normal))];
+            motion.translations = vec![(places[0], first), (places[1], second), (turning, motion.offset.cross(normal))];
             motion.drift = Some((2.0 * rate[0]) * sliding.cross(normal) - (rate[0] * rate[1]) * motion.offset);
         }
         motion
@@ -198,9 +203,10 @@ impl<'g> Mechanism<'g, '_> {
             std::array::from_fn(|place| self.add_relative_coordinate(joint, RelativeCoordinate::Euler(place)));
         let euler = Quaternion::from(places.map(|place| self.q[place]));
         let (in_first, in_second) = (euler.ground_rates(), euler.body_rates());
-        let rotations = places.into_iter().enumerate().map(|(column, place)| {
-            (place, [2.0 * in_first.column(column), 2.0 * in_second.column(column)])
-        });
+        let rotations = places
+            .into_iter()
+            .enumerate()
+            .map(|(column, place)| (place, [2.0 * in_first.column(column), 2.0 * in_second.column(column)]));
         FrameMotion {
             euler,
             matrix: euler.matrix(),
@@ -228,7 +234,9 @@ impl<'g> Mechanism<'g, '_> {
     /// The Euler parameters that are coordinates of joints of the trees, with the joints.
     pub(super) fn euler_parameters(&self) -> Vec<(usize, Quaternion<'g>)> {
         let first = self.unnamed_coordinates().filter(|(_, coordinate, _)| *coordinate == RelativeCoordinate::Euler(0));
-        first.map(|(joint, _, place)| (joint, std::array::from_fn(|component| self.q[place + component]).into())).collect()
+        first
+            .map(|(joint, _, place)| (joint, std::array::from_fn(|component| self.q[place + component]).into()))
+            .collect()
     }
 
     /// A coordinate of a joint whose second frame is turned and displaced so against the first; of frames that the joint does not allow one

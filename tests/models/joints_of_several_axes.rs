@@ -76,11 +76,26 @@ const ROWS: [(&str, &str, &str, &str); 8] = [
     ("spherical: [ground.O, a.P]", "spherical: [a.Q, b.P]", THROWN, "one.p0"),
     ("spherical: [a.P, ground.O]", "spherical: [b.P, a.Q]", THROWN, "one.p0"),
     ("spherical: [ground.O, a.P]", "universal: [a.Q, b.P]", THROWN, "one.p0"),
-    ("spherical: [a.P, ground.O]", "universal: { between: [b.P, a.Q], axes: [[1, 0.2, 0], [0.1, 1, 0.3]] }", PLACED, "one.p0"),
+    (
+        "spherical: [a.P, ground.O]",
+        "universal: { between: [b.P, a.Q], axes: [[1, 0.2, 0], [0.1, 1, 0.3]] }",
+        PLACED,
+        "one.p0",
+    ),
     ("spherical: [ground.O, a.P]", "planar: { between: [a.Q, b.P], normal: [1, 0.2, 0.3] }", THROWN, "one.p0"),
     ("spherical: [a.P, ground.O]", "planar: { between: [b.P, a.Q], normal: [1, 0.2, 0.3] }", THROWN, "one.p0"),
-    ("planar: { between: [ground.O, a.P], normal: [0.2, 1, 0.3] }", "universal: [a.Q, b.P]", TURNED, "one.displacement_1"),
-    ("planar: { between: [a.P, ground.O], normal: [0.2, 1, 0.3] }", "spherical: [b.P, a.Q]", TURNED, "one.displacement_1"),
+    (
+        "planar: { between: [ground.O, a.P], normal: [0.2, 1, 0.3] }",
+        "universal: [a.Q, b.P]",
+        TURNED,
+        "one.displacement_1",
+    ),
+    (
+        "planar: { between: [a.P, ground.O], normal: [0.2, 1, 0.3] }",
+        "spherical: [b.P, a.Q]",
+        TURNED,
+        "one.displacement_1",
+    ),
 ];
 
 /// Largest difference of an output between the formulations, relative to its largest value.
@@ -140,11 +155,7 @@ simulation: {{ duration: 5, step: 1e-3, output_step: 0.1 }}
     println!("{errors:?}");
     assert!(largest(errors) < 1e-8, "{errors:?}");
     let side = mass * rate * rate * radius;
-    let forces = [
-        off("force", &|_| mass * 9.81),
-        off("pull", &|_| (mass * 9.81).hypot(side)),
-        off("torque", &|_| 0.0),
-    ];
+    let forces = [off("force", &|_| mass * 9.81), off("pull", &|_| (mass * 9.81).hypot(side)), off("torque", &|_| 0.0)];
     println!("{forces:?}");
     assert!(largest(forces) < 1e-6, "{forces:?}");
 }
@@ -181,11 +192,16 @@ simulation: {{ duration: 10, step: 1e-3, output_step: 0.1 }}
 fn chain(links: usize) -> Description {
     let [mut bodies, mut joints, mut initial] = [const { String::new() }; 3];
     for i in 0..links {
-        writeln!(bodies, "  b{i}: {{ mass: 0.5, inertia: [0.001, 0.004, 0.005], points: {{ A: [-0.2, 0, 0], B: [0.2, 0.02, 0] }} }}").unwrap();
+        writeln!(
+            bodies,
+            "  b{i}: {{ mass: 0.5, inertia: [0.001, 0.004, 0.005], points: {{ A: [-0.2, 0, 0], B: [0.2, 0.02, 0] }} }}"
+        )
+        .unwrap();
         let before = if i == 0 { "ground".to_owned() } else { format!("b{}.B", i - 1) };
         writeln!(joints, "  j{i}: {{ spherical: [{before}, b{i}.A] }}").unwrap();
         let angle = 0.1 * (i % 7) as f64;
-        writeln!(initial, "  b{i}.orientation: {{ rpy: [0.1, {angle:?}, 0.2] }}\n  b{i}.omega: [0.3, {angle:?}, 0]").unwrap();
+        writeln!(initial, "  b{i}.orientation: {{ rpy: [0.1, {angle:?}, 0.2] }}\n  b{i}.omega: [0.3, {angle:?}, 0]")
+            .unwrap();
     }
     let last = links - 1;
     read(&format!(
