@@ -15,10 +15,14 @@ impl Mechanism<'_, '_> {
     /// prescribed and initial positions; 1 where it names none.
     pub fn characteristic_length(&self, description: &Description) -> Result<f64, BuildError> {
         let mut lengths: Vec<Scalar> = Vec::new();
+        // Euler parameters of zero turn nothing, so that children say nothing then.
+        let is_placed = self.unnamed_coordinates().next().is_none();
         for body in &self.bodies {
             lengths.extend(body.center.components());
             // A coordinate's symbol counts as zero here.
-            lengths.extend(&body.position[..3]);
+            if is_placed || !body.is_child() {
+                lengths.extend(&body.position[..3]);
+            }
         }
         for (body, point) in used_points(description) {
             lengths.extend(self.bodies[body].points[point].components());

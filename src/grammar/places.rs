@@ -149,7 +149,9 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
         if !self.model.has_coordinate(found, coordinate) {
             let (what, help) = match coordinate {
-                JointCoordinate::Angle => ("turns", "revolute, cylindrical and screw joints turn about their axis"),
+                JointCoordinate::Angle => {
+                    ("turns", "revolute, cylindrical, screw and planar joints turn about their axis")
+                }
                 JointCoordinate::Displacement => {
                     ("slides", "prismatic, cylindrical and screw joints slide along theirs")
                 }
