@@ -14,6 +14,9 @@ use crate::syntax::yaml::{Entry, Node, Value};
 /// Parts of names at the start that only bodies in space have.
 const SPATIAL_STARTS: [&str; 5] = ["z", "vz", "orientation", "omega", "omega_body"];
 
+/// Of a body.
+const HELD: &str = "what is held";
+
 /// Reads `space:`, or decides.
 pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     let planar = || Space { spatial: false, why: "nothing leaves the plane".to_owned() };
@@ -24,8 +27,8 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     let entries = |key: &str| fields.get(key).map_or(&[][..], mapping);
     let bodies = entries("bodies").iter().find_map(|body| Some((body, body_leaves(&body.value)?)));
     let bodies = bodies.map(|(body, why)| match body.key.strip_suffix(".ground") {
-        Some(instance) => format!("{why} of instance `{instance}` leaves the plane"),
-        None => format!("{why} of body `{}` leaves the plane", body.key),
+        Some(instance) if why == HELD => format!("the place of instance `{instance}` leaves the plane"),
+        _ => format!("{why} of body `{}` leaves the plane", body.key),
     });
     let joints = entries("joints").iter().find_map(|joint| Some((joint, joint_leaves(&joint.value)?)));
     let joints = joints.map(|(joint, why)| format!("{why} of joint `{}` leaves the plane", joint.key));
@@ -80,7 +83,7 @@ fn body_leaves(body: &Node) -> Option<String> {
         return Some("a coordinate".to_owned());
     }
     let held = get(body, "held")?;
-    (get(held, "z").is_some() || get(held, "orientation").is_some()).then(|| "what is held".to_owned())
+    (get(held, "z").is_some() || get(held, "orientation").is_some()).then(|| HELD.to_owned())
 }
 
 fn joint_leaves(joint: &Node) -> Option<String> {

@@ -557,3 +557,46 @@ fn legs_around_a_body_move_alike() {
         }
     }
 }
+
+/// An assembly says where bodies of instances within start, by their ports too, in its own frame.
+#[test]
+fn starts_of_inner_bodies_are_in_the_frame_in_which_they_are_said() {
+    let side = |mirror: &str| {
+        format!(
+            r#"
+assemblies:
+  wheel:
+    shared: all
+    parameters: {{ m: 1 kg ± 2% }}
+    bodies: {{ hub: {{ mass: m, inertia: 1, points: {{ P: [0.1, 0] }} }} }}
+    ports: {{ centre: hub, rim: hub.P }}
+  side:
+    instances: {{ w: {{ of: wheel, at: [0.5, 0] }} }}
+    effects:
+      pull: {{ spring_damper: {{ between: [ground, w.rim], along: x, stiffness: 10 }} }}
+      damp: {{ force: {{ on: w.centre, value: ["-1 N*s/m*w.rim.vx", "-1 N/m*w.centre.y"] }} }}
+    initial: {{ w.rim.x: 0.7, w.rim.y: 0.1, w.centre.vx: 1, w.hub.vy: 0, w.hub.angle: 0.2, w.hub.angular_velocity: 0 }}
+    ports: {{ rim: w.rim }}
+instances:
+  one: {{ of: side }}
+  two: {{ of: side, {mirror} }}
+outputs: {{ x1: one.rim.x, y1: one.rim.y, x2: two.rim.y - 1, y2: 1 - two.rim.x }}
+{ASKED}"#
+        )
+    };
+    // A quarter turn has the image's x along −y; without the mirror along y.
+    for (place, sign) in
+        [("at: { position: [1, 1], angle: 90 deg }", 1.0), ("at: { position: [1, 1], angle: 90 deg }, mirror: x", -1.0)]
+    {
+        let found = bounds(&side(place));
+        for (name, sign) in [("x", sign), ("y", 1.0)] {
+            let [one, two] = ["1", "2"].map(|number| courses(&found, &format!("{name}{number}"))[0].clone());
+            let start = if name == "x" { 0.7 } else { 0.1 };
+            assert!((one[0] - start).abs() < 1e-9, "{name}: {}", one[0]);
+            for (one, two) in one.iter().zip(two) {
+                // What is given of points holds at the start up to what the steps miss.
+                assert!((one - sign * two).abs() < 1e-6, "{name}: {one} and {two}");
+            }
+        }
+    }
+}

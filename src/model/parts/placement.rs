@@ -145,7 +145,12 @@ impl Writer<'_, '_> {
             placement.quaternion = (letter < 2).then(|| about(letter, &angle));
             return Some(());
         }
-        let items = self.reader.list_of(axis, 3)?;
+        let Value::Sequence(items) = &axis.value else {
+            let message = format!("`x`, `y`, `z` or a list of three numbers belongs here, but here is {}", axis.kind());
+            self.reader.error(axis.span.clone(), message, None);
+            return None;
+        };
+        self.reader.list_of(axis, 3)?;
         if items.iter().all(|item| item.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0))) {
             self.reader.error(axis.span.clone(), "a direction of length zero points nowhere", None);
             return None;
@@ -220,10 +225,7 @@ impl Writer<'_, '_> {
 /// The parameters of an instance's frame in the model, with their formulas.
 fn in_model(placement: &Placement, prefix: &str, outer: Option<&Scope>, frame: Frame) -> Vec<(String, String)> {
     let own = placement.frame();
-    let (around, place) = match outer.and_then(|outer| Some((outer.frame()?, outer.full(PLACE)))) {
-        Some(found) => found,
-        None => (Frame::default(), String::new()),
-    };
+    let (around, place) = outer.and_then(|outer| Some((outer.frame()?, outer.full(PLACE)))).unwrap_or_default();
     // The place of an image is the image of the place.
     let position = [0, 1, 2].map(|axis| {
         let text = if own.moved[axis] { format!("{prefix}at.{}", AXES[axis]) } else { "0".to_owned() };

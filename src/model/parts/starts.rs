@@ -43,10 +43,14 @@ impl Writer<'_, '_> {
         }
     }
 
+    /// The body or the point that a port is; any other name as it is.
+    fn held_by<'n>(&'n self, name: &'n str) -> &'n str {
+        self.parts.port(name).unwrap_or(name)
+    }
+
     /// What something is that has start values.
     fn of(&self, owner: &str) -> Option<Of> {
-        let target = |name: &str| self.parts.port(name).unwrap_or(name).to_owned();
-        let is_body = |name: &str| self.bodies.contains(target(name).as_str());
+        let is_body = |name: &str| self.bodies.contains(self.held_by(name));
         if is_body(owner) {
             return Some(Of::Place);
         }
@@ -55,7 +59,7 @@ impl Writer<'_, '_> {
         }
         match owner.rsplit_once('.') {
             Some((body, "omega" | "omega_body")) if is_body(body) => Some(Of::Rate),
-            _ => target(owner).rsplit_once('.').filter(|(body, _)| is_body(body)).map(|_| Of::Place),
+            _ => self.held_by(owner).rsplit_once('.').filter(|(body, _)| is_body(body)).map(|_| Of::Place),
         }
     }
 
@@ -141,10 +145,14 @@ impl Writer<'_, '_> {
         let row = frame.rotation(PLACE)[axis].clone();
         let mut vector: Vector = ["0"; 3].map(str::to_owned);
         for other in (0..3).filter(|&other| row[other] != "0") {
-            let key = format!("{owner}.{}{}", &coordinate[..coordinate.len() - 1], AXES[other]);
-            let Some(found) = said.iter().find(|known| known.key == key) else {
-                let (name, other) = (own_name(start, scope), key.rsplit('.').next().unwrap_or(&key));
-                let message = format!("`{name}` is given without `{other}`, but the instance is turned");
+            let wanted = format!("{}{}", &coordinate[..coordinate.len() - 1], AXES[other]);
+            let is_wanted = |known: &&Entry| {
+                let of = known.key.rsplit_once('.').filter(|(_, coordinate)| *coordinate == wanted);
+                of.is_some_and(|(other, _)| self.held_by(other) == self.held_by(owner))
+            };
+            let Some(found) = said.iter().find(is_wanted) else {
+                let name = own_name(start, scope);
+                let message = format!("`{name}` is given without `{wanted}`, but the instance is turned");
                 let all = if frame.turned == Turned::InSpace { "all three" } else { "both" };
                 self.reader.error(start.key_span.clone(), message, format!("give {all}, or the coordinates of joints"));
                 return;
