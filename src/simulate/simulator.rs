@@ -128,9 +128,9 @@ impl Assembled {
             }
         }
         let shared = shared_coordinates(&system, &start, &nominal);
-        further_outputs(&mut system, mobility.degrees_of_freedom);
         let vibrations = matches!(system.analysis, Analysis::Modes(_))
-            .then(|| Arc::new(Vibrations::new(&system, &mobility.redundant, mobility.degrees_of_freedom)));
+            .then(|| Arc::new(Vibrations::new(&system, &mobility.redundant, mobility.degrees_of_freedom, &nominal)));
+        further_outputs(&mut system, vibrations.as_deref());
         if let (Some(equilibrium), Some(_)) = (&mut equilibrium, system.analysis.is_without_steps().then_some(())) {
             *equilibrium = Arc::new(Equilibrium::new(&system, &mobility.redundant));
         }
