@@ -12,7 +12,7 @@ use super::features::Features;
 use super::further::further_outputs;
 use super::modal::Vibrations;
 use super::start::{
-    Assembly, ConstraintResidual, Mobility, Samples, guess_state, mobility, open_start, pivot_samples,
+    Assembly, ConstraintResidual, Mobility, Samples, contradiction, guess_state, mobility, open_start, pivot_samples,
     shared_coordinates,
 };
 use super::statics::Equilibrium;
@@ -101,6 +101,9 @@ impl Assembled {
         }
         if let Some(error) = no_number(&nominal) {
             return Err(error);
+        }
+        if let Some(constraint) = contradiction(&system, &start, &nominal, &mobility) {
+            return Err(SimulationError::Contradiction { joint: system[constraint].joint.clone() });
         }
         let mut equilibrium =
             system.start.at_equilibrium.then(|| Arc::new(Equilibrium::new(&system, &mobility.redundant)));

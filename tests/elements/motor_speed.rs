@@ -2,6 +2,7 @@
 
 use mbint::inner::model::Formulation;
 use mbint::inner::results::{Bounds, Method};
+use mbint::inner::study::{self, Options};
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::{band, curve, distance, distance_from, nominal, output, read, run};
@@ -188,6 +189,25 @@ fn a_motor_gives_the_power_for_a_ramp() {
     assert_balance(&pair(joints, lever, ""), "drive.torque*j.angular_velocity");
     let joints = "  j: { revolute: { between: [a.P, b.P], axis: [1, 2, 2] } }\n  drive: { motor: { on: j, speed: lever*(1 rad/s) } }";
     assert_balance(&spatial_pair(joints, lever, ""), "drive.torque*j.angular_velocity");
+}
+
+/// Two motors on one joint: where both follow one state one of them is redundant, and they share the torque; where each follows its own, nothing can
+/// fulfil both, though they begin alike; nor can a motor's position and a state's speed.
+#[test]
+fn two_motors_agree_or_contradict() {
+    let text = |other: &str| {
+        pendulum("step: 2e-3, extrapolation: 4")
+            .replace("speed: command } }", &format!("speed: command }} }}\n  other: {{ motor: {{ on: hinge, {other} }} }}"))
+            .replace("states: {", "states: { second: { rate: (3 rad/s - second)/lag, initial: 0 rad/s }, ")
+            .replace("torque: drive.torque", "torque: drive.torque + other.torque, second: second")
+    };
+    let bounds = nominal(&read(&text("speed: command")));
+    assert!(off(&bounds, "angle", |t| angle(0.2, t)) < 1e-10);
+    assert!(off(&bounds, "torque", |t| torque(0.2, t)) < 1e-7);
+    for (other, joint) in [("speed: second", "other"), ("position: 0.5 + 0*t", "drive")] {
+        let error = study::run(&read(&text(other)), Options::default()).unwrap_err().to_string();
+        assert!(error.contains(&format!("joint `{joint}` gives a speed by a state")), "{error}");
+    }
 }
 
 /// What a digital controller holds makes ramps of the speed: ẏ = 10 k T in the k-th period of T = 0.1 s.
