@@ -32,7 +32,10 @@ impl Inventory {
         let m = Mechanism::new(&builder, description, false)?;
         let mut inventory = Self { joints: 0, constraints: 0, held: 0, drives: 0, mass: m.mass_range()? };
         for (index, joint) in description.joints.iter().enumerate() {
-            let rows = m.rows(index)?;
+            let mut rows = m.rows(index)?;
+            if joint.kind.drives() {
+                rows.extend(m.velocity_rows(index)?);
+            }
             // What nothing can change constrains nothing.
             let rows = rows.iter().filter(|row| !m.is_given(&[row.value])).count();
             // A joint that changes with t moves one of its freedoms; the rows of one on a body that is moved do not say so.

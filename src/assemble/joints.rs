@@ -86,6 +86,14 @@ impl<'g> Kinematics<'g> for Motion<'_, 'g, '_> {
         self.0.formula(formula, Context::Positions)
     }
 
+    fn is_prescribed(&self, formula: &Formula) -> bool {
+        formula.names().all(|(name, _)| self.0.names.known(name, Context::Time).is_ok())
+    }
+
+    fn command(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
+        self.0.formula(formula, Context::Motion)
+    }
+
     fn of_angle(&self, formula: &OfAngle, angle: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError> {
         let function = self.0.function_of(&formula.0, OfAngle::VARIABLE)?;
         Ok([function.at(angle), function.derivative().at(angle)])
@@ -121,6 +129,10 @@ impl<'g> Kinematics<'g> for Motion<'_, 'g, '_> {
 
     fn coordinate(&self, on: OnJoint) -> Scalar<'g> {
         self.0.joint_coordinate(on, TimeOrder::Position)
+    }
+
+    fn rate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError> {
+        self.0.joint_rate(on)
     }
 
     fn axis(&self, on: OnJoint) -> Result<Vector<'g>, BuildError> {

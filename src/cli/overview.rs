@@ -66,6 +66,18 @@ fn analysis(analysis: &AnalysisSummary) -> String {
         };
         text += &format!("  the nominal equilibrium is {is}\n\n");
     }
+    if let Some(nominal) = analysis.growth {
+        let is = match (nominal, analysis.largest_growth.unwrap_or(nominal)) {
+            (nominal, _) if nominal.is_nan() => "stability is unknown: eigenvalues were not found".to_owned(),
+            (nominal, _) if nominal > 0.0 => format!("unstable: a mode grows like exp({nominal:.3e} t / s)"),
+            (_, most) if most > 0.0 => {
+                format!("stable nominally, but not over the tolerances: a mode may grow like exp({most:.3e} t / s)")
+            }
+            (0.0, _) => "on the limit of stability: a mode neither decays nor grows".to_owned(),
+            (nominal, _) => format!("stable: what decays slowest does so like exp({nominal:.3e} t / s)"),
+        };
+        text += &format!("  {is}\n\n");
+    }
     text
 }
 

@@ -2,7 +2,7 @@
 
 use symdiff::{Expr, Graph, Lowered, SparseMatrix, Tape, lower};
 
-use super::equations::{constraint_rates, equations_of_motion, time_derivative};
+use super::equations::{constraint_accelerations, constraint_rates, equations_of_motion};
 use super::layout::Layout;
 use super::tapes::Tapes;
 use crate::assemble::System;
@@ -77,7 +77,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
     let mut graph = system.graph.clone();
     let (motion, jacobian) = equations_of_motion(system, &mut graph);
     let rate = constraint_rates(system, &mut graph);
-    let rate_of_rate = time_derivative(system, &mut graph, &rate);
+    let rate_of_rate = constraint_accelerations(system, &mut graph, &rate);
     let by = |graph: &mut Graph, symbols: &[Expr]| graph.jacobian(&motion, symbols);
     let mut matrices: Vec<SparseMatrix> =
         [&system.q, &system.v, &system.w, &system.lambda].map(|symbols| by(&mut graph, symbols)).into();

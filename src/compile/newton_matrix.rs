@@ -18,7 +18,7 @@
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Input, SparseMatrix};
 
-use super::equations::{constraint_rates, equations_of_motion};
+use super::equations::{constraint_rates, equations_of_motion, velocity_constraints_by_states};
 use super::inertial_change;
 use super::layout::Layout;
 use super::links::{Linked, Unknowns};
@@ -249,6 +249,10 @@ fn residual_and_matrix(
     }
     for (row, column, value) in constraint_jacobian.entries() {
         matrix.add(graph, n + row, column, value);
+    }
+    // ∂Ψ/∂y₊: states push on nothing, and nothing on them, but a step solves for them.
+    for (row, column, value) in velocity_constraints_by_states(system, graph).entries() {
+        matrix.add(graph, n + system.constraint.len() + row, column, value);
     }
     let mut residual = motion;
     let (positions, rates) = match level {

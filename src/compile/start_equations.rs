@@ -2,7 +2,9 @@
 
 use symdiff::{Expr, Graph, SparseMatrix};
 
-use super::equations::{ClosureRow, Equation, constraint_rates, equations_of_motion, time_derivative};
+use super::equations::{
+    ClosureRow, Equation, constraint_accelerations, constraint_rates, equations_of_motion, time_derivative,
+};
 use super::layout::Layout;
 use super::sparse_lu::{NoFactors, Numbers};
 use crate::assemble::{ConditionId, ConstraintId, CoordinateId, StartCondition, System};
@@ -68,7 +70,7 @@ impl Equations {
     pub fn new(system: &System, graph: &mut Graph) -> Self {
         let (motion, jacobian) = equations_of_motion(system, graph);
         let rate = constraint_rates(system, graph);
-        let rate_of_rate = time_derivative(system, graph, &rate);
+        let rate_of_rate = constraint_accelerations(system, graph, &rate);
         let (further, closure_jacobian) = with_conditions(system, graph, &jacobian, ClosureOf::Positions);
         let closure = [&system.constraint[..], &further].concat();
         let (further, closure_rate_jacobian) = with_rates(system, graph, &jacobian);

@@ -30,6 +30,8 @@ pub enum Context {
     Constant,
     /// Parameters and time.
     Time,
+    /// Parameters, time, positions and states.
+    Command,
     /// Parameters, time, positions and velocities.
     Effect,
     /// Parameters, time and positions.
@@ -304,9 +306,17 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
         (_, Symbol::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
         (_, Symbol::Energy(_)) => Some("only outputs may use energies"),
         (Context::Effect, Symbol::Sensor { measure, .. }) if measure.is_motion() => None,
-        (Context::Equation, Symbol::Sensor { measure, .. }) if measure.is_motion() => {
-            Some("a joint constrains positions, which no state gives: let a `servo` follow it")
+        (Context::Command, Symbol::Sensor { measure, .. })
+            if measure.is_motion() && measure.name() == Sensor::VALUE.name() =>
+        {
+            None
         }
+        (Context::Command, Symbol::Sensor { .. }) => {
+            Some("a speed is one of t, positions and states: write this as a state, or let a `filter` follow it")
+        }
+        (Context::Equation, Symbol::Sensor { measure, .. }) if measure.is_motion() => Some(
+            "a joint constrains positions, which no state gives: let a `servo` follow it, or the `speed` of a motor",
+        ),
         (_, Symbol::Sensor { .. }) => {
             Some("what an effect does is known only when the motion is; only outputs may use it")
         }
@@ -321,6 +331,9 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
             | Symbol::JointCoordinate { order, .. },
         ) => match (context, order) {
             (_, TimeOrder::Position) | (Context::Effect, TimeOrder::Velocity) => None,
+            (Context::Command, TimeOrder::Velocity) => {
+                Some("a speed is one of t, positions and states: let a `filter` follow the velocity")
+            }
             (Context::Equation, TimeOrder::Velocity) => {
                 Some("an equation constrains positions, so it cannot use velocities")
             }

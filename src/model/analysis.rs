@@ -1,10 +1,12 @@
 //! `analysis:`, `initial: equilibrium`, and what cannot be asked then.
 
-use super::description::{Analysis, Description, Formulation, LinearisedAt, ModesRequest, ResponseRequest, Stepping};
+use super::description::{
+    Analysis, Description, Formulation, Joint, LinearisedAt, ModesRequest, ResponseRequest, Stepping,
+};
 use super::file;
-use crate::grammar::Symbol;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
+use crate::grammar::{Context, Symbol};
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -186,12 +188,37 @@ pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
     }
     let is_nonholonomic = |name: &str| {
         let mut joints = reader.model.joints.iter();
-        joints.any(|joint| joint.name == name && joint.kind.is_nonholonomic())
+        joints.any(|joint| joint.name == name && (joint.kind.is_nonholonomic() || follows_motion(reader, joint)))
     };
     if let Some(entry) = entries.iter().find(|entry| is_nonholonomic(&entry.key)) {
         let message = format!("`{}` constrains velocities, which say nothing of where it is at rest", clip(&entry.key));
         let help = "ask for `analysis: motion`, from a start that `initial` gives, or leave it out here, e.g. in a scene with `without`";
         reader.error(entry.key_span.clone(), message, help.to_owned());
+    }
+}
+
+/// Whether a joint's coordinate has a speed that follows the motion.
+fn follows_motion(reader: &Reader, joint: &Joint) -> bool {
+    let is_moving = |name: &str| reader.resolve(name, Context::Time).is_err();
+    joint.kind.speed().is_some_and(|speed| speed.names().any(|(name, _)| is_moving(name)))
+}
+
+/// Reports speeds that jump at instants.
+pub fn check_speeds(reader: &mut Reader, entries: &[Entry]) {
+    let is_sampled = |name: &str| {
+        let effect = reader.model.effects.iter().find(|effect| effect.name == name);
+        effect.is_some_and(|effect| effect.kind.states().iter().any(|state| state.period.is_some()))
+    };
+    let jumping = |entry: &Entry| {
+        let joint = reader.model.joints.iter().find(|joint| joint.name == entry.key)?;
+        let name = joint.kind.speed()?.names().find(|(name, _)| is_sampled(name))?.0;
+        Some((entry.key_span.clone(), name.to_owned()))
+    };
+    let found: Vec<(Span, String)> = entries.iter().filter_map(jumping).collect();
+    for (at, name) in found {
+        let message = format!("`{}` jumps at instants, and no speed can", clip(&name));
+        let help = "let a `filter` or a `rate_limit` follow it, and the motor that".to_owned();
+        reader.error(at, message, help);
     }
 }
 

@@ -310,6 +310,7 @@ fn describe(
     states::check(&mut reader, &fields, effect_entries);
     states::check_instants(&mut reader, effect_entries);
     analysis::check_joints(&mut reader, joint_entries);
+    analysis::check_speeds(&mut reader, joint_entries);
     analysis::check_requests(&mut reader, &fields, [output_entries, requirement_entries]);
     sections::missing_sections(&mut reader, &fields, robot.is_some(), body_entries, output_entries);
     reader.warn_of_lengths();

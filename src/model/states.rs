@@ -139,13 +139,24 @@ pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
     }
 }
 
-/// Reports states where nothing moves in time.
+/// Reports states where nothing moves in time, and modes of what jumps.
 pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
-    if reader.model.states.is_empty() || matches!(reader.model.analysis, Analysis::Motion | Analysis::Statics) {
+    let analysis = reader.model.analysis;
+    let is_sampled = |entry: &&Entry| {
+        let effect = reader.model.effects.iter().find(|effect| effect.name == entry.key);
+        effect.is_some_and(|effect| effect.kind.states().iter().any(|state| state.period.is_some()))
+    };
+    if let (Analysis::Modes(_), Some(entry)) = (analysis, effects.iter().find(is_sampled)) {
+        let message = format!("`{}` changes at instants, and modes are of what changes all the time", clip(&entry.key));
+        let help = "write it as a state or a filter, its period as a `delay` of half of it; or leave it out here, e.g. in a scene with `without`";
+        reader.error(entry.key_span.clone(), message, help.to_owned());
+    }
+    if reader.model.states.is_empty() || analysis != Analysis::Kinematics {
         return;
     }
     let of_effects = effects.iter().find(|entry| reader.model.states.contains(&entry.key));
     let place = of_effects.map_or_else(|| fields.key_span("states"), |entry| entry.key_span.clone());
-    let help = "leave them out here, e.g. in a scene with `without`, or ask for `analysis: motion` or `statics`";
-    reader.error(place, "states belong to a motion or to an equilibrium", help.to_owned());
+    let help =
+        "leave them out here, e.g. in a scene with `without`, or ask for `analysis: motion`, `statics` or `modes`";
+    reader.error(place, "states follow from forces and rates, and kinematics knows none", help.to_owned());
 }

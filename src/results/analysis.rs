@@ -12,6 +12,12 @@ pub struct AnalysisSummary {
     /// At an equilibrium: the smallest eigenvalue of its stiffness about its masses, rad²/s²; `null` where nothing can move.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<f64>,
+    /// Of modes with states: the largest growth of any at the nominal parameters, 1/s; negative where all decay.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub growth: Option<f64>,
+    /// The same over the box: the largest upper bound of any method.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_growth: Option<f64>,
     /// Coordinates that may have any value at the equilibrium.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub indifferent: Vec<String>,

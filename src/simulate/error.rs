@@ -35,6 +35,14 @@ pub enum SimulationError {
         /// What stands against it.
         why: String,
     },
+    /// A speed follows a state where other constraints decide it.
+    #[error(
+        "joint `{joint}` gives a speed by a state where other joints or motors decide it already: leave one of them out, or let all follow the same state"
+    )]
+    Contradiction {
+        /// Its name.
+        joint: String,
+    },
     /// The equations of motion cannot be solved at the start.
     #[error("the equations of motion are singular at the start: {}{}", equations.join(", "), not_placed(massless.as_deref()))]
     Singular {

@@ -1,16 +1,18 @@
 //! What an analysis tells besides the model's outputs: names and units.
 
-use super::modal;
+use super::modal::{self, Vibrations};
 use crate::assemble::{OutputInfo, System};
 use crate::model::Analysis;
 
 /// The name of the smallest eigenvalue among the outputs.
 const STABILITY: &str = "stability";
 
-/// Adds the further outputs of a mechanism with so many degrees of freedom, after the model's outputs.
-pub fn further_outputs(system: &mut System, freedom: usize) {
+/// Adds the further outputs of a mechanism, after the model's outputs.
+pub fn further_outputs(system: &mut System, vibrations: Option<&Vibrations>) {
+    if let Some(vibrations) = vibrations {
+        modal::further_outputs(system, vibrations);
+    }
     match system.analysis {
-        Analysis::Modes(_) => modal::further_outputs(system, freedom),
         // What a controller does at an equilibrium depends on how it moves.
         Analysis::Statics if !system.has_states() => {
             let taken = |name: &str| system.outputs.iter().any(|output| output.name == name);
@@ -21,6 +23,6 @@ pub fn further_outputs(system: &mut System, freedom: usize) {
             let expr = system.graph.constant(0.0);
             system.outputs.push(OutputInfo { name, unit: "1/s^2".to_owned(), dimension: None, expr });
         }
-        Analysis::Motion | Analysis::Kinematics | Analysis::Statics => {}
+        Analysis::Motion | Analysis::Kinematics | Analysis::Statics | Analysis::Modes(_) => {}
     }
 }

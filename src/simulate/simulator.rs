@@ -12,7 +12,7 @@ use super::features::Features;
 use super::further::further_outputs;
 use super::modal::Vibrations;
 use super::start::{
-    Assembly, ConstraintResidual, Mobility, Samples, guess_state, mobility, open_start, pivot_samples,
+    Assembly, ConstraintResidual, Mobility, Samples, contradiction, guess_state, mobility, open_start, pivot_samples,
     shared_coordinates,
 };
 use super::statics::Equilibrium;
@@ -102,6 +102,9 @@ impl Assembled {
         if let Some(error) = no_number(&nominal) {
             return Err(error);
         }
+        if let Some(constraint) = contradiction(&system, &start, &nominal, &mobility) {
+            return Err(SimulationError::Contradiction { joint: system[constraint].joint.clone() });
+        }
         let mut equilibrium =
             system.start.at_equilibrium.then(|| Arc::new(Equilibrium::new(&system, &mobility.redundant)));
         if let Some(equilibrium) = &equilibrium {
@@ -128,9 +131,9 @@ impl Assembled {
             }
         }
         let shared = shared_coordinates(&system, &start, &nominal);
-        further_outputs(&mut system, mobility.degrees_of_freedom);
         let vibrations = matches!(system.analysis, Analysis::Modes(_))
-            .then(|| Arc::new(Vibrations::new(&system, &mobility.redundant, mobility.degrees_of_freedom)));
+            .then(|| Arc::new(Vibrations::new(&system, &mobility.redundant, mobility.degrees_of_freedom, &nominal)));
+        further_outputs(&mut system, vibrations.as_deref());
         if let (Some(equilibrium), Some(_)) = (&mut equilibrium, system.analysis.is_without_steps().then_some(())) {
             *equilibrium = Arc::new(Equilibrium::new(&system, &mobility.redundant));
         }

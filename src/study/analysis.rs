@@ -54,5 +54,11 @@ pub(super) fn arrange(description: &Description, bounds: &mut Bounds, summary: &
         && bounds.is_of_one_configuration()
     {
         analysis.values = bounds.outputs.iter().map(|output: &OutputBounds| ValueSummary::of(output)).collect();
+        let has_growth = matches!(description.analysis, Analysis::Modes(_)) && !description.states.is_empty();
+        // It stands first of what is told besides the model's outputs.
+        if let Some(growth) = analysis.values.get(description.outputs.len()).filter(|_| has_growth) {
+            analysis.growth = Some(growth.nominal);
+            analysis.largest_growth = growth.bounds.iter().map(|(_, _, upper, _)| *upper).reduce(f64::max);
+        }
     }
 }

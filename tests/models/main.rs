@@ -47,6 +47,7 @@ mod massless;
 mod metamorphic;
 mod mjcf;
 mod modes;
+mod modes_with_states;
 mod moving_machines;
 mod pruning;
 mod questions_apart;

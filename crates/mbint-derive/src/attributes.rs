@@ -119,6 +119,7 @@ impl Key {
             "above" => self.above = Some(meta.value()?.parse()?),
             "constant" => self.context = "Constant",
             "time" => self.context = "Time",
+            "command" => self.context = "Command",
             "positive" => self.requirement = requirement("POSITIVE"),
             "nonnegative" => self.requirement = requirement("NONNEGATIVE"),
             "nonzero" => self.requirement = requirement("NONZERO"),
@@ -144,7 +145,7 @@ impl Key {
             }
             _ => {
                 return Err(meta.error(
-                    "a key has unit, dimension, above, otherwise, default, default_with, constant, time, positive, nonnegative, nonzero, requires",
+                    "a key has unit, dimension, above, otherwise, default, default_with, constant, time, command, positive, nonnegative, nonzero, requires",
                 ));
             }
         }

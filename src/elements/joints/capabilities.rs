@@ -117,7 +117,13 @@ pub trait Joint: Debug {
         false
     }
 
-    /// Its nonholonomic constraints: Ψ(q, v, t) = 0, linear in v, which are no derivatives of constraints of positions.
+    /// The speed of a coordinate, where it is said: it constrains velocities if it follows the motion.
+    fn speed(&self) -> Option<&Formula> {
+        None
+    }
+
+    /// Its nonholonomic constraints: Ψ(q, v, t) = 0, linear in the velocities of the mechanism, which are no derivatives of constraints of
+    /// positions.
     ///
     /// # Errors
     /// As [`rows`](Self::rows).

@@ -5,6 +5,7 @@
 //!
 //! position     s(t), a formula
 //! speed        s(t) = from + ∫ v(t) dt                                        where `Graph::integral` knows it
+//!              Ψ = ṡ − v(t, q, y) = 0      1 row, rad/s or m/s                where it follows positions q or states y, from where `initial` says
 //! move         s(t) = from + (to − from) σ(u)                                 u = (t − start)/duration, kept within 0 … 1
 //! run-up       s(t) = from + v [duration Σ(u) + ⟨t − start − duration⟩]       Σ = ∫σ, so that ṡ = v σ(u)
 //!
@@ -48,8 +49,8 @@ pub struct Motor {
     /// The coordinate over time: a formula of t, twice differentiable.
     #[quantity(unit = "m or rad", time)]
     position: Option<Formula>,
-    /// From the beginning, also as a formula of t, or, with a `profile`, from rest within the `duration`.
-    #[quantity(unit = "m/s or rad/s", time)]
+    /// From the beginning, also as a formula of t, positions and states, or, with a `profile`, from rest within the `duration`.
+    #[quantity(unit = "m/s or rad/s", command)]
     speed: Option<Formula>,
     /// Where a move from rest to rest ends.
     #[quantity(unit = "m or rad", constant)]
@@ -108,17 +109,40 @@ impl Joint for Motor {
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {
-        let value = k.coordinate(self.on) - self.prescribed(k)?;
-        let axis = k.axis(self.on)?;
-        let (push, none) = (-axis, Vector::zero(k.graph()));
-        Ok(vec![match self.on.coordinate {
-            JointCoordinate::Angle => Row { name: "", value, force: none, torque: push },
-            JointCoordinate::Displacement => Row { name: "", value, force: push, torque: none },
-        }])
+        match self.followed(k) {
+            Some(_) => Ok(Vec::new()),
+            None => Ok(vec![self.row(k, k.coordinate(self.on) - self.prescribed(k)?)?]),
+        }
+    }
+
+    fn speed(&self) -> Option<&Formula> {
+        self.speed.as_ref()
+    }
+
+    fn velocity_rows<'g>(&self, k: &dyn Kinematics<'g>) -> Rows<'g> {
+        match self.followed(k) {
+            Some(speed) => Ok(vec![self.row(k, k.rate(self.on)? - k.command(speed)?)?]),
+            None => Ok(Vec::new()),
+        }
     }
 }
 
 impl Motor {
+    /// The speed, where it follows the motion.
+    fn followed(&self, k: &dyn Kinematics) -> Option<&Formula> {
+        self.speed.as_ref().filter(|speed| !k.is_prescribed(speed))
+    }
+
+    /// What pushes on the coordinate so that a value is zero.
+    fn row<'g>(&self, k: &dyn Kinematics<'g>, value: Scalar<'g>) -> Result<Row<'g>, BuildError> {
+        let axis = k.axis(self.on)?;
+        let (push, none) = (-axis, Vector::zero(k.graph()));
+        Ok(match self.on.coordinate {
+            JointCoordinate::Angle => Row { name: "", value, force: none, torque: push },
+            JointCoordinate::Displacement => Row { name: "", value, force: push, torque: none },
+        })
+    }
+
     /// s(t). The reader lets no motor through without `position`, `speed` or `to`; one stays at `from`.
     fn prescribed<'g>(&self, k: &dyn Kinematics<'g>) -> Result<Scalar<'g>, BuildError> {
         if let Some(position) = &self.position {
@@ -233,6 +257,11 @@ impl Checked for Motor {
         if self.profile.is_some() {
             // The speed that a run-up ends at does not change in time.
             reader.check_names(node, speed, 0, Context::Constant);
+        } else if speed.names().any(|(name, _)| reader.resolve(name, Context::Time).is_err()) {
+            if fields.get("from").is_some() {
+                let help = "say the coordinate at the start in `initial`".to_owned();
+                reader.error(fields.key_span("from"), "`from` does not go with a speed that follows the motion", help);
+            }
         } else if !is_integrable(speed) {
             let help = "polynomials, sin, cos, exp, sqrt, min, max, floor, smoothstep and `if` of straight lines with `and` and `or`, and their sums can be; or give it as `position`";
             reader.error(node.span.clone(), "this speed cannot be integrated by formulas", help.to_owned());

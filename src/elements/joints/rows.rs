@@ -44,6 +44,10 @@ pub trait Kinematics<'g> {
     fn number(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
     /// A formula of parameters, t and positions.
     fn of_positions(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
+    /// Whether a formula is one of parameters and t alone.
+    fn is_prescribed(&self, formula: &Formula) -> bool;
+    /// A formula of parameters, t, positions and states.
+    fn command(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
     /// A formula of parameters, t and an angle, and its derivative by that angle.
     fn of_angle(&self, formula: &OfAngle, angle: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError>;
     /// A direction of parameters and t, of length 1.
@@ -62,6 +66,8 @@ pub trait Kinematics<'g> {
     fn angle(&self, body: usize) -> Scalar<'g>;
     /// A coordinate of a joint, rad or m.
     fn coordinate(&self, on: OnJoint) -> Scalar<'g>;
+    /// The rate of a joint's coordinate, rad/s or m/s, by the velocities of its bodies.
+    fn rate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError>;
     /// The unit vector about or along which a joint's coordinate is counted, in the ground's axes.
     fn axis(&self, on: OnJoint) -> Result<Vector<'g>, BuildError>;
     /// The name of a joint.

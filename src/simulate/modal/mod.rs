@@ -1,14 +1,19 @@
 //! Small vibrations about a configuration: modes, how they are followed over the box, and what harmonic loads do.
 //!
-//! - `eigen`: frequencies, damping ratios and shapes;
-//! - `follow`: which mode of one configuration is which of another;
-//! - `response`: the frequency response.
+//! - `eigen`: frequencies, damping ratios and shapes; `follow`: which mode of one configuration is which of another;
+//! - `first_order`: eigenvalues where there are states; `roots`: the same of them;
+//! - `response`: the frequency response;
+//! - `outputs`: names and units of all that.
 
 mod eigen;
+mod first_order;
 mod follow;
 mod gradients;
 mod likeness;
+mod outputs;
 mod response;
+mod roots;
 mod vibrations;
 
-pub use vibrations::{ALIKE, Place, Vibrations, further_outputs};
+pub use outputs::further_outputs;
+pub use vibrations::{ALIKE, Place, Vibrations};

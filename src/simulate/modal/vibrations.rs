@@ -7,12 +7,13 @@ use nalgebra::DVector;
 use symdiff::math;
 
 use super::eigen::{Mode, modes};
+use super::first_order::eigenvalues;
 use super::follow::followed;
 use super::gradients::Gradients;
 use super::response::Response;
-use crate::assemble::{ConstraintId, OutputInfo, System};
+use super::roots::{self, Kind, OutputChanges, Root};
+use crate::assemble::{ConstraintId, System};
 use crate::compile::{EquationsProgram, compile_equations};
-use crate::grammar::quantity::Dimension;
 use crate::model::ModesRequest;
 use crate::numerics::{RowSpace, combined, dot};
 use crate::simulate::statics::{Configuration, Linearised, reduced, times};
@@ -26,12 +27,17 @@ pub struct Vibrations {
     program: EquationsProgram,
     scale: Vec<f64>,
     redundant: Vec<ConstraintId>,
+    /// Places of the coordinates whose velocities are states.
+    states: Vec<usize>,
     gradients: Gradients,
     /// Outputs of the model itself.
     outputs: usize,
+    /// Modes that are told.
     number: usize,
     /// Load and output of each response, by number, and its frequencies, Hz.
     responses: Vec<(usize, usize, Vec<f64>)>,
+    /// With states, those of the nominal start: what each mode is, there and elsewhere.
+    first: Option<Place>,
     /// The nominal sample's, which others are compared with, row by row.
     pub nominal: OnceLock<Vec<Place>>,
 }
@@ -40,67 +46,72 @@ pub struct Vibrations {
 #[derive(Clone, Debug)]
 pub struct Place {
     /// In the order of the outputs.
-    pub modes: Vec<Mode>,
-    /// M, by which shapes are compared.
-    mass: nalgebra::DMatrix<f64>,
+    pub modes: Modes,
     /// The output by which each mode's shape is measured: there it is one.
     measured_by: Vec<usize>,
     /// Phases of the responses, rad.
     phases: Vec<f64>,
 }
 
-/// Names and units of the outputs of the vibrations of a mechanism with so many degrees of freedom.
-pub fn further_outputs(system: &mut System, freedom: usize) {
-    let request = system.modes.clone();
-    let (number, model) = (request.number.min(freedom), system.outputs.clone());
-    let expr = system.graph.constant(0.0);
-    let mut add = |name: String, unit: String| {
-        system.outputs.push(OutputInfo { name, unit, dimension: None, expr });
-    };
-    for mode in 1..=number {
-        add(format!("mode{mode}.frequency"), "Hz".to_owned());
-        add(format!("mode{mode}.damping"), String::new());
-        model.iter().for_each(|output| add(format!("mode{mode}.shape.{}", output.name), String::new()));
-    }
-    for response in &request.responses {
-        let unit_of = |name: &str| model.iter().find(|output| output.name == name);
-        let force = unit_of(&response.load).is_some_and(|load| load.dimension == Some(Dimension::ANGLE));
-        let force = if force { "(N*m)" } else { "N" };
-        let unit = unit_of(&response.output).map_or("", |output| output.unit.as_str());
-        let unit = format!("{}/{force}", if unit.is_empty() { "1" } else { unit });
-        for (place, _) in response.frequencies.iter().enumerate() {
-            add(format!("response.{}.{place}.amplitude", response.name), unit.clone());
-            add(format!("response.{}.{place}.phase", response.name), "rad".to_owned());
-        }
-    }
+/// The modes of a configuration.
+#[derive(Clone, Debug)]
+pub enum Modes {
+    /// Without states, with M, by which shapes are compared.
+    OfMasses { modes: Vec<Mode>, mass: nalgebra::DMatrix<f64> },
+    /// With states: all of them, and the largest growth of any.
+    OfStates { modes: Vec<Root>, growth: f64 },
 }
 
 impl Vibrations {
-    /// Of a mechanism with so many degrees of freedom, whose outputs are complete.
-    pub fn new(system: &System, redundant: &[ConstraintId], freedom: usize) -> Self {
+    /// Of a mechanism with so many degrees of freedom and this nominal start (the layout's registers).
+    pub fn new(system: &System, redundant: &[ConstraintId], freedom: usize, nominal: &[f64]) -> Self {
         let ModesRequest { number, responses } = &system.modes;
-        let number = (*number).min(freedom);
-        let further: usize = responses.iter().map(|response| 2 * response.frequencies.len()).sum();
-        // Every mode has two outputs and one for each of the model's.
-        let outputs = (system.outputs.len() - further - 2 * number) / (1 + number);
-        let named = |name: &str| system.outputs[..outputs].iter().position(|output| output.name == name);
+        let outputs = system.outputs.len();
+        let named = |name: &str| system.outputs.iter().position(|output| output.name == name);
         let response = |response: &crate::model::ResponseRequest| {
             Some((named(&response.load)?, named(&response.output)?, response.frequencies.clone()))
         };
-        Self {
+        let mut vibrations = Self {
             program: compile_equations(system),
             scale: system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
             redundant: redundant.to_vec(),
+            states: (0..system.q.len()).filter(|&place| system.coordinates[place].is_state).collect(),
             gradients: Gradients::new(system, outputs),
             outputs,
-            number,
+            number: (*number).min(freedom),
             responses: responses.iter().filter_map(response).collect(),
+            first: None,
             nominal: OnceLock::new(),
+        };
+        if system.has_states() {
+            vibrations.first = vibrations.place(nominal, None).map(|(place, _)| place);
+            vibrations.number = vibrations.kinds().len().min(*number);
+        }
+        vibrations
+    }
+
+    /// With states, what each mode is.
+    fn kinds(&self) -> Vec<Kind> {
+        match self.first.as_ref().map(|first| &first.modes) {
+            Some(Modes::OfStates { modes, .. }) => modes.iter().map(|mode| mode.kind).collect(),
+            _ => Vec::new(),
         }
     }
 
+    /// Names and units of what is told of each mode; `None` without states.
+    pub fn quantities(&self) -> Option<Vec<&'static [(&'static str, &'static str)]>> {
+        let kinds = self.kinds();
+        (!self.states.is_empty()).then(|| kinds[..self.number].iter().map(|kind| kind.quantities()).collect())
+    }
+
+    /// How many modes are told.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
     /// The equations about a state's position (the layout's registers), as if it were held there and let go, and the outputs of the state
-    /// itself. Away from an equilibrium a stiffness depends on the coordinates; this is the one in the metric of the kinetic energy.
+    /// itself. Away from an equilibrium a stiffness depends on the coordinates; this is the one in the metric of the kinetic energy. States are
+    /// held at their values.
     fn linearised(&self, state: &[f64]) -> (Linearised, Vec<f64>) {
         let layout = &self.program.layout;
         let parameters = &state[layout.parameters.clone()];
@@ -110,6 +121,9 @@ impl Vibrations {
         let outputs = at.outputs();
         let (n, m) = (layout.q.len(), layout.lambda.len());
         at.set(layout.v.start..layout.w.end, &vec![0.0; layout.w.end - layout.v.start]);
+        for register in self.states.iter().map(|place| layout.v.start + place) {
+            at.set(register..register + 1, &state[register..register + 1]);
+        }
         at.set(layout.lambda.clone(), &vec![0.0; m]);
         let unheld = at.linearise();
         let space = RowSpace::of(&unheld.jacobian, n);
@@ -126,46 +140,79 @@ impl Vibrations {
     /// The modes of a state that are most like those of a known place, and how much alike the least are; without one, the slowest.
     pub fn place(&self, state: &[f64], known: Option<&Place>) -> Option<(Place, f64)> {
         let (linear, _) = self.linearised(state);
-        let found = modes(&linear)?;
-        let (modes, least) = match known {
-            Some(known) => followed(&known.modes, &found, &known.mass),
-            None => (found.into_iter().take(self.number).collect(), 1.0),
-        };
-        let (measured_by, phases) = match known {
-            Some(known) => (known.measured_by.clone(), known.phases.clone()),
+        let reference = known.or(self.first.as_ref());
+        let (modes, least) = self.modes(&linear, reference)?;
+        let (measured_by, phases) = match reference {
+            Some(reference) => (reference.measured_by.clone(), reference.phases.clone()),
             None => {
-                let by_position = &self.gradients.at(state, &self.scale, self.outputs)[0];
-                let size = |mode: &Mode, output: usize| {
-                    let [re, im] = moved(&by_position[output], mode);
-                    math::hypot(re, im)
+                let gradients = self.gradients.at(state, &self.scale, self.outputs);
+                let largest = |changes: &Vec<[f64; 2]>| {
+                    let size = |output: usize| math::hypot(changes[output][0], changes[output][1]);
+                    (0..self.outputs).reduce(|a, b| if size(b) > size(a) { b } else { a }).unwrap_or(0)
                 };
-                let largest = |mode: &Mode| {
-                    (0..self.outputs).reduce(|a, b| if size(mode, b) > size(mode, a) { b } else { a }).unwrap_or(0)
-                };
-                (modes.iter().map(largest).collect(), Vec::new())
+                (self.changes(&linear, &gradients, &modes).iter().map(largest).collect(), Vec::new())
             }
         };
-        let mut place = Place { modes, mass: linear.mass.clone(), measured_by, phases };
+        let mut place = Place { modes, measured_by, phases };
         if known.is_none() {
             place.phases = self.responses_of(state, &linear, None).chunks(2).map(|pair| pair[1]).collect();
         }
         Some((place, least))
     }
 
+    fn modes(&self, linear: &Linearised, known: Option<&Place>) -> Option<(Modes, f64)> {
+        if !self.states.is_empty() {
+            let found = eigenvalues(linear, &self.states)?;
+            let growth = roots::growth(&found);
+            let (modes, least) = match known.map(|known| &known.modes) {
+                Some(Modes::OfStates { modes, .. }) => roots::followed(modes, &found),
+                _ => (found.into_iter().map(Root::of).collect(), 1.0),
+            };
+            return Some((Modes::OfStates { modes, growth }, least));
+        }
+        let found = modes(linear)?;
+        let (modes, least) = match known.map(|known| &known.modes) {
+            Some(Modes::OfMasses { modes, mass }) => followed(modes, &found, mass),
+            _ => (found.into_iter().take(self.number).collect(), 1.0),
+        };
+        Some((Modes::OfMasses { modes, mass: linear.mass.clone() }, least))
+    }
+
+    /// What each mode does to each output, real and imaginary part. Without states, positions alone count.
+    fn changes(&self, linear: &Linearised, gradients: &[Vec<Vec<f64>>; 4], modes: &Modes) -> Vec<Vec<[f64; 2]>> {
+        match modes {
+            Modes::OfMasses { modes, .. } => {
+                let of_mode = |mode: &Mode| gradients[0].iter().map(|by| moved(by, mode)).collect();
+                modes.iter().map(of_mode).collect()
+            }
+            Modes::OfStates { modes, .. } => {
+                let changes = OutputChanges::of(linear, gradients);
+                modes.iter().map(|mode| changes.of_root(mode)).collect()
+            }
+        }
+    }
+
     /// All outputs at a state whose modes are known, with phases near those of `nominal`.
     pub fn tell(&self, state: &[f64], place: &Place, nominal: &Place) -> Vec<f64> {
         let (linear, outputs) = self.linearised(state);
-        let by_position = &self.gradients.at(state, &self.scale, self.outputs)[0];
+        let gradients = self.gradients.at(state, &self.scale, self.outputs);
         let mut told = outputs[..self.outputs].to_vec();
-        for (mode, &measured_by) in place.modes.iter().zip(&nominal.measured_by) {
-            told.extend([mode.frequency / TAU, mode.damping]);
-            let reference = by_position.get(measured_by).map_or([0.0; 2], |by| moved(by, mode));
+        if let Modes::OfStates { growth, .. } = &place.modes {
+            told.push(*growth);
+        }
+        let changes = self.changes(&linear, &gradients, &place.modes);
+        for (mode, (changes, &measured_by)) in changes.iter().zip(&nominal.measured_by).take(self.number).enumerate() {
+            match &place.modes {
+                Modes::OfMasses { modes, .. } => told.extend([modes[mode].frequency / TAU, modes[mode].damping]),
+                Modes::OfStates { modes, .. } => told.extend(modes[mode].told()),
+            }
+            let reference = changes.get(measured_by).copied().unwrap_or([0.0; 2]);
             let square = reference[0] * reference[0] + reference[1] * reference[1];
             // The part in phase with the output that moves most.
-            told.extend(by_position.iter().map(|by| {
-                let [re, im] = moved(by, mode);
+            let in_phase = |[re, im]: &[f64; 2]| {
                 if square > 0.0 { (re * reference[0] + im * reference[1]) / square } else { 0.0 }
-            }));
+            };
+            told.extend(changes.iter().map(in_phase));
         }
         told.extend(self.responses_of(state, &linear, Some(&nominal.phases)));
         told

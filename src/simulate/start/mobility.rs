@@ -1,6 +1,7 @@
 //! Rank of the constraints at the start: degrees of freedom, redundant constraints, singular starts.
 
-use symdiff::Tile;
+use rustc_hash::FxHashMap;
+use symdiff::{Expr, Tile, slopes};
 
 use super::general_position::{move_apart, pivot_samples};
 use super::rank::{dependent_of_sizes, row_size};
@@ -39,6 +40,39 @@ pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobil
         (system.coordinates_of_motion().count() + redundant.len()).saturating_sub(system.lambda.len());
     let singular_at_start = if at_start.len() > redundant.len() { at_start } else { Vec::new() };
     Mobility { degrees_of_freedom, redundant, singular_at_start }
+}
+
+/// The first redundant constraint of velocities that others do not imply, because it follows states of its own: nothing can fulfil it.
+pub fn contradiction(
+    system: &System,
+    start: &StartProgram,
+    nominal: &[f64],
+    mobility: &Mobility,
+) -> Option<ConstraintId> {
+    let first = system.constraint.len();
+    let suspects: Vec<usize> =
+        mobility.redundant.iter().map(|constraint| constraint.number()).filter(|&row| row >= first).collect();
+    if suspects.is_empty() || !system.has_states() {
+        return None;
+    }
+    let layout = &start.layout;
+    let registers = [(&system.q, &layout.q), (&system.v, &layout.v)];
+    let mut values: FxHashMap<Expr, f64> =
+        system.parameters.iter().map(|parameter| (parameter.symbol, parameter.nominal)).collect();
+    for (symbols, registers) in registers {
+        values.extend(symbols.iter().copied().zip(registers.clone().map(|register| nominal[register])));
+    }
+    // The time is zero.
+    let number = |expr: Expr| values.get(&expr).copied().unwrap_or(0.0);
+    let derivatives = slopes(&system.graph, &system.velocity_constraint, &system.v, number);
+    let mut rows = jacobian_rows(system, start, nominal);
+    for (row, derivatives) in rows[first..].iter_mut().zip(derivatives) {
+        let states = derivatives.into_iter().enumerate().filter(|&(column, _)| system.coordinates[column].is_state);
+        row.extend(states.map(|(column, value)| (column, value * system.coordinates[column].scale)));
+    }
+    let usual = usual_row_sizes(system, start, nominal);
+    let implied = dependent_of_sizes(&rows, &usual, DEPENDENT);
+    suspects.into_iter().find(|row| !implied.contains(row)).map(ConstraintId::new)
 }
 
 /// Sizes of the rows of Φ_q around a state: the least of those in general position, with the coordinates' scales. In joint

@@ -10,6 +10,6 @@ mod settling;
 pub(super) use assembly::{Assembly, ConstraintResidual, allowed_residual};
 pub(super) use general_position::{guess_state, move_apart, pivot_samples, spread};
 pub use mobility::Mobility;
-pub(super) use mobility::{DEPENDENT, jacobian_rows, mobility, usual_row_sizes};
+pub(super) use mobility::{DEPENDENT, contradiction, jacobian_rows, mobility, usual_row_sizes};
 pub(super) use open::{Samples, open_start, shared_coordinates};
 pub(super) use rank::{dependent_rows, free_columns, row_independence};

@@ -1,0 +1,45 @@
+//! Names and units of what is told of small vibrations.
+
+use super::vibrations::Vibrations;
+use crate::assemble::{OutputInfo, System};
+use crate::grammar::quantity::Dimension;
+
+/// The name of the largest growth of any mode among the outputs.
+const GROWTH: &str = "growth";
+
+/// What is told of a mode without states.
+const QUANTITIES: &[(&str, &str)] = &[("frequency", "Hz"), ("damping", "")];
+
+/// Adds the outputs of a mechanism's vibrations after the model's.
+pub fn further_outputs(system: &mut System, vibrations: &Vibrations) {
+    let model = system.outputs.clone();
+    let quantities = vibrations.quantities();
+    let expr = system.graph.constant(0.0);
+    let mut add = |name: String, unit: String| {
+        system.outputs.push(OutputInfo { name, unit, dimension: None, expr });
+    };
+    if quantities.is_some() {
+        let taken = |name: &str| model.iter().any(|output| output.name == name);
+        let mut name = GROWTH.to_owned();
+        while taken(&name) {
+            name.push('_');
+        }
+        add(name, "1/s".to_owned());
+    }
+    for mode in 1..=vibrations.number() {
+        let own = quantities.as_ref().map_or(QUANTITIES, |quantities| quantities[mode - 1]);
+        own.iter().for_each(|(quantity, unit)| add(format!("mode{mode}.{quantity}"), (*unit).to_owned()));
+        model.iter().for_each(|output| add(format!("mode{mode}.shape.{}", output.name), String::new()));
+    }
+    for response in &system.modes.responses {
+        let unit_of = |name: &str| model.iter().find(|output| output.name == name);
+        let force = unit_of(&response.load).is_some_and(|load| load.dimension == Some(Dimension::ANGLE));
+        let force = if force { "(N*m)" } else { "N" };
+        let unit = unit_of(&response.output).map_or("", |output| output.unit.as_str());
+        let unit = format!("{}/{force}", if unit.is_empty() { "1" } else { unit });
+        for (place, _) in response.frequencies.iter().enumerate() {
+            add(format!("response.{}.{place}.amplitude", response.name), unit.clone());
+            add(format!("response.{}.{place}.phase", response.name), "rad".to_owned());
+        }
+    }
+}

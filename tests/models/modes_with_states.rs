@@ -1,0 +1,452 @@
+//! Modes of mechanisms with controllers: against roots of characteristic polynomials, poles of filters, limits of stability, and scipy.
+
+use mbint::inner::results::{Bounds, Method};
+use mbint::inner::study::{self, Options};
+
+use crate::common::{nominal, read, run};
+use crate::statics::{close, ends, example, value};
+
+const TAU: f64 = std::f64::consts::TAU;
+
+type Complex = nalgebra::Complex<f64>;
+
+/// All roots of c₀ sⁿ + … + cₙ by Durand and Kerner's iteration, the slowest first.
+fn roots(coefficients: &[f64]) -> Vec<Complex> {
+    let order = coefficients.len() - 1;
+    let value = |s: Complex| coefficients.iter().fold(Complex::new(0.0, 0.0), |sum, c| sum * s + c / coefficients[0]);
+    let size = (coefficients[order] / coefficients[0]).abs().powf(1.0 / order as f64);
+    let mut found: Vec<Complex> = (0..order).map(|place| Complex::new(0.4, 0.9).powu(place as u32) * size).collect();
+    for _ in 0..2000 {
+        for place in 0..order {
+            let others = (0..order).filter(|&other| other != place).map(|other| found[place] - found[other]);
+            let change = value(found[place]) / others.product::<Complex>();
+            found[place] -= change;
+        }
+    }
+    found.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+    found
+}
+
+/// Compares mode by mode with eigenvalues, of which one of each pair stands there, the slowest first.
+#[track_caller]
+fn are(bounds: &Bounds, wanted: &[Complex], tolerance: f64) {
+    for (place, root) in wanted.iter().enumerate() {
+        let told = |quantity: &str| value(bounds, &format!("mode{}.{quantity}", place + 1));
+        close(told("growth"), root.re, tolerance);
+        if root.im == 0.0 {
+            close(told("time_constant"), -1.0 / root.re, tolerance);
+        } else {
+            close(TAU * told("frequency"), root.norm(), tolerance);
+            close(told("damping"), -root.re / root.norm(), tolerance);
+        }
+    }
+    close(value(bounds, "growth"), largest_growth(wanted), tolerance);
+    assert!(!bounds.outputs.iter().any(|output| output.name == format!("mode{}.growth", wanted.len() + 1)));
+}
+
+fn largest_growth(roots: &[Complex]) -> f64 {
+    roots.iter().map(|root| root.re).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// One of each pair, those that are real exactly so.
+fn one_of_each(roots: Vec<Complex>) -> Vec<Complex> {
+    let real = |root: Complex| if root.im.abs() < 1e-9 * root.norm() { Complex::new(root.re, 0.0) } else { root };
+    roots.into_iter().map(real).filter(|root| root.im >= 0.0).collect()
+}
+
+/// A mass of 2 kg on a spring under u = −20 x − ki ∫x: 2 s³ + 4 s² + 70 s + ki = 0.
+fn controlled(ki: &str, more: &str) -> String {
+    format!(
+        "
+analysis: modes
+parameters: {{ ki: {ki} }}
+bodies: {{ m: {{ mass: 2, coordinates: [x] }} }}
+states: {{ integral: {{ rate: -m.x, initial: 0 m*s }} }}
+effects:
+  spring: {{ spring_damper: {{ between: [ground, m], along: x, stiffness: 50, damping: 4, free_length: 0 }} }}
+  pull: {{ force: {{ on: m, value: [ki*(1 N/m/s)*integral - 20 N/m*m.x, 0] }} }}
+outputs: {{ x: m.x, integral: integral }}
+bounds: {{ chebyshev: {{ order: 8 }}, scan: {{ points: 9 }} }}
+{more}
+"
+    )
+}
+
+fn cubic(ki: f64) -> Vec<Complex> {
+    one_of_each(roots(&[2.0, 4.0, 70.0, ki]))
+}
+
+#[test]
+fn a_mass_under_a_proportional_integral_controller_has_the_roots_of_its_cubic() {
+    let bounds = run(&read(&controlled("{ value: 60, tolerance: 15% }", "")));
+    let [lag, pair] = cubic(60.0)[..] else { panic!("a lag and a pair") };
+    are(&bounds, &[lag, pair], 1e-10);
+    // In the mode of s the integral is −x/s.
+    close(value(&bounds, "mode1.shape.x"), -lag.re, 1e-9);
+    close(value(&bounds, "mode2.shape.integral"), (-1.0 / pair).re, 1e-9);
+    for method in [Method::Chebyshev, Method::Scan] {
+        // The slow lag gets faster, and the vibration less damped, with the gain.
+        for (name, at) in [
+            ("mode1.time_constant", [69.0, 51.0].map(|ki| -1.0 / cubic(ki)[0].re)),
+            ("mode2.growth", [51.0, 69.0].map(|ki| cubic(ki)[1].re)),
+            ("growth", [51.0, 69.0].map(|ki| cubic(ki)[1].re)),
+        ] {
+            let [lower, upper, error] = ends(&bounds, name, method);
+            assert!((lower - at[0]).abs() <= error + 1e-10, "{method:?} {name} {lower} {} {error}", at[0]);
+            assert!((upper - at[1]).abs() <= error + 1e-10, "{method:?} {name} {upper} {} {error}", at[1]);
+            assert!(error < 1e-3 * (upper - lower), "{method:?} {name} {error}");
+        }
+    }
+}
+
+#[test]
+fn a_loop_becomes_unstable_where_hurwitz_says() {
+    // 2 s³ + 4 s² + 70 s + ki is stable up to ki = 4·70/2, where it vibrates with √35 rad/s.
+    let limit = 140.0;
+    for (ki, sign) in [(limit * (1.0 - 1e-8), -1.0), (limit * (1.0 + 1e-8), 1.0)] {
+        let description = read(&controlled(&format!("{ki}"), "modes: { at: equilibrium }"));
+        let (bounds, summary) = study::run(&description, Options::default()).unwrap();
+        let growth = value(&bounds, "growth");
+        // dσ/dki from the cubic: −1/(6 s² + 8 s + 70) at s = i√35.
+        let slope = (-1.0 / Complex::new(70.0 - 210.0, 8.0 * 35.0_f64.sqrt())).re;
+        close(growth, slope * sign * limit * 1e-8, 1e-3);
+        close(TAU * value(&bounds, "mode2.frequency"), 35.0_f64.sqrt(), 1e-9);
+        assert_eq!(summary.analysis.unwrap().growth, Some(growth));
+    }
+}
+
+#[test]
+fn an_integral_without_damping_of_its_own_pushes_away() {
+    // With a negative gain an eigenvalue is positive: the time constant is that of growth, and negative.
+    let bounds = nominal(&read(&controlled("-30", "")));
+    let roots = cubic(-30.0);
+    are(&bounds, &roots, 1e-10);
+    assert!(roots[0].re > 0.0 && value(&bounds, "mode1.time_constant") < 0.0);
+    // With none it rests anywhere: it neither decays nor grows, and counts for nothing.
+    let bounds = nominal(&read(&controlled("0", "")));
+    assert_eq!(value(&bounds, "mode1.growth"), 0.0);
+    assert!(value(&bounds, "mode1.time_constant").is_nan());
+    close(value(&bounds, "growth"), -1.0, 1e-11);
+}
+
+#[test]
+fn a_direct_current_motor_has_an_electric_and_a_mechanical_lag() {
+    // L i̇ = −R i − k N ω, J ω̇ = k N i − b ω; the angle is free.
+    let text = |inductance: f64| {
+        format!(
+            "
+analysis: modes
+bodies: {{ rotor: {{ mass: 1, inertia: 0.02 }} }}
+joints: {{ hinge: {{ revolute: [ground, rotor] }} }}
+effects:
+  drive: {{ dc_motor: {{ on: hinge, voltage: 0, resistance: 2, inductance: {inductance}, constant: 0.3, ratio: 2 }} }}
+  rub: {{ torsional_spring_damper: {{ on: hinge, stiffness: 0, damping: 0.05 }} }}
+outputs: {{ current: drive.current, angle: rotor.angle }}
+"
+        )
+    };
+    for inductance in [0.01, 0.2] {
+        let polynomial = [0.02 * inductance, 0.05 * inductance + 2.0 * 0.02, 2.0 * 0.05 + 0.36];
+        let bounds = nominal(&read(&text(inductance)));
+        let [a, b, c] = polynomial;
+        assert_eq!(
+            b * b > 4.0 * a * c,
+            inductance < 0.1,
+            "two lags with the small one, a vibration with the large one"
+        );
+        assert_eq!(value(&bounds, "mode1.growth"), 0.0);
+        let found = one_of_each(roots(&polynomial));
+        for (place, root) in found.iter().enumerate() {
+            close(value(&bounds, &format!("mode{}.growth", place + 2)), root.re, 1e-10);
+        }
+        close(value(&bounds, "growth"), found[0].re, 1e-10);
+    }
+}
+
+#[test]
+fn a_filter_has_its_poles_whatever_it_listens_to() {
+    // A Butterworth filter of order 4 at 3 Hz, and one that is its double: repeated poles keep their accuracy, since neither depends on the other.
+    let w = TAU * 3.0;
+    let b = [1.0, 2.613_125_929_752_753, 3.414_213_562_373_095, 2.613_125_929_752_753, 1.0];
+    let denominator: Vec<String> =
+        b.iter().enumerate().map(|(place, b)| format!("{:e} s^{}", b / w.powi(4 - place as i32), 4 - place)).collect();
+    let denominator = denominator.join(", ").replace(" s^0", "");
+    let text = format!(
+        "
+analysis: modes
+bodies: {{ m: {{ mass: 2, coordinates: [x] }} }}
+effects:
+  spring: {{ spring_damper: {{ between: [ground, m], along: x, stiffness: 50, damping: 2, free_length: 0 }} }}
+  felt: {{ filter: {{ input: m.x, numerator: [1], denominator: [{denominator}] }} }}
+  again: {{ filter: {{ input: felt, numerator: [1], denominator: [{denominator}] }} }}
+outputs: {{ x: m.x, felt: felt, again: again }}
+"
+    );
+    let bounds = nominal(&read(&text));
+    close(TAU * value(&bounds, "mode1.frequency"), 5.0, 1e-12);
+    close(value(&bounds, "mode1.damping"), 0.1, 1e-12);
+    let mut damping: Vec<f64> = (2..=5).map(|mode| value(&bounds, &format!("mode{mode}.damping"))).collect();
+    (2..=5).for_each(|mode| close(value(&bounds, &format!("mode{mode}.frequency")), 3.0, 1e-10));
+    damping.sort_by(f64::total_cmp);
+    let [low, high] = [1.0_f64, 3.0].map(|part| (part * std::f64::consts::PI / 8.0).sin());
+    damping.iter().zip([low, low, high, high]).for_each(|(found, wanted)| close(*found, wanted, 1e-10));
+    // Of the vibration of 5 rad/s it lets through what its transfer function says.
+    let s = Complex::new(-0.5, 24.75_f64.sqrt()) / w;
+    let passed = 1.0 / b.iter().fold(Complex::new(0.0, 0.0), |sum, b| sum * s + b);
+    assert!(passed.norm() > 1.0, "the vibration decays, so that what follows it late is larger");
+    close(value(&bounds, "mode1.shape.felt"), (1.0 / passed).re, 1e-9);
+    close(value(&bounds, "mode1.shape.x"), (1.0 / (passed * passed)).re, 1e-9);
+}
+
+#[test]
+fn a_delayed_loop_becomes_unstable_where_the_delay_says() {
+    // ẏ = −k y(t − T) vibrates without damping at k T = π/2, with a period of 4 T; Padé's approximation of order 8 is that to rounding there.
+    let text = |gain: f64| {
+        format!(
+            "
+analysis: modes
+modes: {{ number: 1 }}
+bodies: {{ m: {{ mass: 2, coordinates: [x] }} }}
+states: {{ y: {{ rate: -{gain}*late/(1 s), initial: 0 }} }}
+effects:
+  spring: {{ spring_damper: {{ between: [ground, m], along: x, stiffness: 5000, damping: 100, free_length: 0 }} }}
+  late: {{ delay: {{ input: y, time: 0.2 s, order: 8 }} }}
+outputs: {{ y: y }}
+"
+        )
+    };
+    let limit = std::f64::consts::PI / 2.0 / 0.2;
+    for (gain, is_stable) in [(limit * (1.0 - 1e-8), true), (limit * (1.0 + 1e-8), false)] {
+        let bounds = nominal(&read(&text(gain)));
+        close(value(&bounds, "mode1.frequency"), 1.0 / 0.8, 1e-7);
+        assert_eq!(value(&bounds, "growth") < 0.0, is_stable, "{}", value(&bounds, "growth"));
+    }
+}
+
+#[test]
+fn an_arm_under_two_controllers_vibrates_as_scipy_says() {
+    // scipy.linalg.eigvals of the 8 × 8 matrix of angles, rates, integrals and filtered rates, with M(θ₂) and ∂²V/∂θ² written out by hand.
+    let wanted = [
+        Complex::new(-2.801_687_372_373_063_8, 0.0),
+        Complex::new(-4.128_185_741_622_606, 0.272_048_618_925_988_64),
+        Complex::new(-3.779_633_070_792_856_5, 5.949_653_162_817_95),
+        Complex::new(-34.289_892_371_662_475, 0.0),
+        Complex::new(-15.213_057_982_233_405, 62.308_045_493_116_985),
+    ];
+    for formulation in ["absolute", "joint"] {
+        let text = format!(
+            "
+analysis: modes
+modes: {{ at: equilibrium, number: 20 }}
+bodies:
+  upper: {{ mass: 3, inertia: 0.05, points: {{ A: [-0.2, 0], B: [0.25, 0] }} }}
+  lower: {{ mass: 2, inertia: 0.03, points: {{ B: [-0.25, 0] }} }}
+joints: {{ shoulder: {{ revolute: [ground, upper.A] }}, elbow: {{ revolute: [upper.B, lower.B] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  lift: {{ pid: {{ on: shoulder, target: 0.4, proportional: 90, integral: 150, derivative: 12, filter: 20 ms }} }}
+  bend: {{ pid: {{ on: elbow, target: 0.7, proportional: 40, integral: 80, derivative: 4, filter: 30 ms }} }}
+guess: {{ upper.angle: 0.3, lower.angle: 0.9 }}
+outputs: {{ a: shoulder.angle, b: elbow.angle }}
+simulation: {{ duration: 1, formulation: {formulation} }}
+"
+        );
+        let bounds = nominal(&read(&text));
+        close(value(&bounds, "a"), 0.4, 1e-10);
+        are(&bounds, &wanted, 1e-9);
+    }
+}
+
+/// J s² + K under a torque that follows 30 (0.6 − θ) − 0.6 ω with a lag of 50 ms: J, K and the equilibrium by mpmath, from the crank's angle alone.
+#[test]
+fn a_slider_crank_under_a_lagging_servo_grows_as_its_one_equation_says() {
+    let text = "
+analysis: modes
+modes: { at: equilibrium }
+parameters: { lag: { value: 50 ms, tolerance: 2% } }
+bodies:
+  crank: { mass: 1, inertia: 0.002, points: { A: [-0.05, 0], B: [0.05, 0] } }
+  rod: { mass: 0.8, inertia: 0.004, points: { B: [-0.125, 0], C: [0.125, 0] } }
+  slider: { mass: 1.5, coordinates: [x] }
+joints:
+  pivot: { revolute: [ground, crank.A] }
+  pin: { revolute: [crank.B, rod.B] }
+  wrist: { revolute: [rod.C, slider] }
+states: { pull: { rate: (30 N*m*(0.6 - crank.angle) - 0.6 N*m*s*crank.angular_velocity - pull)/lag, initial: 0 N*m } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  spring: { spring_damper: { between: [ground, slider], along: x, stiffness: 200, damping: 0, free_length: 0.3 } }
+  drive: { torque: { on: pivot, value: pull } }
+guess: { crank.angle: 0.6, crank.x: 0.04, crank.y: 0.03, rod.angle: -0.23, rod.x: 0.2, rod.y: 0.03, slider.x: 0.33 }
+outputs: { angle: crank.angle, pull: pull }
+bounds: { chebyshev: { order: 6 }, scan: { points: 5 } }
+";
+    let bounds = run(&read(text));
+    close(value(&bounds, "angle"), 0.588_889_962_273_067, 1e-11);
+    let [pair, lag] =
+        [Complex::new(5.923_087_356_049_157, 31.800_020_732_071_23), Complex::new(-31.846_174_712_098_313, 0.0)];
+    // |31.85| of the lag is less than |32.35| of the pair.
+    are(&bounds, &[lag, pair], 1e-9);
+    let (inertia, stiffness) = (0.018_054_119_710_410_21, 0.079_450_607_644_190_1);
+    let growth = |lag: f64| roots(&[lag * inertia, inertia, lag * stiffness + 0.6, stiffness + 30.0])[2].re;
+    for method in [Method::Chebyshev, Method::Scan] {
+        let [lower, upper, error] = ends(&bounds, "mode2.growth", method);
+        let mut wanted = [growth(0.049), growth(0.051)];
+        wanted.sort_by(f64::total_cmp);
+        assert!(
+            (lower - wanted[0]).abs() <= error + 1e-9 && (upper - wanted[1]).abs() <= error + 1e-9,
+            "{lower} {upper} {wanted:?}"
+        );
+    }
+}
+
+#[test]
+fn a_reaction_has_a_part_in_modes() {
+    // b is fixed to a, which has a spring of 80 N/m: 5 s² x + 80 x = y, s y = −30 x − 5 y.
+    let text = "
+analysis: modes
+bodies: { a: { mass: 3, coordinates: [x] }, b: { mass: 2, coordinates: [x] } }
+joints: { glue: { distance: { between: [a, b], length: 0.5 } } }
+states: { y: { rate: -30 N/m/s*a.x - y/(0.2 s), initial: 0 N } }
+effects:
+  spring: { spring_damper: { between: [ground, a], along: x, stiffness: 80, damping: 0, free_length: 0 } }
+  push: { force: { on: a, value: [y, 0] } }
+initial: { a.x: 0 }
+guess: { b.x: 0.5 }
+outputs: { x: a.x, y: y, f: glue.force.x }
+";
+    let bounds = nominal(&read(text));
+    // (5 s² + 80)(s + 5) + 30 = 0.
+    let wanted = one_of_each(roots(&[5.0, 25.0, 80.0, 430.0]));
+    are(&bounds, &wanted, 1e-9);
+    // The force on b is its mass times its acceleration.
+    for (mode, root) in wanted.iter().enumerate() {
+        let shape = |output: &str| value(&bounds, &format!("mode{}.shape.{output}", mode + 1));
+        let (force, y) = (2.0 * root * root, 5.0 * root * root + 80.0);
+        let most = if force.norm() > y.norm() { force } else { y };
+        close(shape("f"), (force / most).re, 1e-8);
+        close(shape("x"), (1.0 / most).re, 1e-8);
+    }
+}
+
+#[test]
+fn a_response_goes_through_the_controller() {
+    let more = "modes: { responses: { push: { load: x, output: x, from: 0.2, to: 2, points: 7 }, held: { load: x, output: integral, from: 0.2, to: 2, points: 7 } } }";
+    let bounds = run(&read(&controlled("{ value: 60, tolerance: 10% }", more)));
+    assert_eq!(bounds.responses.len(), 14);
+    for point in &bounds.responses {
+        let s = Complex::new(0.0, TAU * point.frequency);
+        let response = |ki: f64| {
+            let x = s / (s * s * s * 2.0 + s * s * 4.0 + s * 70.0 + ki);
+            if point.name == "held" { -x / s } else { x }
+        };
+        close(point.amplitude.nominal[0], response(60.0).norm(), 1e-10);
+        let turns = (point.phase.nominal[0] - response(60.0).arg()) / TAU;
+        assert!((turns - turns.round()).abs() < 1e-10, "{turns}");
+        let most = (0..=200).map(|place| response(54.0 + 0.06 * f64::from(place)).norm()).fold(0.0, f64::max);
+        let chebyshev = point.amplitude.bands.iter().find(|band| band.method == Method::Chebyshev).unwrap();
+        assert!((chebyshev.upper[0] - most).abs() <= chebyshev.error.total[0] + 1e-7, "{} {most}", chebyshev.upper[0]);
+    }
+}
+
+#[test]
+fn a_vibration_stays_one_beyond_critical_damping_and_lags_that_meet_share_its_growth() {
+    // m ẍ + c ẋ + k x = 0 with a filter that listens, and a loop of two lags: s² + 5 s + g, real up to g = 6.25.
+    let text = |damping: &str, gain: &str| {
+        format!(
+            "
+analysis: modes
+parameters: {{ c: {damping}, g: {gain} }}
+bodies: {{ m: {{ mass: 2, coordinates: [x] }} }}
+states:
+  a: {{ rate: -2*a/(1 s) - b/(1 s), initial: 0 }}
+  b: {{ rate: (g - 6)*a/(1 s) - 3*b/(1 s), initial: 0 }}
+effects:
+  spring: {{ spring_damper: {{ between: [ground, m], along: x, stiffness: 50, damping: c, free_length: 0 }} }}
+  felt: {{ filter: {{ input: m.x, numerator: [1], denominator: [0.01 s, 1] }} }}
+outputs: {{ x: m.x, felt: felt, a: a }}
+bounds: {{ chebyshev: {{ order: 5 }}, scan: {{ points: 11 }} }}
+"
+        )
+    };
+    // Critical damping, 20, lies within.
+    let bounds = run(&read(&text("{ value: 18, tolerance: 5 }", "5")));
+    for method in [Method::Chebyshev, Method::Scan] {
+        let [lower, upper, error] = ends(&bounds, "mode3.damping", method);
+        assert!(
+            (lower - 13.0 / 20.0).abs() < error + 1e-6 && (upper - 23.0 / 20.0).abs() < error + 1e-6,
+            "{lower} {upper} {error}"
+        );
+        let [lower, upper, error] = ends(&bounds, "mode3.frequency", method);
+        assert!(
+            upper - lower < 1e-6 + 2.0 * error && (TAU * lower - 5.0).abs() < TAU * error + 1e-6,
+            "{lower} {upper} {error}"
+        );
+    }
+    // Nominally two lags with (5 ± √5)/2; beyond g = 6.25 both have −5/2.
+    let bounds = run(&read(&text("8", "{ value: 5, interval: [4, 7] }")));
+    let lags = |g: f64| [-1.0, 1.0].map(|sign| -2.5 - 0.5 * sign * (25.0 - 4.0 * g).max(0.0).sqrt());
+    for (mode, place) in [(1, 0), (2, 1)] {
+        close(value(&bounds, &format!("mode{mode}.growth")), lags(5.0)[place], 1e-10);
+        let [lower, upper, _] = ends(&bounds, &format!("mode{mode}.growth"), Method::Scan);
+        let wanted = [4.0, 7.0].map(|g| lags(g)[place]);
+        close(lower, wanted[0].min(wanted[1]), 1e-6);
+        close(upper, wanted[0].max(wanted[1]), 1e-6);
+        // It is not smooth, and the error of the polynomial says so.
+        let [_, _, error] = ends(&bounds, &format!("mode{mode}.growth"), Method::Chebyshev);
+        assert!(error > 1e-3, "{error}");
+    }
+}
+
+#[test]
+fn modes_of_a_controlled_motion_are_told_in_every_row() {
+    // A pendulum of θ that an integral swings: J s³ + d s² + (m g l cos θ + 3) s + ki = 0 in its own row.
+    let text = "
+analysis: modes
+modes: { at: motion }
+bodies: { bar: { mass: 2, inertia: 0.1, points: { pin: [0, 0.6] } } }
+joints: { pin: { revolute: [ground, bar.pin] } }
+states: { sum: { rate: -pin.angle, initial: 0.2 rad*s } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  drive: { torque: { on: pin, value: 4 N*m/s*sum - 3 N*m*pin.angle - 0.5 N*m*s*pin.angular_velocity } }
+initial: { bar.angle: 0.8 }
+outputs: { angle: bar.angle }
+simulation: { duration: 0.4, step: 1e-3, output_step: 0.1 }
+";
+    let bounds = nominal(&read(text));
+    let row = |name: &str| bounds.outputs.iter().find(|output| output.name == name).unwrap().nominal.clone();
+    let angles = row("angle");
+    assert!(angles.len() == 5 && angles[4] < 0.2, "{angles:?}");
+    for (place, angle) in angles.iter().enumerate() {
+        let found = one_of_each(roots(&[0.1 + 2.0 * 0.36, 0.5, 2.0 * 9.81 * 0.6 * angle.cos() + 3.0, 4.0]));
+        close(row("mode1.growth")[place], found[0].re, 1e-9);
+        close(TAU * row("mode2.frequency")[place], found[1].norm(), 1e-9);
+        close(row("mode2.growth")[place], found[1].re, 1e-8);
+    }
+}
+
+#[test]
+fn the_example_of_the_guide_is_stable_with_every_load() {
+    let bounds = run(&example("stability.yaml"));
+    // (J s² + K)(T s + 1) s + k_p (T s + 1) s + k_i (T s + 1) + k_d s² = 0, J = 0.05 + m 0.4², K = −m g 0.4 sin 0.5, T = 0.02.
+    let own = |load: f64, integral: f64| {
+        let (inertia, stiffness) = (0.05 + load * 0.16, 60.0 - load * 9.81 * 0.4 * 0.5_f64.sin());
+        let lag = 0.02;
+        let s1 = stiffness + lag * integral;
+        one_of_each(roots(&[lag * inertia, inertia, lag * stiffness + 6.0, s1, integral]))
+    };
+    are(&bounds, &own(3.0, 300.0), 1e-9);
+    let corners = [(2.5, 270.0), (2.5, 330.0), (3.5, 270.0), (3.5, 330.0)]
+        .map(|(load, integral)| largest_growth(&own(load, integral)));
+    let [least, most] = [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| corners.into_iter().reduce(of).unwrap());
+    for method in [Method::Chebyshev, Method::Scan] {
+        let [lower, upper, error] = ends(&bounds, "growth", method);
+        assert!(
+            (lower - least).abs() <= error + 1e-9 && (upper - most).abs() <= error + 1e-9,
+            "{method:?} {lower} {upper} {corners:?}"
+        );
+    }
+    let page = include_str!("../../docs/guides/modes.md");
+    assert!(page.contains(include_str!("../../docs/examples/stability.yaml")), "the page shows the example");
+}
