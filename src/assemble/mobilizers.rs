@@ -29,7 +29,7 @@ const PARALLEL: f64 = 1e-6;
 /// Places in q, axes in F₁ and in F₂, of rotations of F₂ against F₁.
 type Rotations<'g> = Vec<(usize, [Vector<'g>; 2])>;
 
-/// A translation in the axes of the parent's frame: which coordinate makes it, the direction, and its rates.
+/// Place in q and direction, in the axes of the parent's frame, of translations.
 type Translations<'g> = Vec<(usize, Vector<'g>)>;
 
 /// How the frames of a joint move against one another.
