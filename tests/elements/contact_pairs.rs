@@ -52,9 +52,8 @@ fn nearest_of(points: &[Point]) -> (Point, Vec<Point>) {
             rows.swap(pivot, row);
             for other in (0..size).filter(|&other| other != pivot) {
                 let factor = rows[other][pivot] / rows[pivot][pivot];
-                for column in pivot..=size {
-                    rows[other][column] -= factor * rows[pivot][column];
-                }
+                let row = rows[pivot].clone();
+                rows[other].iter_mut().zip(row).for_each(|(value, own)| *value -= factor * own);
             }
         }
         let shares: Vec<f64> = (0..size).map(|place| rows[place][size] / rows[place][place]).collect();

@@ -25,7 +25,10 @@ pub(super) fn touches<'g>(surface: &Surface<'g>, cylinder: &Cylinder<'g>, pair: 
     let origin = pair.first.point.position;
     let (facets, reach) = match *shape {
         Shape::Plane(normal) => return on_rims(pair.outward(normal)).collect(),
-        Shape::Round(outer) => return vec![cylinder.touch(pair, origin, outer)],
+        Shape::Round(outer) => {
+            let near = cylinder.axis.is_near(pair, point, outer + cylinder.radius);
+            return vec![cylinder.touch(pair, origin, outer).only_within(Some(near))];
+        }
         Shape::Solid(Solid::Capsule { start, tangent, length }, reach) => {
             let line = (origin + pair.outward(start), pair.outward(tangent), length);
             return vec![cylinder.touch(pair, cylinder.nearest_on(pair, line, reach), reach)];

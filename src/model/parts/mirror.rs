@@ -83,6 +83,7 @@ const KINDS: [(&str, &[(&str, Image)]); 41] = [
             ("corners", Polars),
             ("line", Polars),
             ("cylinder", Polars),
+            ("polyhedron", Polars),
             ("friction_along", Directed),
         ],
     ),
