@@ -136,7 +136,7 @@ joints: {{ ball: {{ spherical: [ground, bob.hook] }} }}
 effects: {{ weight: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }} }}
 initial: {{ bob.orientation: {{ axis: y, angle: {} }}, bob.omega: [0, 0, {rate}] }}
 outputs: {{ x: bob.x, y: bob.y, z: bob.z, force: ball.force.z, pull: ball.force, torque: ball.torque }}
-simulation: {{ duration: 5, step: 1e-3, output_step: 0.1 }}
+simulation: {{ duration: 5, step: 1e-3, formulation: joint, output_step: 0.1 }}
 ",
         -tilt
     );
@@ -173,7 +173,7 @@ joints: {{ ball: {{ spherical: [ground, bob.hook] }} }}
 effects: {{ weight: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }} }}
 initial: {{ bob.orientation: {{ rpy: [1.2, 0.3, 0] }}, bob.omega: [1, -2, 3] }}
 outputs: {{ energy: energy, momentum: \"{}\", norm: bob.p0^2 + bob.p1^2 + bob.p2^2 + bob.p3^2 }}
-simulation: {{ duration: 10, step: 1e-3, output_step: 0.1 }}
+simulation: {{ duration: 10, step: 1e-3, formulation: joint, output_step: 0.1 }}
 ",
         momentum.replace('\n', " ")
     );
@@ -353,7 +353,7 @@ bodies: { top: { mass: 1, inertia: [0.02, 0.02, 0.03] } }
 joints: { ball: { spherical: [ground, top] } }
 initial: { top.orientation: { axis: x, angle: 0.4 }, top.omega: [0, 0, 6.283185307179586] }
 outputs: { p0: top.p0, momentum: energy, yaw: top.yaw }
-simulation: { duration: 4, step: 1e-3, output_step: 0.25 }
+simulation: { duration: 4, step: 1e-3, formulation: joint, output_step: 0.25 }
 ";
     let text = text.replace("inertia: [0.02, 0.02, 0.03]", "inertia: [0.02, 0.02, 0.02]");
     let description = explicit(read(&text), 1e-10);
