@@ -76,7 +76,7 @@ joints:
 effects: {{ weight: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }} }}
 initial: {{ ball.x: 0.4, ball.y: 0, ball.vx: 0, ball.vy: 0.3, ball.orientation: {{ rpy: [0, 0, 0] }}, ball.omega.z: 0 }}
 outputs: {{ x: ball.x, y: ball.y }}
-simulation: {{ duration: 4, output_step: 0.2, {simulation} }}
+simulation: {{ duration: 2, output_step: 0.2, {simulation} }}
 bounds: {{ chebyshev: {{ order: 6 }} }}
 "
         )
