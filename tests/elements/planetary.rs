@@ -60,6 +60,21 @@ fn two_members_turn_in_a_ratio() {
     }
 }
 
+/// Planets that spin: a body with an angle alone, by an equation. With ρ = 3 they have as many teeth as the sun, so that
+/// ω_p = 2 ω_c − ω_s = −ω_s/2 where the ring is held.
+#[test]
+fn spinning_planets_are_a_body_of_their_own() {
+    let of_planets = 0.09;
+    let joints = "  jsun: { revolute: [ground, sun] }\n  jcarrier: { revolute: [ground, carrier] }
+  spin: { equation: planets.angle = jcarrier.angle - (jsun.angle - jcarrier.angle)*20/20 }\n";
+    let text = text(&["sun", "carrier"], joints, "{ sun: jsun, carrier: jcarrier, ratio: 60/20 }");
+    let planets = format!("bodies:\n  planets: {{ inertia: {of_planets}, coordinates: [angle] }}\n");
+    let bounds = nominal(&read(&text.replace("bodies:\n", &planets)));
+    let acceleration = DRIVE / (INERTIA[0] + INERTIA[2] / 16.0 + of_planets / 4.0);
+    assert_exact(&bounds, "sun", |t| acceleration * t);
+    assert_exact(&bounds, "carrier", |t| acceleration * t / 4.0);
+}
+
 /// A differential: α_s + ρ α_r = (1 + ρ) α_c, with the torques 1 : ρ : −(1 + ρ).
 #[test]
 fn three_members_share_the_torque() {
