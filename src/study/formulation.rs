@@ -148,15 +148,15 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         Err(why) => return keep(absolute, why),
     };
     match within(joint, enough(&absolute)) {
-        // The nominal motion is looked at only where joint coordinates are possible: it takes longer than to find that they are not.
         Ok(joint) if starts_alike(&absolute, &joint) => {
-            if passes_singular(description, &absolute) {
-                return keep(absolute, "the nominal motion passes singular configurations".to_owned());
-            }
             let joint = loop_cuts::shortest(description, joint, true, |other, best| {
                 let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
                 within(system, enough(best)).ok()
             });
+            // The nominal motion is looked at only where joint coordinates would be taken: it may take longer than all else.
+            if is_shorter(&joint, &absolute) && passes_singular(description, &absolute) {
+                return keep(absolute, "the nominal motion passes singular configurations".to_owned());
+            }
             Ok(shorter(absolute, joint))
         }
         Ok(_) => keep(absolute, "outputs start elsewhere in joint coordinates".to_owned()),
@@ -219,11 +219,17 @@ fn enough(simulator: &Simulator) -> usize {
     (GIVEN_UP * instructions(simulator)).clamp(SOON, MOST)
 }
 
-/// Of both formulations the one with fewer instructions, those in a joint's Euler parameters counted [`LONGER_STEPS`] times.
+/// Whether joint coordinates take fewer instructions, those in a joint's Euler parameters counted [`LONGER_STEPS`] times.
+fn is_shorter(joint: &Simulator, absolute: &Simulator) -> bool {
+    let has_parameters = joint.system.links.iter().any(|link| link.normalisation.is_some());
+    let weight = if has_parameters { LONGER_STEPS } else { 1 };
+    instructions(joint) < instructions(absolute) && weight * instructions(joint) <= instructions(absolute)
+}
+
+/// The shorter formulation, with the reason.
 fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
     let [many, few] = [&absolute, &joint].map(instructions);
-    let has_parameters = joint.system.links.iter().any(|link| link.normalisation.is_some());
-    let is_joint = few < many && !(has_parameters && LONGER_STEPS * few > many);
+    let is_joint = is_shorter(&joint, &absolute);
     let why = match (is_joint, few < many) {
         (true, _) => format!("{few} instructions a step instead of {many}"),
         (false, true) => {
