@@ -37,6 +37,7 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
     keyword = "motor",
     what = "a motor",
     equation = "s − s(t) = 0",
+    equation = "ṡ − v(t, q, y) = 0 of a speed that follows positions or states",
     equation = "position: s(t); speed: s(t) = from + ∫ v dt; move: s(t) = from + (to − from) σ(u), u = (t − start)/duration",
     source = "Biagiotti & Melchiorri, Trajectory Planning for Automatic Machines and Robots (2008), ch. 2 and 3",
     example = "{ on: pivot, speed: 60 rpm }",
@@ -90,7 +91,7 @@ impl JointElement for Motor {
     const COUPLES: bool = true;
     const ROWS: &'static [RowDocs] = &[RowDocs {
         name: "",
-        unit: "rad or m",
+        unit: "rad or m; rad/s or m/s",
         multiplier: "N m or N: −λ is the torque about or the force along the joint's axis on its second body",
     }];
 }
