@@ -26,18 +26,18 @@ impl Flags {
         actuators: true,
     };
 
-    /// What a `<flag>` leaves on; `is_off` says whether it disables a name.
+    /// What a `<flag>` leaves on; `is_off` says whether it disables a name. Every name is asked for, so that a wrong word is reported.
     pub fn after(self, is_off: &mut dyn FnMut(&str) -> bool) -> Self {
         let [passive, constraint] = ["passive", "constraint"].map(&mut *is_off);
         Self {
-            gravity: self.gravity && !is_off("gravity"),
-            springs: self.springs && !is_off("spring") && !passive,
-            dampers: self.dampers && !is_off("damper") && !passive,
-            equalities: self.equalities && !is_off("equality") && !constraint,
-            friction: self.friction && !is_off("frictionloss") && !constraint,
-            limits: self.limits && !is_off("limit") && !constraint,
-            clamps_controls: self.clamps_controls && !is_off("clampctrl"),
-            actuators: self.actuators && !is_off("actuation"),
+            gravity: self.gravity & !is_off("gravity"),
+            springs: self.springs & !is_off("spring") && !passive,
+            dampers: self.dampers & !is_off("damper") && !passive,
+            equalities: self.equalities & !is_off("equality") && !constraint,
+            friction: self.friction & !is_off("frictionloss") && !constraint,
+            limits: self.limits & !is_off("limit") && !constraint,
+            clamps_controls: self.clamps_controls & !is_off("clampctrl"),
+            actuators: self.actuators & !is_off("actuation"),
         }
     }
 }
