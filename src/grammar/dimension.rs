@@ -55,8 +55,8 @@ pub struct Mismatch {
     pub span: Span,
 }
 
-/// The formula's dimension, each name's given by `name`, those of a table's argument and value by `table`; every mismatch within
-/// it goes to `mismatches`.
+/// The formula's dimension, each name's given by `name`, those of a table's argument and value by `table`; every
+/// mismatch within it goes to `mismatches`.
 pub fn analyse(
     formula: &Formula,
     mut name: impl FnMut(&str) -> Kind,

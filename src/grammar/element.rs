@@ -1,7 +1,7 @@
 //! What an element of the language is: a struct whose fields are its keys.
 //!
-//! `#[derive(Element)]` (crate `mbint-derive`) makes all of this from the struct: the reader, the schema, the documentation, the
-//! formulas and references within, and whether it leaves the plane.
+//! `#[derive(Element)]` (crate `mbint-derive`) makes all of this from the struct: the reader, the schema, the
+//! documentation, the formulas and references within, and whether it leaves the plane.
 
 use schemars::{Schema, SchemaGenerator};
 use serde::Serialize;
@@ -22,7 +22,8 @@ pub trait Group: Sized {
     /// The keys with all that is known of them.
     fn keys(generator: &mut SchemaGenerator) -> Vec<Key>;
 
-    /// Reads the keys; `units` is the place of the unit that holds in those that have several. `None` where an error was reported.
+    /// Reads the keys; `units` is the place of the unit that holds in those that have several. `None` where an error
+    /// was reported.
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, units: usize) -> Option<Self>;
 
     /// The place of the unit that holds for the keys after these; `None` where these do not decide it.

@@ -116,7 +116,8 @@ impl Dimension {
         self.angle < 0
     }
 
-    /// Of the generalised force on a coordinate of this dimension: what does work on it, N on a length, N m on an angle.
+    /// Of the generalised force on a coordinate of this dimension: what does work on it, N on a length, N m on an
+    /// angle.
     pub fn conjugate(self) -> Self {
         Self::TORQUE.per(Self { angle: 0, ..self })
     }

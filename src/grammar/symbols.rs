@@ -5,8 +5,8 @@ use symdiff::Formula;
 use super::friction::{FrictionMode, MeshKind};
 use super::quantity::Dimension;
 
-/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in the file;
-/// body 0 is the ground.
+/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in
+/// the file; body 0 is the ground.
 pub trait SymbolTable {
     /// Whether the mechanism leaves the plane.
     fn is_spatial(&self) -> bool;
@@ -229,8 +229,8 @@ pub enum ReactionComponent {
     Force,
     /// Along an axis (0 to 2: x, y, z), N.
     ForceAlong(usize),
-    /// About the second point, N m: in the plane the component about z; in space that about its axis where the joint has a
-    /// torque about its axis alone, else the magnitude.
+    /// About the second point, N m: in the plane the component about z; in space that about its axis where the joint
+    /// has a torque about its axis alone, else the magnitude.
     Torque,
     /// About an axis (0 to 2: x, y, z) through the second point, N m.
     TorqueAbout(usize),

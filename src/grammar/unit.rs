@@ -49,8 +49,9 @@ impl Unit {
         }
     }
 
-    /// The unit with which a text begins, in a formula, and its length. Behind an operator that stands between spaces, what is a
-    /// name of the model is not part of the unit (`250 kg/m * L`), nor are, behind any operator, functions and words of formulas.
+    /// The unit with which a text begins, in a formula, and its length. Behind an operator that stands between spaces,
+    /// what is a name of the model is not part of the unit (`250 kg/m * L`), nor are, behind any operator, functions
+    /// and words of formulas.
     ///
     /// # Errors
     /// What is wrong, and where in the text.

@@ -178,8 +178,8 @@ impl Diagnostics {
         }
     }
 
-    /// Of those behind the `first`, which were found in a scene: forgets what was said before, and points to the scene from the
-    /// others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
+    /// Of those behind the `first`, which were found in a scene: forgets what was said before, and points to the scene
+    /// from the others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
     pub(crate) fn found_in_scene(&mut self, first: usize, name: &Span, whole: &Span) {
         let found = self.items.split_off(first);
         let key = |diagnostic: &Diagnostic| (diagnostic.span.clone(), diagnostic.message.clone());

@@ -1,7 +1,8 @@
 //! How an instance stands in the model: mirrored, then turned, then moved.
 //!
-//! A place s of the instance is at r = g + R D s: D has the signs of its mirrors, R and g are what its parameters `at.model.x`, `at.model.y`,
-//! `at.model.z`, and `at.model.angle` or the Euler parameters `at.model.p0` … `at.model.p3` say. Here are the formulas of that, as text.
+//! A place s of the instance is at r = g + R D s: D has the signs of its mirrors, R and g are what its parameters
+//! `at.model.x`, `at.model.y`, `at.model.z`, and `at.model.angle` or the Euler parameters `at.model.p0` …
+//! `at.model.p3` say. Here are the formulas of that, as text.
 
 use super::mirrors::Mirrors;
 

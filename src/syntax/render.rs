@@ -32,8 +32,8 @@ const LONG_LINE: usize = 400;
 const LONG_HELP: usize = 100;
 
 impl Diagnostics {
-    /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty. The only control
-    /// characters are those of the colours.
+    /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty.
+    /// The only control characters are those of the colours.
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let mut text = String::new();

@@ -67,8 +67,8 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Adds a text and gives the offset of its first byte. A text that is there already, as a file that several scenes name,
-    /// is not added again.
+    /// Adds a text and gives the offset of its first byte. A text that is there already, as a file that several scenes
+    /// name, is not added again.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
         let (name, text) = (harmless(&name.into()).replace('\n', "\u{fffd}"), text.into());
         let known =
@@ -80,7 +80,8 @@ impl Sources {
         self.place_at_end(Arc::new(Source { name, text, lines }), None)
     }
 
-    /// Places the text of a span once more, for a copy of it: how far the copy's spans lie behind those of the original.
+    /// Places the text of a span once more, for a copy of it: how far the copy's spans lie behind those of the
+    /// original.
     pub fn copy(&mut self, original: &Span, within: Within) -> usize {
         let Some(placed) = self.placed(original) else { return 0 };
         let (first, source) = (placed.start, Arc::clone(&placed.source));
