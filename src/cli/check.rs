@@ -76,7 +76,7 @@ struct Counts {
     model: String,
     /// As in a run's summary.
     formulation: String,
-    /// Whether a run may find the other formulation shorter: what is large is not compiled here.
+    /// Whether a run may find the other formulation shorter: large models are not compiled here.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     formulation_is_open: bool,
     coordinates: usize,
@@ -97,7 +97,7 @@ struct Counts {
     /// Why it is in space, where the model does not say so.
     #[serde(skip_serializing_if = "Option::is_none")]
     spatial_because: Option<String>,
-    /// What is done with it, where that is not a motion.
+    /// Analysis, unless it is a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     analysis: Option<&'static str>,
     /// Parts that no output depends on.
@@ -181,7 +181,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 }
 
 impl Counts {
-    /// Numbers of what is simulated; names of the whole model, parts that will not be simulated included.
+    /// Sizes of the simulated parts; names of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
         let (Assembled { system, mobility, undetermined, shared, .. }, structure) = study::structure(model)?;
         let whole = Whole {

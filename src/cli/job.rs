@@ -1,4 +1,4 @@
-//! One job of `mbint run`: a model or a scene, its run, its files and what is reported of it.
+//! One job of `mbint run`: a model or a scene, its run, its files and its report.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ pub(super) struct Done {
     pub files: Vec<PathBuf>,
     /// Where they are; an interrupted run does not replace a complete one.
     pub folder: PathBuf,
-    /// What was taken from where simulations are stored, and what was added, in words.
+    /// Simulations read from the store and added to it, in words.
     pub stored: Option<String>,
 }
 
@@ -128,7 +128,7 @@ fn beside(folder: &Path) -> PathBuf {
     folder.with_file_name(name)
 }
 
-/// Prints what is wrong with a run's results.
+/// Prints the warnings about a run's results.
 pub(super) fn report(done: &Done, console: &Console) {
     let name = &done.summary.model;
     if let Some(failure) = &done.summary.failure {

@@ -91,7 +91,7 @@ pub fn write_scenes(
     Ok(written)
 }
 
-/// What is of the scenes' runs together.
+/// Results of the scenes' runs together.
 #[derive(Serialize)]
 struct Listed<'s> {
     schema: u32,

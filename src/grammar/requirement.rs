@@ -1,4 +1,4 @@
-//! What the number behind a key must be: its dimension, what it may depend on, and what must hold of it.
+//! Requirements on the number of a key: dimension, permitted dependencies, and range.
 
 use super::names::Context;
 use super::quantity::Dimension;

@@ -1,4 +1,4 @@
-//! Names in formulas of instances that are placed or mirrored: there they mean what they mean in the assembly.
+//! Names in formulas of instances that are placed or mirrored: there they have their meaning in the assembly.
 //!
 //! An assembly's formula is written in the assembly's frame. What stands for it in an instance has the coordinates of
 //! the model instead: of a place s = D Rᵀ (r − g), and so on ([`crate::syntax::frame`]).

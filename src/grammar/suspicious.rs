@@ -1,4 +1,4 @@
-//! What is probably not meant as it is written: an angle of 30 rad, a length of 150 m beside others of millimetres, an
+//! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m beside others of millimetres, an
 //! interval that is a difference.
 
 use std::f64::consts::TAU;

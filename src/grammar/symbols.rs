@@ -34,7 +34,7 @@ pub trait SymbolTable {
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
     /// Where a link of the robot is.
     fn link(&self, name: &str) -> Option<PointRef>;
-    /// What of a beam has a name of its own; nothing where there is no beam of that name.
+    /// Named parts of a beam; none without a beam of that name.
     fn parts_of_beam(&self, beam: &str) -> Option<String>;
     /// Whether a body's orientation is that of Euler parameters, and not an angle about z.
     fn has_orientation(&self, body: usize) -> bool;

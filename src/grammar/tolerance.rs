@@ -41,7 +41,7 @@ pub enum Deviation {
     Between(Node),
 }
 
-/// Takes a number apart. What is not of one of the forms is a value without a deviation.
+/// Splits a number. A text of none of the forms is a value without a deviation.
 ///
 /// # Errors
 /// A form that is begun but not finished.

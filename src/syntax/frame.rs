@@ -9,7 +9,7 @@ use super::mirrors::Mirrors;
 /// Three components, or rows of them, as text.
 pub type Vector = [String; 3];
 
-/// How an instance stands; of the place only what is not zero is known by a parameter.
+/// How an instance stands; only nonzero parts of the placement have parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
     /// D

@@ -210,7 +210,7 @@ impl<'d> Excerpt<'d> {
         let Place { line, column } = self.source.place(mark);
         let start = text[..first].rfind('\n').map_or(0, |newline| newline + 1);
         let end = text[last..].find('\n').map_or(text.len(), |newline| last + newline);
-        // What is rendered of very long lines begins and ends near the marks.
+        // Very long lines are cut near the marks.
         let cut_start = match text[start..first].char_indices().rev().nth(LONG_LINE - 1) {
             Some((offset, _)) => start + offset,
             None => start,

@@ -28,7 +28,7 @@ pub struct Scope {
     frame: Option<Frame>,
 }
 
-/// What does not move.
+/// Bodies that do not move.
 const GROUND: &str = "ground";
 
 impl Scope {
@@ -110,7 +110,7 @@ impl Scope {
         }
     }
 
-    /// A name that may have braces, as all others know it; what is wrong in the braces was reported when the copy was
+    /// A name that may have braces, as all others know it; errors in the braces were reported when the copy was
     /// made.
     pub fn reference(&self, text: &str) -> String {
         let filled = indices::fill(text, &|name| self.whole(name));

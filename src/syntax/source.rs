@@ -11,7 +11,7 @@ use super::harmless::harmless;
 /// Bytes of the texts that were read.
 pub type Span = Range<usize>;
 
-/// A text and what it is called.
+/// A text and its name.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// Path, or the command-line option that the text came with; harmless to a terminal.
@@ -54,7 +54,7 @@ struct Placed {
 pub struct Within {
     /// Its full name.
     pub instance: String,
-    /// What it is an instance of.
+    /// Assembly of the instance.
     pub of: String,
     /// Where it is asked for.
     pub span: Span,

@@ -24,7 +24,7 @@ pub(crate) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic
 
 /// The text that can be read somewhere, of at most so many bytes.
 pub(crate) fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> {
-    // What is not a regular file (a pipe) says no length: never read more than allowed.
+    // A file that is not regular (a pipe) has no length: never read more than allowed.
     let mut bytes = Vec::new();
     source.take(most + 1).read_to_end(&mut bytes).map_err(cannot)?;
     if bytes.len() as u64 > most {

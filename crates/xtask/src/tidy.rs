@@ -86,11 +86,8 @@ fn noun_clauses(path: &str, line: &str) -> usize {
         Some((_, comment)) if is_source => comment,
         _ => return 0,
     };
-    let words: Vec<String> = text
-        .split(|c: char| !c.is_alphanumeric())
-        .filter(|word| !word.is_empty())
-        .map(str::to_lowercase)
-        .collect();
+    let words: Vec<String> =
+        text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();
     words.windows(2).filter(|pair| pair[0] == "what" && AFTER_WHAT.contains(&pair[1].as_str())).count()
 }
 
@@ -107,7 +104,10 @@ mod tests {
     #[test]
     fn rules_see_their_violations_and_nothing_else() {
         let wide = format!("    /// {}", "x".repeat(COLUMNS));
-        assert_eq!([wide_comment("a.rs", &wide), wide_comment("a.md", &wide), wide_comment("a.rs", "/// x")], [1, 0, 0]);
+        assert_eq!(
+            [wide_comment("a.rs", &wide), wide_comment("a.md", &wide), wide_comment("a.rs", "/// x")],
+            [1, 0, 0]
+        );
         assert_eq!(noun_clauses("src/a.rs", "let what = is; // What it is, and what has none."), 2);
         assert_eq!(noun_clauses("tests/a.rs", "// what is"), 0);
         assert_eq!(noun_clauses("docs/a.md", "Whatever is here, what follows"), 0);

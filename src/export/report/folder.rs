@@ -56,7 +56,7 @@ pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, Export
         return Err(ExportError::NoResults { folder: dir.to_owned() });
     }
     let summary = read_json(&dir.join(SUMMARY))?;
-    // Without it, what it says is not on the page.
+    // Without it, its contents are not on the page.
     let motion = read_json(&dir.join(MOTION)).unwrap_or(Value::Null);
     let names = list(&summary, "outputs").iter().map(|output| text(output, "name"));
     let svg = |name: String| fs::read_to_string(dir.join(name)).ok();
