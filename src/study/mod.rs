@@ -90,7 +90,7 @@ pub struct Options<'a> {
     pub disk: &'a (dyn Fn(u64) + Sync),
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
-    /// Told what is being done, in a few words, whenever something else begins.
+    /// Called with the current activity, in a few words, whenever it changes.
     pub stage: &'a (dyn Fn(&str) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
@@ -140,7 +140,7 @@ pub enum RunError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs every method asked for. A sample that stops early ends the bounds there that need it: what was reached is returned, and
+/// Runs every method asked for. A sample that stops early ends the bounds there that need it: the rows reached are returned, and
 /// the summary's `failure` says what happened. So it does where a method panics: the other methods' bounds are kept.
 ///
 /// # Errors
@@ -187,7 +187,7 @@ pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
 }
 
-/// What is simulated of a model, assembled: a part for each subsystem, as a run has them.
+/// Simulated parts of a model, assembled: one for each subsystem, as a run has them.
 ///
 /// # Errors
 /// As for [`run`].
@@ -195,12 +195,12 @@ pub fn assemble_parts(description: &Description) -> Result<Vec<Assembled>, RunEr
     subsystems::assembled(&reduced::expanded(description))
 }
 
-/// What is simulated of a model.
+/// Simulated parts of a model.
 pub fn reduction(description: &Description) -> Reduction {
     Reduction::of(&reduced::expanded(description), Choices::default())
 }
 
-/// Whether only a run finds out in which coordinates it is shorter: what is large is not compiled to be checked.
+/// Whether only a run finds out in which coordinates it is shorter: large models are not compiled to be checked.
 pub fn formulation_is_open(description: &Description) -> bool {
     formulation::is_open(description)
 }
@@ -210,7 +210,7 @@ fn scheme(description: &Description) -> Scheme {
     Scheme::Hht { alpha: description.simulation.alpha }
 }
 
-/// Step size for what is computed before the first step.
+/// Step size for computations before the first step.
 fn first_step(description: &Description) -> f64 {
     match description.simulation.stepping {
         Stepping::Fixed(step) => step,

@@ -14,7 +14,7 @@ use crate::numerics::Sample;
 use crate::results::{KindCount, MassRange, MobilityCount, Structure};
 use crate::simulate::Assembled;
 
-/// Assembles a whole model, with the parts that no output depends on, and nothing merged, and counts what it has.
+/// Assembles a whole model, with the parts that no output depends on, and nothing merged, and counts its parts.
 ///
 /// # Errors
 /// Where the mechanism cannot be built or assembled.

@@ -26,7 +26,7 @@ use crate::simulate::{Assembled, SimulationError, Simulator};
 
 /// A subsystem, compiled.
 pub struct Prepared {
-    /// What it is.
+    /// Model of the subsystem.
     pub subsystem: Subsystem,
     /// Its programs.
     pub simulator: Simulator,
@@ -61,7 +61,7 @@ impl Prepared {
     }
 }
 
-/// Reduces a model to what has to be simulated, and compiles that.
+/// Reduces a model to its simulated part, and compiles that.
 ///
 /// # Errors
 /// Where a subsystem cannot be built or assembled.
@@ -73,7 +73,7 @@ pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Re
     Ok((reduction, prepared))
 }
 
-/// Reduces a model to what has to be simulated, and assembles that.
+/// Reduces a model to its simulated part, and assembles that.
 ///
 /// # Errors
 /// As for [`prepare`].

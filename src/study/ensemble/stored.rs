@@ -38,7 +38,7 @@ pub(in crate::study) fn samples_of_part(lines: usize, rows: usize) -> usize {
 }
 
 impl Stored<'_> {
-    /// Simulates what is missing of these parts' samples, to the end, or defers all of it.
+    /// Simulates the missing samples of these parts, to the end, or defers all of them.
     pub fn prepare(
         &self,
         motions: &Motions,
