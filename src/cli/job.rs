@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::request::{Job, Request, Settings};
 use super::verdicts;
 use super::{Failure, Status, interrupt, report as page};
-use crate::export::{holds_complete_results, write_results};
+use crate::export::{holds_complete_results, remove_comparison, write_results};
 use crate::model::Description;
 use crate::results::{Bounds, OutputBounds, Provenance, Summary};
 use crate::simulate::SimulationError;
@@ -109,6 +109,10 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         true => beside(&job.folder),
         false => job.folder.clone(),
     };
+    // What compares scenes compares those of one run.
+    if let Some(all) = folder.parent().filter(|_| !job.page && folder == job.folder) {
+        remove_comparison(all).map_err(|error| failed(&error))?;
+    }
     let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
     let parts = (request.report && !interrupted).then(|| page::parts(job, request.settings.threads));
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
