@@ -119,7 +119,9 @@ impl Row<'_> {
     /// way. Where the ends of several are the same, as at corners, the motion there is closed once.
     pub(super) fn at_own_ends(&self, outputs: &[usize], found: &[Extent], ways: &[Moves]) -> Vec<[f64; 2]> {
         let mut known: FxHashMap<Vec<u64>, usize> = FxHashMap::default();
-        let (mut points, mut wanted): (Vec<Vec<f64>>, Vec<Vec<(usize, usize)>>) = (Vec::new(), Vec::new());
+        let mut points: Vec<Vec<f64>> = Vec::new();
+        // Of each point: whose, and which end.
+        let mut wanted: Vec<Vec<(usize, usize)>> = Vec::new();
         for (place, extent) in found.iter().enumerate() {
             for (end, at) in extent.places.iter().enumerate() {
                 let number = *known.entry(at.iter().map(|xi| xi.to_bits()).collect()).or_insert_with(|| {
