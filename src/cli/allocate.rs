@@ -30,7 +30,9 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
     let found = study::allocate(&model, asked, &options).map_err(|error| {
         let message = format!("{}: {error}", model.name);
         match error {
-            AllocateError::Unsuitable(_) | AllocateError::Run(RunError::Costly(_)) => Failure::Wrong(message),
+            AllocateError::Unsuitable(_) | AllocateError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
+                Failure::Wrong(message)
+            }
             AllocateError::Run(_) => Failure::Failed(message),
         }
     })?;

@@ -75,7 +75,7 @@ pub(super) fn bounds(
     study::run(model, options).map_err(|error| {
         let message = format!("{}: {error}", model.name);
         match error {
-            study::RunError::Costly(_) => Failure::Wrong(message),
+            study::RunError::Costly(_) | study::RunError::Memory(_) => Failure::Wrong(message),
             study::RunError::Simulation(SimulationError::Deferred) => Failure::Deferred,
             _ => Failure::Failed(message),
         }

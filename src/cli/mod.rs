@@ -40,6 +40,7 @@ mod version;
 mod watch;
 
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{ColorChoice, CommandFactory, FromArgMatches};
@@ -47,7 +48,9 @@ use clap::{ColorChoice, CommandFactory, FromArgMatches};
 use self::args::{Cli, Color, Command};
 use self::console::Console;
 use self::status::Status;
+use crate::model::shown;
 use crate::study;
+use crate::syntax::harmless;
 
 /// Why a command ended early, or a model of several was not run, in words for the user.
 #[derive(Debug)]
@@ -98,9 +101,7 @@ pub fn main() -> ExitCode {
         let printed = Console::default().print(&version::verbose());
         return ExitCode::from(printed.map_or_else(|failure| failure.status(), |()| Status::Done));
     }
-    let command = Cli::command().color(color.clap());
-    let parsed = command.try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
-    let cli = match parsed {
+    let cli = match parsed(&arguments, color) {
         Ok(cli) => cli,
         // Help and version are errors of clap too, with status 0. A closed pipe is no error.
         Err(error) => {
@@ -116,6 +117,19 @@ pub fn main() -> ExitCode {
     let status = executed.unwrap_or_else(|failure| failure.report(&console));
     let status = if console.has_failed() { status.max(Status::Failed) } else { status };
     ExitCode::from(status)
+}
+
+/// The command. What is wrong with it is reported of arguments that are harmless: clap's messages have colours, and
+/// quote what they got.
+fn parsed(arguments: &[OsString], color: Color) -> Result<Cli, clap::Error> {
+    let parse = |arguments: &[OsString]| {
+        let matches = Cli::command().color(color.clap()).try_get_matches_from(arguments)?;
+        Cli::from_arg_matches(&matches)
+    };
+    parse(arguments).map_err(|error| {
+        let shown: Vec<OsString> = arguments.iter().map(|argument| shown(Path::new(argument)).into()).collect();
+        parse(&shown).err().unwrap_or_else(|| clap::Error::raw(error.kind(), harmless(&error.to_string())))
+    })
 }
 
 fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {

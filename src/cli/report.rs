@@ -1,6 +1,5 @@
 //! `mbint report`, and what `mbint run` adds for a report.
 
-use std::fs;
 use std::path::Path;
 
 use super::args::ReportArgs;
@@ -9,6 +8,7 @@ use super::request::Job;
 use super::{Failure, Status};
 use crate::export::{ReportParts, stl_corners, write_report};
 use crate::study::{self, MotionOptions};
+use crate::syntax::regular;
 
 /// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
 const SIZE: usize = 300_000;
@@ -42,14 +42,21 @@ pub(super) fn parts(job: &Job, threads: Option<usize>) -> ReportParts {
     }
 }
 
-/// The triangles of a mesh whose file lies beside the model, or in a folder there.
+/// Largest file of a mesh that is read, bytes.
+const MOST_BYTES: u64 = 100_000_000;
+
+/// The triangles of a mesh whose file lies beside the model, or in a folder there; others are left out.
 fn mesh(job: &Job, file: &str, left: &mut usize) -> Option<Vec<f32>> {
     let plain = file.strip_prefix("file://").unwrap_or(file);
     // Of `package://NAME/…` the package may be the model's folder.
     let within = plain.strip_prefix("package://").map(|path| path.split_once('/').map_or(path, |(_, rest)| rest));
     let name = Path::new(plain).file_name()?;
     let candidates = [Path::new(within.unwrap_or(plain)), Path::new(name)];
-    let found = candidates.into_iter().find_map(|path| fs::read(job.beside.join(path)).ok())?;
+    let beside = if job.beside.as_os_str().is_empty() { Path::new(".") } else { &job.beside };
+    let folder = beside.canonicalize().ok()?;
+    // A link may lead out of the folder.
+    let within = |path: &Path| beside.join(path).canonicalize().ok().filter(|full| full.starts_with(&folder));
+    let found = candidates.into_iter().find_map(|path| regular(&within(path)?, MOST_BYTES).ok())?;
     let corners = stl_corners(&found).filter(|corners| corners.len() / 9 <= *left)?;
     *left -= corners.len() / 9;
     Some(corners)

@@ -9,9 +9,10 @@ use super::error::ExportError;
 use super::owned::{OWNED, Owned, sha256};
 use super::replacing::{self, Replacement};
 
-/// Files that are written into a folder of their own within their destination, and replace older ones as one when all are written: neither
-/// a failure nor a killed run leaves a partial file; a full disk leaves older results unchanged; and of two runs into one folder, the files
-/// of one remain, not a mixture. None is open but that which is being written.
+/// Files that are written into a folder of their own within their destination, and replace older ones as one when all
+/// are written: neither a failure nor a killed run leaves a partial file; a full disk leaves older results unchanged;
+/// and of two runs into one folder, the files of one remain, not a mixture. None is open but that which is being
+/// written.
 ///
 /// The folder is locked meanwhile: temporary files that are there already are those of a run that was killed, and are removed.
 pub(super) struct AtomicFiles<'d> {
@@ -27,7 +28,8 @@ pub(super) struct AtomicFiles<'d> {
 const TEMPORARY: (&str, &str) = (".mbint-", ".tmp");
 
 impl<'d> AtomicFiles<'d> {
-    /// An empty set, for a folder that is created if it does not exist. What a killed run left half replaced is replaced.
+    /// An empty set, for a folder that is created if it does not exist. What a killed run left half replaced is
+    /// replaced.
     ///
     /// # Errors
     /// As [`prepare_folder`], or where what was left cannot be replaced.
@@ -60,7 +62,8 @@ impl<'d> AtomicFiles<'d> {
         self.replacement.names().to_vec()
     }
 
-    /// These files, all of which are there, replace all that older runs wrote into the folder and its scenes' folders but for these.
+    /// These files, all of which are there, replace all that older runs wrote into the folder and its scenes' folders
+    /// but for these.
     ///
     /// # Errors
     /// If the list of what is ours cannot be written.
@@ -106,7 +109,8 @@ impl<'d> AtomicFiles<'d> {
     }
 }
 
-/// Ends what a killed run began: its files are all there, but not yet all under their names. Waits for a run that is at it.
+/// Ends what a killed run began: its files are all there, but not yet all under their names. Waits for a run that is at
+/// it.
 ///
 /// # Errors
 /// Where a file cannot be replaced.

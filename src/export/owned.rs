@@ -8,7 +8,6 @@ use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::folder::settle;
 use crate::syntax::text_file::regular;
 
 /// The summary's file.
@@ -80,36 +79,6 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// Whether a name is of a file or folder in the folder itself.
-fn is_plain(name: &str) -> bool {
+pub(super) fn is_plain(name: &str) -> bool {
     Path::new(name).file_name().is_some_and(|plain| plain == name)
-}
-
-/// What a summary, or a list of scenes, says of an older run.
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct Earlier {
-    model: String,
-    interrupted: bool,
-    /// Folders of the scenes.
-    scenes: Vec<String>,
-}
-
-impl Earlier {
-    /// Nothing where there is no such file that can be read.
-    fn of(dir: &Path, file: &str) -> Self {
-        read(&dir.join(file)).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
-    }
-}
-
-/// Whether a folder holds the results of a run that was not interrupted.
-pub fn holds_complete_results(dir: &Path) -> bool {
-    // What a killed run left to do is done by who writes next, or reported there.
-    let _ = settle(dir);
-    let earlier = Earlier::of(dir, SUMMARY);
-    !earlier.model.is_empty() && !earlier.interrupted
-}
-
-/// Folders of the scenes that an older run had.
-pub(super) fn scene_folders(dir: &Path) -> Vec<String> {
-    Earlier::of(dir, SCENES).scenes.into_iter().filter(|name| is_plain(name)).collect()
 }

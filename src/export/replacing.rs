@@ -1,9 +1,9 @@
 //! Replacement of files as one: at any instant a folder has older files or newer ones, never some of each.
 //!
-//! What is new is complete in a folder of its own before anything changes, and this folder then takes the name [`JOURNAL`]: from here on
-//! the replacement is decided. Older files are set aside in the journal, what says that they are complete first; then the new ones take
-//! their names, in their order. Whoever finds a journal does what is left of it ([`finish`]). Where an older file cannot be set aside, all
-//! go back.
+//! What is new is complete in a folder of its own before anything changes, and this folder then takes the name
+//! [`JOURNAL`]: from here on the replacement is decided. Older files are set aside in the journal, what says that they
+//! are complete first; then the new ones take their names, in their order. Whoever finds a journal does what is left of
+//! it ([`finish`]). Where an older file cannot be set aside, all go back.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -141,8 +141,8 @@ fn is_within(path: &str) -> bool {
 /// Does what is left of a replacement that was decided, if there is one.
 ///
 /// # Errors
-/// Where an older file cannot be set aside: all are then as they were. Where a new one cannot take its name, the rest is left to who
-/// comes next.
+/// Where an older file cannot be set aside: all are then as they were. Where a new one cannot take its name,
+/// the rest is left to who comes next.
 pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
     let journal = dir.join(JOURNAL);
     let plan = match read(&journal.join(PLAN)) {
@@ -251,12 +251,13 @@ mod tests {
     #[test]
     fn where_a_file_cannot_be_set_aside_all_go_back() {
         let dir = decided();
-        // Two are aside when the third cannot be.
+        // All others are aside when the last cannot be.
         let plan: Plan = serde_json::from_slice(&fs::read(dir.path().join(JOURNAL).join(PLAN)).unwrap()).unwrap();
         let [aside, _] = steps(dir.path(), &plan);
-        fs::create_dir(&aside[2].to).unwrap();
+        let last = aside.last().unwrap();
+        fs::create_dir(&last.to).unwrap();
         let error = finish(dir.path()).unwrap_err();
-        assert!(matches!(&error, ExportError::Write { path, .. } if *path == aside[2].from), "{error}");
+        assert!(matches!(&error, ExportError::Write { path, .. } if *path == last.from), "{error}");
         assert_eq!(found(dir.path())[0].len(), 6);
         assert!(!dir.path().join(JOURNAL).exists());
         finish(dir.path()).unwrap();

@@ -20,7 +20,7 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::{MAX_BYTES, read_text, text_of};
+use crate::syntax::text_file::{MAX_BYTES, read_given, text_of};
 use crate::syntax::yaml::{self, Entry, Node};
 
 /// What reading a model gave: both may be there when there are only warnings.
@@ -116,7 +116,7 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
     if mjcf::is_mjcf(path) {
         return read_str(&name, &mjcf::model_of(path), overrides);
     }
-    let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_text(path, MAX_BYTES) };
+    let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_given(path, MAX_BYTES) };
     match text {
         Ok(text) => read_str(&name, &text, overrides),
         Err(error) => {

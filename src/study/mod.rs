@@ -29,6 +29,7 @@ mod internal;
 mod keeping;
 mod kept;
 mod loop_cuts;
+mod memory;
 mod motion;
 mod outcome;
 mod price;
@@ -65,6 +66,7 @@ pub use explain::explain;
 pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
 pub use kept::{Evaluator, Kept};
+pub use memory::Memory;
 pub use motion::{MotionOptions, motion};
 pub use price::Price;
 pub use sample::{Chosen, Sampled, sample};
@@ -132,6 +134,9 @@ pub enum RunError {
     /// It would take long, and nobody has allowed it.
     #[error(transparent)]
     Costly(Price),
+    /// Its results would not find room.
+    #[error(transparent)]
+    Memory(Memory),
     /// An error of this program.
     #[error(transparent)]
     Internal(#[from] InternalError),

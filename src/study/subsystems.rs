@@ -10,6 +10,7 @@ use super::assemblies;
 use super::ensemble::Stored;
 use super::internal::caught;
 use super::kept::Kept;
+use super::memory::Memory;
 use super::outcome::Ran;
 use super::price::Price;
 use super::reduced::{Parameters, together};
@@ -145,6 +146,9 @@ pub(super) fn run(
     let price = Price::of(&studies);
     if !options.costly && price.is_costly(description.bounds.budget.simulations) {
         return Err(RunError::Costly(price));
+    }
+    if let Some(lacking) = Memory::lacking(&studies) {
+        return Err(RunError::Memory(lacking));
     }
     if options.store.is_some() {
         (options.disk)(studies.iter().map(Study::stored_bytes).sum());

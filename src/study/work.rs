@@ -43,7 +43,7 @@ impl Study<'_> {
     }
 
     /// Samples that only measure errors.
-    fn held_out(&self) -> usize {
+    pub(super) fn held_out(&self) -> usize {
         let k = self.domain.dimension();
         if self.request.is_empty() {
             return 0;

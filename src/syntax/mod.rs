@@ -17,3 +17,4 @@ pub(crate) mod yaml;
 
 pub use diagnostic::{Diagnostics, Record};
 pub use harmless::{harmless, is_harmful};
+pub(crate) use text_file::regular;

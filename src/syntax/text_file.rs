@@ -10,8 +10,17 @@ use super::suggest::clip;
 /// Largest file that is read.
 pub(crate) const MAX_BYTES: u64 = 10_000_000;
 
-/// The text of a file of at most so many bytes.
+/// The text of a file that a model names, of at most so many bytes. A pipe or a device may have no end.
 pub(crate) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
+    let metadata = fs::metadata(path).map_err(cannot)?;
+    if !metadata.is_file() && !metadata.is_dir() {
+        return Err(Box::new(Diagnostic::of_file("this is a pipe or a device, not a file")));
+    }
+    read_given(path, most)
+}
+
+/// The same of what a person names, which may be a pipe.
+pub(crate) fn read_given(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;
     if metadata.is_dir() {
         return Err(Box::new(Diagnostic::of_file("this is a directory, not a file")));

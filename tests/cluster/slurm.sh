@@ -145,6 +145,13 @@ submit plain
 within 120 is_merged "$place/plain/results"
 same plain
 
+# A folder whose name a shell and Slurm would read.
+plan "it's 100 %j"
+submit "it's 100 %j"
+within 120 is_merged "$place/it's 100 %j/results"
+ls "$place/it's 100 %j"/logs/round-1-merge-*.log >/dev/null
+same "it's 100 %j"
+
 # A task's process is killed: it is requeued.
 plan killed
 submit killed

@@ -56,3 +56,27 @@ fn a_folder_without_results_is_named() {
     assert!(message.contains("there is no folder nowhere"), "{message}");
     assert_eq!(place.files(""), [""; 0]);
 }
+
+/// The files of a folder may be anyone's.
+#[test]
+fn what_acts_in_a_plot_does_not_in_the_page() {
+    let place = Place::new();
+    place.model("crank");
+    place.run("run -q -m scan crank.yaml", 0);
+    let folder = place.path().join("results/crank");
+    let plain = fs::read_to_string(folder.join("report.html")).unwrap();
+    let plots = plain.matches("<svg").count();
+    assert!(plain.contains("script-src 'nonce-") && !plain.contains("script-src 'unsafe-inline'"));
+    let plot = folder.join("force.svg");
+    let text = fs::read_to_string(&plot).unwrap();
+    let hostile = text.replacen("<rect", "<script>alert(1)</script><rect onload=\"alert(2)\"", 1);
+    assert_ne!(text, hostile);
+    fs::write(&plot, hostile).unwrap();
+    place.run("report results/crank", 0);
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    assert!(!page.contains("alert(") && page.contains("<img alt=\"force\" src=\"data:image/svg+xml;base64,"));
+    assert_eq!(page.matches("<svg").count(), plots - 1);
+    let nonce = |page: &str| page.split("'nonce-").nth(1).unwrap().split('\'').next().unwrap().to_owned();
+    assert_ne!(nonce(&page), nonce(&plain));
+    assert!(page.contains(&format!("<script type=\"module\" nonce=\"{}\">", nonce(&page))));
+}

@@ -1,4 +1,5 @@
-//! `mbint submit --slurm`, with a program in the place of `sbatch` that runs what it is given. Under a real Slurm: `tests/cluster/slurm.sh`.
+//! `mbint submit --slurm`, with a program in the place of `sbatch` that runs what it is given. Under a real Slurm:
+//! `tests/cluster/slurm.sh`.
 
 #![cfg(unix)]
 

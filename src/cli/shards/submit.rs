@@ -102,7 +102,8 @@ impl Job<'_> {
         written.map(|()| path.clone()).map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Submits a script of this name, with a log of that one. A directive in the script would need a quoting of its own.
+    /// Submits a script of this name, with a log of that one. A directive in the script would need a quoting of its
+    /// own.
     fn sbatch(&self, (name, log): (&str, &str), script: &str, after: Option<&str>) -> Result<String, String> {
         let path = self.write(name, script)?;
         // Slurm puts numbers in place of `%A`; twice, the sign stands for itself.

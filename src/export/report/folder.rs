@@ -7,9 +7,10 @@ use serde_json::Value;
 use super::motion::MOTION;
 use super::page::{PageFigure, PageScene, page};
 use super::tables::{list, text};
+use crate::export::earlier::scene_folders;
 use crate::export::error::ExportError;
 use crate::export::folder::{AtomicFiles, settle};
-use crate::export::owned::{PAGE, SCENES, SUMMARY, read, scene_folders};
+use crate::export::owned::{PAGE, SCENES, SUMMARY, read};
 use crate::export::stems::unique_stems;
 
 /// Writes `report.html` again from the results in a folder: of a model, or of its scenes. Returns its path.

@@ -3,6 +3,8 @@
 use data_encoding::BASE64;
 use serde_json::Value;
 
+use crate::export::figure::style::STYLE;
+
 /// Text between tags, or in an attribute with double quotes.
 pub(super) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
@@ -39,6 +41,39 @@ pub(super) fn inline_svg(document: &str, prefix: &str) -> String {
         text = text.replace(from, &to);
     }
     text
+}
+
+/// Elements of our own figures, and those of them that have nothing but text.
+const ELEMENTS: [&str; 13] =
+    ["svg", "g", "path", "rect", "circle", "line", "clipPath", "pattern", "defs", "text", "title", "style", "metadata"];
+const TEXTS: [&str; 4] = ["text", "title", "style", "metadata"];
+
+/// Whether an SVG document is but a figure as we write them: nothing in it acts, refers to anything elsewhere, or is
+/// read by a browser in another way than here. Files of a folder may be anyone's.
+pub(super) fn is_figure(document: &str) -> bool {
+    let start = document.find("<svg").unwrap_or(0);
+    let text = &document[start..];
+    // Comments, instructions and marked sections end elsewhere in HTML.
+    if text.contains("<!") || text.contains("<?") {
+        return false;
+    }
+    let Ok(parsed) = roxmltree::Document::parse(text) else { return false };
+    let is_plain = |attribute: roxmltree::Attribute| {
+        let (name, value) = (attribute.name(), attribute.value());
+        let is_colour = |declaration: &str| declaration.trim().is_empty() || declaration.trim().starts_with("--mb-");
+        match name {
+            "style" => value.split(';').all(is_colour) && !value.contains("url("),
+            "href" | "src" => false,
+            _ => !name.to_ascii_lowercase().starts_with("on") && value.replace("url(#", "").find("url(").is_none(),
+        }
+    };
+    let is_allowed = |element: roxmltree::Node| {
+        let name = element.tag_name().name();
+        let has_text_alone = !TEXTS.contains(&name) || element.children().all(|child| child.is_text());
+        let is_our_style = name != "style" || element.text().is_some_and(|text| text.trim() == STYLE.trim());
+        ELEMENTS.contains(&name) && has_text_alone && is_our_style && element.attributes().all(is_plain)
+    };
+    parsed.descendants().filter(roxmltree::Node::is_element).all(is_allowed)
 }
 
 /// An SVG document as the address of a picture.
@@ -78,6 +113,32 @@ mod tests {
     fn identifiers_of_figures_are_apart() {
         let svg = "<?xml version=\"1.0\"?>\n<svg><clipPath id=\"a\"/><g clip-path=\"url(#a)\"/></svg>\n";
         assert_eq!(inline_svg(svg, "s1-"), "<svg><clipPath id=\"s1-a\"/><g clip-path=\"url(#s1-a)\"/></svg>");
+    }
+
+    #[test]
+    fn what_acts_is_no_figure() {
+        let figure = |content: &str| {
+            is_figure(&format!("<svg xmlns=\"http://www.w3.org/2000/svg\"><style>{STYLE}</style>{content}</svg>"))
+        };
+        for content in ["", "<g clip-path=\"url(#a)\" class=\"b\"><title>x &lt; 1</title><path d=\"M0,0\"/></g>"] {
+            assert!(figure(content), "{content}");
+        }
+        for content in [
+            "<script>alert(1)</script>",
+            "<g onclick=\"alert(1)\"/>",
+            "<g ONLOAD=\"alert(1)\"/>",
+            "<a href=\"javascript:alert(1)\"><text>x</text></a>",
+            "<path fill=\"url(http://a.b/c)\"/>",
+            "<g style=\"background: url(x)\"/>",
+            "<style>body { display: none }</style>",
+            "<foreignObject><p>x</p></foreignObject>",
+            "<title><g/></title>",
+            "<!--> <img src=x> -->",
+            "<![CDATA[x]]>",
+            "<g>",
+        ] {
+            assert!(!figure(content), "{content}");
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! `report.html`: one page of a model's results, or of all its scenes', that asks nothing of anyone.
 
+use data_encoding::BASE64;
 use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
 
-use super::html::{escaped, image, inline_svg, script_json};
+use super::html::{escaped, image, inline_svg, is_figure, script_json};
 use super::script::{SCRIPT, STYLE};
 use super::statistics;
 use super::tables::{self, text};
@@ -38,8 +40,15 @@ pub(in crate::export) fn page(model: &str, scenes: &[PageScene]) -> String {
     let description = description.map(|text| format!("<p class=\"description\">{}</p>", escaped(text)));
     let title = escaped(model);
     let icon = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg'/%3E";
-    // Nothing is fetched, and a browser that is asked to would not.
-    let policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+    let data = script_json(&Value::Array(data));
+    // Of all that stands in the page, so that nothing in it can know it.
+    let nonce =
+        BASE64.encode(&Sha256::new().chain_update(&contents).chain_update(&data).chain_update(&title).finalize());
+    // Nothing is fetched, and a browser that is asked to would not; no script runs but this page's own.
+    let policy = format!(
+        "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{nonce}'; img-src data:; base-uri 'none'; \
+         form-action 'none'"
+    );
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
@@ -50,10 +59,10 @@ pub(in crate::export) fn page(model: &str, scenes: &[PageScene]) -> String {
          <main>\n<div id=\"stage\" hidden></div>\n{contents}</main>\n\
          <footer>Made by mbint {}. Nothing on this page comes from elsewhere.</footer>\n\
          <script type=\"application/json\" id=\"mbint-data\">{}</script>\n\
-         <script type=\"module\">{}</script>\n</body>\n</html>\n",
+         <script type=\"module\" nonce=\"{nonce}\">{}</script>\n</body>\n</html>\n",
         description.unwrap_or_default(),
         escaped(scenes.first().map_or("", |scene| text(&scene.summary, "mbint"))),
-        script_json(&Value::Array(data)),
+        data,
         SCRIPT.as_str(),
     )
 }
@@ -91,10 +100,13 @@ fn content(place: usize, scene: &PageScene, scenes: usize) -> String {
         .map(|(number, figure)| {
             let prefix = |kind: usize| format!("s{place}p{number}k{kind}-");
             let svgs = figure.plots.iter().enumerate();
-            let svgs: String = svgs
-                .map(|(kind, svg)| format!("<div class=\"plot\">{}</div>", inline_svg(svg, &prefix(kind))))
-                .collect();
             let output = escaped(&figure.output);
+            // What is no figure of ours is a picture, in which nothing acts.
+            let plot = |(kind, svg): (usize, &String)| match is_figure(svg) {
+                true => inline_svg(svg, &prefix(kind)),
+                false => format!("<img alt=\"{output}\" src=\"{}\">", image(svg)),
+            };
+            let svgs: String = svgs.map(|plot_of| format!("<div class=\"plot\">{}</div>", plot(plot_of))).collect();
             format!("<figure data-output=\"{number}\"><figcaption>{output}</figcaption>{svgs}</figure>\n")
         })
         .collect();

@@ -46,8 +46,8 @@ pub(super) struct Functions<'f> {
     pub evaluate: &'f Evaluate<'f>,
 }
 
-/// Outputs that are searched together: each is known at the points of all. Of more, memory and time would grow with the square of their
-/// number.
+/// Outputs that are searched together: each is known at the points of all. Of more, memory and time would grow with the
+/// square of their number.
 const TOGETHER: usize = 64;
 
 /// Number of the block of outputs that are searched together with this one.

@@ -5,6 +5,7 @@ mod disk;
 mod folder;
 mod infeasible;
 mod interrupts;
+mod many;
 mod names;
 mod numbers;
 mod panics;

@@ -5,6 +5,7 @@
 use std::ffi::OsStr;
 use std::fs;
 use std::os::unix::ffi::OsStrExt;
+use std::process::Command;
 
 use crate::place::Place;
 
@@ -51,4 +52,41 @@ fn control_characters_of_a_name_are_not_shown() {
         let report = [done.stdout, done.stderr].concat();
         assert!(!report.contains(&0x1b), "{command}: {}", String::from_utf8_lossy(&report));
     }
+}
+
+/// Nor of an argument that is quoted in a message about the command line.
+#[test]
+fn control_characters_of_arguments_are_not_shown() {
+    let place = Place::new();
+    let (flag, value) = ("--\u{202e}x\u{1b}[31m\u{2066}", "\u{202e}x\u{1b}[31m\u{2066}");
+    let commands: [&[&str]; 4] =
+        [&["run", flag], &[flag], &["run", "a.yaml", "-j", value], &["check", "a.yaml", "--format", value]];
+    for command in commands {
+        for color in ["never", "always"] {
+            let done = place.command("").args(command).args(["--color", color]).output().unwrap();
+            assert_eq!(done.status.code(), Some(2), "{command:?}");
+            let report = String::from_utf8([done.stdout, done.stderr].concat()).unwrap();
+            assert!(report.contains('\u{fffd}'), "{report}");
+            assert!(!report.contains(['\u{202e}', '\u{2066}']) && !report.contains("x\u{1b}[31m"), "{report}");
+        }
+    }
+}
+
+/// A model's own files are files; the model itself may come from a pipe.
+#[test]
+fn what_a_model_names_is_no_pipe() {
+    let place = Place::new();
+    place.model("crank");
+    let text = fs::read_to_string(place.path().join("crank.yaml")).unwrap();
+    assert!(Command::new("mkfifo").arg(place.path().join("pipe")).status().unwrap().success());
+    for key in ["include: pipe\n", "tables: { q: { file: pipe } }\n"] {
+        fs::write(place.path().join("crank.yaml"), format!("{key}{text}")).unwrap();
+        let (_, errors) = place.run("check crank.yaml", 2);
+        assert!(errors.contains("this is a pipe or a device, not a file"), "{errors}");
+    }
+    let mut command = Command::new("bash");
+    command.args(["-c", "\"$MBINT\" check <(cat given.yaml)"]).current_dir(place.path());
+    fs::write(place.path().join("given.yaml"), text).unwrap();
+    let done = command.env("MBINT", assert_cmd::cargo::cargo_bin!("mbint")).output().unwrap();
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
 }

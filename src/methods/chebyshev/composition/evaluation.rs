@@ -96,8 +96,9 @@ impl Row<'_> {
         self.expansion().evaluate_moved(points, ways)
     }
 
-    /// Some outputs with the motion moved in some ways, output by output, way by way, point by point. All outputs follow together from a
-    /// motion, a few points at a time: memory grows with what is asked for, not with all outputs times all points.
+    /// Some outputs with the motion moved in some ways, output by output, way by way, point by point. All outputs
+    /// follow together from a motion, a few points at a time: memory grows with what is asked for, not with all outputs
+    /// times all points.
     pub fn evaluate_some(&self, outputs: &[usize], points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
         let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
         let (count, ways_count) = (points.len(), ways.len());
@@ -114,11 +115,13 @@ impl Row<'_> {
         found
     }
 
-    /// Some outputs at the two ends of their own ranges, with the motion moved in some ways: output by output, way by way. Where the ends of
-    /// several are the same, as at corners, the motion there is closed once.
+    /// Some outputs at the two ends of their own ranges, with the motion moved in some ways: output by output, way by
+    /// way. Where the ends of several are the same, as at corners, the motion there is closed once.
     pub(super) fn at_own_ends(&self, outputs: &[usize], found: &[Extent], ways: &[Moves]) -> Vec<[f64; 2]> {
         let mut known: FxHashMap<Vec<u64>, usize> = FxHashMap::default();
-        let (mut points, mut wanted): (Vec<Vec<f64>>, Vec<Vec<(usize, usize)>>) = (Vec::new(), Vec::new());
+        let mut points: Vec<Vec<f64>> = Vec::new();
+        // Of each point: whose, and which end.
+        let mut wanted: Vec<Vec<(usize, usize)>> = Vec::new();
         for (place, extent) in found.iter().enumerate() {
             for (end, at) in extent.places.iter().enumerate() {
                 let number = *known.entry(at.iter().map(|xi| xi.to_bits()).collect()).or_insert_with(|| {

@@ -342,11 +342,12 @@ impl<'r> Row<'r> {
         compared.iter().zip(values).any(differs)
     }
 
-    /// Where outputs are known to be large or small, block by block of those that are searched together: the samples with the least and the
-    /// largest values of each output, some apart from each other, and the best corners.
+    /// Where outputs are known to be large or small, block by block of those that are searched together: the samples
+    /// with the least and the largest values of each output, some apart from each other, and the best corners.
     fn seeds(&self) -> Vec<Vec<Vec<f64>>> {
         let every: Vec<usize> = (0..self.ensemble.outputs()).collect();
-        // In every row: the row before knows the corner that was best there, and where the best changes to another, no sample may be near it.
+        // In every row: the row before knows the corner that was best there, and where the best changes to another, no
+        // sample may be near it.
         let corners = self.best_corners();
         let of_block = |outputs: &[usize]| -> Vec<Vec<f64>> {
             let samples = outputs.iter().flat_map(|&output| self.best_samples(output));
