@@ -135,7 +135,7 @@ def test_declared_units_are_shown_and_numbers_stay_in_si() -> None:
 
 def test_yaml_of_version_1_1_is_understood() -> None:
     # PyYAML reads the key `on` as True.
-    model = FALL | {"effects": {"weight": {"force": {True: "ball", "value": [0, "-g"]}}}}
+    model = FALL | {"effects": {"weight": {"force": {True: "ball", "value": [0, "-g*(1 kg)"]}}}}
     assert mbint.run(model).nominal[-1, 0] == pytest.approx(-9.81 / 8)
     with pytest.raises(TypeError, match="quote it"):
         mbint.run(FALL | {"bodies": {False: {"mass": 1}}})

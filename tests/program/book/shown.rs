@@ -46,7 +46,11 @@ fn run_commands(block: &str, folder: &Path) -> String {
     let print = |command: &str| {
         let shell = format!("{{ {command}\n}} 2>&1");
         let output = Command::new("sh").args(["-c", &shell]).current_dir(folder).env("PATH", &path).output().unwrap();
-        format!("$ {command}\n{}", String::from_utf8(output.stdout).unwrap())
+        let text = String::from_utf8(output.stdout).unwrap();
+        // What is said while one waits depends on the machine.
+        let text: String =
+            text.lines().filter(|line| !line.contains(" % done")).flat_map(|line| [line, "\n"]).collect();
+        format!("$ {command}\n{text}")
     };
     commands.map(print).collect()
 }
