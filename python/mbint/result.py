@@ -39,16 +39,26 @@ class Result:
         return summary
 
     @cached_property
-    def columns(self) -> list[dict[str, str]]:
+    def columns(self) -> list[dict[str, Any]]:
         """``columns.json``: quantity, unit, output and method of each column of ``bounds.csv``."""
         with open(self.folder / "columns.json", encoding="utf-8") as file:
-            columns: list[dict[str, str]] = json.load(file)
+            columns: list[dict[str, Any]] = json.load(file)
         return columns
 
     @cached_property
     def units(self) -> dict[str, str]:
         """Unit of each output; empty where there is none."""
         return {column["output"]: column["unit"] for column in self.columns if column["quantity"] == "nominal"}
+
+    @cached_property
+    def shown(self) -> dict[str, tuple[str, float]]:
+        """Unit in which people see each output, and its size in SI: the model's ``unit:``, or SI. Numbers stay in SI."""
+        nominal = [column for column in self.columns if column["quantity"] == "nominal"]
+        displays = {column["output"]: column.get("display") for column in nominal}
+        return {
+            output: (display["unit"], display["si"]) if (display := displays[output]) else (unit, 1.0)
+            for output, unit in self.units.items()
+        }
 
     @cached_property
     def frame(self) -> pd.DataFrame:

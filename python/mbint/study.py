@@ -82,7 +82,7 @@ class Study:
         if not isinstance(model, Mapping):
             raise TypeError(f"a model is the path of a file or a dictionary, not a {type(model).__name__}")
         path = Path(self._temporary.name) / "model.yaml"
-        path.write_text(json.dumps(model, ensure_ascii=False, indent=1, default=_plain), encoding="utf-8")
+        path.write_text(json.dumps(_spelled(model), ensure_ascii=False, indent=1, default=_plain), encoding="utf-8")
         return path
 
     def run(self, executor: Executor | None = None, *, store: str | Path | None = None, at_once: float = 10.0) -> Study:
@@ -240,6 +240,24 @@ def _value(name: str, value: Value) -> str:
 def _names(names: Sequence[str] | None) -> Sequence[str]:
     """Names; one may stand alone."""
     return [names] if isinstance(names, str) else names or ()
+
+
+def _spelled(value: object) -> object:
+    """The content with its keys as they are spelled in the file.
+
+    YAML 1.1, which PyYAML reads, takes ``on`` for the truth value ``True``: of the two words that may have stood there, only ``on`` is a key
+    of models.
+
+    Raises:
+        TypeError: a key is a truth value that no key of models is.
+    """
+    if isinstance(value, Mapping):
+        if any(key is False for key in value):
+            raise TypeError("a name is False: YAML 1.1 reads `no` and `off` so; quote it in the file")
+        return {"on" if key is True else key: _spelled(own) for key, own in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_spelled(own) for own in value]
+    return value
 
 
 def _plain(value: object) -> object:

@@ -122,3 +122,20 @@ def test_samples_are_those_of_free_fall() -> None:
     whole = mbint.sample(FALL, design="sobol:64")
     assert cut.identical(whole)
     assert float(whole.parameters.min()) == pytest.approx(9.81 * 0.99)
+
+
+def test_declared_units_are_shown_and_numbers_stay_in_si() -> None:
+    inches = mbint.run(FALL | {"outputs": {"y": {"formula": "ball.y", "unit": "in"}, "speed": "ball.vy"}})
+    assert inches.result.shown == {"y": ("in", pytest.approx(0.0254)), "speed": ("m/s", 1.0)}
+    assert inches.units["y"] == "m" and inches.nominal[-1, 0] == pytest.approx(-9.81 / 8)
+    panel = inches.plot("y").axes[0]
+    assert panel.get_ylabel() == "y in in"
+    assert panel.lines[0].get_ydata()[-1] == pytest.approx(-9.81 / 8 / 0.0254)
+
+
+def test_yaml_of_version_1_1_is_understood() -> None:
+    # PyYAML reads the key `on` as True.
+    model = FALL | {"effects": {"weight": {"force": {True: "ball", "value": [0, "-g*(1 kg)"]}}}}
+    assert mbint.run(model).nominal[-1, 0] == pytest.approx(-9.81 / 8)
+    with pytest.raises(TypeError, match="quote it"):
+        mbint.run(FALL | {"bodies": {False: {"mass": 1}}})

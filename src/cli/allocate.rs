@@ -8,6 +8,7 @@ use super::table::{Align, Table};
 use super::verdicts::{requirements, short};
 use super::{Failure, Status, interrupt, load, statistics};
 use crate::export::{OVERLAY, prepare_folder, rounded, shown_unit, write_allocation};
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, ToleranceZone};
 use crate::study::{self, AllocateError, AllocateOptions, RunError};
 
@@ -49,13 +50,14 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
         console.print(&text)?;
     }
     for own in &found.not_met {
+        let unit = ShownUnit::of(&own.display, &own.unit);
         let message = format!(
             "{}: `{}` cannot be met: with the tightest tolerances it is missed by {} {} (± {:.1e})",
             found.model,
             own.requirement,
-            short(-own.margin),
-            own.unit,
-            own.error
+            short(-unit.of_si(own.margin)),
+            unit.text,
+            unit.of_si(own.error)
         );
         console.error(&message);
     }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use super::console::{BOLD, coordinates, count, file_names};
 use super::table::{Align, Table};
 use super::verdicts;
+use crate::export::rounded as rounded_number;
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::{AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
 
 /// The largest width and error of each band.
@@ -20,12 +22,12 @@ fn errors(errors: &[ErrorSummary]) -> String {
         ("unit", Align::Left),
     ]);
     for error in errors.iter().take(MOST) {
-        let shown = |value: f64| error.display.as_ref().map_or(value, |display| display.of_si(value));
-        let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{:.2e}", shown(value)) };
+        let unit = ShownUnit::of(&error.display, &error.unit);
+        let shown = |value: f64| format!("{:.2e}", unit.of_si(value));
+        let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { shown(value) };
         let name = format!("{}.{}", error.output, error.method);
-        let unit = error.display.as_ref().map_or(&error.unit, |display| &display.text).clone();
         let [width, total, surrogate, time] = [error.width, error.error, error.surrogate, error.time].map(number);
-        table.row([name, width, total, surrogate, time, unit]);
+        table.row([name, width, total, surrogate, time, unit.text.to_owned()]);
     }
     match errors.len() {
         0 => String::new(),
@@ -48,11 +50,13 @@ fn analysis(analysis: &AnalysisSummary) -> String {
         ("error", Align::Right),
     ]);
     for value in analysis.values.iter().take(MOST) {
+        let unit = ShownUnit::of(&value.display, &value.unit);
+        let number = |of: f64| number(unit.of_si(of));
         let bounds = value.bounds.first();
         let [lower, upper] = [bounds.map(|b| b.1), bounds.map(|b| b.2)].map(|end| end.map_or_else(String::new, number));
-        let error =
-            bounds.map_or_else(String::new, |b| if b.3.is_nan() { number(b.3) } else { format!("{:.1e}", b.3) });
-        table.row([value.output.clone(), value.unit.clone(), number(value.nominal), lower, upper, error]);
+        let error = bounds
+            .map_or_else(String::new, |b| if b.3.is_nan() { number(b.3) } else { format!("{:.1e}", unit.of_si(b.3)) });
+        table.row([value.output.clone(), unit.text.to_owned(), number(value.nominal), lower, upper, error]);
     }
     let mut text = if analysis.values.is_empty() { String::new() } else { format!("{}\n", table.render(2)) };
     if let Some(smallest) = analysis.stability {
@@ -190,7 +194,10 @@ pub(super) fn excluded(bounds: &Bounds, summary: &Summary) -> Option<String> {
         let ends = summary.pieces.iter().map(|piece| (piece.lower[place], piece.upper[place]));
         let (lower, upper) = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let narrower = lower > parameter.lower || upper < parameter.upper;
-        narrower.then(|| format!(", with {} from {lower} to {upper}", parameter.name))
+        let unit = ShownUnit::of(&parameter.display, &parameter.unit);
+        let [lower, upper] = [lower, upper].map(|end| rounded_number(unit.of_si(end)));
+        let range = format!("{} from {lower} to {upper} {}", parameter.name, unit.text);
+        narrower.then(|| format!(", with {}", range.trim_end()))
     };
     let hulls: String = summary.parameters.iter().enumerate().filter_map(hull).collect();
     let pieces = count(summary.pieces.len(), "piece", "pieces");

@@ -9,6 +9,7 @@ use super::request::{Job, Request};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
 use crate::export::{SceneBounds, write_scenes};
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::foremost;
 use crate::results::{ErrorSummary, Summary};
 
@@ -128,7 +129,9 @@ fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) 
         for band in of_outputs {
             let name = format!("{}.{}", band.output, band.method);
             let [scene, size, seconds] = std::mem::take(&mut first);
-            table.row([scene, size, seconds, name, band.unit.clone(), number(band.width), number(band.error)]);
+            let unit = ShownUnit::of(&band.display, &band.unit);
+            let [width, error] = [band.width, band.error].map(|value| number(unit.of_si(value)));
+            table.row([scene, size, seconds, name, unit.text.to_owned(), width, error]);
         }
         if none {
             let [scene, size, seconds] = first;

@@ -1,6 +1,7 @@
 //! Statistics for people, beside the bounds: worst case first.
 
 use super::table::{Align, Table};
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::{StatisticsSummary, Summary, Uncertain};
 
 /// Laws, and for each output the worst case, the linearised stack and the distribution.
@@ -22,17 +23,15 @@ pub(super) fn statistics(summary: &Summary) -> String {
         ("unit", Align::Left),
     ]);
     for output in &found.outputs {
-        let display = summary.errors.iter().find(|error| error.output == output.output);
-        let display = display.and_then(|error| error.display.as_ref());
-        let shown = |value: f64| display.map_or(value, |display| display.of_si(value));
-        let spread = |value: f64| display.map_or(value, |display| value / display.si());
-        let digits = decimals(spread(output.deviation.value));
+        let unit = ShownUnit::of(&output.display, &output.unit);
+        let shown = |value: f64| unit.of_si(value);
+        let digits = decimals(shown(output.deviation.value));
         let number = |value: f64| match digits {
             Some(digits) => format!("{value:.digits$}"),
             None => format!("{value:.4e}"),
         };
         let ends = |lower: f64, upper: f64| format!("[{}, {}]", number(shown(lower)), number(shown(upper)));
-        let estimate = |value: f64, of: Uncertain| format!("{} ± {:.1e}", number(value), spread(of.total()));
+        let estimate = |value: f64, of: Uncertain| format!("{} ± {:.1e}", number(value), shown(of.total()));
         let statistical = match (output.quantiles.first(), output.quantiles.last()) {
             (Some(low), Some(high)) => ends(low.value, high.value),
             _ => String::new(),
@@ -41,12 +40,12 @@ pub(super) fn statistics(summary: &Summary) -> String {
             output.output.clone(),
             format!("{:.4}", output.time),
             ends(output.worst_case[0], output.worst_case[1]),
-            format!("± {}", number(spread(output.linear))),
-            format!("± {}", number(spread(output.rss))),
+            format!("± {}", number(shown(output.linear))),
+            format!("± {}", number(shown(output.rss))),
             estimate(shown(output.mean.value), output.mean),
-            estimate(spread(output.deviation.value), output.deviation),
+            estimate(shown(output.deviation.value), output.deviation),
             statistical,
-            display.map_or(&output.unit, |display| &display.text).clone(),
+            unit.text.to_owned(),
         ]);
     }
     let shares = match (found.quantiles.first(), found.quantiles.last()) {

@@ -9,6 +9,7 @@ use super::table::{Align, Table};
 use super::verdicts::{band, short};
 use super::{Failure, Status, interrupt, load, verdicts};
 use crate::export::{Sweep, SweepAxis, SweepPoint, prepare_folder, write_sweep};
+use crate::grammar::display_unit::ShownUnit;
 use crate::model::Override;
 
 /// Most values of an axis, and most runs.
@@ -163,13 +164,15 @@ fn table(sweep: &Sweep) -> String {
             continue;
         };
         for own in &summary.reduced {
-            let [lower, upper] = band(own).map_or([f64::NAN; 2], |band| [band.lower, band.upper]).map(short);
-            table.row([std::mem::take(&mut at), own.name.clone(), lower, upper, own.unit.clone(), String::new()]);
+            let unit = ShownUnit::of(&own.display, &own.unit);
+            let ends = band(own).map_or([f64::NAN; 2], |band| [band.lower, band.upper]);
+            let [lower, upper] = ends.map(|end| short(unit.of_si(end)));
+            table.row([std::mem::take(&mut at), own.name.clone(), lower, upper, unit.text.to_owned(), String::new()]);
         }
         for own in &summary.requirements {
-            let verdict = own.verdict.name().to_owned();
-            let margin = format!("margin of {}", own.name);
-            table.row([std::mem::take(&mut at), margin, short(own.margin), String::new(), own.unit.clone(), verdict]);
+            let (unit, verdict) = (ShownUnit::of(&own.display, &own.unit), own.verdict.name().to_owned());
+            let (what, margin) = (format!("margin of {}", own.name), short(unit.of_si(own.margin)));
+            table.row([std::mem::take(&mut at), what, margin, String::new(), unit.text.to_owned(), verdict]);
         }
     }
     table.render(2)

@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use super::table::{Align, Table};
 use super::{Failure, Status};
 use crate::export::{Suite, write_junit};
+use crate::grammar::display_unit::ShownUnit;
 use crate::model::{Override, is_standard_input, shown};
 use crate::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict, foremost};
 
@@ -116,7 +117,8 @@ fn reduced(all: &[ReducedSummary]) -> String {
         ("tolerances that matter", Align::Left),
     ]);
     for own in all {
-        let shown = |value: f64| own.display.as_ref().map_or(value, |display| display.of_si(value));
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        let shown = |value: f64| unit.of_si(value);
         let numbers = match band(own) {
             Some(band) => [short(shown(band.lower)), short(shown(band.upper)), format!("{:.1e}", shown(band.error))],
             None => [(); 3].map(|()| "unknown".to_owned()),
@@ -133,7 +135,7 @@ fn reduced(all: &[ReducedSummary]) -> String {
         } else if band(own).is_some_and(|band| band.unresolved) {
             notes.push("unreliable".to_owned());
         }
-        let unit = own.display.as_ref().map_or(&own.unit, |display| &display.text).clone();
+        let unit = unit.text.to_owned();
         table.row([own.name.clone(), short(shown(own.nominal)), lower, upper, error, unit, notes.join(", ")]);
     }
     table.render(2)
@@ -151,14 +153,15 @@ pub(super) fn requirements(all: &[RequirementSummary]) -> String {
     ]);
     for own in all {
         let certified = if own.certified { ", certified" } else { "" };
+        let unit = ShownUnit::of(&own.display, &own.unit);
         let percent = own.percent.filter(|percent| percent.is_finite());
         table.row([
             own.name.clone(),
             own.text.clone(),
             format!("{}{certified}", own.verdict.name()),
-            short(own.margin),
-            if own.error.is_nan() { "unknown".to_owned() } else { format!("{:.1e}", own.error) },
-            own.unit.clone(),
+            short(unit.of_si(own.margin)),
+            if own.error.is_nan() { "unknown".to_owned() } else { format!("{:.1e}", unit.of_si(own.error)) },
+            unit.text.to_owned(),
             percent.map_or_else(String::new, |percent| format!("{percent:.2} %")),
         ]);
     }
@@ -179,7 +182,10 @@ fn notes(all: &[RequirementSummary]) -> String {
                     if nearest.command.is_empty() { nearest.settings.join(", ") } else { nearest.command.clone() };
                 let margin = match nearest.margin.is_nan() {
                     true => "has no value".to_owned(),
-                    false => format!("by {} {}", short(-nearest.margin), own.unit).trim_end().to_owned(),
+                    false => {
+                        let unit = ShownUnit::of(&own.display, &own.unit);
+                        format!("by {} {}", short(-unit.of_si(nearest.margin)), unit.text).trim_end().to_owned()
+                    }
                 };
                 text += &format!("  {} is violated{time}, {margin}: {command}\n", own.name);
             }

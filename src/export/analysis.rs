@@ -108,7 +108,7 @@ fn over_frequencies(
     OutputBounds {
         name,
         unit: points.first().map_or_else(String::new, |point| of(point).unit.clone()),
-        display: None,
+        display: points.first().and_then(|point| of(point).display.clone()),
         nominal: column(&|output| output.nominal[row]),
         bands: methods.iter().enumerate().map(band).collect(),
     }

@@ -9,8 +9,8 @@ use super::figure::data::{self, FigureData, SeriesData, extremes};
 use super::figure::document::{document, finished, group, heading, metadata, shortened, text_width};
 use super::figure::legend::{Entry, ROW, Sign};
 use super::figure::panel::{Named, Panel};
-use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue};
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Bounds, Contribution};
 
 /// The table of all contributions as CSV.
@@ -77,7 +77,7 @@ pub fn contributions_svg(
     let width = layers.iter().map(|layer| text_width(&layer.label)).fold(0.0, f64::max);
     let right = (SIZE.0 - 50.0 - width).max(0.5 * SIZE.0);
     let time = Axis::fit(times.iter().copied(), "s", 9, 0.0, 0.0);
-    let percent = Axis::fit([0.0, 1.0].into_iter(), BaseUnit { text: "%", si: 0.01 }, 5, 0.0, 0.0);
+    let percent = Axis::fit([0.0, 1.0].into_iter(), ShownUnit { text: "%", si: 0.01 }, 5, 0.0, 0.0);
     let id = format!("{}-shares", caption.prefix);
     let panel = Panel { id, left: LEFT, right, top: TOP, bottom: SIZE.1 - BOTTOM, x: &time, y: &percent };
 

@@ -11,10 +11,10 @@ use super::figure::data::{FigureData, SeriesData, extremes, times};
 use super::figure::document::{document, finished, heading, metadata, shortened};
 use super::figure::legend::{Entry, Legend, Sign};
 use super::figure::panel::{Named, Panel, Style, label_width};
-use super::figure::prefix::BaseUnit;
 use super::figure::style::Hue;
 use super::figure::view::{deviation, in_view};
 use super::limits::{Limit, near};
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::Band;
 
 /// Size on the page with one row of legend, px.
@@ -57,7 +57,7 @@ pub(super) struct CourseBand<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Across<'a> {
     pub name: &'a str,
-    pub unit: BaseUnit<'a>,
+    pub unit: ShownUnit<'a>,
 }
 
 /// What a figure shows.
@@ -66,7 +66,7 @@ pub(super) struct Shown<'a> {
     /// The output's name.
     pub name: &'a str,
     /// The unit that it is shown in.
-    pub unit: BaseUnit<'a>,
+    pub unit: ShownUnit<'a>,
     pub across: Across<'a>,
     /// What moves by less is a constant.
     pub noise: f64,
@@ -115,7 +115,7 @@ impl<'a> Figure<'a> {
             }
             for ((of, above), below) in course.bands.iter().zip(beyond).zip(beyond_below) {
                 let unresolved = of.band.error.unresolved_from().map(|row| course.times[row]);
-                let label = format!("{}{}", of.style.label, note(above || below, unresolved));
+                let label = format!("{}{}", of.style.label, note(above || below, unresolved, shown.across.unit));
                 entries.push(Entry { group: of.group.clone(), label, sign: Sign::Band(of.style.clone()) });
             }
         }
@@ -271,16 +271,19 @@ fn zero(course: &Course) -> Vec<f64> {
 }
 
 /// What the legend adds to a method's name.
-fn note(beyond: bool, unresolved_from: Option<f64>) -> String {
+fn note(beyond: bool, unresolved_from: Option<f64>, unit: ShownUnit) -> String {
     match (unresolved_from, beyond) {
-        (Some(time), _) => format!(" (unreliable from {} s)", short(time)),
+        (Some(from), _) => {
+            let from = format!("{} {}", short(unit.of_si(from)), unit.text);
+            format!(" (unreliable from {})", from.trim_end())
+        }
         (None, true) => " (beyond the plot)".to_owned(),
         (None, false) => String::new(),
     }
 }
 
-/// A time with three digits.
-fn short(time: f64) -> String {
-    let text = format!("{time:.2e}").parse::<f64>().unwrap_or(time);
+/// Three digits.
+fn short(value: f64) -> String {
+    let text = format!("{value:.2e}").parse::<f64>().unwrap_or(value);
     format!("{text}")
 }

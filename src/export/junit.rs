@@ -7,6 +7,7 @@ use quick_xml::Writer;
 use quick_xml::events::BytesText;
 
 use super::error::ExportError;
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::{RequirementSummary, Verdict};
 
 /// A model's requirements.
@@ -57,7 +58,9 @@ fn write_suite(writer: &mut Writer<Vec<u8>>, suite: &Suite) -> std::io::Result<(
             case(writer, (&suite.model, "run"), Some(("error", "the run failed", failure)))?;
         }
         for own in &suite.requirements {
-            let text = format!("{}\nmargin: {:e} {}, error: {:e}", own.text, own.margin, own.unit, own.error);
+            let unit = ShownUnit::of(&own.display, &own.unit);
+            let [margin, error] = [own.margin, own.error].map(|value| unit.of_si(value));
+            let text = format!("{}\nmargin: {margin:e} {}, error: {error:e}", own.text, unit.text);
             let command = own.nearest.as_ref().map_or("", |nearest| nearest.command.as_str());
             let with_command = format!("{text}\n{command}");
             let decides = format!("{text}\nit takes {}", own.decides.as_deref().unwrap_or_default());
@@ -103,6 +106,7 @@ mod tests {
             name: name.to_owned(),
             text: text.to_owned(),
             unit: "m".to_owned(),
+            display: None,
             verdict,
             certified: false,
             margin: 0.5,

@@ -3,9 +3,9 @@
 use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
-use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue, PALETTE};
 use super::plot::noise;
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Band, Bounds, OutputBounds, foremost};
 
 /// The bounds of a scene.
@@ -52,9 +52,10 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
             Course { group, label, hue, width, times: &scene.bounds.times, nominal: &output.nominal, bands }
         })
         .collect();
-    let unit = found.first().map_or(BaseUnit::from(""), |(_, _, output, _)| BaseUnit::of(output));
+    let unit =
+        found.first().map_or(ShownUnit::from(""), |(_, _, output, _)| ShownUnit::of(&output.display, &output.unit));
     let noise = found.iter().map(|(_, scene, output, _)| noise(scene.bounds, output)).fold(0.0, f64::max);
-    let across = Across { name: "t", unit: BaseUnit::from("s") };
+    let across = Across { name: "t", unit: ShownUnit::from("s") };
     courses_svg(caption, &Shown { name, unit, across, noise, courses: &courses, limits: &[] })
 }
 

@@ -3,10 +3,10 @@
 use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
-use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue};
 use super::limits::limits;
 use super::rounded::rounded;
+use crate::grammar::display_unit::ShownUnit;
 use crate::methods::{About, Method};
 use crate::numerics::BandError;
 use crate::results::{Band, Bounds, OutputBounds, RequirementSummary, StatisticsResult, Uncertain};
@@ -92,8 +92,15 @@ pub(super) fn course<'a>(times: &'a [f64], output: &'a OutputBounds) -> Course<'
 
 /// Courses of an output over time.
 pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [Course<'a>]) -> Shown<'a> {
-    let across = Across { name: "t", unit: BaseUnit::from("s") };
-    Shown { name: &output.name, unit: BaseUnit::of(output), across, noise, courses, limits: &[] }
+    let across = Across { name: "t", unit: ShownUnit::from("s") };
+    Shown {
+        name: &output.name,
+        unit: ShownUnit::of(&output.display, &output.unit),
+        across,
+        noise,
+        courses,
+        limits: &[],
+    }
 }
 
 /// Width below which an output counts as constant: rounding beside the largest of all outputs of its unit.
@@ -268,6 +275,7 @@ mod tests {
             name: "clears".into(),
             text: "x3 >= 0.4 m".into(),
             unit: "m".into(),
+            display: None,
             verdict: Verdict::Holds,
             certified: false,
             margin: 0.01,

@@ -8,11 +8,11 @@ use super::figure::axis::Axis;
 use super::figure::document::{Anchor, document, finished, group, heading, shortened, text};
 use super::figure::panel::{Named, Panel, label_width};
 use super::figure::path::px;
-use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue};
 use super::limits::limits;
 use super::overlay::style;
 use super::plot;
+use crate::grammar::display_unit::ShownUnit;
 use crate::results::{OutputBounds, RequirementSummary, foremost};
 
 /// A swept parameter: its name, its unit as models write it, and the value of one unit in SI.
@@ -51,10 +51,11 @@ pub fn sweep_svg(
         [row] => vec![plot::course(row.values, row.output)],
         rows => rows.iter().enumerate().map(|(place, row)| edges(place, row)).collect(),
     };
-    let (name, unit) =
-        rows.first().map_or(("", BaseUnit::from("")), |row| (row.output.name.as_str(), BaseUnit::of(row.output)));
+    let (name, unit) = rows.first().map_or(("", ShownUnit::from("")), |row| {
+        (row.output.name.as_str(), ShownUnit::of(&row.output.display, &row.output.unit))
+    });
     let limits = limits(requirements, name).iter().map(|limit| limit.everywhere()).collect::<Vec<_>>();
-    let across = Across { name: swept.name, unit: BaseUnit { text: swept.unit, si: swept.si } };
+    let across = Across { name: swept.name, unit: ShownUnit { text: swept.unit, si: swept.si } };
     courses_svg(caption, &Shown { name, unit, across, noise: 0.0, courses: &courses, limits: &limits })
 }
 

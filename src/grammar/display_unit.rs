@@ -29,10 +29,33 @@ impl DisplayUnit {
     pub fn si(&self) -> f64 {
         self.unit.to_si(1.0)
     }
+}
+
+/// The unit that people see numbers in: the one that the model declares, or SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShownUnit<'u> {
+    /// As models write it: `N*m`; empty for a number.
+    pub text: &'u str,
+    /// What one of it is in SI.
+    pub si: f64,
+}
+
+impl<'u> ShownUnit<'u> {
+    /// The declared unit, or `unit`, which is of SI.
+    pub fn of(declared: &'u Option<DisplayUnit>, unit: &'u str) -> Self {
+        declared.as_ref().map_or(Self::from(unit), |declared| Self { text: &declared.text, si: declared.si() })
+    }
 
     /// A value in SI, in this unit.
-    pub fn of_si(&self, value: f64) -> f64 {
-        self.unit.of_si(value)
+    pub fn of_si(self, value: f64) -> f64 {
+        value / self.si
+    }
+}
+
+impl<'u> From<&'u str> for ShownUnit<'u> {
+    /// An SI unit.
+    fn from(text: &'u str) -> Self {
+        Self { text, si: 1.0 }
     }
 }
 
@@ -51,11 +74,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_converted_both_ways() {
+    fn values_are_shown_in_declared_units() {
         let display = |text: &str| DisplayUnit::new(text, Unit::parse(text).unwrap());
         let unit = display(" mm ");
-        assert_eq!((unit.text.as_str(), unit.si(), unit.of_si(0.15)), ("mm", 1e-3, 150.0));
-        assert!((display("rpm").of_si(std::f64::consts::PI) - 30.0).abs() < 1e-13);
+        assert_eq!((unit.text.as_str(), unit.si()), ("mm", 1e-3));
+        let rpm = Some(display("rpm"));
+        assert!((ShownUnit::of(&rpm, "rad/s").of_si(std::f64::consts::PI) - 30.0).abs() < 1e-13);
         assert_eq!(serde_json::to_string(&unit).unwrap(), r#"{"unit":"mm","si":0.001}"#);
+        let (declared, none) = (Some(unit), None);
+        let (shown, si) = (ShownUnit::of(&declared, "m"), ShownUnit::of(&none, "m"));
+        assert_eq!((shown.text, shown.of_si(0.15), si.text, si.of_si(0.15)), ("mm", 150.0, "m", 0.15));
     }
 }

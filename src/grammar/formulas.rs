@@ -144,7 +144,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                     self.error(place, message, help.to_owned());
                 }
                 Ok(_) => {}
-                Err(_) if self.is_of_unread_joint(name) => all_known = false,
+                Err(_) if self.is_of_unread_joint(name) || self.is_unread_output(name) => all_known = false,
                 Err(error) => {
                     all_known = false;
                     let part = part_of_name(name, &span, error.part);

@@ -51,11 +51,22 @@ pub struct NameError {
     pub help: Option<String>,
 }
 
-/// Whether the word means something by itself in every formula, so that nothing else may be called so.
+/// What the word is by itself in every formula, so that nothing else may be called so; `None` where it is nothing.
+pub fn meaning(name: &str) -> Option<&'static str> {
+    let is_function = |name| symdiff::formula::FUNCTIONS.iter().any(|own| own.name == name && own.is_reserved());
+    match name {
+        "t" => Some("the time"),
+        "pi" => Some("the number π"),
+        "and" | "or" | "not" => Some("an operator"),
+        name if ENERGIES.iter().any(|(energy, _)| *energy == name) => Some("an energy of the mechanism"),
+        name if is_function(name) => Some("a function"),
+        _ => None,
+    }
+}
+
+/// Whether the word means something by itself in every formula.
 pub fn is_reserved(name: &str) -> bool {
-    matches!(name, "t" | "pi" | "and" | "or" | "not")
-        || ENERGIES.iter().any(|(energy, _)| *energy == name)
-        || symdiff::formula::FUNCTIONS.iter().any(|function| function.name == name && function.is_reserved())
+    meaning(name).is_some()
 }
 
 /// What a name in a formula stands for; `None` where it stands for nothing.

@@ -32,6 +32,8 @@ pub struct Reader<'d, S> {
     pub unread: Vec<(String, Vec<(Sensor, Dimension)>)>,
     /// Names of joints that had errors, so that of what kind they are is not known.
     pub unread_joints: Vec<String>,
+    /// Names of outputs that had errors.
+    pub unread_outputs: Vec<String>,
     /// States that are known before they are read.
     pub declared: DeclaredStates,
     /// A name of its own that the formula being read may use, and its dimension.
@@ -286,8 +288,8 @@ impl<S: SymbolTable> Reader<'_, S> {
                 false => "a name is made of letters, digits and `_`, a letter first",
             };
             self.error(entry.key_span.clone(), message, help.to_owned());
-        } else if names::is_reserved(name) {
-            let message = format!("`{name}` cannot be the name of {what}: it has a meaning of its own in formulas");
+        } else if let Some(meaning) = names::meaning(name) {
+            let message = format!("`{name}` cannot be the name of {what}: in formulas it is {meaning}");
             self.error(entry.key_span.clone(), message, None);
             return false;
         }

@@ -26,11 +26,6 @@ impl Unit {
         value * self.times / self.over
     }
 
-    /// A value in SI, in this unit.
-    pub fn of_si(self, value: f64) -> f64 {
-        value * self.over / self.times
-    }
-
     /// Whether values need no conversion.
     pub fn is_si(self) -> bool {
         self.times == self.over

@@ -40,6 +40,11 @@ impl<S: SymbolTable> Reader<'_, S> {
         name.split_once('.').is_some_and(|(owner, _)| self.unread_joints.iter().any(|unread| unread == owner))
     }
 
+    /// Whether a name is that of an output that had errors.
+    pub fn is_unread_output(&self, name: &str) -> bool {
+        self.unread_outputs.iter().any(|unread| unread == name)
+    }
+
     fn unread_sensor(&self, place: usize, measure: Sensor) -> Symbol {
         Symbol::Sensor { effect: self.model.effects() + place, measure }
     }

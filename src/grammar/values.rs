@@ -14,6 +14,13 @@ schema_only! {
         Text(String),
     }
 
+    /// A unit, `mm` or `N*s/m`; `1` of a number.
+    #[schemars(untagged, inline)]
+    pub enum UnitName {
+        Name(String),
+        One(f64),
+    }
+
     /// Components along x and y, and in space along z, which is 0 where it is left out.
     #[schemars(untagged, inline)]
     pub enum Components {

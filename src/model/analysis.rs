@@ -150,6 +150,9 @@ fn known_output(reader: &mut Reader, node: &Node) -> Option<(String, Option<Dime
     if let Some(output) = found {
         return Some((name, output.dimension));
     }
+    if reader.is_unread_output(&name) {
+        return None;
+    }
     let help = suggest::help(&name, "outputs", reader.model.outputs.iter().map(|output| output.name.as_str()));
     reader.error(node.span.clone(), format!("unknown output `{}`", clip(&name)), help);
     None

@@ -71,6 +71,8 @@ pub struct Description {
     pub requirements: Vec<Requirement>,
     /// Units in which outputs and reduced outputs are shown, by their names; the others in SI.
     pub display: BTreeMap<String, DisplayUnit>,
+    /// Units other than SI in which parameters are written, by their names.
+    pub parameter_units: BTreeMap<String, DisplayUnit>,
     /// How time is stepped.
     pub simulation: Simulation,
     /// Which bounds are asked for.
@@ -214,6 +216,7 @@ impl Description {
             reduced: Vec::new(),
             requirements: Vec::new(),
             display: BTreeMap::new(),
+            parameter_units: BTreeMap::new(),
             simulation: Simulation {
                 duration: 1.0,
                 stepping: Stepping::Fixed(1e-3),

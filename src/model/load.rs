@@ -205,6 +205,7 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
         variable: None,
         unread: Vec::new(),
         unread_joints: Vec::new(),
+        unread_outputs: Vec::new(),
         declared: DeclaredStates::default(),
         kinds: Vec::new(),
         corners: Vec::new(),

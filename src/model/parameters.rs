@@ -18,9 +18,10 @@ use super::overrides::Override;
 use super::{mjcf, notation, urdf};
 use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
+use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
-use crate::grammar::unit::Unit;
+use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -203,12 +204,28 @@ fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::Place
 /// Notes a parameter's dimension and unit.
 fn settle(reader: &mut Reader, draft: &Draft, index: usize, kind: Kind) {
     reader.kinds[index] = kind;
+    if let Some(unit) = written_unit(draft) {
+        reader.model.parameter_units.insert(reader.model.parameters[index].name.clone(), unit);
+    }
     let declared = draft.unit.filter(|unit| unit.is_si()).and(draft.spec.unit.as_ref()).and_then(Node::scalar);
     reader.model.parameters[index].unit = match (declared, kind) {
         (Some(unit), _) => unit.text.trim().to_owned(),
         (None, Kind::Known { dimension, .. }) => dimension.unit(),
         _ => String::new(),
     };
+}
+
+/// The unit that is declared, or that stands behind the value; `None` where it is of SI.
+fn written_unit(draft: &Draft) -> Option<DisplayUnit> {
+    let text = |node: &Option<Node>| Some(node.as_ref()?.scalar()?.text.clone());
+    let (unit, text) = match (draft.unit, &draft.value) {
+        (Some(unit), _) => (unit, text(&draft.spec.unit)?),
+        (None, Some(Written::Quantity { unit, .. })) => {
+            (*unit, number_and_unit(&text(&draft.spec.value)?)?.1.to_owned())
+        }
+        _ => return None,
+    };
+    (!unit.is_si()).then(|| DisplayUnit::new(&text, unit))
 }
 
 /// The value in SI and its dimension.

@@ -86,8 +86,10 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
     let mut asked = KINDS.into_iter().filter_map(|(key, kind)| Some((key, kind, fields.get(key)?)));
     let Some((key, kind, node)) = asked.next() else {
         let keys = KINDS.map(|(key, _)| key);
-        let help = format!("one of {}, with a formula: `stroke: {{ range: slider.x }}`", list(&keys));
-        reader.error(entry.key_span.clone(), "a reduced output needs to say what of the motion it is", help);
+        if fields.lacks_all(&keys) {
+            let help = format!("one of {}, with a formula: `stroke: {{ range: slider.x }}`", list(&keys));
+            reader.error(entry.key_span.clone(), "a reduced output needs to say what of the motion it is", help);
+        }
         return;
     };
     if let Some((second, ..)) = asked.next() {

@@ -137,35 +137,31 @@ const ONLY_POSITIONS: &str = "only positions are guessed: velocities follow from
 pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
     let (mappings, formulas): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| reduced::is_one(entry));
     let reduced: Vec<&str> = mappings.iter().map(|entry| entry.key.as_str()).collect();
-    for (entry, unit) in formulas.into_iter().filter_map(|entry| display::formula(reader, entry)).collect::<Vec<_>>() {
-        let entry = &entry;
+    for entry in formulas {
         let known = reader.model.outputs.len();
-        reader.name_of_output(entry);
-        if !reduced::is_of_motion(reader, entry, &reduced) {
-            continue;
-        }
-        match parts(reader, entry) {
-            Some(parts) => {
-                for output in parts {
-                    add(reader, entry, output);
-                }
-            }
-            None => {
-                if let Some(output) = output(reader, entry, entries) {
-                    add(reader, entry, output);
-                }
+        if let Some((entry, unit)) = display::formula(reader, entry)
+            && reader.name_of_output(&entry)
+            && reduced::is_of_motion(reader, &entry, &reduced)
+        {
+            let found = parts(reader, &entry).or_else(|| Some(vec![output(reader, &entry, entries)?]));
+            found.into_iter().flatten().for_each(|output| add(reader, &entry, output));
+            for place in known..reader.model.outputs.len() {
+                let Output { name, dimension, .. } = reader.model.outputs[place].clone();
+                unit.iter().for_each(|unit| display::read(reader, unit, &name, dimension));
             }
         }
-        for place in known..reader.model.outputs.len() {
-            let Output { name, dimension, .. } = reader.model.outputs[place].clone();
-            unit.iter().for_each(|unit| display::read(reader, unit, &name, dimension));
+        if reader.model.outputs.len() == known {
+            reader.unread_outputs.push(entry.key.clone());
         }
     }
     // These may be of outputs that stand behind them.
     for entry in mappings {
-        reader.name_of_output(entry);
-        if reduced::is_of_motion(reader, entry, &reduced) {
+        let known = reader.model.reduced.len();
+        if reader.name_of_output(entry) && reduced::is_of_motion(reader, entry, &reduced) {
             reduced::read(reader, entry);
+        }
+        if reader.model.reduced.len() == known {
+            reader.unread_outputs.push(entry.key.clone());
         }
     }
 }
@@ -240,11 +236,9 @@ fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
 }
 
 impl Reader<'_> {
-    /// An output may be called like its quantity (`energy: energy`), but needs a plain name for files.
-    fn name_of_output(&mut self, entry: &Entry) {
-        if !crate::grammar::names::is_reserved(&entry.key) {
-            self.name(entry, "an output");
-        }
+    /// An output may be called like what it shows (`energy: energy`), but needs a plain name for files.
+    fn name_of_output(&mut self, entry: &Entry) -> bool {
+        crate::grammar::names::is_reserved(&entry.key) || self.name(entry, "an output")
     }
 }
 

@@ -7,6 +7,7 @@ use super::file;
 use super::reduced::{self, Source};
 use crate::grammar::Symbol;
 use crate::grammar::dimension::{self, Kind};
+use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
@@ -153,7 +154,8 @@ fn required(
     (of_reduced, times): (bool, (f64, f64)),
 ) -> Requirement {
     let (mut slacks, mut limits) = (Vec::new(), Vec::new());
-    let unit = limited.iter().find_map(|limited| limited.own.dimension.or(limited.limit.dimension));
+    let dimension = limited.iter().find_map(|limited| limited.own.dimension.or(limited.limit.dimension));
+    let display = declared(reader, &limited[0].of, dimension);
     for Limited { of, own, limit, is_upper } in limited {
         let constant = reader.evaluate(&limit.formula, 0).filter(|_| !reader.is_uncertain(&limit.formula));
         let mut note = |of: &str, sign: f64, is_upper: bool| {
@@ -175,22 +177,34 @@ fn required(
             }
         }
     }
-    let unit = unit.map_or_else(String::new, Dimension::unit);
+    let unit = dimension.map_or_else(String::new, Dimension::unit);
     let times = (!of_reduced).then_some(times);
-    Requirement { name: entry.key.clone(), text, unit, slacks, places: Vec::new(), times, limits }
+    Requirement { name: entry.key.clone(), text, unit, display, slacks, places: Vec::new(), times, limits }
+}
+
+/// Names and numbers of a formula.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')))
+}
+
+/// The unit that the model declares for the first output of what is limited, where the margin has its dimension.
+fn declared(reader: &Reader, of: &str, dimension: Option<Dimension>) -> Option<DisplayUnit> {
+    let unit = words(of).find_map(|word| reader.model.display.get(word))?;
+    dimension.is_none_or(|dimension| unit.dimension().fits(dimension)).then(|| unit.clone())
 }
 
 /// Whether a text names a reduced output.
 fn names_reduced(reader: &Reader, text: &str) -> bool {
-    let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
-    let mut words = text.split(|c| !is_part(c));
-    words.any(|word| reader.model.reduced.iter().any(|reduced| reduced.name == word))
+    words(text).any(|word| reader.model.reduced.iter().any(|reduced| reduced.name == word))
 }
 
 /// The formula of reduced outputs and parameters in a part of a scalar.
 fn part_of_reduced(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Option<Source> {
     let scalar = reader.scalar(node, "a formula")?;
     let formula: Formula = reader.parse(node, scalar, range.clone())?;
+    if formula.names().any(|(name, _)| reader.is_unread_output(name)) {
+        return None;
+    }
     let mut unknown = None;
     for (name, span) in formula.names() {
         if reader.model.reduced.iter().any(|reduced| reduced.name == name) {

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::grammar::display_unit::DisplayUnit;
+
 use super::{RequirementSummary, YieldSummary};
 
 /// How a requirement counts for tolerances.
@@ -62,6 +64,9 @@ pub struct NotMet {
     pub requirement: String,
     /// Its SI unit.
     pub unit: String,
+    /// The unit in which people see the margin, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// Its margin with the tightest tolerances: negative.
     pub margin: f64,
     /// How far that may be off.

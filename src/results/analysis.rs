@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::OutputBounds;
+use crate::grammar::display_unit::DisplayUnit;
 
 /// Kind of analysis, with its result for the nominal configuration.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -33,6 +34,9 @@ pub struct ValueSummary {
     pub output: String,
     /// SI unit; empty where dimensionless or unknown.
     pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// With every parameter at its nominal value.
     pub nominal: f64,
     /// By every method: its name, lower and upper bound, and error.
@@ -50,6 +54,7 @@ impl ValueSummary {
         Self {
             output: output.name.clone(),
             unit: output.unit.clone(),
+            display: output.display.clone(),
             nominal: first(&output.nominal),
             bounds: bounds.collect(),
         }

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::grammar::display_unit::DisplayUnit;
+
 /// Whether a requirement is fulfilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -34,6 +36,9 @@ pub struct RequirementSummary {
     pub text: String,
     /// SI unit of the margin; empty where dimensionless or unknown.
     pub unit: String,
+    /// The unit in which people see the margin, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// Whether it is fulfilled.
     pub verdict: Verdict,
     /// Whether certified bounds prove the verdict.

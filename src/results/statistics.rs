@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::grammar::display_unit::DisplayUnit;
+
 /// An estimate with its error: `sampling` is the half width of the 95 % confidence interval, `error` what the surrogate and the time steps
 /// may add.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -111,6 +113,9 @@ pub struct OutputStatisticsSummary {
     pub output: String,
     /// SI unit.
     pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// When, s.
     pub time: f64,
     /// Bounds over the box: every case.

@@ -126,6 +126,9 @@ pub struct ParameterSummary {
     pub name: String,
     /// Its SI unit; empty where none is known.
     pub unit: String,
+    /// The unit in which people see it, where the model writes it in another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// Nominal value.
     pub nominal: f64,
     /// Lower end of the interval.

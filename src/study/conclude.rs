@@ -214,6 +214,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .map(|parameter| ParameterSummary {
                 name: parameter.name.clone(),
                 unit: parameter.unit.clone(),
+                display: study.description.parameter_units.get(&parameter.name).cloned(),
                 nominal: parameter.nominal,
                 lower: parameter.lower,
                 upper: parameter.upper,

@@ -209,7 +209,8 @@ pub fn uncertain(description: &Description) -> (Vec<ParameterSummary>, Parameter
     let interval = |parameter: &crate::model::Parameter| match parameter.value {
         ParameterValue::Interval { nominal, lower, upper } => {
             let (name, unit) = (parameter.name.clone(), parameter.unit.clone());
-            Some(ParameterSummary { name, unit, nominal, lower, upper })
+            let display = description.parameter_units.get(&name).cloned();
+            Some(ParameterSummary { name, unit, display, nominal, lower, upper })
         }
         ParameterValue::Formula(_) => None,
     };

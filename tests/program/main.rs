@@ -7,6 +7,7 @@ mod bad_models;
 mod book;
 mod cli;
 mod cost;
+mod declared_units;
 mod dependencies;
 mod docs_effects;
 mod everyday;

@@ -50,6 +50,46 @@ fn the_models_keep_to_the_schema_and_name_it() {
     }
 }
 
+/// What the reader accepts, the schema accepts: what is no model of the shipped folder, too.
+#[test]
+fn the_schema_accepts_what_can_be_read() {
+    let validator = validator();
+    let examples = yaml_files("docs/examples")
+        .into_iter()
+        .map(|path| (path.display().to_string(), fs::read_to_string(path).unwrap()));
+    // Bodies without mass in an assembly, the unit of a number, units in the table of a law.
+    let own = [
+        "analysis: kinematics
+assemblies: { arm: { bodies: { bar: { points: { A: [0, 0], B: [0.3, 0] } } } } }
+instances: { one: { of: arm } }
+joints: { hinge: { revolute: [ground, one.bar.A] }, drive: { motor: { on: hinge, speed: 1 } } }
+outputs: { angle: { formula: one.bar.angle*180/pi, unit: 1 } }
+simulation: { duration: 1 }
+",
+        "tables: { lift: { points: [[0, 0], [90, 0.5], [180, 2]], units: [deg, 1] } }
+parameters:
+  mass: { value: 2, unit: kg, interval: [1, 3], distribution: { table: [[1 kg, 0], [2000 g, 1.5], [3, 0]] } }
+  ratio: { value: 0.5, unit: 1, tolerance: 10% }
+bodies: { block: { mass: mass, coordinates: [x] } }
+effects: { push: { force: { on: block, value: [lift(t*(1 rad/s))*ratio*(1 N), 0] } } }
+outputs: { x: block.x }
+simulation: { duration: 1 }
+bounds: { chebyshev: { order: 3 } }
+",
+    ];
+    let own = own.iter().enumerate().map(|(place, text)| (format!("own model {place}"), (*text).to_owned()));
+    for (name, text) in examples.chain(own) {
+        let instance = as_json(&text).unwrap();
+        let errors: Vec<String> =
+            validator.iter_errors(&instance).map(|error| format!("{}: {error}", error.instance_path())).collect();
+        assert!(errors.is_empty(), "{name}: {errors:#?}");
+        if name.starts_with("own") {
+            let read = model::read_str(&name, &text, &[]);
+            assert!(!read.diagnostics.has_errors(), "{name}: {}", read.diagnostics.render(false));
+        }
+    }
+}
+
 /// As an editor reads a file; `None` where it is no YAML that can be JSON.
 fn as_json(text: &str) -> Option<serde_json::Value> {
     serde_yaml::from_str(text).ok()

@@ -1,11 +1,14 @@
 //! Bodies: solids and bars through their points.
 
 use svg::node::element::path::Data;
-use svg::node::element::{Circle, Group, Path, Title};
+use svg::node::element::{Group, Path, Title};
 
 use super::glyph::{block, line, pair, px};
 use super::view::{Px, View};
 use crate::results::DrawnBody;
+
+/// Of a body without a shape and with one place only, px: wide enough to be seen with the mark of its centre of mass in it.
+const BLOCK: [f64; 2] = [44.0, 28.0];
 
 /// Number of colours.
 const COLORS: usize = 6;
@@ -31,8 +34,7 @@ pub(super) fn body(body: &DrawnBody, index: usize, view: &View) -> Group {
     let group = Group::new().set("class", format!("body color{}", index % COLORS)).add(Title::new(body.name.clone()));
     let guide = body.guide.and_then(|axis| view.direction(axis));
     let group = match corners.as_slice() {
-        [one] if let Some(along) = guide => group.add(block(*one, along, Px::new(28.0, 18.0))),
-        [one] => group.add(Circle::new().set("cx", px(one.x)).set("cy", px(one.y)).set("r", 8)),
+        [one] => group.add(block(*one, guide.unwrap_or_else(|| own_axis(body, view)), Px::from(BLOCK))),
         [from, to] => group.add(line(*from, *to).set("class", "bar")),
         [first, others @ ..] => {
             let outline =
@@ -45,6 +47,12 @@ pub(super) fn body(body: &DrawnBody, index: usize, view: &View) -> Group {
         Some(center) => group.add(center_mark(view.px(center))),
         None => group,
     }
+}
+
+/// The x axis of a body in the plane; horizontal in space, where one place has no direction to be seen from every side.
+fn own_axis(body: &DrawnBody, view: &View) -> Px {
+    let (sin, cos) = body.angle.map_or((0.0, 1.0), |angle| (symdiff::math::sin(angle), symdiff::math::cos(angle)));
+    view.direction([cos, sin, 0.0]).unwrap_or_else(|| Px::new(1.0, 0.0))
 }
 
 /// The mark of a centre of mass: two quarters of a disc filled.

@@ -1,6 +1,7 @@
 //! A linear axis: a unit that makes its numbers short, ticks at 1, 2 or 5 times a power of ten, labels of equal precision.
 
-use super::prefix::{BaseUnit, ScaleUnit};
+use super::prefix::ScaleUnit;
+use crate::grammar::display_unit::ShownUnit;
 
 /// A range that is smaller than this, relative to its size, is rounding noise.
 const ROUNDING: f64 = 1e-12;
@@ -25,7 +26,7 @@ impl Axis {
     /// end. Whatever is not finite is passed over. What moves by less than `noise` is a constant.
     pub fn fit<'a>(
         values: impl Iterator<Item = f64>,
-        unit: impl Into<BaseUnit<'a>>,
+        unit: impl Into<ShownUnit<'a>>,
         ticks: usize,
         padding: f64,
         noise: f64,
@@ -131,14 +132,14 @@ mod tests {
 
     #[test]
     fn a_unit_that_is_asked_for_is_kept() {
-        let degrees = BaseUnit { text: "deg", si: std::f64::consts::PI / 180.0 };
+        let degrees = ShownUnit { text: "deg", si: std::f64::consts::PI / 180.0 };
         let axis = Axis::fit([0.0, std::f64::consts::PI].into_iter(), degrees, 4, 0.0, 0.0);
         assert_eq!(
             (axis.title("angle"), labels(&axis)),
             ("angle [deg]".into(), ["0", "50", "100", "150"].map(String::from).into())
         );
         assert!((axis.place(0.5 * std::f64::consts::PI) - 0.5).abs() < 1e-15);
-        let millimetres = BaseUnit { text: "mm", si: 1e-3 };
+        let millimetres = ShownUnit { text: "mm", si: 1e-3 };
         assert_eq!(Axis::fit([0.0, 0.15].into_iter(), millimetres, 4, 0.0, 0.0).title("x"), "x [mm]");
         assert_eq!(Axis::fit([0.0, 4e-6].into_iter(), millimetres, 4, 0.0, 0.0).title("x"), "x [µm]");
     }

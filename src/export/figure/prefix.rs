@@ -1,6 +1,6 @@
 //! Units as a scale shows them: with the prefix that makes its numbers short (kN, µm), or a power of ten where there is no such prefix.
 
-use crate::results::OutputBounds;
+use crate::grammar::display_unit::ShownUnit;
 
 /// Sizes that read well without a prefix.
 const PLAIN: std::ops::Range<f64> = 0.1..1e4;
@@ -30,30 +30,6 @@ const PREFIXED: [(&str, i32); 10] = [
     ("rad", 0),
 ];
 
-/// The unit that is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BaseUnit<'a> {
-    /// As models write it: `N*m`.
-    pub text: &'a str,
-    /// What one of it is in SI.
-    pub si: f64,
-}
-
-impl<'a> From<&'a str> for BaseUnit<'a> {
-    /// An SI unit.
-    fn from(text: &'a str) -> Self {
-        Self { text, si: 1.0 }
-    }
-}
-
-impl<'a> BaseUnit<'a> {
-    /// Of an output: what the model asks for, or SI.
-    pub fn of(output: &'a OutputBounds) -> Self {
-        let si = Self::from(output.unit.as_str());
-        output.display.as_ref().map_or(si, |display| Self { text: &display.text, si: display.si() })
-    }
-}
-
 /// A unit as a scale shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleUnit {
@@ -65,8 +41,8 @@ pub struct ScaleUnit {
 
 impl ScaleUnit {
     /// For values up to `size` in SI.
-    pub fn of<'a>(unit: impl Into<BaseUnit<'a>>, size: f64) -> Self {
-        let BaseUnit { text, si } = unit.into();
+    pub fn of<'a>(unit: impl Into<ShownUnit<'a>>, size: f64) -> Self {
+        let ShownUnit { text, si } = unit.into();
         let scaled = Self::prefixed(text, size / si);
         Self { factor: scaled.factor * si, ..scaled }
     }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::html::{escaped, number};
-use super::tables::{list, section, table, text, with_unit};
+use super::tables::{list, section, shown, table, text};
 
 /// The tolerance stack of each output at the time at which it varies most, and yields; nothing where the model asks for none.
 pub(super) fn statistics(summary: &Value) -> String {
@@ -17,8 +17,7 @@ fn stack(found: &Value) -> String {
         return String::new();
     }
     let rows = outputs.iter().map(|output| {
-        let unit = text(output, "unit");
-        let value = |of: &Value| with_unit(of, unit);
+        let value = |of: &Value| shown(output, of);
         let spread = |key: &str| format!("± {}", value(&output[key]));
         let [lower, upper] = [0, 1].map(|side| value(&output["worst_case"][side]));
         let quantiles = list(output, "quantiles");

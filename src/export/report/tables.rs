@@ -34,8 +34,17 @@ pub(super) fn section(class: &str, heading: &str, content: &str) -> String {
     format!("<section class=\"{class}\"><h3>{heading}</h3>{content}</section>\n")
 }
 
+/// A number of `object`, or within it, in the unit in which `object` is shown: the declared one, or SI.
+pub(super) fn shown(object: &Value, value: &Value) -> String {
+    let display = &object["display"];
+    match (display["unit"].as_str(), display["si"].as_f64(), value.as_f64()) {
+        (Some(unit), Some(si), Some(value)) => with_unit(&Value::from(value / si), unit),
+        _ => with_unit(value, text(object, "unit")),
+    }
+}
+
 /// A number with its unit, where it has one.
-pub(super) fn with_unit(value: &Value, unit: &str) -> String {
+fn with_unit(value: &Value, unit: &str) -> String {
     let number = number(value);
     if unit.is_empty() { number } else { format!("{number}&#8239;{}", escaped(&unit.replace('*', "·"))) }
 }
@@ -51,12 +60,11 @@ pub(super) fn requirements(summary: &Value) -> String {
             _ => "?",
         };
         let certified = if requirement["certified"] == Value::Bool(true) { ", proven" } else { "" };
-        let unit = text(requirement, "unit");
         vec![
             format!("{}<br><code>{}</code>", escaped(text(requirement, "name")), escaped(text(requirement, "text"))),
             format!("<span class=\"verdict {}\">{sign} {}{certified}</span>", escaped(verdict), escaped(verdict)),
-            with_unit(&requirement["margin"], unit),
-            with_unit(&requirement["error"], unit),
+            shown(requirement, &requirement["margin"]),
+            shown(requirement, &requirement["error"]),
             escaped(text(requirement, "decides")),
         ]
     });
@@ -73,15 +81,14 @@ pub(super) fn requirements(summary: &Value) -> String {
 /// Numbers of whole motions; nothing where the model asks for none.
 pub(super) fn reduced(summary: &Value) -> String {
     let rows = list(summary, "reduced").iter().map(|reduced| {
-        let unit = text(reduced, "unit");
         let bands = list(reduced, "bands").iter().map(|band| {
-            let [lower, upper] = ["lower", "upper"].map(|side| with_unit(&band[side], unit));
+            let [lower, upper] = ["lower", "upper"].map(|side| shown(reduced, &band[side]));
             let unresolved = if band["unresolved"] == Value::Bool(true) { ", unreliable" } else { "" };
             format!("{lower} to {upper} ({}{unresolved})", escaped(text(band, "method")))
         });
         vec![
             format!("{}<br><code>{}</code>", escaped(text(reduced, "name")), escaped(text(reduced, "of"))),
-            with_unit(&reduced["nominal"], unit),
+            shown(reduced, &reduced["nominal"]),
             bands.collect::<Vec<_>>().join("<br>"),
         ]
     });
@@ -98,8 +105,7 @@ pub(super) fn parameters(summary: &Value) -> String {
         return section("parameters", "Parameters", "<p>No parameter is uncertain.</p>");
     }
     let rows = parameters.iter().map(|parameter| {
-        let unit = text(parameter, "unit");
-        let cells = ["nominal", "lower", "upper"].map(|key| with_unit(&parameter[key], unit));
+        let cells = ["nominal", "lower", "upper"].map(|key| shown(parameter, &parameter[key]));
         std::iter::once(escaped(text(parameter, "name"))).chain(cells).collect()
     });
     section("parameters", "Parameters", &table(&["parameter", "nominal", "least", "greatest"], rows))
@@ -110,18 +116,17 @@ pub(super) fn bounds(summary: &Value) -> String {
     let peak = |error: &Value, side: &str| {
         let same = |peak: &&Value| ["output", "method"].iter().all(|key| peak[key] == error[key]);
         let peak = list(summary, "peaks").iter().find(same);
-        peak.map_or_else(String::new, |peak| with_unit(&peak[side]["value"], text(error, "unit")))
+        peak.map_or_else(String::new, |peak| shown(error, &peak[side]["value"]))
     };
     let rows = list(summary, "errors").iter().map(|error| {
-        let unit = text(error, "unit");
         let from = error.get("unresolved_from").map(|time| format!("from {} s", number(time)));
         vec![
             escaped(text(error, "output")),
             escaped(text(error, "method")),
             peak(error, "least"),
             peak(error, "greatest"),
-            with_unit(&error["width"], unit),
-            with_unit(&error["error"], unit),
+            shown(error, &error["width"]),
+            shown(error, &error["error"]),
             from.unwrap_or_default(),
         ]
     });

@@ -2,6 +2,7 @@
 
 use symdiff::Formula;
 
+use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 
 /// An output that is one number a motion.
@@ -71,7 +72,9 @@ pub struct Requirement {
     pub text: String,
     /// SI unit of the slacks; empty where dimensionless or unknown.
     pub unit: String,
-    /// Distance of the limits from the limited quantity.
+    /// The unit in which people see the slacks, where what is limited has one.
+    pub display: Option<DisplayUnit>,
+    /// How far the limits are from what is limited.
     pub slacks: Vec<Formula>,
     /// Places of these among the outputs, once they are there.
     pub places: Vec<usize>,

@@ -39,21 +39,26 @@ fn of_model(root: &mut Map<String, Value>) {
     let without_time =
         json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes"] } } });
     root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time]));
+    let kinematics = json!({ "required": ["analysis"], "properties": { "analysis": { "const": "kinematics" } } });
+    let massive = json!({ "bodies": massive(), "assemblies": { "additionalProperties": { "properties": { "bodies": massive() } } } });
+    let moved_by_forces =
+        |properties: Value| json!({ "if": { "not": kinematics }, "then": { "properties": properties } });
+    let not_only_points = json!({ "properties": { "ground": true }, "additionalProperties": { "not": only_points() } });
     let alone = json!({
         "required": ["outputs"],
         "anyOf": [{ "required": ["bodies"] }, { "required": ["instances"] }],
         "properties": {
             "bodies": {
                 "type": "object",
-                "minProperties": 1,
-                "properties": { "ground": true },
-                "additionalProperties": { "not": only_points() }
+                "minProperties": 1
             },
             "outputs": { "type": "object", "minProperties": 1 }
-        }
+        },
+        "allOf": [moved_by_forces(json!({ "bodies": not_only_points }))]
     });
     root.insert("if".to_owned(), json!({ "not": { "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }] } }));
     root.insert("then".to_owned(), alone);
+    root.insert("allOf".to_owned(), json!([moved_by_forces(massive)]));
     root.insert("dependentRequired".to_owned(), json!({ "base": ["urdf"], "controls": ["mjcf"] }));
     let robot = json!({ "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }] });
     root.insert("dependentSchemas".to_owned(), json!({ "limits": robot }));
@@ -143,24 +148,27 @@ fn only_points() -> Value {
     json!({ "required": ["points"], "maxProperties": 1 })
 }
 
-/// A body has mass where it can move and inertia where it can turn; a beam has its own, and a link of a robot.
-fn of_body(body: &mut Value) {
+/// Bodies have mass where they can move and inertia where they can turn, except where only the geometry of their motion is asked for; a
+/// beam has its own, and a link of a robot.
+fn massive() -> Value {
     let moves_by =
         |coordinates: Value| json!({ "properties": { "coordinates": { "contains": { "enum": coordinates } } } });
-    insert(body, "if", json!({ "required": ["beam"] }));
-    // The other may be `repeat`.
-    insert(body, "then", json!({ "maxProperties": 2 }));
-    insert(
-        body,
-        "else",
-        json!({
-            "if": only_points(),
+    json!({
+        "properties": { "ground": true },
+        "additionalProperties": {
+            "if": { "anyOf": [{ "required": ["beam"] }, only_points()] },
             "else": { "allOf": [
                 { "if": moves_by(json!(["x", "y", "z"])), "then": { "required": ["mass"] } },
                 { "if": moves_by(json!(["angle", "orientation"])), "then": { "required": ["inertia"] } }
             ] }
-        }),
-    );
+        }
+    })
+}
+
+fn of_body(body: &mut Value) {
+    insert(body, "if", json!({ "required": ["beam"] }));
+    // The other may be `repeat`.
+    insert(body, "then", json!({ "maxProperties": 2 }));
     limited(body, "mass", NONNEGATIVE);
     let coordinates = &mut body["properties"]["coordinates"];
     insert(coordinates, "minItems", json!(1));

@@ -24,7 +24,7 @@ pub use statistics::*;
 use values::*;
 
 use crate::grammar::mapping::grammar;
-use crate::grammar::values::{Components, Number, Rotation};
+use crate::grammar::values::{Components, Number, Rotation, UnitName};
 
 /// What the schema is called by those that refer to it.
 const SCHEMA_ID: &str = "https://raw.githubusercontent.com/mbint/mbint/main/schemas/mbint.schema.json";

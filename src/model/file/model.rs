@@ -165,7 +165,7 @@ grammar! {
         /// Its nominal value, perhaps with its deviation: `0.5 m ± 1%`.
         value: Option<Number>,
         /// Unit of the bare numbers given here, e.g. `mm` or `N*s/m`.
-        unit: Option<String>,
+        unit: Option<UnitName>,
         /// Largest deviation either way: `1%` of the value, or a quantity; or `+0.01 -0.02`.
         tolerance: Option<Number>,
         /// Smallest and largest value, also as `[490, 510] mm` in quotes; without `value`, the nominal is the middle.
@@ -204,6 +204,6 @@ grammar! {
         /// Whether the table is one period, after which it begins anew: first and last value are the same.
         periodic: Option<bool>,
         /// Units of argument and value, e.g. [ms, mm]; by default they are in SI units and fit anywhere.
-        units: Option<[String; 2]>,
+        units: Option<[UnitName; 2]>,
     }
 }

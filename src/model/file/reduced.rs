@@ -35,7 +35,7 @@ grammar! {
         /// What is observed.
         formula: Number,
         /// In which unit plots, reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
-        unit: Option<String>,
+        unit: Option<UnitName>,
     }
 
     /// One number a motion. Exactly one of the first keys says which.
@@ -85,7 +85,7 @@ grammar! {
         /// What the ordinate of `straightness` is held against.
         line: Option<Number>,
         /// In which unit reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
-        unit: Option<String>,
+        unit: Option<UnitName>,
     }
 
     /// Limits of an output at all times, or of a reduced output.

@@ -54,7 +54,7 @@ grammar! {
         /// A beta law over the interval.
         beta: Option<BetaLaw>,
         /// Pairs of a value, in the parameter's unit, and a density, linear between them; it need not be normalised.
-        table: Option<Vec<[f64; 2]>>,
+        table: Option<Vec<(Number, f64)>>,
     }
 
     /// A law without numbers.

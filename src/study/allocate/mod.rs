@@ -256,7 +256,8 @@ impl Allocator<'_> {
             let own = &self.model.requirements[place];
             let error = reserves[place];
             let margin = left * surface.scale(place) + error;
-            NotMet { requirement: own.name.clone(), unit: own.unit.clone(), margin, error }
+            let (requirement, unit, display) = (own.name.clone(), own.unit.clone(), own.display.clone());
+            NotMet { requirement, unit, display, margin, error }
         };
         let mut all: Vec<NotMet> =
             left.iter().enumerate().filter(|(_, left)| **left < 0.0 || left.is_nan()).map(of).collect();

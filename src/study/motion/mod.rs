@@ -157,6 +157,7 @@ impl Posed {
         let parameters = self.simulator.system.parameters.iter().map(|parameter| ParameterSummary {
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
+            display: description.parameter_units.get(&parameter.name).cloned(),
             nominal: parameter.nominal,
             lower: parameter.lower,
             upper: parameter.upper,

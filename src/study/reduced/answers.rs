@@ -75,6 +75,7 @@ impl Found {
             name: own.name.clone(),
             text: own.text.clone(),
             unit: own.unit.clone(),
+            display: own.display.clone(),
             verdict: Verdict::Undecided,
             certified: false,
             margin: f64::NAN,

@@ -5,6 +5,8 @@ use std::borrow::Cow;
 use symdiff::Formula;
 use symdiff::formula::Term;
 
+use crate::grammar::display_unit::DisplayUnit;
+use crate::grammar::unit::Unit;
 use crate::model::{Description, Output, Requirement};
 use crate::results::{Bounds, ContributionSummary, ErrorSummary, Summary};
 
@@ -58,5 +60,25 @@ pub fn shown(
     for error in &mut summary.errors {
         error.display = description.display.get(&error.output).cloned();
     }
+    for value in summary.analysis.iter_mut().flat_map(|analysis| &mut analysis.values) {
+        value.display = description.display.get(&value.output).cloned();
+    }
+    for own in summary.statistics.iter_mut().flat_map(|statistics| &mut statistics.summary.outputs) {
+        own.display = description.display.get(&own.output).cloned();
+    }
+    for point in &mut bounds.responses {
+        point.amplitude.display = of_amplitude(description, &point.name, &point.amplitude.unit);
+    }
     (bounds, summary)
+}
+
+/// The declared unit of a response's output over the load's unit.
+fn of_amplitude(description: &Description, name: &str, unit: &str) -> Option<DisplayUnit> {
+    let response = description.modes.responses.iter().find(|response| response.name == name)?;
+    let output = description.outputs.iter().find(|output| output.name == response.output)?;
+    let si = if output.unit.is_empty() { "1" } else { &output.unit };
+    let over = unit.strip_prefix(si)?;
+    let text = format!("{}{over}", description.display.get(&response.output)?.text);
+    let unit = Unit::parse(&text).ok()?;
+    Some(DisplayUnit::new(&text, unit))
 }

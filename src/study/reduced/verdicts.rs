@@ -5,6 +5,7 @@ use super::super::outcome::Results;
 use super::super::single::{Study, simulation_error};
 use super::Values;
 use super::ensemble::ReducedEnsemble;
+use crate::grammar::display_unit::ShownUnit;
 use crate::methods::Method;
 use crate::model::Requirement;
 use crate::numerics::{Sample, step_error};
@@ -97,11 +98,12 @@ impl Study<'_> {
         let limit = own.limits.first().map(|limit| limit.value.abs()).filter(|limit| *limit > 0.0);
         let [surrogate, time] = [part.map(|part| part.surrogate), part.map(|part| part.time)];
         let decides = (verdict == Verdict::Undecided)
-            .then(|| decides(lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_reliable));
+            .then(|| decides(own, lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_reliable));
         Ok(RequirementSummary {
             name: own.name.clone(),
             text: own.text.clone(),
             unit: own.unit.clone(),
+            display: own.display.clone(),
             verdict,
             certified: verdict == Verdict::Holds && self.is_certified(own, rows),
             margin,
@@ -244,7 +246,7 @@ impl Study<'_> {
 }
 
 /// What would decide a requirement.
-fn decides(lower: f64, [surrogate, time]: [f64; 2], is_reliable: bool) -> String {
+fn decides(own: &Requirement, lower: f64, [surrogate, time]: [f64; 2], is_reliable: bool) -> String {
     if !is_reliable || !(surrogate + time).is_finite() {
         return "reliable bounds: a higher order, shorter steps, or `bounds: { tolerance: … }`".to_owned();
     }
@@ -252,9 +254,11 @@ fn decides(lower: f64, [surrogate, time]: [f64; 2], is_reliable: bool) -> String
         return "a sample that fails: the bounds pass the limit, but no simulated sample does; a higher order"
             .to_owned();
     }
+    let unit = ShownUnit::of(&own.display, &own.unit);
+    let error = format!("{:.1e} {}", unit.of_si(surrogate.max(time)), unit.text);
     match surrogate > time {
-        true => format!("a higher order, or a smaller tolerance: the surrogate's error is {surrogate:.1e}"),
-        false => format!("shorter steps: their error is {time:.1e}"),
+        true => format!("a higher order, or a smaller tolerance: the surrogate's error is {}", error.trim_end()),
+        false => format!("shorter steps: their error is {}", error.trim_end()),
     }
 }
 

@@ -111,6 +111,7 @@ fn side_by_side(bounds: &Bounds, place: usize, output: &OutputStatistics) -> Opt
     Some(OutputStatisticsSummary {
         output: output.name.clone(),
         unit: output.unit.clone(),
+        display: None,
         time: *bounds.times.get(row)?,
         worst_case: [band.lower[row], band.upper[row]],
         worst_case_error: band.error.total[row],

@@ -1,5 +1,4 @@
-//! What the book shows is so: the tutorial's commands print what the page says, generated pages are current, and the examples can
-//! be assembled.
+//! What the book shows is so: commands print what pages say, generated pages are current, and the examples can be assembled.
 //!
 //! `MBINT_UPDATE_DOCS=1 cargo test --test program book` writes the pages anew.
 
@@ -8,9 +7,11 @@ use std::process::Command;
 
 use mbint::inner::{model, study};
 
+mod gallery;
 mod joints;
 mod keys;
 mod methods;
+mod shown;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_mbint");
 
@@ -33,43 +34,63 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     fences.filter_map(|block| block.strip_prefix(language)?.strip_prefix('\n')).collect()
 }
 
-/// The commands of a console block, each after `$ `, with what they print.
-fn run_commands(block: &str, folder: &Path) -> String {
-    let path = format!("{}:{}", Path::new(BINARY).parent().unwrap().display(), std::env::var("PATH").unwrap());
-    let commands = block.lines().filter_map(|line| line.strip_prefix("$ "));
-    let print = |command: &str| {
-        let shell = format!("{{ {command}\n}} 2>&1");
-        let output = Command::new("sh").args(["-c", &shell]).current_dir(folder).env("PATH", &path).output().unwrap();
-        format!("$ {command}\n{}", String::from_utf8(output.stdout).unwrap())
-    };
-    commands.map(print).collect()
-}
-
-/// Lines without seconds, which are the only numbers of three decimals at the end of a line.
-fn without_seconds(text: &str) -> Vec<&str> {
-    let is_seconds = |word: &str| word.split_once('.').is_some_and(|(_, decimals)| decimals.len() == 3);
-    let line = |line: &'_ str| match line.rsplit_once(' ') {
-        Some((rest, last)) if is_seconds(last) => rest.trim_end().len(),
-        _ => line.len(),
-    };
-    text.lines().map(|text| &text[..line(text)]).collect()
-}
-
-#[test]
-#[cfg(unix)]
-fn the_tutorials_commands_print_what_it_says() {
-    let file = docs().join("tutorial.md");
-    let page = std::fs::read_to_string(&file).unwrap();
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("wiper.yaml"), blocks(&page, "yaml")[0]).unwrap();
-    let mut current = page.clone();
-    for block in blocks(&page, "console") {
-        let printed = run_commands(block, folder.path());
-        if without_seconds(&printed) != without_seconds(block) {
-            current = current.replacen(block, &printed, 1);
+/// Pages of the book; decisions tell of what was, so that their figures are not those of today.
+fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() && !path.ends_with("decisions") {
+            pages(&path, into);
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            into.push(path);
         }
     }
-    expect_page(&file, &current);
+}
+
+/// Figures of pages with commands that are no results: of definitions, of laws, and of other runs, which are said to be others.
+const NO_RESULTS: [(&str, &[&str]); 5] = [
+    // Lengths that are mixed up.
+    ("guides/check.md", &["150", "150"]),
+    // Of rims, of the number of pairs, and Hertz's duration.
+    ("guides/contact.md", &["120°", "400", "144,", "2.94"]),
+    // A year, and what is left of a model that `tests/models/controllers.rs` compares with a closed form.
+    ("guides/states.md", &["(2009),", "−1.79°", "1.93°", "−3.22°", "2.81°."]),
+    ("guides/trajectories.md", &["(2008),"]),
+    // Of an allocation's first lines, and a yield that is asked for.
+    ("tolerances.md", &["3293", "99.73"]),
+];
+
+#[test]
+#[ignore = "runs all commands of the book; half a minute"]
+#[cfg(unix)]
+fn commands_print_what_pages_say() {
+    let mut files = Vec::new();
+    pages(&docs(), &mut files);
+    let mut with_commands = 0;
+    let mut wrong = String::new();
+    for file in files {
+        let page = std::fs::read_to_string(&file).unwrap();
+        if blocks(&page, "console").is_empty() {
+            continue;
+        }
+        with_commands += 1;
+        let folder = tempfile::tempdir().unwrap();
+        if let Some(current) = shown::current(&page, folder.path()) {
+            if std::env::var_os("MBINT_UPDATE_DOCS").is_some() {
+                std::fs::write(&file, &current).unwrap();
+            }
+            wrong += &format!("{} is out of date; MBINT_UPDATE_DOCS=1 writes:\n{current}\n", file.display());
+        }
+        let name = file.strip_prefix(docs()).unwrap().to_str().unwrap();
+        let known = NO_RESULTS.iter().find(|(page, _)| *page == name).map_or(&[][..], |(_, known)| known);
+        let unfounded: Vec<String> =
+            shown::unfounded(&page).into_iter().filter(|word| !known.contains(&word.as_str())).collect();
+        if !unfounded.is_empty() {
+            wrong += &format!("{}: no command of the page prints {unfounded:?}\n", file.display());
+        }
+    }
+    assert!(with_commands >= 12, "only {with_commands} pages have commands");
+    assert!(wrong.is_empty(), "{wrong}");
 }
 
 #[test]
