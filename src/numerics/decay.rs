@@ -18,7 +18,8 @@ const SLOWEST: f64 = 0.99;
 /// Size of the terms beyond those of a polynomial; zero where degrees are too low to tell.
 ///
 /// A tensor's lack higher degrees along each axis. Those of a sparse set lack what lies beyond its front: a term there is as large as
-/// follows from the terms before it, the least of what the axes say, and those of all the front add up as what has any sign does.
+/// follows from the terms before it, the least of what the axes say. Terms of all the front, and those beyond them, add up by their
+/// squares, as what may have either sign does.
 pub fn truncation(basis: &SparseBasis, coefficients: &[f64]) -> f64 {
     let tails = (0..basis.dimension()).map(|axis| Tail::along(basis, coefficients, axis));
     if basis.is_tensor() {
@@ -34,9 +35,10 @@ pub fn truncation(basis: &SparseBasis, coefficients: &[f64]) -> f64 {
             least = least.min(rate * size(Some(before.last)).max(rate * size(before.earlier)));
             slowest = slowest.max(rate);
         }
-        Some(least / (1.0 - slowest))
+        // The squares of a series.
+        Some(least * least / (1.0 - slowest * slowest))
     };
-    basis.front().filter_map(beyond).map(|size| size * size).sum::<f64>().sqrt()
+    basis.front().filter_map(beyond).sum::<f64>().sqrt()
 }
 
 /// How the coefficients end along an axis.
