@@ -31,6 +31,8 @@ pub struct SparseBasis {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Before {
     pub axis: u8,
+    /// The index's degree along it.
+    pub degree: u8,
     /// The term of one degree less,
     pub last: u32,
     /// and that of two, where there is one.
@@ -199,6 +201,7 @@ fn front(degrees: &[u8], orders: &[u8], places: &FxHashMap<&[u8], u32>) -> Vec<V
         if !(0..index.len()).all(|axis| index[axis] == 0 || tells(axis)) || places.contains_key(index.as_slice()) {
             continue;
         }
+        let levels = index.clone();
         let mut lower = |axis: usize, by: u8| {
             let degree = index[axis];
             index[axis] = degree.checked_sub(by)?;
@@ -206,7 +209,10 @@ fn front(degrees: &[u8], orders: &[u8], places: &FxHashMap<&[u8], u32>) -> Vec<V
             index[axis] = degree;
             known
         };
-        let before = |axis: usize| Some(Before { axis: axis as u8, last: lower(axis, 1)?, earlier: lower(axis, 2) });
+        let before = |axis: usize| {
+            let (last, earlier) = (lower(axis, 1)?, lower(axis, 2));
+            Some(Before { axis: axis as u8, degree: levels[axis], last, earlier })
+        };
         let along: Vec<usize> =
             (0..orders.len()).filter(|&axis| term[axis] > 0).chain((term[axis] == 0).then_some(axis)).collect();
         if let Some(before) = along.into_iter().map(before).collect::<Option<Vec<Before>>>()
