@@ -6,10 +6,8 @@
 
 use symdiff::math;
 
-use super::sparse_basis::{Before, SparseBasis};
+use super::sparse_basis::{Before, LEAST_DEGREE, SparseBasis};
 
-/// Lower degrees are too few to tell a rate.
-pub(super) const LEAST_DEGREE: usize = 6;
 /// Share of the rate over all higher degrees that the rate at the highest has at least.
 const CAUTION: f64 = 0.7;
 /// Slower than this is taken for no decay at all.

@@ -1,7 +1,5 @@
 //! Intervals, and the range over two parts of a box with its error.
 
-use super::error::largest;
-
 /// An interval; NaN at both ends where what was to be bounded is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
@@ -44,7 +42,7 @@ impl Range {
 
     /// How far values from the least to the largest of others lie outside; zero where there are none, NaN of the unknown.
     pub fn misses(self, others: Self) -> f64 {
-        if others == EMPTY { 0.0 } else { largest([self.distance(others.lower), self.distance(others.upper)]) }
+        if others == EMPTY { 0.0 } else { self.distance(others.lower).max(self.distance(others.upper)) }
     }
 
     /// Whether `value` lies within, ends included; nothing lies within the unknown.

@@ -3,8 +3,10 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Vectorise, vectorised};
 
-use super::decay::LEAST_DEGREE;
 use super::sparse_grid::SparseGrid;
+
+/// Lower degrees along an axis are too few to tell how fast coefficients fall.
+pub(super) const LEAST_DEGREE: usize = 6;
 
 /// Points or lines treated together.
 pub(super) const LANES: usize = 8;

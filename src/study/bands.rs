@@ -45,7 +45,7 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
         let mut error = with(surrogate);
         let held: Vec<Range> = match is_sampled {
             true => simulated.clone(),
-            false => results.nominal_within(study, output)[..rows].to_vec(),
+            false => results.nominal_within(&study.domain, output)[..rows].to_vec(),
         };
         let contradicted = error.contradicted(found, &held);
         if contradicted.contains(&true) {

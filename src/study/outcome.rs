@@ -3,9 +3,8 @@
 use super::internal::InternalError;
 use super::kept::KeptPart;
 use super::reduced::Found;
-use super::single::Study;
 use crate::methods::{Ensemble, Method, MethodResult, Simulated, Stop, Validation};
-use crate::numerics::{EMPTY, Ledger, Range, Sample};
+use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample};
 use crate::results::{Bounds, MethodSummary, Summary};
 use crate::simulate::{ExcitedMode, Schedule, SingularPass, SwitchSearch};
 
@@ -49,9 +48,9 @@ impl Results {
     }
 
     /// An output's nominal values by row, each as a range; of none where the box does not hold the nominal parameters.
-    pub fn nominal_within(&self, study: &Study, output: usize) -> Vec<Range> {
+    pub fn nominal_within(&self, domain: &ParameterBox, output: usize) -> Vec<Range> {
         let nominal = &self.nominal.result.bands[output];
-        let is_within = study.domain.contains(&study.domain.nominal);
+        let is_within = domain.contains(&domain.nominal);
         nominal.iter().map(|own| if is_within && !own.lower.is_nan() { *own } else { EMPTY }).collect()
     }
 
