@@ -10,7 +10,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use crate::multibody::{ConstraintId, EquationId};
-use crate::numerics::{ParameterBox, Sample, ScanBounds, ScanGrid};
+use crate::numerics::{EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -169,6 +169,12 @@ pub trait Ensemble: Sync {
 
     /// Whether an output's formula has kinks.
     fn has_kink(&self, output: usize) -> bool;
+
+    /// From the least to the largest value of an output in a row that has been simulated so far, by whatever asked for it; empty where
+    /// that is not noted.
+    fn seen(&self, _row: usize, _output: usize) -> Range {
+        EMPTY
+    }
 
     /// Whether what has been found so far is enough.
     fn is_interrupted(&self) -> bool;

@@ -2,8 +2,8 @@
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
-    BandError, Correction, Differences, Range, Sample, TimeShift, Turning, corrections, largest, step_validation,
-    time_error, validation,
+    BandError, Correction, Differences, Ledger, Range, Sample, TimeShift, Turning, corrections, largest,
+    step_validation, time_error, validation,
 };
 
 /// Width of an output's range, relative to its values, that is rounding.
@@ -44,6 +44,13 @@ impl ValidationTable {
         let lines = self.values.chunks_exact(self.samples).zip(others.values.chunks_exact(others.samples));
         let values = lines.flat_map(|(own, others)| own.iter().chain(others).copied()).collect();
         Self { samples: self.samples + others.samples, values, ..*self }
+    }
+
+    /// Some of the samples.
+    pub fn pick(&self, places: &[usize]) -> Self {
+        let lines = self.values.chunks_exact(self.samples);
+        let values = lines.flat_map(|line| places.iter().map(|&place| line[place])).collect();
+        Self { samples: places.len(), values, ..*self }
     }
 
     /// One output's values in one row; NaN where it was not reached.
@@ -202,6 +209,17 @@ impl Validation {
         let mut effort = simulated.effort;
         effort += with_odd_steps;
         Ok(Self { points, direct, halved, odd, simulations, effort, simulated: Simulated::default(), spans })
+    }
+
+    /// How many of the samples are spread over the box; they come last.
+    pub fn spread(&self) -> usize {
+        self.points.len() - self.points.first().map_or(0, |xi| step_validation(xi.len()).len())
+    }
+
+    /// Notes what the samples have been simulated to be with the schedule's steps.
+    pub fn note(&self, ledger: &Ledger) {
+        let ValidationTable { motions, outputs, samples, values } = &self.direct;
+        ledger.note(0, (motions + outputs, *samples), values);
     }
 
     /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2, or since from some row

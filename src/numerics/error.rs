@@ -37,7 +37,7 @@ const FAR_OFF: f64 = 0.25;
 /// A surrogate's error below this share of the output's span is none to speak of, however narrow the band is there.
 const SMALL: f64 = 1e-3;
 
-/// A nominal value that lies outside of a band by less than this share of its own size does so by rounding.
+/// A simulated value that lies outside of a band by less than this share of its own size does so by rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// A band's errors over the output times.
@@ -115,21 +115,20 @@ impl BandError {
         Self { total, surrogate: largest(surrogate), time: largest(time), unresolved }
     }
 
-    /// Flags every row whose nominal value, where it is known, lies outside of its range and error: one of the two is wrong. What is
-    /// outside by rounding only is added to the error.
-    pub fn hold_nominal(&mut self, ranges: &[Range], nominal: &[f64]) {
-        for (row, (range, &nominal)) in ranges.iter().zip(nominal).enumerate() {
-            let distance = range.distance(nominal);
-            let is_unknown = nominal.is_nan() || self.total[row].is_nan();
-            if is_unknown || distance <= self.total[row] {
-                continue;
-            }
-            if distance <= ROUNDING * nominal.abs() {
-                self.total[row] = distance;
-            } else {
-                self.unresolved[row] = true;
+    /// Rows whose range and error leave out a value that was simulated, given from the least to the largest of these: one of the two
+    /// is wrong. What is outside by rounding only is added to the error.
+    pub fn contradicted(&mut self, ranges: &[Range], simulated: &[Range]) -> Vec<bool> {
+        let mut contradicted = vec![false; ranges.len()];
+        for (row, (range, simulated)) in ranges.iter().zip(simulated).enumerate() {
+            let beyond = range.misses(*simulated);
+            // Of the unknown nothing follows.
+            if beyond > self.total[row] {
+                let is_rounding = beyond <= ROUNDING * simulated.lower.abs().max(simulated.upper.abs());
+                contradicted[row] = !is_rounding;
+                self.total[row] = beyond;
             }
         }
+        contradicted
     }
 
     /// Largest of all rows; NaN if one is.
@@ -203,14 +202,16 @@ mod tests {
     }
 
     #[test]
-    fn a_nominal_value_outside_is_flagged() {
-        let ranges = [Range { lower: 0.0, upper: 1.0 }; 4];
-        let mut error = BandError::new(&ranges, &[0.0; 4], &[0.01; 4], 1.0, None);
-        error.hold_nominal(&ranges, &[1.01, 1.1, f64::NAN, -0.5]);
-        assert_eq!(error.unresolved, [false, true, false, true]);
-        let mut exact = BandError::new(&ranges, &[0.0; 4], &[0.0; 4], 1.0, None);
-        exact.hold_nominal(&ranges, &[1.0_f64.next_up(), 0.5, 0.0, 1.0]);
-        assert!(exact.unresolved == [false; 4] && ranges[0].upper + exact.total[0] >= 1.0_f64.next_up());
+    fn a_simulated_value_outside_of_range_and_error_contradicts() {
+        let ranges = [Range { lower: 0.0, upper: 1.0 }; 5];
+        let at = |value: f64| Range { lower: value, upper: value };
+        let simulated = [at(1.01), at(1.1), crate::numerics::EMPTY, at(-0.5), Range { lower: 0.5, upper: 3.0 }];
+        let mut error = BandError::new(&ranges, &[0.0; 5], &[0.01; 5], 1.0, None);
+        assert_eq!(error.contradicted(&ranges, &simulated), [false, true, false, true, true]);
+        let mut exact = BandError::new(&ranges[..2], &[0.0; 2], &[0.0; 2], 1.0, None);
+        let rounded = 1.0_f64.next_up();
+        assert_eq!(exact.contradicted(&ranges[..2], &[at(rounded), at(0.5)]), [false; 2]);
+        assert!(ranges[0].upper + exact.total[0] >= rounded);
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod extent;
 mod extremes;
 pub mod iso286;
 mod lattice;
+mod ledger;
 mod leja;
 mod observed_order;
 mod peak;
@@ -56,6 +57,7 @@ pub use error::{
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
+pub use ledger::Ledger;
 pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, limits, union};

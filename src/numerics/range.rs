@@ -32,6 +32,19 @@ impl Range {
         if self.contains(value) { 0.0 } else { (self.lower - value).max(value - self.upper) }
     }
 
+    /// Widened to values from the least to the largest of others; what is unknown stays so, and of none nothing follows.
+    pub fn with(self, others: Self) -> Self {
+        if self.lower.is_nan() || others == EMPTY {
+            return self;
+        }
+        Self { lower: self.lower.min(others.lower), upper: self.upper.max(others.upper) }
+    }
+
+    /// How far values from the least to the largest of others lie outside; zero where there are none, NaN of the unknown.
+    pub fn misses(self, others: Self) -> f64 {
+        if others == EMPTY { 0.0 } else { self.distance(others.lower).max(self.distance(others.upper)) }
+    }
+
     /// Whether `value` lies within, ends included; nothing lies within the unknown.
     pub fn contains(self, value: f64) -> bool {
         self.lower <= value && value <= self.upper

@@ -1,9 +1,12 @@
 //! Polynomials of many parameters with few terms: f(ξ) = Σ c_t Π C_j(ξᵢ), where most terms have few factors.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Vectorise, vectorised};
 
 use super::sparse_grid::SparseGrid;
+
+/// Lower degrees along an axis are too few to tell how fast coefficients fall.
+pub(super) const LEAST_DEGREE: usize = 6;
 
 /// Points or lines treated together.
 pub(super) const LANES: usize = 8;
@@ -22,6 +25,20 @@ pub struct SparseBasis {
     /// Highest degree along each axis.
     orders: Vec<u8>,
     fibres: Vec<Fibres>,
+    /// Indices just beyond the terms of a set that is no tensor, where degrees are high enough to tell what is missing.
+    front: Vec<Vec<Before>>,
+}
+
+/// What an index beyond the terms follows along one axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Before {
+    pub axis: u8,
+    /// The index's degree along it.
+    pub degree: u8,
+    /// The term of one degree less,
+    pub last: u32,
+    /// and that of two, where there is one.
+    pub earlier: Option<u32>,
 }
 
 /// A term is an earlier one times one polynomial of an axis on which that one is constant.
@@ -113,7 +130,19 @@ impl SparseBasis {
             fibres
         });
         let fibres = fibres.collect();
-        Self { dimension, factors, orders, fibres, degrees }
+        let front = if is_tensor(&orders, count) { Vec::new() } else { front(&degrees, &orders, &places) };
+        Self { dimension, factors, orders, fibres, front, degrees }
+    }
+
+    /// Whether all terms up to the highest degrees are there.
+    pub(super) fn is_tensor(&self) -> bool {
+        is_tensor(&self.orders, self.len())
+    }
+
+    /// Indices just beyond the terms: with one of them these stay closed. Only those along axes of a degree that tells what is missing;
+    /// none of a tensor.
+    pub(super) fn front(&self) -> impl Iterator<Item = &[Before]> {
+        self.front.iter().map(Vec::as_slice)
     }
 
     /// Number of parameters, k.
@@ -156,6 +185,45 @@ impl SparseBasis {
         assert_eq!(coefficients.len() * points.len(), out.len() * self.len(), "a value for each polynomial and point");
         vectorised(Evaluation { basis: self, points, coefficients, out, work });
     }
+}
+
+fn is_tensor(orders: &[u8], terms: usize) -> bool {
+    orders.iter().fold(1_usize, |count, &n| count.saturating_mul(usize::from(n) + 1)) == terms
+}
+
+/// The indices just beyond some terms, each with what it follows.
+fn front(degrees: &[u8], orders: &[u8], places: &FxHashMap<&[u8], u32>) -> Vec<Vec<Before>> {
+    let tells = |axis: usize| usize::from(orders[axis]) >= LEAST_DEGREE;
+    let (mut seen, mut front) = (FxHashSet::default(), Vec::new());
+    for (term, axis) in
+        degrees.chunks_exact(orders.len()).flat_map(|term| (0..orders.len()).map(move |axis| (term, axis)))
+    {
+        let mut index = term.to_vec();
+        index[axis] = index[axis].saturating_add(1);
+        if !(0..index.len()).all(|axis| index[axis] == 0 || tells(axis)) || places.contains_key(index.as_slice()) {
+            continue;
+        }
+        let levels = index.clone();
+        let mut lower = |axis: usize, by: u8| {
+            let degree = index[axis];
+            index[axis] = degree.checked_sub(by)?;
+            let known = places.get(index.as_slice()).copied();
+            index[axis] = degree;
+            known
+        };
+        let before = |axis: usize| {
+            let (last, earlier) = (lower(axis, 1)?, lower(axis, 2));
+            Some(Before { axis: axis as u8, degree: levels[axis], last, earlier })
+        };
+        let along: Vec<usize> =
+            (0..orders.len()).filter(|&axis| term[axis] > 0).chain((term[axis] == 0).then_some(axis)).collect();
+        if let Some(before) = along.into_iter().map(before).collect::<Option<Vec<Before>>>()
+            && seen.insert(index.clone())
+        {
+            front.push(before);
+        }
+    }
+    front
 }
 
 /// [`SparseBasis::values`], compiled for wide vectors.

@@ -2,15 +2,16 @@
 
 use symdiff::math;
 
+use super::bands::bands;
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results};
 use super::single::Study;
 use crate::assemble::ConstraintId;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
-use crate::numerics::{BandError, Sample, carries, time_error, time_error_certified};
+use crate::numerics::Sample;
 use crate::results::{
-    Band, Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds,
-    ParameterSummary, SingularSummary, Summary,
+    Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
+    SingularSummary, Summary,
 };
 use crate::simulate::{EnsembleRun, ExcitedMode, Observed, OpenConstraint, Schedule, SimulationError};
 
@@ -83,53 +84,6 @@ pub(super) fn contributions(study: &Study, results: &Results, rows: usize) -> Ve
     let of_output =
         |rows: &Vec<Option<Sensitivity>>| parameters.clone().map(|place| of_parameter(rows, place)).collect();
     outcome.result.sensitivities.iter().map(of_output).collect()
-}
-
-/// An output's band by every method, with its error.
-pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
-    let Some((validation, _)) = &results.validation else { return Vec::new() };
-    let nominal: Vec<f64> = results.nominal.result.bands[output][..rows].iter().map(|range| range.lower).collect();
-    let corrections = validation.corrections(output, rows, results.switched_from());
-    let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
-        let ranges = &outcome.result.bands[output][..rows];
-        let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
-        let by_halving = |row: usize| {
-            if let Some(halved) = halved {
-                return time_error_certified(ranges[row], halved[row]);
-            }
-            let (direct, halved) = (validation.direct.at(row, output), validation.halved.at(row, output));
-            let by_coordinates = outcome.result.steps[output][row];
-            let by_samples = time_error(ranges[row], &direct, &halved);
-            // Either is enough: what the validation samples near the ends show, if there are any, and what the coordinates' errors
-            // do to the ends, which is nothing where a range is saturated. (`min` passes over NaN.)
-            if by_coordinates.is_nan() || carries(ranges[row], &direct[..halved.len()]) {
-                by_samples.min(by_coordinates)
-            } else {
-                by_coordinates
-            }
-        };
-        // What halved steps have damped away too is added.
-        let damped = |row: usize| -> f64 {
-            results.damped.iter().map(|mode| mode.lost(output, results.schedule.time(row))).sum()
-        };
-        let time: Vec<f64> = (0..rows).map(|row| corrections[row].of(by_halving(row)) + damped(row)).collect();
-        let surrogate = &outcome.result.surrogate[output][..rows];
-        let mut error = BandError::new(ranges, surrogate, &time, validation.spans[output], study.request.tolerance);
-        // A part of the box need not hold the nominal parameters.
-        if study.domain.contains(&study.domain.nominal) {
-            error.hold_nominal(ranges, &nominal);
-        }
-        if let Some(unresolved) = results.unreliable_from().and_then(|row| error.unresolved.get_mut(row..)) {
-            unresolved.fill(true);
-        }
-        Band {
-            method: *method,
-            lower: ranges.iter().map(|range| range.lower).collect(),
-            upper: ranges.iter().map(|range| range.upper).collect(),
-            error,
-        }
-    };
-    results.methods.iter().enumerate().map(band).collect()
 }
 
 /// What happened where a sample stopped, for people.

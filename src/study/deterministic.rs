@@ -10,7 +10,7 @@ use super::reduced::Found;
 use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
-use crate::numerics::Range;
+use crate::numerics::{Ledger, Range};
 use crate::simulate::{Controller, Divided, Schedule, SimulationError};
 
 impl Study<'_> {
@@ -44,6 +44,7 @@ impl Study<'_> {
                 damped: self.damped_modes(&schedule),
                 nominal,
                 singular,
+                seen: Ledger::new(schedule.rows, self.simulator.program.outputs.len()),
                 validation: None,
                 methods: Vec::new(),
                 halved: Vec::new(),
@@ -53,6 +54,7 @@ impl Study<'_> {
             if self.request.is_empty() {
                 return Ok(results);
             }
+            self.note_nominal(&results.nominal.result, &results.seen);
             let begun = Instant::now();
             let nominal = &results.nominal.result;
             let finer_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));

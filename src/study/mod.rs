@@ -11,6 +11,7 @@
 mod allocate;
 mod analysis;
 mod assemblies;
+mod bands;
 mod comparison;
 mod conclude;
 mod controlled;

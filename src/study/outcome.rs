@@ -3,8 +3,8 @@
 use super::internal::InternalError;
 use super::kept::KeptPart;
 use super::reduced::Found;
-use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
-use crate::numerics::Sample;
+use crate::methods::{Ensemble, Method, MethodResult, Simulated, Stop, Validation};
+use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample};
 use crate::results::{Bounds, MethodSummary, Summary};
 use crate::simulate::{ExcitedMode, Schedule, SingularPass, SwitchSearch};
 
@@ -29,6 +29,8 @@ pub(super) struct Results {
     pub nominal: Outcome,
     /// Singular configurations that the nominal motion passes.
     pub singular: Vec<SingularPass>,
+    /// All that was simulated under the schedule, the nominal motion too where it lies in the box.
+    pub seen: Ledger,
     /// Absent where no method is asked for.
     pub validation: Option<(Validation, MethodSummary)>,
     pub methods: Vec<(Method, Outcome)>,
@@ -43,6 +45,19 @@ pub(super) struct Results {
 impl Results {
     pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
         std::iter::once(&self.nominal).chain(self.methods.iter().map(|(_, outcome)| outcome))
+    }
+
+    /// An output's nominal values by row, each as a range; of none where the box does not hold the nominal parameters.
+    pub fn nominal_within(&self, domain: &ParameterBox, output: usize) -> Vec<Range> {
+        let nominal = &self.nominal.result.bands[output];
+        let is_within = domain.contains(&domain.nominal);
+        nominal.iter().map(|own| if is_within && !own.lower.is_nan() { *own } else { EMPTY }).collect()
+    }
+
+    /// Notes all that an ensemble has seen.
+    pub fn note(&self, ensemble: &dyn Ensemble) {
+        let all = (0..ensemble.rows()).flat_map(|row| (0..ensemble.outputs()).map(move |output| (row, output)));
+        all.for_each(|(row, output)| self.seen.note_range(row, output, ensemble.seen(row, output)));
     }
 
     /// Samples that stopped.

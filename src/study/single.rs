@@ -8,11 +8,11 @@ use super::outcome::{Outcome, Ran, Results, Tried};
 use super::reduced::{Found, Store};
 use super::{Options, RunError};
 use crate::methods::{
-    BandBuilder, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated, Stop, Validation,
-    can_compose,
+    BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
+    Stop, Validation, can_compose,
 };
 use crate::model::{Description, SchemeChoice, Stepping};
-use crate::numerics::{ParameterBox, Sample};
+use crate::numerics::{Ledger, ParameterBox, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{
     Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance,
@@ -199,11 +199,14 @@ impl<'a> Study<'a> {
             Some((validation, _)) => self.switches((&schedule, tolerance), validation, &mut internal)?,
             None => None,
         };
-        let motions = self.motions(&schedule, tolerance, &progress);
+        let seen = Ledger::new(schedule.rows, self.simulator.program.outputs.len());
+        let motions = self.motions(&schedule, tolerance, &progress).noting(&seen);
         (self.stage)("nominal motion");
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
+        self.note_nominal(&nominal.result, &seen);
         if let Some((validation, _)) = &validation {
+            validation.note(&seen);
             methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
             if self.certify_time && !(self.interrupted)() {
                 let schedule = schedule.refined(2);
@@ -223,6 +226,7 @@ impl<'a> Study<'a> {
             damped,
             nominal,
             singular,
+            seen,
             validation,
             methods,
             halved,
@@ -233,6 +237,15 @@ impl<'a> Study<'a> {
             results.found = self.reduced(&results, tolerance, &progress)?;
         }
         Ok(results)
+    }
+
+    /// Notes the nominal motion where it is one of those that are bounded: a part of the box need not hold it.
+    pub(super) fn note_nominal(&self, nominal: &MethodResult, seen: &Ledger) {
+        if self.domain.contains(&self.domain.nominal) {
+            let bands = nominal.bands.iter().enumerate();
+            let rows = bands.flat_map(|(output, ranges)| ranges.iter().enumerate().map(move |own| (output, own)));
+            rows.for_each(|(output, (row, &range))| seen.note_range(row, output, range));
+        }
     }
 
     /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and of those that
@@ -246,7 +259,11 @@ impl<'a> Study<'a> {
         wanted: impl Fn(Method) -> bool,
     ) -> Result<Vec<(Method, Outcome)>, SimulationError> {
         let mut outcomes = Vec::new();
-        for (method, request) in self.request.methods().into_iter().filter(|(method, _)| wanted(*method)) {
+        let mut asked: Vec<(Method, &dyn BoundingMethod)> =
+            self.request.methods().into_iter().filter(|(method, _)| wanted(*method)).collect();
+        // What follows the response is held against what the others have simulated.
+        asked.sort_by_key(|(_, request)| request.samples().is_none());
+        for (method, request) in asked {
             if (self.interrupted)() {
                 break;
             }
@@ -268,6 +285,7 @@ impl<'a> Study<'a> {
             }
             outcomes.push((method, outcome));
         }
+        outcomes.sort_by_key(|(method, _)| *method);
         Ok(outcomes)
     }
 
@@ -291,6 +309,7 @@ impl<'a> Study<'a> {
             damped: Vec::new(),
             nominal,
             singular: Vec::new(),
+            seen: Ledger::default(),
             validation: None,
             methods: Vec::new(),
             halved: Vec::new(),

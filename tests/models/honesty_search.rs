@@ -48,7 +48,7 @@ pub fn assert_honest(bounds: &Bounds, name: &str, method: Method, truth: impl Fn
 }
 
 /// a cos φ over phases.
-fn cosine(a: f64, from: f64, to: f64) -> (f64, f64) {
+pub fn cosine(a: f64, from: f64, to: f64) -> (f64, f64) {
     let turns = (from / PI).ceil() as i64..=(to / PI).floor() as i64;
     let extremes = turns.map(|turn| if turn % 2 == 0 { a } else { -a });
     let values = extremes.chain([a * from.cos(), a * to.cos()]);

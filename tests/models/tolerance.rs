@@ -48,15 +48,16 @@ fn the_tolerance_is_met() {
 }
 
 /// Over two seconds cranks turn six times, and part by a quarter of a turn. Their angles took polynomials of degree 34 and 411
-/// simulations; compared with the course of one of them, they take degree 12.
+/// simulations, held against 17 samples; compared with the course of one of them, they took degree 12, and 324 simulations where each
+/// surrogate is held against new samples.
 #[test]
 fn what_turns_takes_few_simulations() {
-    let mut description = within(model("slider_crank").observing(&["slider.x"]), 1e-5, 200);
+    let mut description = within(model("slider_crank").observing(&["slider.x"]), 1e-5, 400);
     description.bounds.scan = Some(Scan { points: vec![13; 2] });
     let (bounds, summary) = run_methods(&description, None);
     let chebyshev = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap();
     println!("{chebyshev:?}");
-    assert!(chebyshev.simulations <= 150, "{}", chebyshev.simulations);
+    assert!(chebyshev.simulations <= 350, "{}", chebyshev.simulations);
     let [band, inside] = [Method::Chebyshev, Method::Scan].map(|method| band(&bounds.outputs[0], method));
     for (row, error) in band.error.total.iter().enumerate() {
         assert!(*error <= 1e-5 * 0.303 && !band.error.unresolved[row], "{row}: {error}");

@@ -97,10 +97,11 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
     // The paper's Σ|c| is too wide by a third of the band, however high the order, and leaves nothing out.
     let [wide, narrow] = sides("chebyshev.interval", "8");
     assert!((wide - 0.36).abs() < 0.02 && narrow < 1e-3, "{wide}, {narrow}");
-    // A scan leaves out what is between its points, and is never too wide; denser ones leave out less.
+    // A scan leaves out what is between its points and the validation samples, which its band holds too, and is never too wide; denser
+    // ones leave out less.
     let scans = ["5", "10", "30"].map(|points| sides("scan", points));
     assert!(scans.iter().all(|[wide, narrow]| *wide < 1e-4 && narrow > wide), "{scans:?}");
-    assert!(scans[0][1] > 0.05 && scans.windows(2).all(|pair| pair[1][1] < 0.5 * pair[0][1]), "{scans:?}");
+    assert!(scans.windows(2).all(|pair| pair[1][1] < pair[0][1]), "{scans:?}");
     // Taylor's series about the middle does not get here.
     assert!(["1", "2", "3"].iter().all(|order| error("taylor", order, finest) > 0.1));
 

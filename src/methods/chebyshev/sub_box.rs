@@ -9,7 +9,7 @@ use symdiff::math;
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
 use crate::methods::validation::ValidationTable;
-use crate::numerics::{Course, ParameterBox, Range, SparseGrid};
+use crate::numerics::{Course, ParameterBox, Range, SparseGrid, step_validation};
 
 /// Highest degree in a parameter, by the number of parameters: one costs a node each, many their products.
 const HIGHEST: [u8; 3] = [128, 48, 24];
@@ -21,6 +21,9 @@ const COMPARED: u8 = 8;
 
 /// A box is split where the expected surplus of a higher degree than is allowed is so many times the largest allowed one.
 const SPLIT: f64 = 4.0;
+
+/// Points spread over a box that are validation samples of a new surrogate, at least.
+const LEAST_SPREAD: usize = 4;
 
 /// What a surplus may be of the error that is allowed: it is met with its safety.
 const MET: f64 = 0.5;
@@ -50,8 +53,10 @@ pub(super) struct SubBox<'r> {
     pub points: Cow<'r, [Vec<f64>]>,
     /// and their values.
     pub direct: Cow<'r, ValidationTable>,
-    /// Whether the corners at which outputs are least and largest are among them.
-    pub witnessed: bool,
+    /// How many of the points spread over a box are among them.
+    pub spread: usize,
+    /// Whether some of them were chosen for the surrogate as it is.
+    pub challenged: bool,
     /// Largest error at those over the one that is allowed.
     pub error: f64,
     /// Estimates of all rows, by row and output, and what is kept of them, once nothing is to be added.
@@ -59,6 +64,37 @@ pub(super) struct SubBox<'r> {
 }
 
 impl SubBox<'_> {
+    /// Highest degree along each axis.
+    pub fn degrees(&self) -> Vec<u8> {
+        let mut degrees = vec![0; self.grid.dimension()];
+        for index in 0..self.grid.len() {
+            degrees.iter_mut().zip(self.grid.levels(index)).for_each(|(most, &level)| *most = level.max(*most));
+        }
+        degrees
+    }
+
+    /// Points spread over the box that are to be validation samples besides those that are: in each direction that matters two more than
+    /// the degree, at least a few, and no more than there are nodes.
+    pub fn spread_wanted(&self) -> usize {
+        let degrees = self.degrees().into_iter().filter(|&degree| degree > 0);
+        let wanted: usize = degrees.map(|degree| usize::from(degree) + 2).sum();
+        wanted.saturating_sub(self.spread).min(self.grid.len()).max(LEAST_SPREAD)
+    }
+
+    /// Validation samples that are those of one half of the box only, which is cut across an axis, on the side of this sign: ξ there, and
+    /// values.
+    pub fn validation_in_half(&self, axis: usize, side: f64) -> (Vec<Vec<f64>>, ValidationTable) {
+        let common = step_validation(self.grid.dimension()).len();
+        let places: Vec<usize> =
+            (common..self.points.len()).filter(|&place| side * self.points[place][axis] > 0.0).collect();
+        let in_half = |&place: &usize| {
+            let mut xi = self.points[place].clone();
+            xi[axis] = 2.0 * xi[axis] - side;
+            xi
+        };
+        (places.iter().map(in_half).collect(), self.direct.pick(&places))
+    }
+
     /// Rows that all nodes have reached.
     pub fn rows(&self) -> usize {
         self.nodes.iter().map(|(count, values)| values.len() / (self.lines * count)).min().unwrap_or(0)

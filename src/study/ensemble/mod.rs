@@ -3,6 +3,7 @@
 mod closure;
 mod dense;
 mod jet;
+mod nominal;
 mod progress;
 mod stored;
 
@@ -18,13 +19,12 @@ use super::reduced::{Store, steps_of};
 use crate::compile::has_kink;
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
-    self, BandBuilder, DenseMotions, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated,
-    StopCause, Until,
+    self, DenseMotions, Effort, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, StopCause, Until,
 };
-use crate::numerics::{ParameterBox, Range, Sample, ScanBounds, ScanGrid};
+use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
     Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, SampleRun, Schedule,
-    SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    SimulationError, Simulator, Stop, choose_independent,
 };
 
 use jet::SampleJet;
@@ -53,6 +53,8 @@ pub(super) struct Motions<'a> {
     /// Where outputs are reduced to one number: keeps what samples are reduced to.
     store: Option<&'a Store>,
     channels: &'a [Channel],
+    /// Notes all simulated values.
+    ledger: Option<&'a Ledger>,
     /// Simulations that are over: at the end, or where they stopped.
     pub(super) over: AtomicUsize,
     /// Made when something is enclosed.
@@ -73,8 +75,26 @@ impl<'a> Motions<'a> {
     ) -> Self {
         let over = AtomicUsize::new(0);
         let certifier = OnceLock::new();
-        let (store, stored, channels) = (None, None, &[][..]);
-        Self { simulator, domain, schedule, tolerance, progress, interrupted, store, channels, over, certifier, stored }
+        let (store, stored, channels, ledger) = (None, None, &[][..], None);
+        Self {
+            simulator,
+            domain,
+            schedule,
+            tolerance,
+            progress,
+            interrupted,
+            store,
+            channels,
+            ledger,
+            over,
+            certifier,
+            stored,
+        }
+    }
+
+    /// The same, which notes all simulated values.
+    pub fn noting(self, ledger: &'a Ledger) -> Self {
+        Self { ledger: Some(ledger), ..self }
     }
 
     /// The same, which also reduces outputs to one number.
@@ -145,37 +165,6 @@ impl<'a> Motions<'a> {
     /// Simulations that are over: at the end, or where they stopped.
     pub fn over(&self) -> usize {
         self.over.load(Ordering::Relaxed)
-    }
-
-    /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end even
-    /// after an interruption.
-    ///
-    /// # Errors
-    /// Where it cannot be assembled.
-    pub fn nominal(&self) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
-        let outputs = self.outputs();
-        let mut bands = BandBuilder::new(outputs, self.schedule.rows);
-        if self.simulator.system.analysis.visits() {
-            let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
-            let simulated = self.visit(std::slice::from_ref(&self.domain.nominal), sampling, &mut |rows, values| {
-                for (row, output) in rows.flat_map(|row| (0..outputs).map(move |output| (row, output))) {
-                    let value = values[row * outputs + output];
-                    bands.set(row, output, Range { lower: value, upper: value }, 0.0);
-                }
-            })?;
-            return Ok((bands.finish(1, simulated), Vec::new()));
-        }
-        let sample = std::slice::from_ref(&self.domain.nominal);
-        let mut run = self.start(sample)?.watching();
-        let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
-        let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
-            for (row, values) in rows.zip(values.chunks_exact(outputs)) {
-                for (output, &value) in values.iter().enumerate() {
-                    bands.set(row, output, Range { lower: value, upper: value }, 0.0);
-                }
-            }
-        });
-        Ok((bands.finish(1, simulated), run.singular_passes()))
     }
 
     fn advance(
@@ -282,6 +271,10 @@ impl Ensemble for Motions<'_> {
         has_kink(&system.graph, system.outputs[output].expr)
     }
 
+    fn seen(&self, row: usize, output: usize) -> Range {
+        self.ledger.map_or(EMPTY, |ledger| ledger.range(row, output))
+    }
+
     fn is_interrupted(&self) -> bool {
         (self.interrupted)()
     }
@@ -292,9 +285,14 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
+        let lines = methods::lines(self, sampling.observed);
+        let mut noted = |rows: Rows<usize>, values: &[f64]| {
+            self.ledger.into_iter().for_each(|ledger| ledger.note(rows.start, (lines, samples.len()), values));
+            reduce(rows, values);
+        };
         match &self.stored {
-            Some(stored) => Ok(stored.simulate(self, samples, sampling, reduce)?),
-            None => Ok(self.simulate_here(samples, sampling, reduce)?),
+            Some(stored) => Ok(stored.simulate(self, samples, sampling, &mut noted)?),
+            None => Ok(self.simulate_here(samples, sampling, &mut noted)?),
         }
     }
 

@@ -92,6 +92,10 @@ impl Stored<'_> {
             total.add(scan.first, part.simulated);
             Ok(())
         })?;
+        if let Some(ledger) = motions.ledger {
+            let all = (0..motions.rows()).flat_map(|row| (0..motions.outputs()).map(move |output| (row, output)));
+            all.for_each(|(row, output)| ledger.note_range(row, output, bounds.range(row, output)));
+        }
         Ok((bounds, total))
     }
 

@@ -4,7 +4,7 @@
 //! over the box wherever it changes its place in time. Over the box first, it is the least of the lower bounds in the rows, which know
 //! no such kink; only what lies between rows is estimated.
 
-use super::super::conclude::bands;
+use super::super::bands::bands;
 use super::super::outcome::Results;
 use super::super::single::Study;
 use super::verdicts::Part;

@@ -11,7 +11,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::plan::Plan;
 use crate::methods::{self, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated, Until};
-use crate::numerics::{ParameterBox, Sample};
+use crate::numerics::{Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
 
 /// Most numbers that are kept.
@@ -79,12 +79,26 @@ pub struct ReducedEnsemble<'a> {
     store: &'a Store,
     steps: Steps,
     scales: Vec<f64>,
+    /// Values of all samples of the box that reached the end.
+    seen: Ledger,
 }
 
 impl<'a> ReducedEnsemble<'a> {
     /// For motions whose reductions are in the store.
     pub fn new(motions: &'a dyn Ensemble, store: &'a Store, schedule: &Schedule) -> Self {
-        Self { motions, store, steps: steps_of(schedule), scales: vec![1.0; store.plan.expanded] }
+        let (steps, scales) = (steps_of(schedule), vec![1.0; store.plan.expanded]);
+        let ensemble = Self { motions, store, steps, scales, seen: Ledger::new(1, store.plan.values()) };
+        store.samples(steps).iter().for_each(|(sample, channels)| ensemble.note(sample, channels));
+        ensemble
+    }
+
+    /// Notes a sample's values.
+    fn note(&self, sample: &Sample, channels: &[f64]) {
+        if self.domain().contains(sample) && channels.iter().all(|value| value.is_finite()) {
+            let mut values = Vec::new();
+            self.store.plan.evaluate(channels, sample, &mut values);
+            self.seen.note(0, (values.len(), 1), &values);
+        }
     }
 
     /// Accumulated reductions.
@@ -106,8 +120,12 @@ impl<'a> ReducedEnsemble<'a> {
             simulated = Simulated { stop: None, stopped: Vec::new(), missing: 0, ..own };
         }
         let nothing = || vec![f64::NAN; self.store.plan.channels.len()];
-        let found = samples.iter().map(|sample| self.store.get(self.steps, sample).unwrap_or_else(nothing)).collect();
-        Ok((found, simulated))
+        let of_sample = |sample| {
+            let channels = self.store.get(self.steps, sample).unwrap_or_else(nothing);
+            self.note(sample, &channels);
+            channels
+        };
+        Ok((samples.iter().map(of_sample).collect(), simulated))
     }
 }
 
@@ -134,6 +152,10 @@ impl Ensemble for ReducedEnsemble<'_> {
 
     fn has_kink(&self, _: usize) -> bool {
         false
+    }
+
+    fn seen(&self, row: usize, output: usize) -> Range {
+        self.seen.range(row, output)
     }
 
     fn is_interrupted(&self) -> bool {

@@ -24,7 +24,8 @@ pub use kept::KeptReduced;
 pub use margins::{Margins, MarginsOfPart};
 pub(super) use refine::run;
 
-use super::conclude::{bands, contributions};
+use super::bands::bands;
+use super::conclude::contributions;
 use super::ensemble::Progress;
 use super::outcome::{Outcome, Results};
 use super::single::{Study, simulation_error, timed};
@@ -33,7 +34,7 @@ use crate::methods::{
     Until, Validation,
 };
 use crate::model::ReducedOutput;
-use crate::numerics::{Range, Sample};
+use crate::numerics::{Ledger, Range, Sample};
 use crate::results::{
     Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
 };
@@ -49,7 +50,6 @@ struct Values<'a> {
     results: &'a Results,
     /// Whether something makes all bounds unreliable.
     unreliable: bool,
-    contributions: Vec<Vec<Contribution>>,
     /// Simulated samples with their values.
     samples: Vec<(Sample, Vec<f64>)>,
     /// Samples that reached the end.
@@ -115,7 +115,7 @@ impl Study<'_> {
         let schedule = &rows.schedule;
         let (halved, odd) = (schedule.refined(2), schedule.at_odds());
         let finer = tolerance.map(|tolerance| tolerance.for_parts(2));
-        let motions = self.motions(schedule, tolerance, progress);
+        let motions = self.motions(schedule, tolerance, progress).noting(&rows.seen);
         let [motions_halved, motions_odd] = [&halved, &odd].map(|schedule| self.motions(schedule, finer, progress));
         let direct = ReducedEnsemble::new(&motions, store, schedule);
         let with_halved = ReducedEnsemble::new(&motions_halved, store, &halved);
@@ -124,25 +124,16 @@ impl Study<'_> {
             Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(&odd) };
         let mut results = self.bounds_of(ensembles, schedule, &halved)?;
         let kept = self.kept_reduced(&mut results, &store.plan, rows.unreliable_from().is_some());
-        let mut samples = Vec::new();
-        let all = store.samples(steps_of(schedule));
-        for (sample, channels) in &all {
-            let mut values = Vec::new();
-            store.plan.evaluate(channels, sample, &mut values);
-            if channels.iter().all(|value| value.is_finite()) {
-                samples.push((sample.clone(), values));
-            }
-        }
-        let values = Values {
-            unreliable: rows.unreliable_from().is_some(),
-            contributions: contributions(self, &results, 1),
-            whole: samples.len(),
-            samples,
-            results: &results,
-        };
-        let reduced = self.description.reduced.iter().enumerate();
-        let reduced = reduced.map(|place| self.summary_of(place, &values)).collect();
+        let unreliable = rows.unreliable_from().is_some();
+        results.note(&direct);
+        let values = self.values(&results, unreliable, store);
         let requirements = self.verdicts(&values, rows, [&direct, &with_halved])?;
+        // The search for a sample that fails has simulated some more.
+        results.note(&direct);
+        let values = self.values(&results, unreliable, store);
+        let reduced = self.description.reduced.iter().enumerate();
+        let contributions = contributions(self, &results, 1);
+        let reduced = reduced.map(|place| self.summary_of(place, &values, &contributions)).collect();
         let simulations = motions.over() + motions_halved.over() + motions_odd.over();
         let summary = (simulations > 0).then(|| MethodSummary {
             method: "reduced outputs".to_owned(),
@@ -175,6 +166,7 @@ impl Study<'_> {
             damped: Vec::new(),
             nominal,
             singular: Vec::new(),
+            seen: Ledger::new(1, ensemble.outputs()),
             validation: None,
             methods: Vec::new(),
             halved: Vec::new(),
@@ -241,7 +233,25 @@ impl Study<'_> {
         Ok(bands.finish(0, Simulated::default()))
     }
 
-    fn summary_of(&self, (place, reduced): (usize, &ReducedOutput), values: &Values) -> ReducedSummary {
+    /// What was found, with the samples of the box that reached the end so far.
+    fn values<'r>(&self, results: &'r Results, unreliable: bool, store: &Store) -> Values<'r> {
+        let whole = |(sample, channels): (Sample, Vec<f64>)| {
+            let is_whole = self.domain.contains(&sample) && channels.iter().all(|value| value.is_finite());
+            let mut values = Vec::new();
+            store.plan.evaluate(&channels, &sample, &mut values);
+            is_whole.then_some((sample, values))
+        };
+        let all = store.samples(steps_of(&results.schedule));
+        let samples: Vec<_> = all.into_iter().filter_map(whole).collect();
+        Values { results, unreliable, whole: samples.len(), samples }
+    }
+
+    fn summary_of(
+        &self,
+        (place, reduced): (usize, &ReducedOutput),
+        values: &Values,
+        contributions: &[Vec<Contribution>],
+    ) -> ReducedSummary {
         let band = |band: Band| ReducedBand {
             method: band.method.name().to_owned(),
             lower: band.lower[0],
@@ -258,7 +268,7 @@ impl Study<'_> {
             width_without: contribution.width_without[0],
         };
         let mut contributions: Vec<ReducedContribution> =
-            values.contributions.get(place).into_iter().flatten().map(of_parameter).collect();
+            contributions.get(place).into_iter().flatten().map(of_parameter).collect();
         contributions.retain(|contribution| contribution.total.is_finite());
         contributions.sort_by(|a, b| b.total.total_cmp(&a.total));
         let known = || values.samples.iter().filter(|(_, values)| !values[place].is_nan());

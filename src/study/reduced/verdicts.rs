@@ -1,6 +1,6 @@
 //! Whether requirements are fulfilled.
 
-use super::super::conclude::bands;
+use super::super::bands::bands;
 use super::super::outcome::Results;
 use super::super::single::{Study, simulation_error};
 use super::Values;

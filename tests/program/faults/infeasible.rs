@@ -246,9 +246,9 @@ bounds: {{ scan: {{ points: 12 }} }}
     let last = bounds.times.len() - 1;
     assert_eq!(bounds.times, alone.times);
     let (with, without) = (band(&bounds, Method::Scan), band(&alone, Method::Scan));
-    // Points of another interval are the same but for rounding.
+    // Points of another interval are the same but for rounding; its validation samples, which the band holds too, are not.
     let off = (with.lower[last] - without.lower[last]).abs().max((with.upper[last] - without.upper[last]).abs());
-    assert!(off < 1e-12, "{off:e}");
+    assert!(off <= without.error.total[last], "{off:e}, {:e}", without.error.total[last]);
     assert!(with.error.unresolved[last] && with.error.total[last].is_nan());
     assert_eq!(bounds.outputs[0].nominal, alone.outputs[0].nominal);
 }

@@ -1,8 +1,6 @@
 //! How far off the surrogate of a sub-box is: at nodes that are new to it, and at validation samples.
 
-use std::borrow::Cow;
-
-use super::{Adaptation, WITNESSES};
+use super::Adaptation;
 use crate::methods::chebyshev::composition::{BLOCK, Composer, Row};
 use crate::methods::chebyshev::detail::Detail;
 use crate::methods::chebyshev::estimator::RangeEstimator;
@@ -54,7 +52,7 @@ impl Adaptation<'_> {
     }
 
     /// The rows of a sub-box that are looked at, the last ones first.
-    fn looked_at(&self, sub_box: &SubBox) -> Vec<usize> {
+    pub(super) fn looked_at(&self, sub_box: &SubBox) -> Vec<usize> {
         (0..self.goal.rows.min(sub_box.rows())).rev().step_by(self.every).collect()
     }
 
@@ -135,39 +133,10 @@ impl Adaptation<'_> {
         }
         Ok(())
     }
-
-    /// Adds the corners at which outputs are least or largest in most rows to a sub-box's validation samples.
-    pub(super) fn witness(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
-        if std::mem::replace(&mut sub_box.witnessed, true) {
-            return Ok(());
-        }
-        let rows = self.looked_at(sub_box);
-        let surrogate = Surrogate::sparse(&sub_box.grid);
-        let look = |_: usize, row: &Row, _: &mut Previous| row.best_corners();
-        let in_rows = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, BLOCK), look)?;
-        let mut corners: Vec<(Vec<f64>, usize)> = Vec::new();
-        for corner in in_rows.into_iter().flatten().filter(|corner| !sub_box.points.contains(corner)) {
-            match corners.iter_mut().find(|(known, _)| *known == corner) {
-                Some((_, rows)) => *rows += 1,
-                None => corners.push((corner, 1)),
-            }
-        }
-        // Stable: of equals, those of later rows.
-        corners.sort_by_key(|(_, rows)| std::cmp::Reverse(*rows));
-        corners.truncate(WITNESSES.min(self.goal.budget.simulations.saturating_sub(self.goal.spent)));
-        if corners.is_empty() {
-            return Ok(());
-        }
-        let corners: Vec<Vec<f64>> = corners.into_iter().map(|(corner, _)| corner).collect();
-        let direct = self.hold_out(&sub_box.domain, &corners)?;
-        sub_box.direct = Cow::Owned(sub_box.direct.with(&direct));
-        sub_box.points.to_mut().extend(corners);
-        self.check(sub_box)
-    }
 }
 
 /// Applies `look` to some rows of a sub-box's surrogate.
-fn rows_of<T: Send>(
+pub(super) fn rows_of<T: Send>(
     composer: &mut Composer,
     ensemble: &dyn Ensemble,
     (sub_box, surrogate): (&SubBox, &Surrogate),

@@ -5,9 +5,10 @@
 //! hierarchical surplus. The surplus of an index is the error of the surrogate at its node before the node is added: for nested
 //! nodes, the difference of the polynomials without and with it. The expected surplus is that of the indices before, times what one
 //! degree more would change if the response depended on a single weighted sum of the parameters, as it does to first order.
-//! Validation samples decide whether the surrogate is good enough.
+//! Validation samples decide whether the surrogate is good enough, new ones each time it seems to be (`challenge`).
 
 mod assessment;
+mod challenge;
 
 use std::borrow::Cow;
 use std::time::Instant;
@@ -23,7 +24,7 @@ use crate::methods::kept::KeptSurrogate;
 use crate::methods::request::Budget;
 use crate::methods::result::Estimate;
 use crate::methods::validation::{Validation, ValidationTable};
-use crate::numerics::{EMPTY, ParameterBox, Range, SparseGrid, Surrogate, union};
+use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, union};
 
 /// Indices are added whose expected surplus is at least this share of the largest.
 const ADDED: f64 = 0.3;
@@ -32,12 +33,11 @@ const ADDED: f64 = 0.3;
 const TOGETHER: usize = 8;
 const GROWTH: usize = 8;
 
-/// Of so many parameters all corners are validation samples.
-const ALL_CORNERS: usize = 3;
+/// Share of what is left of the budget that is kept for new validation samples, at most.
+const KEPT_FREE: usize = 2;
 
-/// Corners at which outputs are least or largest are validation samples, too, at most so many: of more than three parameters, the others are
-/// at few of the corners, where polynomials are off most.
-const WITNESSES: usize = 16;
+/// A surrogate that a value contradicts which was simulated elsewhere is refined until its nodes have grown by this share.
+const DOUBTED: usize = 2;
 
 /// Rows in which a surrogate is looked at between rounds.
 const CHECKED: usize = 48;
@@ -111,14 +111,15 @@ impl<'r> Adaptation<'r> {
     /// Where a sample cannot be assembled or a closure not be compiled.
     pub fn search(mut self) -> Result<Adapted, EnsembleError> {
         let direct = (Cow::Borrowed(self.validation.points.as_slice()), Cow::Borrowed(&self.validation.direct));
-        let mut boxes = vec![self.sub_box(self.ensemble.domain().clone(), direct)?];
+        let spread = self.validation.spread();
+        let mut boxes = vec![self.sub_box(self.ensemble.domain().clone(), direct, spread)?];
         loop {
             let worst = (0..boxes.len()).max_by(|&a, &b| boxes[a].error.total_cmp(&boxes[b].error)).unwrap_or(0);
             // NaN is not met.
             let met = boxes[worst].error <= 1.0;
             let stopped = self.ensemble.is_interrupted() || self.simulated.stop.is_some();
-            if (met || self.is_spent()) && !stopped && boxes.iter().any(|sub_box| !sub_box.witnessed) {
-                boxes.iter_mut().try_for_each(|sub_box| self.witness(sub_box))?;
+            if (met || self.is_spent()) && !stopped && boxes.iter().any(|sub_box| !sub_box.challenged) {
+                boxes.iter_mut().try_for_each(|sub_box| self.challenge(sub_box))?;
                 continue;
             }
             if met && self.every > 1 {
@@ -133,21 +134,51 @@ impl<'r> Adaptation<'r> {
                 boxes.iter_mut().try_for_each(|sub_box| self.conclude_box(sub_box, detail))?;
                 continue;
             }
-            if met || stopped || self.is_spent() {
+            let doubted = met && !stopped && !self.is_spent() && self.is_contradicted(&boxes);
+            if (met && !doubted) || stopped || self.is_spent() {
                 return self.conclude(boxes);
+            }
+            let reserve = boxes.iter().map(Self::reserve).sum();
+            if doubted {
+                let enough = boxes[worst].grid.len() + boxes[worst].grid.len().div_ceil(DOUBTED);
+                while boxes[worst].grid.len() < enough && !self.is_spent() {
+                    let before = boxes[worst].grid.len();
+                    self.refine(&mut boxes[worst], reserve)?;
+                    // A grid that is full can do no more.
+                    self.exhausted |= boxes[worst].grid.len() == before;
+                }
+                continue;
             }
             match boxes[worst].axis_to_split() {
                 Some(axis) => {
                     let whole = boxes.swap_remove(worst);
-                    for half in whole.domain.halves(axis) {
-                        let points = &self.validation.points;
-                        let direct = Cow::Owned(self.hold_out(&half, points)?);
-                        boxes.push(self.sub_box(half, (Cow::Borrowed(points), direct))?);
+                    for (half, side) in whole.domain.halves(axis).into_iter().zip([-1.0, 1.0]) {
+                        let direct = self.hold_out(&half, &self.validation.points)?;
+                        let (inherited, known) = whole.validation_in_half(axis, side);
+                        let points = [self.validation.points.as_slice(), &inherited].concat();
+                        let direct = if inherited.is_empty() { direct } else { direct.with(&known) };
+                        let spread = self.validation.spread();
+                        boxes.push(self.sub_box(half, (Cow::Owned(points), Cow::Owned(direct)), spread)?);
                     }
                 }
-                None => self.refine(&mut boxes[worst])?,
+                None => self.refine(&mut boxes[worst], reserve)?,
             }
         }
+    }
+
+    /// Whether something was simulated elsewhere that lies outside of the ranges over all sub-boxes by more than is allowed.
+    fn is_contradicted(&self, boxes: &[SubBox]) -> bool {
+        let outputs = self.ensemble.outputs();
+        let of = |sub_box: &SubBox, place: usize| {
+            let known = sub_box.estimates.as_ref().and_then(|(known, _)| known.get(place));
+            known.map_or(Range::UNKNOWN, |known| known.range)
+        };
+        (0..self.goal.rows * outputs).any(|place| {
+            let ranges = boxes.iter().map(|sub_box| (of(sub_box, place), 0.0));
+            let (range, _) = ranges.fold((EMPTY, 0.0), union);
+            let beyond = range.misses(self.ensemble.seen(place / outputs, place % outputs));
+            SAFETY_OF_SURROGATE * beyond > self.goal.allowed[place % outputs]
+        })
     }
 
     fn is_spent(&self) -> bool {
@@ -158,11 +189,12 @@ impl<'r> Adaptation<'r> {
             || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
     }
 
-    /// A sub-box of which only the middle is known.
+    /// A sub-box of which only the middle is known, and validation samples, so many of them spread over it.
     fn sub_box(
         &mut self,
         domain: ParameterBox,
         (points, direct): (Cow<'r, [Vec<f64>]>, Cow<'r, ValidationTable>),
+        spread: usize,
     ) -> Result<SubBox<'r>, EnsembleError> {
         let grid = SparseGrid::new(&vec![highest(domain.dimension()); domain.dimension()]);
         let surplus = FxHashMap::from_iter([(vec![0; domain.dimension()], f64::INFINITY)]);
@@ -172,7 +204,8 @@ impl<'r> Adaptation<'r> {
         self.goal.spent += count;
         let middle = self.simulate(&domain, &[grid.sample(0)])?;
         let mut sub_box = SubBox {
-            witnessed: domain.dimension() <= ALL_CORNERS,
+            spread,
+            challenged: false,
             lines: self.lines() + courses.iter().flatten().count(),
             nodes: Vec::new(),
             error: f64::INFINITY,
@@ -210,10 +243,10 @@ impl<'r> Adaptation<'r> {
     }
 
     /// A round: adds the indices with the largest expected surplus, and, so that as many nodes are simulated together as go well
-    /// together, those that would come next.
-    fn refine(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
-        let kept_free = if sub_box.witnessed { 0 } else { WITNESSES };
-        let room = self.goal.budget.simulations.saturating_sub(self.goal.spent + kept_free);
+    /// together, those that would come next. So many simulations of the budget are kept free for validation samples.
+    fn refine(&mut self, sub_box: &mut SubBox, reserve: usize) -> Result<(), EnsembleError> {
+        let left = self.goal.budget.simulations.saturating_sub(self.goal.spent);
+        let room = left - reserve.min(left / KEPT_FREE);
         let wanted = TOGETHER.max(sub_box.grid.len() / GROWTH);
         let mut generations = sub_box.next(ADDED, wanted);
         let mut count = 0;
@@ -241,6 +274,7 @@ impl<'r> Adaptation<'r> {
             sub_box.add((added.len(), own));
             sub_box.surplus.extend(added.into_iter().zip(surplus));
         }
+        sub_box.challenged = false;
         self.check(sub_box)
     }
 

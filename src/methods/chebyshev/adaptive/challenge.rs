@@ -1,0 +1,142 @@
+//! New validation samples for a surrogate that seems to be good enough: where it says that outputs are least and largest, and where
+//! neither nodes nor earlier samples are.
+//!
+//! Samples that a surrogate has been refined against say little of it. So each time it meets them, and before its error is stated,
+//! new ones are simulated, more the higher its degree, and only if it meets these too it is believed. They stay validation
+//! samples: what it is refined to afterwards has to meet them as well.
+
+use std::borrow::Cow;
+
+use super::Adaptation;
+use super::assessment::rows_of;
+use crate::methods::chebyshev::composition::Row;
+use crate::methods::chebyshev::range_search::Previous;
+use crate::methods::chebyshev::sub_box::SubBox;
+use crate::methods::ensemble::EnsembleError;
+use crate::numerics::{Surrogate, spread};
+
+/// Samples where outputs are least or largest, at most, and so many times the parameters where these are many.
+const ENDS: usize = 16;
+const ENDS_A_PARAMETER: usize = 2;
+
+/// Two ends are one where they are nearer to each other than this share of what nodes are apart.
+const NEAR: f64 = 0.5;
+
+impl Adaptation<'_> {
+    /// Simulations that the next challenge of a sub-box may take.
+    pub(super) fn reserve(sub_box: &SubBox) -> usize {
+        if sub_box.challenged { 0 } else { most_ends(sub_box.domain.dimension()) + sub_box.spread_wanted() }
+    }
+
+    /// Adds to a sub-box's validation samples as many new ones as there is room for.
+    pub(super) fn challenge(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
+        if std::mem::replace(&mut sub_box.challenged, true) {
+            return Ok(());
+        }
+        let k = sub_box.domain.dimension();
+        let mut points = self.ends(sub_box)?;
+        let known = sub_box.spread;
+        sub_box.spread += sub_box.spread_wanted();
+        points.extend(spread(k, sub_box.spread).split_off(known));
+        points.truncate(self.goal.budget.simulations.saturating_sub(self.goal.spent));
+        if points.is_empty() {
+            return Ok(());
+        }
+        let direct = self.hold_out(&sub_box.domain, &points)?;
+        sub_box.direct = Cow::Owned(sub_box.direct.with(&direct));
+        sub_box.points.to_mut().extend(points);
+        self.check(sub_box)
+    }
+
+    /// Points near to all at which, in the rows that are looked at, outputs are least or largest by the surrogate, and not near to nodes or to
+    /// validation samples.
+    fn ends(&mut self, sub_box: &SubBox) -> Result<Vec<Vec<f64>>, EnsembleError> {
+        let rows = self.looked_at(sub_box);
+        let surrogate = Surrogate::sparse(&sub_box.grid);
+        let (search, allowed) = (&self.search, &self.goal.allowed);
+        let look = |_: usize, row: &Row, previous: &mut Previous| {
+            let found = row.range(search, previous).extents;
+            // What hardly ranges is not off by what matters, and of NaN there is no place.
+            let matters = found.into_iter().zip(allowed).filter(|(found, allowed)| found.range.width() > **allowed);
+            matters.flat_map(|(found, _)| found.places).collect::<Vec<_>>()
+        };
+        // The rows are no neighbours.
+        let places = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, 1), look)?;
+        let known = surrogate.samples().iter().chain(sub_box.points.iter());
+        let scale = Scale::of(sub_box);
+        Ok(scale.cover(&places.concat(), known, most_ends(sub_box.domain.dimension())))
+    }
+}
+
+fn most_ends(k: usize) -> usize {
+    ENDS.max(ENDS_A_PARAMETER * k)
+}
+
+/// How far apart points are for a sub-box's surrogate.
+struct Scale {
+    /// Of each axis how much it matters.
+    weights: Vec<f64>,
+    /// What is nearer is the same.
+    near: f64,
+}
+
+impl Scale {
+    fn of(sub_box: &SubBox) -> Self {
+        let k = sub_box.domain.dimension();
+        let first = |axis: usize| {
+            let mut levels = vec![0; k];
+            levels[axis] = 1;
+            sub_box.surplus.get(&levels).copied().unwrap_or(0.0)
+        };
+        let first: Vec<f64> = (0..k).map(first).collect();
+        let most = first.iter().copied().fold(0.0, f64::max);
+        let weight = |own: f64| if most > 0.0 { own / most } else { 1.0 };
+        let highest = sub_box.degrees().into_iter().max().unwrap_or(0);
+        Self { weights: first.into_iter().map(weight).collect(), near: NEAR / f64::from(highest.max(1)) }
+    }
+
+    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        let along = a.iter().zip(b).zip(&self.weights);
+        along.map(|((a, b), weight)| weight * (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// At most so many of the places, such that each is near to one of them or of those that are known, as far as so many are enough: always the one that is
+    /// farthest from all before.
+    fn cover<'p>(
+        &self,
+        places: &[Vec<f64>],
+        known: impl Iterator<Item = &'p Vec<f64>> + Clone,
+        most: usize,
+    ) -> Vec<Vec<f64>> {
+        let to_known =
+            |place: &Vec<f64>| known.clone().map(|known| self.distance(place, known)).fold(f64::INFINITY, f64::min);
+        let mut apart: Vec<f64> = places.iter().map(to_known).collect();
+        let mut chosen = Vec::new();
+        while chosen.len() < most {
+            let farther = |a: usize, b: usize| if apart[b] > apart[a] { b } else { a };
+            let Some(farthest) = (0..places.len()).reduce(farther).filter(|&place| apart[place] > self.near) else {
+                break;
+            };
+            let new = &places[farthest];
+            apart.iter_mut().zip(places).for_each(|(apart, place)| *apart = apart.min(self.distance(place, new)));
+            chosen.push(new.clone());
+        }
+        chosen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_places_stand_for_many() {
+        let scale = Scale { weights: vec![1.0, 0.01], near: 0.05 };
+        let known = [vec![1.0, 1.0]];
+        // Along the second axis all are alike.
+        let places = [[1.0, -1.0], [0.97, 0.3], [-0.5, 1.0], [-0.52, -1.0], [0.2, 0.0]].map(|place| place.to_vec());
+        assert_eq!(scale.cover(&places, known.iter(), 9), [places[3].clone(), places[4].clone()]);
+        assert_eq!(scale.cover(&places, known.iter(), 1), [places[3].clone()]);
+        assert!(scale.cover(&[], known.iter(), 9).is_empty());
+    }
+}

@@ -1,0 +1,39 @@
+//! The nominal motion.
+
+use super::Motions;
+use crate::methods::{self, BandBuilder, Ensemble, MethodResult, Sampling, Until};
+use crate::numerics::Range;
+use crate::simulate::{SimulationError, SingularPass};
+
+impl Motions<'_> {
+    /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end even
+    /// after an interruption.
+    ///
+    /// # Errors
+    /// Where it cannot be assembled.
+    pub fn nominal(&self) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
+        let outputs = self.outputs();
+        let mut bands = BandBuilder::new(outputs, self.schedule.rows);
+        if self.simulator.system.analysis.visits() {
+            let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
+            let simulated = self.visit(std::slice::from_ref(&self.domain.nominal), sampling, &mut |rows, values| {
+                for (row, output) in rows.flat_map(|row| (0..outputs).map(move |output| (row, output))) {
+                    let value = values[row * outputs + output];
+                    bands.set(row, output, Range { lower: value, upper: value }, 0.0);
+                }
+            })?;
+            return Ok((bands.finish(1, simulated), Vec::new()));
+        }
+        let sample = std::slice::from_ref(&self.domain.nominal);
+        let mut run = self.start(sample)?.watching();
+        let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
+        let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
+            for (row, values) in rows.zip(values.chunks_exact(outputs)) {
+                for (output, &value) in values.iter().enumerate() {
+                    bands.set(row, output, Range { lower: value, upper: value }, 0.0);
+                }
+            }
+        });
+        Ok((bands.finish(1, simulated), run.singular_passes()))
+    }
+}

@@ -1,0 +1,139 @@
+//! Whether bounds to a tolerance are honest where samples that are chosen beforehand say little: bumps beside them, one corner of
+//! many, motions that bend over the box; and whether whatever a run has simulated lies within its bands. The truths are closed forms, or
+//! another method's motions over dense grids.
+
+use mbint::inner::results::{Bounds, Method};
+
+use super::honesty_search::{assert_honest, cosine, oscillators, sum};
+use crate::common::runge_kutta::runge_kutta;
+use crate::common::{band, output, read, run, run_methods};
+
+/// x'' = −s x from 0.1, with parameters from −1 to 1 in s.
+fn softened(parameters: usize, s: &str, settings: &str) -> Bounds {
+    let parameters: String = (0..parameters).map(|i| format!("  p{i}: {{ interval: [-1, 1] }}\n")).collect();
+    run(&read(&format!(
+        "
+parameters:
+{parameters}
+bodies: {{ m: {{ mass: 1 kg, coordinates: [x] }} }}
+effects: {{ s: {{ force: {{ on: m, value: [\"-({s})*m.x\", 0] }} }} }}
+initial: {{ m.x: 0.1, m.vx: 0 }}
+outputs: {{ x: m.x }}
+{settings}
+"
+    )))
+}
+
+/// Range of 0.1 cos(√s t).
+fn softened_range((least, most): (f64, f64)) -> impl Fn(f64) -> (f64, f64) {
+    move |t: f64| cosine(0.1, least.sqrt() * t, most.sqrt() * t)
+}
+
+#[test]
+fn a_bump_in_two_parameters_is_covered() {
+    let settings = "simulation: { duration: 6, step: 0.01, output_step: 0.5 }\nbounds: { tolerance: 1e-2 }";
+    for (a, b, width, height) in [(0.37, -0.52, 0.08, 0.35), (-0.61, -0.28, 0.04, 0.5)] {
+        let bounds = softened(2, &format!("1 + {height}*exp(-((p0-({a}))^2 + (p1-({b}))^2)/{width})"), settings);
+        let counted = assert_honest(&bounds, "x", Method::Chebyshev, softened_range((1.0, 1.0 + height)));
+        assert!(counted > 6, "{counted}");
+    }
+}
+
+#[test]
+fn one_corner_of_many_is_covered() {
+    let settings = "simulation: { duration: 10, step: 0.01, output_step: 0.5 }\nbounds: { tolerance: 1e-2 }";
+    for signs in ["-++-", "+-+-+-"] {
+        let factors = signs.chars().enumerate().map(|(i, sign)| format!("*(1 {sign} p{i})/2"));
+        let s = format!("1 + 0.7{}", factors.collect::<String>());
+        let bounds = softened(signs.len(), &s, settings);
+        let counted = assert_honest(&bounds, "x", Method::Chebyshev, softened_range((1.0, 1.7)));
+        assert!(counted > 10, "{counted}");
+    }
+}
+
+/// A forced spring that softens, for many turns: values of a dense grid lie within bounds and error.
+#[test]
+fn a_bending_oscillator_is_covered() {
+    let bounds = run(&read(
+        "
+parameters: { x0: { interval: [-0.7, 0.9], unit: m }, k: { interval: [0.2, 0.6], unit: N/m^3 } }
+bodies: { m: { mass: 1 kg, coordinates: [x] } }
+effects: { s: { force: { on: m, value: [\"-1.4 N/m*m.x - k*m.x^3 - 0.08*m.vx + 0.25 N*cos(1.3 rad/s*t)\", 0] } } }
+initial: { m.x: x0, m.vx: 0 }
+outputs: { x: m.x }
+simulation: { duration: 16, step: 0.01, output_step: 0.5 }
+bounds: { tolerance: 1e-2 }
+",
+    ));
+    let found = band(output(&bounds, "x"), Method::Chebyshev);
+    let (mut missed, mut open) = (0, 0);
+    let mut truth = vec![(f64::INFINITY, f64::NEG_INFINITY); bounds.times.len()];
+    for (i, j) in (0..=40).flat_map(|i| (0..=40).map(move |j| (f64::from(i) / 40.0, f64::from(j) / 40.0))) {
+        let (x0, k) = (-0.7 + 1.6 * i, 0.2 + 0.4 * j);
+        let f = |[x, v, t]: [f64; 3]| [v, -1.4 * x - k * x.powi(3) - 0.08 * v + 0.25 * (1.3 * t).cos(), 1.0];
+        for (row, [x, ..]) in runge_kutta(f, [x0, 0.0, 0.0], 0.5, truth.len(), 20).into_iter().enumerate() {
+            truth[row] = (truth[row].0.min(x), truth[row].1.max(x));
+        }
+    }
+    for (row, (lower, upper)) in truth.into_iter().enumerate().filter(|(row, _)| !found.error.unresolved[*row]) {
+        let beyond = (found.lower[row] - lower).max(upper - found.upper[row]);
+        open += 1;
+        missed += usize::from(beyond > found.error.total[row]);
+    }
+    assert!(missed == 0 && open > 20, "{missed} of {open}");
+}
+
+/// Sums of independent oscillators, more than a lattice can take.
+#[test]
+#[ignore = "10 s"]
+fn sums_of_many_oscillators_are_covered() {
+    let all = [(0.1, 1.2, 9.0), (0.07, 2.1, 12.0), (0.05, 0.8, 15.0), (0.09, 1.6, 8.0), (0.04, 3.0, 11.0), (0.06, 1.0, 10.0)];
+    let settings = "simulation: { duration: 12, step: 0.01, output_step: 0.5 }\nbounds: { tolerance: 1e-2 }\n";
+    for count in [4, 6] {
+        let parts = &all[..count];
+        let outputs = format!("{{ x: {} }}", (0..count).map(|i| format!("b{i}.x")).collect::<Vec<_>>().join(" + "));
+        let bounds = run(&oscillators(parts, &outputs, 0.0, settings));
+        assert!(assert_honest(&bounds, "x", Method::Chebyshev, |t| sum(parts, t)) > 15);
+    }
+}
+
+/// A bump between the nodes of a given order, which only the scan meets.
+#[test]
+fn what_only_another_method_has_simulated_is_within_the_band() {
+    let settings = "simulation: { duration: 5, step: 0.01, output_step: 0.25 }
+bounds: { chebyshev: { order: 4 }, scan: { points: 25 } }";
+    let bounds = softened(1, "1 + 0.5*exp(-((p0 + 0.42)/0.05)^2)", settings);
+    let [chebyshev, scan] = [Method::Chebyshev, Method::Scan].map(|method| band(output(&bounds, "x"), method));
+    for row in 0..bounds.times.len() {
+        assert!(chebyshev.lower[row] <= scan.lower[row] && chebyshev.upper[row] >= scan.upper[row]);
+    }
+    let flagged = chebyshev.error.unresolved.iter().filter(|flag| **flag).count();
+    assert!(flagged > 10, "{flagged}");
+    assert_honest(&bounds, "x", Method::Chebyshev, softened_range((1.0, 1.5)));
+}
+
+/// The peak of a motion that is at rest where the parameters are nominal, of which a polynomial makes less than nothing or more.
+#[test]
+fn simulated_values_of_reduced_outputs_are_within_their_bands() {
+    let (_, summary) = run_methods(
+        &read(
+            "
+parameters: { a: { value: 0, tolerance: 1 }, b: { value: 0, tolerance: 1 }, k: { value: 3 N/m, tolerance: 20% } }
+bodies: { m: { mass: 1 kg, coordinates: [x] } }
+effects: { s: { force: { on: m, value: [\"-k*m.x - 0.5*m.vx\", 0] } } }
+initial: { m.x: 0.1*a*b - 0.02*a, m.vx: 0.1*b }
+outputs: { x: m.x, peak: { max_abs: x }, late: { max: x, from: 2 s } }
+requirements: { small: peak <= 0.09 m }
+simulation: { duration: 4, step: 0.01, output_step: 0.1 }
+bounds: { chebyshev: { order: 3 }, scan: { points: 4 } }
+",
+        ),
+        None,
+    );
+    for reduced in &summary.reduced {
+        let values = reduced.worst.iter().flatten().map(|case| case.value).chain([reduced.nominal]);
+        for (value, band) in values.flat_map(|value| reduced.bands.iter().map(move |band| (value, band))) {
+            assert!(band.lower <= value && value <= band.upper, "{}: {value} is not in {band:?}", reduced.name);
+        }
+    }
+}
