@@ -10,3 +10,10 @@ const MISSED: &[(&str, usize)] = &[];
 pub fn missed(family: &str) -> usize {
     MISSED.iter().find(|(name, _)| *name == family).map_or(0, |(_, missed)| *missed)
 }
+
+/// Bands that contradict their own runs.
+pub const CONTRADICTED: usize = 0;
+
+/// Draws of shares that fail and of allocations, and how many are known to be missed.
+pub const SHARES: (u64, usize) = (24, 0);
+pub const ALLOCATIONS: (u64, usize) = (24, 13);
