@@ -119,8 +119,8 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
         if study.domain.contains(&study.domain.nominal) {
             error.hold_nominal(ranges, &nominal);
         }
-        if let Some(unresolved) = results.unreliable_from().and_then(|row| error.unresolved.get_mut(row..)) {
-            unresolved.fill(true);
+        if let Some(row) = results.unreliable_from() {
+            error.distrust(row..rows);
         }
         Band {
             method: *method,
