@@ -56,7 +56,7 @@ impl SensitivityAnalysis {
             Some(fine) => (&fine.surrogate, &fine.decomposition),
             None => (row.surrogate(), &self.own),
         };
-        let coefficients = surrogate.coefficients(&row.evaluate(surrogate.samples()), &mut SurrogateWork::default());
+        let coefficients = surrogate.coefficients(&row.predict(surrogate.samples()), &mut SurrogateWork::default());
         let k = self.nominal.len();
         let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, &coefficients, found, axis)).collect();
         let of_output = |(output, coefficients): (usize, &[f64])| {
@@ -82,7 +82,7 @@ impl SensitivityAnalysis {
             place
         };
         let points: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().map(replaced)).collect();
-        let values = row.evaluate(&points);
+        let values = row.predict(&points);
         values.chunks_exact(points.len()).map(|line| Range::of(line).width()).collect()
     }
 }
