@@ -40,8 +40,8 @@ pub mod numerics {
 
 pub mod results {
     pub use crate::results::{
-        Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics, ReducedBand, ReducedSummary,
-        RequirementSummary, StatisticsResult, Summary, Uncertain, Verdict,
+        Allocation, Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics, ReducedBand,
+        ReducedSummary, RequirementSummary, StatisticsResult, Summary, Uncertain, Verdict,
     };
 }
 
@@ -53,7 +53,8 @@ pub mod simulate {
 
 pub mod study {
     pub use crate::study::{
-        CostOptions, Evaluator, Kept, Options, cost, explain, language_costs, prepare, run, run_keeping,
+        AllocateOptions, CostOptions, Evaluator, Kept, Options, allocate, cost, explain, language_costs, prepare, run,
+        run_keeping,
     };
 }
 

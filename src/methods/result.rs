@@ -9,7 +9,7 @@ use crate::numerics::{Range, largest, surrogate_error};
 
 /// How much further a polynomial may be from a function with a kink than it is at validation samples: it is worst at the kink, and
 /// there they need not be.
-const BETWEEN_KINKS: f64 = 3.0;
+pub(super) const BETWEEN_KINKS: f64 = 3.0;
 
 /// How an output's spread in one row comes about.
 #[derive(Clone, Debug)]

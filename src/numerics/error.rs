@@ -37,6 +37,9 @@ const FAR_OFF: f64 = 0.25;
 /// A surrogate's error below this share of the output's span is none to speak of, however narrow the band is there.
 const SMALL: f64 = 1e-3;
 
+/// What an error that is large beside the band may be wrong by.
+const DOUBT: f64 = 2.0;
+
 /// A simulated value that lies outside of a band by less than this share of its own size does so by rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -51,6 +54,8 @@ pub struct BandError {
     pub time: f64,
     /// Rows whose bounds cannot be relied on.
     pub unresolved: Vec<bool>,
+    /// Rows that are so for nothing but the size of their error, which is known: large beside the band, or beside what is asked for.
+    pub coarse: Vec<bool>,
 }
 
 /// Largest difference between what a surrogate says of the validation samples and what they do; unknown where either is.
@@ -112,7 +117,10 @@ impl BandError {
                 }
             });
         }
-        Self { total, surrogate: largest(surrogate), time: largest(time), unresolved }
+        // Of what has no number nothing is known.
+        let coarse =
+            unresolved.iter().zip(&total).map(|(&unresolved, total)| unresolved && total.is_finite()).collect();
+        Self { total, surrogate: largest(surrogate), time: largest(time), unresolved, coarse }
     }
 
     /// Rows whose range and error leave out a value that was simulated, given from the least to the largest of these: one of the two
@@ -129,6 +137,23 @@ impl BandError {
             }
         }
         contradicted
+    }
+
+    /// Flags rows whose error is not to be believed, however small or large it is.
+    pub fn distrust(&mut self, rows: std::ops::Range<usize>) {
+        let last = rows.end.min(self.unresolved.len());
+        let rows = rows.start.min(last)..last;
+        self.unresolved[rows.clone()].fill(true);
+        self.coarse[rows].fill(false);
+    }
+
+    /// What the error of a row counts for, where something is decided by it: nothing that is not believed, and twice where it is large.
+    pub fn decisive(&self, row: usize) -> Option<f64> {
+        match (self.unresolved[row], self.coarse[row]) {
+            (false, _) => Some(self.total[row]),
+            (true, true) => Some(DOUBT * self.total[row]),
+            (true, false) => None,
+        }
     }
 
     /// Largest of all rows; NaN if one is.

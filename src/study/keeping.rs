@@ -83,8 +83,8 @@ impl Study<'_> {
             let (surrogate, time): (Vec<f64>, Vec<f64>) = (0..rows).map(|row| (surrogate(row), time(row))).unzip();
             let ranges = &outcome.result.bands[output][..rows];
             let mut error = BandError::new(ranges, &surrogate, &time, validation.spans[output], self.request.tolerance);
-            if let Some(unresolved) = results.unreliable_from().and_then(|row| error.unresolved.get_mut(row..)) {
-                unresolved.fill(true);
+            if let Some(row) = results.unreliable_from() {
+                error.distrust(row..rows);
             }
             error
         };

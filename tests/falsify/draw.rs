@@ -25,6 +25,9 @@ impl Parameter {
 /// Values of every channel at some times, from values of the parameters.
 pub type Curves = Arc<dyn Fn(&[f64], &[f64]) -> Vec<Vec<f64>> + Send + Sync>;
 
+/// Fewer parameters, independent and with exact intervals, from those of the model: what a motion depends on.
+pub type Hidden = Arc<dyn Fn(&[Parameter]) -> Vec<Parameter> + Send + Sync>;
+
 /// A mechanism that does not interact with the others of its model, with parameters of its own.
 #[derive(Clone)]
 pub struct Term {
@@ -37,7 +40,9 @@ pub struct Term {
     pub guess: Vec<String>,
     /// What is observed: formulas.
     pub channels: Vec<String>,
+    /// Of the model's parameters, or of those that are `hidden` behind them.
     pub curves: Curves,
+    pub hidden: Option<Hidden>,
     /// Whether `curves` integrate, so that a single value costs as much as all.
     pub integrated: bool,
     /// Size of the coordinates, m or rad: what rounding is relative to.
@@ -46,13 +51,14 @@ pub struct Term {
 }
 
 impl Term {
-    pub fn values(&self) -> Vec<f64> {
-        self.parameters.iter().map(|parameter| parameter.value).collect()
+    /// Parameters of its curves.
+    pub fn seen(&self) -> Vec<Parameter> {
+        self.hidden.as_ref().map_or_else(|| self.parameters.clone(), |hidden| hidden(&self.parameters))
     }
 
-    /// Indices of its uncertain parameters.
-    pub fn uncertain(&self) -> Vec<usize> {
-        (0..self.parameters.len()).filter(|&i| self.parameters[i].half > 0.0).collect()
+    /// How many parameters of the model are uncertain.
+    fn uncertain(&self) -> usize {
+        self.parameters.iter().filter(|parameter| parameter.half > 0.0).count()
     }
 }
 
@@ -123,6 +129,7 @@ pub struct Bounds {
 #[derive(Clone)]
 pub struct Draw {
     pub family: &'static str,
+    pub analysis: &'static str,
     pub terms: Vec<Term>,
     pub outputs: Vec<Output>,
     pub time: Time,
@@ -156,11 +163,13 @@ impl Output {
 
 impl Draw {
     pub fn uncertain_count(&self) -> usize {
-        self.terms.iter().map(|term| term.uncertain().len()).sum()
+        self.terms.iter().map(Term::uncertain).sum()
     }
 
     pub fn yaml(&self) -> String {
-        let mut text = format!("model: {}\nparameters:\n", self.family.replace([' ', '-'], "_"));
+        let (name, analysis) = (self.family.replace([' ', '-'], "_"), self.analysis);
+        let analysis = if analysis == "motion" { String::new() } else { format!("analysis: {analysis}\n") };
+        let mut text = format!("model: {name}\n{analysis}parameters:\n");
         for parameter in self.terms.iter().flat_map(|term| &term.parameters) {
             let Parameter { name, value, half, .. } = parameter;
             let [lower, upper] = parameter.interval();
@@ -204,9 +213,10 @@ impl Bounds {
         let expand = if self.expand_output { ", expand: output" } else { "" };
         let methods = [
             self.chebyshev.map(|order| format!("chebyshev: {{ order: {order}{expand} }}")),
+            self.tolerance.map(|_| "chebyshev: {}".to_owned()),
             self.taylor.map(|order| format!("taylor: {{ order: {order} }}")),
             self.scan.map(|points| format!("scan: {{ points: {points} }}")),
-            self.tolerance.map(|tolerance| format!("tolerance: {tolerance:?}, budget: {{ solves: 300 }}")),
+            self.tolerance.map(|tolerance| format!("tolerance: {tolerance:?}, budget: {{ solves: 1000 }}")),
         ];
         methods.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }

@@ -17,6 +17,7 @@
 mod draw;
 mod families;
 mod known;
+mod questions;
 mod random;
 mod runge_kutta;
 mod search;
@@ -116,7 +117,7 @@ fn attack(draw: &Draw, number: u64, findings: &Mutex<Findings>, shown: usize) {
     for missed in verdicts.iter().filter(|verdict| verdict.is_missed()) {
         let enough = {
             let mut findings = lock();
-            let so_far = findings.shown.entry((draw.family, missed.method.name())).or_default();
+            let so_far = findings.shown.entry((draw.family, missed.label)).or_default();
             *so_far += 1;
             *so_far > shown
         };
@@ -175,6 +176,35 @@ fn errors_are_honest() {
             println!("{}: only {missed} bands are missed: lower its {known} in tests/falsify/known.rs", family.name);
         }
     }
+    let (contradicted, known) = (table.contradicted(), known::CONTRADICTED);
+    if contradicted > known {
+        writeln!(worse, "{contradicted} bands contradict their own runs, {known} are known").unwrap();
+    }
     assert!(worse.is_empty(), "\n{worse}");
     assert_eq!(table.failures(), 0, "draws have no bands");
+}
+
+/// Draws of a question, as many as the environment asks for.
+fn questioned(draws: u64, ask: fn(u64, u64) -> questions::Tally) -> questions::Tally {
+    let tally =
+        ask(asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED), asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
+    println!("{tally}");
+    tally
+}
+
+/// Intervals of 95 % miss one in twenty: here at most as many as chance allows in one of a thousand runs, or as are known.
+#[test]
+#[ignore = "half a minute"]
+fn shares_that_fail_are_honest() {
+    let tally = questioned(known::SHARES.0, questions::shares);
+    let n = tally.draws as f64;
+    let chance = 0.05 * n + 3.1 * (0.05 * 0.95 * n).sqrt();
+    assert!(tally.missed as f64 <= chance.max(known::SHARES.1 as f64), "{tally}");
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn allocations_are_honest() {
+    let tally = questioned(known::ALLOCATIONS.0, questions::allocations);
+    assert!(tally.missed <= known::ALLOCATIONS.1, "{tally}");
 }

@@ -1,7 +1,7 @@
 //! The range of a term's channels over its box: a dense grid, and from its best points a local search. For closed forms the
-//! search evaluates them; for what is integrated it evaluates polynomials through the grid's points.
+//! search evaluates them; for what is integrated it evaluates polynomials through the grid's points. Nothing here is mbint's.
 
-use crate::draw::Term;
+use crate::draw::{Parameter, Term};
 use crate::truth::Range;
 
 /// Candidates of each end that are refined.
@@ -10,6 +10,7 @@ const CANDIDATES: usize = 3;
 /// Samples of a term on a grid over its uncertain parameters.
 struct Grid<'t> {
     term: &'t Term,
+    parameters: Vec<Parameter>,
     uncertain: Vec<usize>,
     /// Points along each.
     points: usize,
@@ -30,7 +31,8 @@ pub fn ranges(term: &Term, times: &[f64], level: u32) -> Vec<Vec<Range>> {
 
 impl<'t> Grid<'t> {
     fn new(term: &'t Term, times: &[f64], level: u32) -> Self {
-        let uncertain = term.uncertain();
+        let parameters = term.seen();
+        let uncertain: Vec<usize> = (0..parameters.len()).filter(|&i| parameters[i].half > 0.0).collect();
         let few = match (uncertain.len(), term.integrated) {
             (0 | 1, false) => 512,
             (0 | 1, true) => 96,
@@ -42,9 +44,9 @@ impl<'t> Grid<'t> {
             (_, true) => 4,
         };
         let points = (few << level) + 1;
-        let mut grid = Self { term, uncertain, points, values: Vec::new() };
+        let mut grid = Self { term, parameters, uncertain, points, values: Vec::new() };
         let samples = points.pow(grid.uncertain.len() as u32);
-        grid.values = (0..samples).map(|sample| (term.curves)(&grid.parameters(&grid.place(sample)), times)).collect();
+        grid.values = (0..samples).map(|sample| (term.curves)(&grid.at(&grid.place(sample)), times)).collect();
         grid
     }
 
@@ -59,10 +61,11 @@ impl<'t> Grid<'t> {
         self.uncertain.iter().map(|_| coordinate()).collect()
     }
 
-    fn parameters(&self, place: &[f64]) -> Vec<f64> {
-        let mut values = self.term.values();
+    /// Values of the parameters there.
+    fn at(&self, place: &[f64]) -> Vec<f64> {
+        let mut values: Vec<f64> = self.parameters.iter().map(|parameter| parameter.value).collect();
         for (&which, &cell) in self.uncertain.iter().zip(place) {
-            let [lower, upper] = self.term.parameters[which].interval();
+            let [lower, upper] = self.parameters[which].interval();
             let share = cell / (self.points - 1) as f64;
             values[which] = lower + (upper - lower) * share;
         }
@@ -81,7 +84,7 @@ impl<'t> Grid<'t> {
             if self.uncertain.is_empty() {
                 return known;
             }
-            let exact = |place: &[f64]| sign * (self.term.curves)(&self.parameters(place), &[time])[channel][0];
+            let exact = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[time])[channel][0];
             let between = |place: &[f64]| sign * self.interpolated(sample, place, channel, row);
             let f: &dyn Fn(&[f64]) -> f64 = if self.term.integrated { &between } else { &exact };
             self.climb(self.place(sample), known, f)

@@ -16,6 +16,8 @@ struct Line {
     rows: usize,
     flagged: usize,
     misses: usize,
+    /// Bands with a row that contradicts its own run.
+    contradicted: usize,
     /// Of every row that is not flagged, stated over true error.
     rows_excess: Vec<f64>,
     /// Of every band the mean stated over the mean true error.
@@ -30,6 +32,7 @@ impl Line {
         self.rows += verdict.rows;
         self.flagged += verdict.flagged;
         self.misses += verdict.misses.len();
+        self.contradicted += usize::from(verdict.contradicted > 0);
         self.rows_excess.extend(&verdict.ratios);
         // A band that is exact up to rounding says nothing here.
         if !verdict.ratios.is_empty() && verdict.stated.is_finite() {
@@ -56,7 +59,7 @@ pub struct Table {
 impl Table {
     pub fn add(&mut self, family: &'static str, verdicts: &[Verdict], seconds: f64) {
         for verdict in verdicts {
-            for line in [(family, verdict.method.name()), (family, ALL), (ALL, verdict.method.name()), (ALL, ALL)] {
+            for line in [(family, verdict.label), (family, ALL), (ALL, verdict.label), (ALL, ALL)] {
                 self.lines.entry(line).or_default().add(verdict);
             }
         }
@@ -80,6 +83,11 @@ impl Table {
         self.lines.get(&(family, ALL)).map_or(0, |line| line.missed)
     }
 
+    /// Bands with rows that contradict their own run.
+    pub fn contradicted(&self) -> usize {
+        self.lines.get(&(ALL, ALL)).map_or(0, |line| line.contradicted)
+    }
+
     /// Draws that were refused or panicked. (How many are out of time hangs on the machine.)
     pub fn failures(&self) -> usize {
         self.draws.values().map(|draws| (draws[1] + draws[2]) as usize).sum()
@@ -90,9 +98,9 @@ impl Display for Table {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         writeln!(
             f,
-            "| family | method | bands | missed | rows covered | flagged | excess, median row | median band | mean band |"
+            "| family | method | bands | missed | contradicted | rows covered | flagged | excess, median row | median band | mean band |"
         )?;
-        writeln!(f, "|---|---|--:|--:|--:|--:|--:|--:|--:|")?;
+        writeln!(f, "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|")?;
         // The families' sums come last.
         for sums in [false, true] {
             for ((family, method), line) in self.lines.iter().filter(|((_, method), _)| (*method == ALL) == sums) {
@@ -113,14 +121,14 @@ impl Display for Table {
 }
 
 fn write_line(f: &mut Formatter, family: &str, method: &str, line: &Line) -> fmt::Result {
-    let Line { bands, missed, rows, flagged, misses, rows_excess, bands_excess, .. } = line;
+    let Line { bands, missed, rows, flagged, misses, contradicted, rows_excess, bands_excess, .. } = line;
     let open = rows - flagged;
     let covered = 100.0 * (1.0 - *misses as f64 / open.max(1) as f64);
     let share = 100.0 * *flagged as f64 / (*rows).max(1) as f64;
     let mean = bands_excess.iter().map(|excess| excess.ln()).sum::<f64>() / bands_excess.len() as f64;
     writeln!(
         f,
-        "| {family} | {method} | {bands} | {missed} | {covered:.2} % | {share:.1} % | {:.1} | {:.1} | {:.1} |",
+        "| {family} | {method} | {bands} | {missed} | {contradicted} | {covered:.2} % | {share:.1} % | {:.1} | {:.1} | {:.1} |",
         median(rows_excess),
         median(bands_excess),
         mean.exp()

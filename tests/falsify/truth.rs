@@ -11,7 +11,7 @@ pub struct Range {
 }
 
 impl Range {
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
         let [a, b] = [f(self.lower), f(self.upper)];
         Self { lower: a.min(b), upper: a.max(b) }
     }
@@ -83,7 +83,14 @@ fn distance(range: Range) -> Range {
 
 /// What an output is with nominal parameters: only to choose constants near it.
 pub fn nominal(draw: &Draw, output: &Output, times: &[f64]) -> Vec<f64> {
-    let curves: Vec<Vec<Vec<f64>>> = draw.terms.iter().map(|term| (term.curves)(&term.values(), times)).collect();
+    let curves: Vec<Vec<Vec<f64>>> = draw
+        .terms
+        .iter()
+        .map(|term| {
+            let values: Vec<f64> = term.seen().iter().map(|parameter| parameter.value).collect();
+            (term.curves)(&values, times)
+        })
+        .collect();
     let at = |row: usize| {
         let point = |&(term, channel): &(usize, usize)| {
             let value = curves[term][channel][row];

@@ -56,10 +56,14 @@ pub struct Miss {
 pub struct Verdict {
     pub output: usize,
     pub method: Method,
+    /// Of the method, in tables.
+    pub label: &'static str,
     pub rows: usize,
     pub flagged: usize,
     /// Rows without a flag.
     pub misses: Vec<Miss>,
+    /// Rows without a flag that exclude, by more than the errors, what the run has simulated or bounded otherwise.
+    pub contradicted: usize,
     /// Over the rows without a flag: the sum of stated and of true errors, and each row's ratio.
     pub stated: f64,
     pub off: f64,
@@ -114,19 +118,38 @@ fn run(draw: &Draw, begun: Instant) -> Result<StudyResult, mbint::Error> {
 fn judge(draw: &Draw, result: &StudyResult, truth: &[Vec<Range>], unsure: &[Vec<f64>]) -> Vec<Verdict> {
     let mut verdicts = Vec::new();
     for (place, output) in result.outputs().enumerate() {
+        let bands: Vec<Band> = output.bands().collect();
         let inputs = draw.outputs[place].inputs.iter();
         let coordinates: f64 = inputs.map(|&(term, _)| draw.terms[term].size).sum();
-        for band in output.bands() {
+        for &band in &bands {
             let seconds = result.summary().methods.iter().find(|taken| taken.method == band.method().name());
             let seconds = seconds.and_then(|taken| taken.seconds).unwrap_or(0.0);
             let size = truth[place].iter().fold(coordinates, |size, range| size.max(range.upper.abs()));
             let slack: Vec<f64> = unsure[place].iter().map(|unsure| unsure + ROUNDING * size).collect();
             let ends = result.failure().is_some();
             let verdict = compare(band, result.times(), &truth[place], &slack, ends);
-            verdicts.push(Verdict { output: place, seconds, ..verdict });
+            let contradicted = (0..slack.len())
+                .filter(|&row| is_contradicted(band, &bands, output.nominal()[row], row, ROUNDING * size))
+                .count();
+            let name = band.method().name();
+            let label =
+                if draw.bounds.tolerance.is_some() && name == "chebyshev" { "chebyshev to a tolerance" } else { name };
+            verdicts.push(Verdict { output: place, seconds, label, contradicted, ..verdict });
         }
     }
     verdicts
+}
+
+/// Whether a row without a flag leaves out the nominal motion, or an end of another method's that is not flagged either.
+fn is_contradicted(band: Band, all: &[Band], nominal: f64, row: usize, rounding: f64) -> bool {
+    let apart = |a: f64, b: f64, error: f64| (a - b).abs() > error + rounding;
+    let (lower, upper, error) = (band.lower()[row], band.upper()[row], band.errors()[row]);
+    let is_other_excluded = |other: &Band| {
+        let error = error + other.errors()[row];
+        other.is_reliable(row) && (apart(lower, other.lower()[row], error) || apart(upper, other.upper()[row], error))
+    };
+    let is_nominal_outside = nominal < lower - error - rounding || nominal > upper + error + rounding;
+    band.is_reliable(row) && (is_nominal_outside || all.iter().any(is_other_excluded))
 }
 
 /// A band row by row. Where a run says that it ended early, rows without a value are as good as flagged.
@@ -134,9 +157,11 @@ fn compare(band: Band, times: &[f64], truth: &[Range], slack: &[f64], ended: boo
     let mut verdict = Verdict {
         output: 0,
         method: band.method(),
+        label: "",
         rows: times.len(),
         flagged: 0,
         misses: Vec::new(),
+        contradicted: 0,
         stated: 0.0,
         off: 0.0,
         ratios: Vec::new(),

@@ -346,3 +346,32 @@ fn the_pages_slider_crank_is_that_of_its_closed_forms() {
         assert_eq!(requirement(&found, name).verdict, verdict, "{name}");
     }
 }
+
+/// What is conserved does not move, and a band without width has no error that is small beside it: its limits are met by margin and
+/// error, in the first round.
+#[test]
+fn what_is_conserved_is_decided_at_once() {
+    let text = "
+parameters: { m: 1.3 kg ± 5%, v: 2 m/s ± 3% }
+bodies: { a: { mass: m, coordinates: [x] }, b: { mass: 0.7, coordinates: [x] } }
+effects:
+  s: { spring_damper: { between: [a, b], along: x, stiffness: 300, free_length: 0.5 } }
+initial: { a.x: 0, a.vx: v, b.x: 0.5, b.vx: 0 }
+outputs: { drift: m*a.vx + 0.7*b.vx - m*v, last: { final: drift } }
+requirements:
+  kept: abs(drift) <= 1e-3 N*s
+  at_the_end: abs(last) <= 1e-3 N*s
+  too_strict: drift >= 1e-3 N*s
+simulation: { duration: 1, step: 1e-3 }
+bounds: { chebyshev: { order: 3 } }
+";
+    let summary = summary(&read(text));
+    for name in ["kept", "at_the_end"] {
+        let own = requirement(&summary, name);
+        assert_eq!(own.verdict, Verdict::Holds, "{own:?}");
+        // Momentum is kept exactly, but for rounding.
+        assert!((own.margin - 1e-3).abs() <= own.error + 1e-9, "{own:?}");
+    }
+    assert_eq!(requirement(&summary, "too_strict").verdict, Verdict::Violated);
+    assert!(!summary.methods.iter().any(|method| method.method.contains("earlier")), "{:?}", summary.methods);
+}

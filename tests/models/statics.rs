@@ -223,3 +223,47 @@ fn an_equilibrium_meets_requirements_with_their_closed_forms_margin() {
     let nearest = low.nearest.as_ref().unwrap();
     assert!((nearest.margin - (-0.35 - angle_of(33.0))).abs() < 1e-9, "{}", nearest.margin);
 }
+
+/// Many parameters of what rests, or is moved by motors, take as few simulations as those of a motion. The ends of a sum are the sums of
+/// ends; of the product, in logarithms, too.
+#[test]
+fn many_parameters_of_other_analyses_take_few_simulations() {
+    let count = 12;
+    let names: Vec<String> = (0..count).map(|i| format!("p{i}")).collect();
+    let parameters = names.iter().map(|name| format!("{name}: {{ value: 2, tolerance: 1% }}")).collect::<Vec<_>>();
+    let sum = names.iter().enumerate().map(|(i, name)| format!("{} {name}", if i % 3 == 0 { "-" } else { "+" }));
+    let (parameters, sum) = (parameters.join(", "), sum.collect::<Vec<_>>().join(" "));
+    // 8 signs are positive and 4 negative: 8 ± 0.24.
+    for analysis in ["kinematics", "statics"] {
+        let joint = format!("joints: {{ e: {{ equation: \"b.x = 0 {sum}\" }} }}");
+        let spring = format!("effects: {{ f: {{ force: {{ on: b, value: [\"0 {sum} - 1 N/m*b.x\", 0] }} }} }}");
+        let element = if analysis == "statics" { spring } else { joint };
+        let text = format!(
+            "
+analysis: {analysis}
+parameters: {{ {parameters} }}
+bodies: {{ b: {{ mass: 1, coordinates: [x] }} }}
+{element}
+outputs: {{ gap: b.x }}
+requirements: {{ open: gap >= 7.7 }}
+simulation: {{ duration: 1, output_step: 1 }}
+"
+        );
+        let (bounds, summary) = study::run(&read(&text), Options::default()).unwrap();
+        let [lower, upper, error] = ends(&bounds, "gap", Method::Chebyshev);
+        assert!(
+            (lower - 7.76).abs() <= error + 1e-9 && (upper - 8.24).abs() <= error + 1e-9,
+            "{lower} {upper} {error}"
+        );
+        assert!(error < 1e-3, "{error}");
+        assert_eq!(summary.requirements[0].verdict, Verdict::Holds, "{analysis}");
+        let simulations: usize = summary.methods.iter().map(|method| method.simulations).sum();
+        assert!(simulations < 500, "{analysis}: {simulations}");
+        // Every parameter has an equal part of the spread.
+        let contributions = &bounds.contributions[0];
+        assert_eq!(contributions.len(), count);
+        for own in contributions {
+            close(own.main[0], 1.0 / count as f64, 1e-6);
+        }
+    }
+}

@@ -1,12 +1,13 @@
 //! Chebyshev bounds: a polynomial in the parameters, from samples at Chebyshev nodes, and its range.
 //!
 //! What is expanded are the independent coordinates, from which the outputs follow (`composition`), or the outputs themselves (the
-//! paper's). The degree is given, or grows until a tolerance is met (`adaptive`).
+//! paper's). The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too (`outputs_alone`).
 
 mod adaptive;
 mod composition;
 mod detail;
 mod estimator;
+mod outputs_alone;
 mod range_search;
 mod sensitivity;
 mod sub_box;
@@ -28,6 +29,7 @@ use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, Row};
 use estimator::RangeEstimator;
+use outputs_alone::OutputsAlone;
 use range_search::{Previous, RangeSearch};
 use sensitivity::SensitivityAnalysis;
 
@@ -222,10 +224,8 @@ impl Registered for Chebyshev {
 impl BoundingMethod for Chebyshev {
     fn fit(&mut self, problem: &Problem) -> Result<(), Refusal> {
         let k = problem.parameters;
-        // The adaptive degree is that of coordinates; where they cannot be expanded, outputs are, to a usual degree.
         if self.degree == Degree::Adaptive && !problem.composes {
-            let order = if k <= Self::FEW { Self::ORDER } else { 2 };
-            *self = Self { expand: Expand::Output, ..Self::of_order(order, k) };
+            self.expand = Expand::Output;
         }
         match self.samples() {
             Some(samples) if samples > MOST_SIMULATIONS => Err(Refusal::too_many("chebyshev", samples, k)),
@@ -264,7 +264,10 @@ impl BoundingMethod for Chebyshev {
         validation: &Validation,
         request: &BoundsRequest,
     ) -> Result<MethodResult, EnsembleError> {
-        let Degree::Fixed { order, nodes } = &self.degree else { return adapted(ensemble, validation, request) };
+        let Degree::Fixed { order, nodes } = &self.degree else {
+            let alone = OutputsAlone(ensemble);
+            return adapted(if self.expand == Expand::Output { &alone } else { ensemble }, validation, request);
+        };
         let surrogate = Surrogate::tensor(order, nodes);
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());

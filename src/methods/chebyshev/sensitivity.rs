@@ -58,7 +58,7 @@ impl SensitivityAnalysis {
             Some(fine) => (&fine.surrogate, &fine.decomposition),
             None => (row.surrogate(), &self.own),
         };
-        let coefficients = surrogate.coefficients(&row.evaluate(surrogate.samples()), &mut SurrogateWork::default());
+        let coefficients = surrogate.coefficients(&row.predict(surrogate.samples()), &mut SurrogateWork::default());
         let k = self.nominal.len();
         let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, &coefficients, found, axis)).collect();
         let of_output = |(output, coefficients): (usize, &[f64])| {
@@ -87,7 +87,7 @@ impl SensitivityAnalysis {
         let of_block = |outputs: &[usize]| -> Vec<f64> {
             let found = outputs.iter().map(|&output| &found[output]);
             let points: Vec<Vec<f64>> = found.flat_map(|found| found.places.iter().map(replaced)).collect();
-            let values = row.evaluate_some(outputs, &points, &[Moves::default()]);
+            let values = row.predict_some(outputs, &points);
             values.chunks_exact(points.len()).map(|line| Range::of(line).width()).collect()
         };
         outputs.chunk_by(|a, b| block(*a) == block(*b)).flat_map(of_block).collect()

@@ -27,11 +27,12 @@ impl Study<'_> {
         let is_whole = schedule.time(first) == from && schedule.time(last) == end && span.len() > 2;
         let of_slack = |&place: &usize| {
             let bands = bands(self, rows, place, schedule.rows);
-            let relied_on = |band: &&Band| span.iter().all(|&row| !band.error.unresolved[row]);
-            let band = bands.iter().find(relied_on)?;
+            let is_resolved = |band: &&Band| span.iter().all(|&row| !band.error.unresolved[row]);
+            let is_known = |band: &&Band| span.iter().all(|&row| band.error.decisive(row).is_some());
+            let band = bands.iter().find(is_resolved).or(bands.iter().find(is_known))?;
             let lower = &band.lower[first..=last];
             let dip = lower.windows(3).map(|l| SAFETY / 8.0 * (l[0] - 2.0 * l[1] + l[2]).abs()).fold(0.0, f64::max);
-            let reached = |row: usize| lower[row] - band.error.total[first + row];
+            let reached = |row: usize| lower[row] - band.error.decisive(first + row).unwrap_or(f64::NAN);
             let least = (0..lower.len()).map(reached).fold(f64::INFINITY, f64::min) - dip;
             let lower = lower.iter().copied().fold(f64::INFINITY, f64::min);
             Some(Part {
@@ -39,7 +40,7 @@ impl Study<'_> {
                 error: lower - least,
                 surrogate: band.error.surrogate,
                 time: band.error.time,
-                is_reliable: true,
+                is_known: true,
                 method: band.method.name(),
             })
         };

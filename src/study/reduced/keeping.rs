@@ -37,7 +37,9 @@ impl Study<'_> {
             let ranges = &outcome.result.bands[value][..1];
             let span = validation.spans[value];
             let mut error = BandError::new(ranges, &[surrogate], &[time], span, self.request.tolerance);
-            error.unresolved[0] |= unreliable;
+            if unreliable {
+                error.distrust(0..1);
+            }
             error
         };
         kept.errors = every.iter().map(|&value| of_value(value)).collect();

@@ -24,10 +24,7 @@ pub struct KeptReduced {
 impl KeptReduced {
     /// How far a requirement's margin may be from the truth anywhere in the box; unknown where it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
-        let of_part = |part: usize| {
-            let error = &self.errors[part];
-            if error.unresolved[0] { f64::NAN } else { error.total[0] }
-        };
+        let of_part = |part: usize| self.errors[part].decisive(0).unwrap_or(f64::NAN);
         largest(self.plan.parts(requirement).map(of_part))
     }
 

@@ -22,13 +22,14 @@ const ROUNDING: f64 = 1e-12;
 const ROUNDS: usize = 6;
 const REACH: f64 = 0.5;
 
-/// Bounds of a part of a margin.
+/// Bounds of a part of a margin. What decides is the margin beside its error, however little or much it moves.
 pub(super) struct Part {
     pub(super) lower: f64,
     pub(super) error: f64,
     pub(super) surrogate: f64,
     pub(super) time: f64,
-    pub(super) is_reliable: bool,
+    /// Whether the error is to be believed.
+    pub(super) is_known: bool,
     pub(super) method: &'static str,
 }
 
@@ -67,7 +68,7 @@ impl Study<'_> {
         ensembles: [&ReducedEnsemble; 2],
     ) -> Result<RequirementSummary, SimulationError> {
         let mut parts: Vec<Part> = ensembles[0].plan().parts(number).map(|place| self.part(values, place)).collect();
-        let decided = |parts: &[Part]| parts.iter().all(|part| part.is_reliable && part.reached() >= 0.0);
+        let decided = |parts: &[Part]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
         if !decided(&parts) && !values.unreliable {
             let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().margin(number, |place| all[place]);
             // NaN stays, and contradicts.
@@ -82,8 +83,8 @@ impl Study<'_> {
         let error = lower - least;
         // The part that decides.
         let part = parts.iter().min_by(|a, b| a.reached().total_cmp(&b.reached()));
-        let is_reliable = parts.iter().all(|part| part.is_reliable) && !values.unreliable;
-        let holds = is_reliable && least >= 0.0;
+        let is_known = parts.iter().all(|part| part.is_known) && !values.unreliable;
+        let holds = is_known && least >= 0.0;
         let nearest = self.nearest((number, own), values, holds, ensembles)?;
         let fails = nearest.as_ref().is_some_and(|case| case.margin.is_nan() || case.margin + case.error < 0.0);
         let verdict = match (fails, holds) {
@@ -98,7 +99,7 @@ impl Study<'_> {
         let limit = own.limits.first().map(|limit| limit.value.abs()).filter(|limit| *limit > 0.0);
         let [surrogate, time] = [part.map(|part| part.surrogate), part.map(|part| part.time)];
         let decides = (verdict == Verdict::Undecided)
-            .then(|| decides(own, lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_reliable));
+            .then(|| decides(own, lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_known));
         Ok(RequirementSummary {
             name: own.name.clone(),
             text: own.text.clone(),
@@ -118,16 +119,19 @@ impl Study<'_> {
         })
     }
 
-    /// Bounds of a part of a margin, by the foremost method.
+    /// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be believed.
     fn part(&self, values: &Values, place: usize) -> Part {
         let bands = bands(self, values.results, place, 1);
-        let band = foremost(&bands, |band: &Band| !band.error.unresolved[0]);
+        let is_resolved = |band: &Band| !band.error.unresolved[0];
+        let is_known = |band: &Band| band.error.decisive(0).is_some();
+        let band = bands.iter().find(|band| is_resolved(band)).or(foremost(&bands, is_known));
+        let decisive = band.and_then(|band| band.error.decisive(0));
         Part {
             lower: band.map_or(f64::NAN, |band| band.lower[0]),
-            error: band.map_or(f64::NAN, |band| band.error.total[0]),
+            error: band.map_or(f64::NAN, |band| decisive.unwrap_or(band.error.total[0])),
             surrogate: band.map_or(f64::NAN, |band| band.error.surrogate),
             time: band.map_or(f64::NAN, |band| band.error.time),
-            is_reliable: band.is_some_and(|band| !band.error.unresolved[0]),
+            is_known: decisive.is_some(),
             method: band.map_or("nominal", |band| band.method.name()),
         }
     }
@@ -246,8 +250,8 @@ impl Study<'_> {
 }
 
 /// What would decide a requirement.
-fn decides(own: &Requirement, lower: f64, [surrogate, time]: [f64; 2], is_reliable: bool) -> String {
-    if !is_reliable || !(surrogate + time).is_finite() {
+fn decides(own: &Requirement, lower: f64, [surrogate, time]: [f64; 2], is_known: bool) -> String {
+    if !is_known || !(surrogate + time).is_finite() {
         return "reliable bounds: a higher order, shorter steps, or `bounds: { tolerance: … }`".to_owned();
     }
     if lower + surrogate + time < 0.0 {

@@ -41,6 +41,7 @@ pub fn rotor(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: r,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -94,6 +95,7 @@ pub fn slider_crank(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: r + l,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -146,5 +148,6 @@ pub fn four_bar(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: base + l,
         spatial: false,
+        hidden: None,
     }
 }

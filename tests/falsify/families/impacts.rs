@@ -60,6 +60,7 @@ pub fn bounce(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: height,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -113,5 +114,6 @@ pub fn ceiling(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: height,
         spatial: false,
+        hidden: None,
     }
 }

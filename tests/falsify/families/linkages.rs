@@ -129,6 +129,7 @@ pub fn slider_crank(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: r + l,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -216,5 +217,6 @@ pub fn four_bar(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: base + l,
         spatial: false,
+        hidden: None,
     }
 }

@@ -1,11 +1,14 @@
 //! What is drawn: mechanisms whose motion is known without mbint.
 
+mod branches;
+mod driven;
 mod drives;
 mod impacts;
 mod linkages;
 mod nonlinear;
 mod oscillators;
 mod pulses;
+mod shapes;
 mod slides;
 mod swings;
 mod tops;
@@ -31,6 +34,16 @@ pub struct Family {
     wraps: bool,
     /// Tolerances of the simulation that may be drawn: those that do not take too long.
     tolerances: &'static [f64],
+    /// How often bounds are asked to a tolerance, not of an order.
+    adaptive: f64,
+    analysis: &'static str,
+}
+
+impl Family {
+    /// Of those that are drawn for bounds to a tolerance.
+    const fn adaptive(self) -> Self {
+        Self { adaptive: 0.8, tolerances: &[1e-3, 1e-4], ..self }
+    }
 }
 
 /// Time of a draw.
@@ -46,7 +59,7 @@ impl Frame {
 }
 
 const fn family(name: &'static str, draw: fn(&mut Random, &Frame) -> Vec<Term>) -> Family {
-    Family { name, draw, wraps: false, tolerances: &[1e-3, 1e-4, 1e-5, 1e-6] }
+    Family { name, draw, wraps: false, tolerances: &[1e-3, 1e-4, 1e-5, 1e-6], adaptive: 0.12, analysis: "motion" }
 }
 
 pub const FAMILIES: &[Family] = &[
@@ -95,6 +108,25 @@ pub const FAMILIES: &[Family] = &[
     family("slider crank", |random, frame| vec![linkages::slider_crank(random, &frame.scale(0))]),
     family("four-bar", |random, frame| vec![linkages::four_bar(random, &frame.scale(0))]),
     Family { tolerances: &[1e-3, 1e-4], ..family("top", |random, frame| vec![tops::top(random, &frame.scale(0))]) },
+    family("bump", |random, frame| vec![shapes::bump(random, &frame.scale(0))]).adaptive(),
+    family("ridge", |random, frame| vec![shapes::ridge(random, &frame.scale(0))]).adaptive(),
+    family("corner", |random, frame| vec![shapes::corner(random, &frame.scale(0))]).adaptive(),
+    family("ring", |random, frame| vec![shapes::ring(random, &frame.scale(0))]).adaptive(),
+    family("stack", |random, frame| vec![shapes::stack(random, &frame.scale(0))]).adaptive(),
+    family("many", |random, frame| {
+        let terms = random.whole(5, 8);
+        (0..terms).map(|place| oscillators::free(random, &frame.scale(place))).collect()
+    })
+    .adaptive(),
+    family("tuned", |random, frame| vec![oscillators::resonant(random, &frame.scale(0))]).adaptive(),
+    family("hardening", |random, frame| vec![driven::hardening(random, &frame.scale(0))]).adaptive(),
+    family("driven pendulum", |random, frame| vec![driven::pendulum(random, &frame.scale(0))]).adaptive(),
+    Family {
+        tolerances: &[],
+        adaptive: 0.4,
+        analysis: "kinematics",
+        ..family("change point", |random, frame| vec![branches::change_point(random, &frame.scale(0))])
+    },
 ];
 
 /// The draw of a number; families take turns.
@@ -112,20 +144,24 @@ pub fn draw(seed: u64, number: u64, only: Option<&str>) -> Draw {
     let time = Time { row, rows, stepping: Stepping::Steps(steps) };
     let frame = Frame { step, duration: time.duration() };
     let mut terms = (family.draw)(&mut random, &frame);
-    make_uncertain(&mut random, &mut terms);
+    let is_adaptive = family.adaptive > 0.5;
+    make_uncertain(&mut random, &mut terms, is_adaptive);
     let outputs = observe(&mut random, family, &terms, &time);
-    let mut draw = Draw { family: family.name, terms, outputs, time, bounds: Bounds::default() };
-    draw.bounds = request(&mut random, draw.uncertain_count());
+    let mut draw =
+        Draw { family: family.name, analysis: family.analysis, terms, outputs, time, bounds: Bounds::default() };
+    draw.bounds = request(&mut random, draw.uncertain_count(), family.adaptive);
     if !family.tolerances.is_empty() && random.chance(0.15) {
         draw.time.stepping = Stepping::Tolerance(random.pick(family.tolerances));
     }
     draw
 }
 
-/// Gives one to four parameters an interval, at least one of every term but those that have none to give.
-fn make_uncertain(random: &mut Random, terms: &mut [Term]) {
+/// Gives one to four parameters an interval, at least one of every term but those that have none to give; wide ones, and as many
+/// as there are terms, where a surrogate is to find its own degree.
+fn make_uncertain(random: &mut Random, terms: &mut [Term], is_adaptive: bool) {
     let wanted = random.pick(&[1, 1, 1, 1, 1, 2, 2, 2, 3, 4]);
-    let wide = random.chance(0.5);
+    let wide = is_adaptive || random.chance(0.5);
+    let limit = terms.len().max(4);
     let mut count = 0;
     for round in 0..4 {
         for term in &mut *terms {
@@ -134,13 +170,14 @@ fn make_uncertain(random: &mut Random, terms: &mut [Term]) {
             let mut free: Vec<&mut Parameter> = term.parameters.iter_mut().filter(possible).collect();
             // What is integrated is sampled on a grid.
             let full = term.integrated && round >= 2;
-            if free.is_empty() || full || (round > 0 && count >= wanted) || count >= 4 {
+            if free.is_empty() || full || (round > 0 && count >= wanted) || count >= limit {
                 continue;
             }
             let which = random.whole(0, free.len() - 1);
             let parameter = &mut free[which];
             let most = if wide { parameter.most } else { 0.1 * parameter.most };
-            let relative = random.scale(most.min(1e-3), most);
+            let least = if is_adaptive { 0.1 * most } else { most.min(1e-3) };
+            let relative = random.scale(least, most);
             parameter.half = crate::random::digits(relative * parameter.value.abs(), 3);
             count += 1;
         }
@@ -162,6 +199,7 @@ fn observe(random: &mut Random, family: &Family, terms: &[Term], time: &Time) ->
                 output.combine = random.pick(&[Combine::Sum, Combine::Max, Combine::Min, Combine::Product]);
                 let draw = Draw {
                     family: family.name,
+                    analysis: family.analysis,
                     terms: terms.to_vec(),
                     outputs: Vec::new(),
                     time: *time,
@@ -193,9 +231,11 @@ fn wrap(random: &mut Random, nominal: &[f64]) -> Wrap {
 }
 
 /// Methods and orders that take at most a few hundred simulations.
-fn request(random: &mut Random, uncertain: usize) -> Bounds {
-    if random.chance(0.12) {
-        return Bounds { tolerance: Some(random.pick(&[1e-2, 1e-3, 1e-4])), ..Bounds::default() };
+fn request(random: &mut Random, uncertain: usize, adaptive: f64) -> Bounds {
+    if random.chance(adaptive) || uncertain > 4 {
+        // With few parameters a scan beside it now and then, which the band must not exclude.
+        let scan = (adaptive > 0.5 && uncertain <= 2 && random.chance(0.3)).then(|| random.whole(5, 20));
+        return Bounds { tolerance: Some(random.pick(&[1e-2, 1e-3, 1e-4])), scan, ..Bounds::default() };
     }
     let [most_order, most_degree, most_points] =
         [[20, 8, 40], [9, 5, 15], [4, 4, 6], [3, 3, 4]][uncertain.clamp(1, 4) - 1];

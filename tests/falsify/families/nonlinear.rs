@@ -54,6 +54,7 @@ pub fn coupled(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: x,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -93,6 +94,7 @@ pub fn parametric(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: x,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -135,6 +137,7 @@ pub fn stick_slip(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: 2.0 * friction / k,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -187,5 +190,6 @@ pub fn post(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: speed * scale.duration,
         spatial: false,
+        hidden: None,
     }
 }

@@ -25,7 +25,7 @@ pub fn decay(omega_square: f64, delta: f64, x: f64, v: f64, t: f64) -> [f64; 2] 
 }
 
 /// An oscillator's own period is from a tenth of the duration to 30 times it.
-fn slow_frequency(random: &mut Random, scale: &Scale) -> f64 {
+pub fn slow_frequency(random: &mut Random, scale: &Scale) -> f64 {
     let turns = random.scale(0.3, 8.0);
     // At least some 30 steps a turn.
     (turns * TAU / scale.duration).min(0.2 / scale.step)
@@ -75,6 +75,7 @@ impl Mass {
             integrated: false,
             size: origin.abs() + self.x.abs(),
             spatial: false,
+            hidden: None,
         }
     }
 }

@@ -116,5 +116,6 @@ pub fn pulse(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: x,
         spatial: false,
+        hidden: None,
     }
 }

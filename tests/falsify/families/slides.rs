@@ -51,6 +51,7 @@ pub fn friction(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: speed * scale.duration,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -85,5 +86,6 @@ pub fn drag(random: &mut Random, scale: &Scale) -> Term {
         integrated: false,
         size: terminal * scale.duration,
         spatial: false,
+        hidden: None,
     }
 }

@@ -56,6 +56,7 @@ pub fn pendulum(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: l,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -112,6 +113,7 @@ pub fn double_pendulum(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: l + other,
         spatial: false,
+        hidden: None,
     }
 }
 
@@ -157,5 +159,6 @@ pub fn spring_pendulum(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: l,
         spatial: false,
+        hidden: None,
     }
 }

@@ -58,5 +58,6 @@ pub fn top(random: &mut Random, scale: &Scale) -> Term {
         integrated: true,
         size: arm,
         spatial: true,
+        hidden: None,
     }
 }

@@ -37,7 +37,7 @@ impl Adaptation<'_> {
         let allowed = &self.goal.allowed;
         let look = |place: usize, composed: &Row, _: &mut Previous| {
             let own = &own[rows[place] * own_stride..];
-            let (expected, found) = (composed.evaluate_motion(nodes, own), composed.evaluate(nodes));
+            let (expected, found) = (composed.evaluate_motion(nodes, own), composed.predict(nodes));
             let mut errors = vec![0.0_f64; nodes.len()];
             for (line, &allowed) in allowed.iter().enumerate() {
                 for (node, error) in errors.iter_mut().enumerate() {

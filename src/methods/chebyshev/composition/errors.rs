@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use super::{Found, Row};
 use crate::methods::chebyshev::range_search::{RangeSearch, block, extent};
 use crate::methods::expansion::Moves;
+use crate::methods::result::BETWEEN_KINKS;
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surrogate_error, truncation};
 
@@ -63,7 +64,8 @@ impl Row<'_> {
             if expanded[output] {
                 let own = self.own_polynomials(&[output], points);
                 let tail = truncation(self.surrogate.basis(), self.own_coefficients(output));
-                return found.gap + largest([surrogate_error(&own, &simulated), tail]);
+                let between = if self.ensemble.has_kink(output) { BETWEEN_KINKS } else { 1.0 };
+                return found.gap + largest([between * surrogate_error(&own, &simulated), tail]);
             }
             let outside = simulated.into_iter().map(|value| found.range.distance(value));
             found.gap + largest(outside.chain([moved]))

@@ -80,8 +80,12 @@ impl Row<'_> {
         }
     }
 
-    /// Every output at some ξ as it follows from the motion there: 2n lines of points.
+    /// Every output at some ξ as it follows from the motion there, 2n lines of points. Behind it is what was simulated of the
+    /// outputs, which counts where there are no coordinates.
     pub fn evaluate_motion(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
+        if self.extent.is_empty() {
+            return motion[..self.ensemble.outputs() * points.len()].to_vec();
+        }
         let motion = motion[..self.extent.len() * points.len()].to_vec();
         self.expansion().close(points, motion)
     }
@@ -89,6 +93,15 @@ impl Row<'_> {
     /// Every output at some ξ, output by output.
     pub fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
         self.evaluate_moved(points, &[Moves::default()])
+    }
+
+    /// The same, or where there are no coordinates what its own polynomial says.
+    pub fn predict(&self, points: &[Vec<f64>]) -> Vec<f64> {
+        if !self.extent.is_empty() {
+            return self.evaluate(points);
+        }
+        let every: Vec<usize> = (0..self.ensemble.outputs()).collect();
+        self.own_polynomials(&every, points)
     }
 
     /// Every output with the motion moved in some ways, output by output, way by way, point by point.

@@ -378,7 +378,7 @@ impl<'r> Row<'r> {
     /// For each output the corners of the box at which it is least and largest.
     pub fn best_corners(&self) -> Vec<Vec<f64>> {
         let places = corners(self.domain.dimension(), CORNERS);
-        let values = self.evaluate(&places);
+        let values = self.predict(&places);
         let of_output = |values: &[f64]| {
             let best =
                 |sign: f64| (0..values.len()).fold(0, |a, b| if sign * values[b] > sign * values[a] { b } else { a });
