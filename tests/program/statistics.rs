@@ -56,7 +56,7 @@ bounds: { chebyshev: { order: 3 } }
     fs::write(place.path().join("thrown.yaml"), text).unwrap();
     // Worst case: 2.06²/19.62 is 0.2163.
     let (printed, _) = place.run("run thrown.yaml -o out", 4);
-    assert!(printed.contains("by directional sampling") && printed.contains("all requirements"), "{printed}");
+    assert!(printed.contains("by importance sampling") && printed.contains("all requirements"), "{printed}");
     let summary = fs::read_to_string(place.path().join("out/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     // v > 2.04 is two deviations; v > 2.1 are five.

@@ -38,11 +38,12 @@ pub fn farther_than(r: f64, k: usize) -> f64 {
         return 1.0;
     }
     let half = 0.5 * r * r;
-    let mut sum = if k % 2 == 0 { 0.0 } else { 2.0 * normal_cdf(-r) };
+    let is_even = k.is_multiple_of(2);
+    let mut sum = if is_even { 0.0 } else { 2.0 * normal_cdf(-r) };
     // xᵃ e⁻ˣ / Γ(a + 1) for a = 0, 1, … or ½, 3/2, …
-    let mut order = if k % 2 == 0 { 0.0 } else { 0.5 };
+    let mut order = if is_even { 0.0 } else { 0.5 };
     let mut term = math::exp(-half);
-    if k % 2 == 1 {
+    if !is_even {
         term *= r * (2.0 / std::f64::consts::PI).sqrt();
     }
     while 2.0 * order < k as f64 - 1.0 {

@@ -6,7 +6,7 @@ use super::special::normal_quantile;
 use crate::numerics::dot;
 
 /// Steps along a ray in which changes of sign are looked for, and steps to each of them.
-const STEPS: usize = 28;
+const STEPS: usize = 20;
 const SECANTS: usize = 5;
 
 /// How far beyond the usual length of a point in so many dimensions a ray leads.
@@ -14,6 +14,9 @@ const BEYOND: f64 = 8.0;
 
 /// Slacks that are the smaller the more of the errors is counted against them, point by point.
 pub type Slacks<'s> = dyn Fn(&[Vec<f64>]) -> Vec<[f64; 3]> + 's;
+
+/// Where a slack changes its sign: number of the direction, which slack, and both ends with their values.
+type Crossing = (usize, usize, [(f64, f64); 2]);
 
 /// A direction from numbers in (0, 1).
 pub fn direction(numbers: &[f64]) -> Vec<f64> {
@@ -39,11 +42,10 @@ pub fn shares_along(directions: &[Vec<f64>], slacks: &Slacks) -> Vec<[f64; 3]> {
         .collect();
     let values = slacks(&grid);
     let mut shares = vec![[0.0; 3]; directions.len()];
-    // Direction, which slack, and both ends with their values.
-    let mut crossings: Vec<(usize, usize, [(f64, f64); 2])> = Vec::new();
+    let mut crossings: Vec<Crossing> = Vec::new();
     for (number, along) in values.chunks_exact(STEPS + 1).enumerate() {
         for which in 0..3 {
-            let fails = |step: usize| !(along[step][which] >= 0.0);
+            let fails = |step: usize| along[step][which] < 0.0 || along[step][which].is_nan();
             for step in 0..STEPS {
                 let ends = [step, step + 1].map(|step| (radius(step), along[step][which]));
                 match (fails(step), fails(step + 1)) {

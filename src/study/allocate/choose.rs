@@ -106,7 +106,7 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     let mut multiples = tightest.to_vec();
     priced.iter().for_each(|&i| multiples[i] = start[i].clamp(tightest[i], items[i].widest));
     // Where worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all requirements hold.
-    if is_flat(slack, &multiples, tightest) {
+    if slack.power() == Power::First && is_flat(slack, &multiples, tightest) {
         let from = multiples.clone();
         let with = |factor: f64| -> Vec<f64> {
             let of = |i: usize| if priced.contains(&i) { (factor * from[i]).max(tightest[i]) } else { from[i] };
@@ -147,18 +147,14 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     with(largest(slack, least, 1.0, &with))
 }
 
-/// Whether, by its linearisation, a constraint does not hold with the tightest multiples either, with which all do.
+/// Whether, by its linearisation in the multiples, a constraint does not hold with the tightest ones either, with which all do.
 fn is_flat(slack: &mut dyn Slack, multiples: &[f64], tightest: &[f64]) -> bool {
-    if slack.power() == Power::First {
-        slack.left(multiples);
-    }
-    let power = |x: f64| if slack.power() == Power::First { x } else { x * x };
-    let moves: Vec<f64> = multiples.iter().zip(tightest).map(|(at, least)| power(*least) - power(*at)).collect();
-    let constraints = slack.linearised(multiples);
+    slack.left(multiples);
+    let moves: Vec<f64> = multiples.iter().zip(tightest).map(|(at, least)| least - at).collect();
     let with_tightest = |constraint: &Linear| {
         constraint.value + constraint.slopes.iter().zip(&moves).map(|(slope, moved)| slope * moved).sum::<f64>()
     };
-    constraints.iter().any(|constraint| with_tightest(constraint) < -ROUNDING)
+    slack.linearised(multiples).iter().any(|constraint| with_tightest(constraint) < -ROUNDING)
 }
 
 /// A search through grades, depth first, the cheapest of each first.
