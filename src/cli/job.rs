@@ -7,11 +7,12 @@ use super::kept_run::{KeptRun, context, expected};
 use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
 use super::request::{Job, Request, Settings};
+use super::resolution::{self, resolution};
 use super::verdicts;
 use super::{Failure, Status, interrupt, report as page};
 use crate::export::{holds_complete_results, remove_comparison, write_results};
 use crate::model::Description;
-use crate::results::{Bounds, OutputBounds, Provenance, Summary};
+use crate::results::{Bounds, Provenance, Summary};
 use crate::simulate::SimulationError;
 use crate::store::PartStore;
 use crate::study;
@@ -118,7 +119,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
     let files = files.map_err(|error| failed(&error))?;
     interrupt::keep_results(false);
-    let resolved = || resolution(&bounds).max(verdicts::status(&summary));
+    let resolved = || resolution(&bounds, &summary).max(verdicts::status(&summary));
     let within = if summary.beyond_tolerance.is_some() { Status::Unresolved } else { Status::Done };
     let status = if summary.failure.is_some() { Status::Failed } else { resolved().max(within) };
     let stored = kept.map(|(kept, store)| kept.found(store));
@@ -148,6 +149,9 @@ pub(super) fn report(done: &Done, console: &Console) {
     if let Some(message) = unreliable(&done.summary) {
         console.warning(&format!("{name}: {message}"));
     }
+    if let Some(message) = resolution::unreliable(&done.summary) {
+        console.warning(&format!("{name}: {message}"));
+    }
     if let Some(ratio) = done.summary.beyond_tolerance {
         console.warning(&format!(
             "{name}: the local errors of a sample's steps add up to {ratio:.3e} times the tolerance: what needs that sample is unreliable"
@@ -159,14 +163,4 @@ pub(super) fn report(done: &Done, console: &Console) {
     if let Some(message) = excluded(&done.bounds, &done.summary) {
         console.warning(&format!("{name}: {message}"));
     }
-}
-
-/// Whether some method gives reliable bounds of every output at every time.
-fn resolution(bounds: &Bounds) -> Status {
-    // One reliable method is enough.
-    let answered = |output: &OutputBounds| {
-        let resolved = |row: usize| output.bands.iter().any(|band| !band.error.unresolved[row]);
-        output.bands.is_empty() || (0..bounds.times.len()).all(resolved)
-    };
-    if bounds.outputs.iter().all(answered) { Status::Done } else { Status::Unresolved }
 }

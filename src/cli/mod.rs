@@ -22,6 +22,7 @@ mod progress;
 mod record;
 mod report;
 mod request;
+mod resolution;
 mod run;
 mod run_command;
 mod sample;

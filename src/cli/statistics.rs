@@ -73,7 +73,7 @@ pub(super) fn yields<'y>(found: impl IntoIterator<Item = &'y crate::results::Yie
         let cpk =
             of.cpk.map_or_else(String::new, |cpk| format!("{} Cpk {cpk:.2}", if cp.is_empty() { ";" } else { "," }));
         let time = of.time.map_or_else(String::new, |time| format!(" at t = {time:.4} s"));
-        let rare = if of.about_failures { ", by importance sampling" } else { "" };
+        let rare = of.method.as_ref().map_or_else(String::new, |method| format!(", by {method}"));
         format!(
             "  statistically, {} {} fulfilled by {} %: {} ppm fail (95 %: {} to {}{rare}){cp}{cpk}{time}\n",
             of.requirement,

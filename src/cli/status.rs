@@ -44,7 +44,7 @@ impl Status {
             ),
             Self::Unresolved => (
                 3,
-                "success, but at some time no method gives reliable bounds of an output, or a requirement is undecided and none violated",
+                "success, but no method resolves something that was asked: an output at some time, a reduced output, a statistic; or a requirement is undecided and none violated",
                 "all results; unreliable rows are marked",
             ),
             Self::NotMet => (

@@ -9,9 +9,11 @@ use symdiff::math;
 const ROUNDS: usize = 400;
 const SETTLED: f64 = 1e-10;
 
-/// Halvings of the logarithm of a multiplier, and the largest one beside the first guess.
+/// Halvings of the logarithm of a multiplier; how far below the first guess it is looked for, and how far above that at which the constraint
+/// alone makes all sizes as small as they may be.
 const HALVINGS: usize = 80;
-const LARGEST: f64 = 1e12;
+const SMALLEST: f64 = 1e-12;
+const LARGEST: f64 = 1e6;
 
 /// A constraint about the sizes at which it was linearised.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +48,14 @@ impl Power {
             Self::Second => math::cbrt(cost / (-2.0 * slope)),
         }
     }
+
+    /// The multiplier of a slope s < 0 at which that is where this size is.
+    fn multiplier(self, cost: f64, slope: f64, size: f64) -> f64 {
+        match self {
+            Self::First => cost / (-slope * size * size),
+            Self::Second => cost / (-2.0 * slope * size * size * size),
+        }
+    }
 }
 
 /// The cheapest sizes. Where no sizes fulfil all constraints, those that come near.
@@ -66,6 +76,15 @@ pub fn cheapest(
         let moved = |i: usize| constraint.slopes[i] * (power.of(sizes[i]) - power.of(at[i]));
         constraint.value + (0..sizes.len()).map(moved).sum::<f64>()
     };
+    // Where sizes do not matter, none makes a constraint hold: it counts for nothing.
+    let largest = |constraint: &Linear| {
+        let enough = |i: usize| match constraint.slopes[i] {
+            slope if slope < 0.0 => power.multiplier(costs[i], slope, least[i]),
+            _ => 0.0,
+        };
+        LARGEST * (0..costs.len()).map(enough).filter(|most| most.is_finite()).fold(0.0, f64::max)
+    };
+    let most_of: Vec<f64> = constraints.iter().map(largest).collect();
     let mut multipliers = vec![0.0; constraints.len()];
     for _ in 0..ROUNDS {
         let mut moved = 0.0_f64;
@@ -75,7 +94,8 @@ pub fn cheapest(
                 multipliers[place] = multiplier;
                 value(constraint, &sizes(&multipliers))
             };
-            let found = if with(0.0) >= 0.0 { 0.0 } else { root(&mut with, before) };
+            let most = most_of[place];
+            let found = if most == 0.0 || with(0.0) >= 0.0 { 0.0 } else { root(&mut with, before, most) };
             multipliers[place] = found;
             moved = moved.max((found - before).abs() / found.max(before).max(f64::MIN_POSITIVE));
         }
@@ -86,14 +106,14 @@ pub fn cheapest(
     sizes(&multipliers)
 }
 
-/// The multiplier at which a constraint is just fulfilled; its value does not decrease with the multiplier.
-fn root(with: &mut dyn FnMut(f64) -> f64, before: f64) -> f64 {
-    let guess = if before > 0.0 { before } else { 1.0 };
+/// The multiplier up to `most` at which a constraint is just fulfilled; its value does not decrease with the multiplier.
+fn root(with: &mut dyn FnMut(f64) -> f64, before: f64, most: f64) -> f64 {
+    let guess = if before > 0.0 { before } else { most.min(1.0) };
     let (mut low, mut high) = (guess, guess);
-    while with(high) < 0.0 && high < LARGEST * guess {
-        high *= 4.0;
+    while with(high) < 0.0 && high < most {
+        high = (4.0 * high).min(most);
     }
-    while with(low) >= 0.0 && low > guess / LARGEST {
+    while with(low) >= 0.0 && low > SMALLEST * guess {
         low *= 0.25;
     }
     for _ in 0..HALVINGS {
@@ -139,6 +159,15 @@ mod tests {
         assert!((found[0] - 0.25).abs() < 1e-8 && (found[1] - 0.75).abs() < 1e-8, "{found:?}");
         let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &constraints), (&[0.01; 2], &[10.0, 0.5]));
         assert!((found[0] - 0.25).abs() < 1e-8 && found[1] == 0.5, "{found:?}");
+        // What sizes do not change, and what they change hardly at all, leaves the others as they are.
+        for slope in [0.0, -0.0, -1e-300] {
+            let with_flat = [constraints[0].clone(), Linear { value: -1.0, slopes: vec![slope; 2] }];
+            let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &with_flat), (&[0.01; 2], &[10.0, 0.5]));
+            assert!(found.iter().all(|size| (0.01..=10.0).contains(size)), "{slope} {found:?}");
+            if slope == 0.0 {
+                assert!((found[0] - 0.5).abs() < 1e-8 && found[1] == 0.5, "{found:?}");
+            }
+        }
         let impossible = [Linear { value: -1.0, slopes: vec![-1.0, -1.0] }];
         let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &impossible), (&[0.01; 2], &[10.0; 2]));
         assert_eq!(found, [0.01, 0.01]);

@@ -160,6 +160,7 @@ pub struct YieldSummary {
     pub time: Option<f64>,
     /// Samples.
     pub samples: usize,
-    /// Whether they were drawn about the likeliest points that fail (importance sampling), since so few do.
-    pub about_failures: bool,
+    /// Where so few fail that samples look for them: by what the share was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub method: Option<String>,
 }

@@ -29,6 +29,15 @@ pub enum SimulationError {
         /// Which constraints are too many, where some are.
         cause: Option<Box<str>>,
     },
+    /// A sample of kinematics has no start on the nominal one's branch of the linkage.
+    #[error(
+        "with {} the mechanism cannot be assembled on the branch of its nominal position: that ends, or meets another, on the way there",
+        parameter_list(parameters)
+    )]
+    OffBranch {
+        /// The sample.
+        parameters: NamedValues,
+    },
     /// The explicit method is asked for where it is of no use.
     #[error("the explicit method is not for this: {why}; `scheme: hht` integrates it, and `auto` chooses")]
     NotExplicit {

@@ -266,6 +266,9 @@ impl Simulator {
                 let has_one = |sample: &Sample| self.equilibrium_of(equilibrium, sample).is_ok();
                 return samples.iter().map(has_one).collect();
             }
+            if self.system.analysis == Analysis::Kinematics {
+                return samples.iter().map(|sample| self.can_start_on_branch(sample)).collect();
+            }
             for open in self.assembly(&lanes).1 {
                 can.get_mut(open.lane).into_iter().for_each(|can| *can = false);
             }

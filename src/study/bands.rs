@@ -52,10 +52,10 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
             let beyond = |row: usize| if contradicted[row] { found[row].misses(held[row]) } else { 0.0 };
             let raised: Vec<f64> = (0..rows).map(|row| surrogate[row].max(beyond(row))).collect();
             error = with(&raised);
-            error.unresolved.iter_mut().zip(contradicted).for_each(|(flag, contradicted)| *flag |= contradicted);
+            (0..rows).filter(|&row| contradicted[row]).for_each(|row| error.distrust(row..row + 1));
         }
-        if let Some(unresolved) = results.unreliable_from().and_then(|row| error.unresolved.get_mut(row..)) {
-            unresolved.fill(true);
+        if let Some(row) = results.unreliable_from() {
+            error.distrust(row..rows);
         }
         Band {
             method: *method,
@@ -80,7 +80,7 @@ fn flag_exclusions(bands: &mut [Band]) {
             excluded.extend(b_is_sampled.then_some((b, row)));
         }
     }
-    excluded.into_iter().for_each(|(band, row)| bands[band].error.unresolved[row] = true);
+    excluded.into_iter().for_each(|(band, row)| bands[band].error.distrust(row..row + 1));
 }
 
 /// Whether an end of two bands that are relied on in a row cannot be the same. A proven band holds the range, and may be wider.

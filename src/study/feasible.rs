@@ -67,7 +67,9 @@ impl fmt::Display for Survey {
 /// Messages of a run with a sample that cannot be assembled.
 pub(super) fn explained(study: &Study, error: RunError) -> RunError {
     match error {
-        RunError::Simulation(source @ SimulationError::Assembly { .. }) if study.domain.dimension() > 0 => {
+        RunError::Simulation(source @ (SimulationError::Assembly { .. } | SimulationError::OffBranch { .. }))
+            if study.domain.dimension() > 0 =>
+        {
             RunError::Infeasible(Box::new(survey(study, source)))
         }
         other => other,

@@ -9,7 +9,7 @@ use symdiff::jet::JetSpace;
 use super::ensemble::{Motions, stopped_at};
 use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::Sample;
-use crate::simulate::{SimulationError, Stop, Visit};
+use crate::simulate::{SimulationError, SingularPass, Stop, Visit};
 
 /// Samples that are visited at once.
 const BLOCK: usize = 256;
@@ -26,11 +26,22 @@ impl Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, SimulationError> {
+        Ok(self.visit_watching(samples, sampling, reduce)?.0)
+    }
+
+    /// Also tells which singular configurations the samples passed.
+    pub(super) fn visit_watching(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<(Simulated, Vec<SingularPass>), SimulationError> {
         let (times, outputs, count) = (self.times(), self.simulator.system.outputs.len(), samples.len());
         let rows = times.len();
         let mut values = vec![f64::NAN; rows * outputs * count];
         let mut reduced = vec![f64::NAN; self.channels().len() * count];
         let mut stops: Vec<Stop> = Vec::new();
+        let mut singular = Vec::new();
         let mut visited = 0;
         for (block, samples) in samples.chunks(BLOCK).enumerate() {
             let is_over = (self.interrupted)() && !sampling.finish;
@@ -49,6 +60,7 @@ impl Motions<'_> {
                 for (channel, value) in visit.reduced.into_iter().enumerate() {
                     reduced[channel * count + sample] = value;
                 }
+                singular.extend(visit.singular);
                 stops.extend(visit.stop.map(|stop| Stop { sample, ..stop }));
             }
             visited += samples.len();
@@ -66,14 +78,15 @@ impl Motions<'_> {
             reduced.clear();
         }
         self.keep_reduced(samples, &reduced);
-        Ok(Simulated {
+        let simulated = Simulated {
             effort: Effort::default(),
             reduced,
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped: stops.iter().map(|stop| stop.sample).collect(),
             missing,
             ..Simulated::default()
-        })
+        };
+        Ok((simulated, singular))
     }
 
     /// The same of the one jet about `center`.

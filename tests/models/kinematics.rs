@@ -111,3 +111,91 @@ fn what_is_one_number_a_motion_is_bounded_between_coarse_rows() {
     let end = slider(0.101, 0.3015, 10.0, 0.2 * std::f64::consts::PI)[0];
     assert!((nearest.margin - (0.401 - end)).abs() < 2e-5, "{} {end}", nearest.margin);
 }
+
+/// A crank of 0.1 m and a rod, whose slider passes near the crank's pivot.
+fn near_a_change_point(rod: &str, bounds: &str) -> String {
+    format!(
+        "
+analysis: kinematics
+parameters: {{ rod: {{ {rod}, unit: m }} }}
+bodies:
+  crank: {{ points: {{ A: [0, 0], B: [0.1, 0] }} }}
+  rod: {{ points: {{ B: [0, 0], C: [rod, 0] }} }}
+  slider: {{ coordinates: [x] }}
+joints:
+  pivot: {{ revolute: [ground, crank.A] }}
+  pin: {{ revolute: [crank.B, rod.B] }}
+  wrist: {{ revolute: [rod.C, slider] }}
+  drive: {{ motor: {{ on: pivot, position: 4*t }} }}
+guess: {{ slider.x: 0.2 }}
+outputs: {{ x: slider.x }}
+simulation: {{ duration: 1.5, output_step: 0.05 }}
+{bounds}
+"
+    )
+}
+
+#[test]
+fn two_branches_near_one_another_are_not_mixed_up() {
+    for rod in [0.100_02, 0.101, 0.1001] {
+        let bounds = nominal(&read(&near_a_change_point(&format!("value: {rod}"), "")));
+        assert_eq!(bounds.times.len(), 31);
+        for (row, &time) in bounds.times.iter().enumerate() {
+            close(bounds.outputs[0].nominal[row], slider(0.1, rod, 4.0, time)[0], 1e-9);
+        }
+    }
+}
+
+#[test]
+fn samples_that_lock_do_not_go_on_beyond_the_gap_on_another_branch() {
+    // Rods shorter than the crank lock before the slider reaches the pivot: what is left stays where x ≥ 0.
+    let text =
+        near_a_change_point("interval: [0.093, 0.12]", "bounds: { chebyshev: { order: 6 }, scan: { points: 19 } }");
+    let options = Options { skip_infeasible: true, ..Options::default() };
+    let (bounds, _) = study::run(&read(&text), options).unwrap();
+    let mut rows = 0;
+    for (row, &time) in bounds.times.iter().enumerate() {
+        for band in &bounds.outputs[0].bands {
+            let (lower, error) = (band.lower[row], band.error.total[row]);
+            if band.error.unresolved[row] || lower.is_nan() {
+                continue;
+            }
+            assert!(lower + error >= -1e-9, "{:?} at {time}: {lower} ± {error}", band.method);
+            rows += 1;
+        }
+    }
+    assert!(rows > 30, "{rows}");
+}
+
+#[test]
+fn a_parallelogram_passes_its_change_points_smoothly_and_says_so() {
+    let text = "
+analysis: kinematics
+bodies:
+  ground: { points: { left: [0, 0], right: [0.3, 0] } }
+  a: { points: { A: [0, 0], B: [0.1, 0] } }
+  b: { points: { B: [0, 0], C: [0.3, 0] } }
+  c: { points: { D: [0, 0], C: [0.1, 0] } }
+joints:
+  pivot: { revolute: [ground.left, a.A] }
+  first: { revolute: [a.B, b.B] }
+  second: { revolute: [b.C, c.C] }
+  other: { revolute: [ground.right, c.D] }
+  drive: { motor: { on: pivot, position: 0.5 + 2*t } }
+guess: { c.angle: 0.5 }
+outputs: { turned: c.angle - a.angle, y: c.C.y }
+simulation: { duration: 4, output_step: 0.1 }
+";
+    let (bounds, summary) =
+        study::run(&read(text), Options { methods: Some(Vec::new()), ..Options::default() }).unwrap();
+    assert!(summary.failure.is_none(), "{:?}", summary.failure);
+    for (row, &time) in bounds.times.iter().enumerate() {
+        assert!(bounds.outputs[0].nominal[row].abs() < 1e-7, "{time}: {}", bounds.outputs[0].nominal[row]);
+    }
+    // Where the cranks lie along the coupler: 0.5 + 2 t = π and 2π.
+    let times: Vec<f64> = summary.singular_configurations.iter().map(|pass| pass.time).collect();
+    assert_eq!(times.len(), 2, "{times:?}");
+    for (time, turns) in times.iter().zip([1.0, 2.0]) {
+        assert!((time - 0.5 * (turns * std::f64::consts::PI - 0.5)).abs() < 1e-4, "{times:?}");
+    }
+}

@@ -6,7 +6,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated};
-use crate::numerics::{ParameterBox, Sample};
+use crate::numerics::{ParameterBox, Range, Sample};
 
 /// The outputs of an ensemble, and nothing that they follow from.
 pub(super) struct OutputsAlone<'a>(pub &'a dyn Ensemble);
@@ -34,6 +34,10 @@ impl Ensemble for OutputsAlone<'_> {
 
     fn has_kink(&self, output: usize) -> bool {
         self.0.has_kink(output)
+    }
+
+    fn seen(&self, row: usize, output: usize) -> Range {
+        self.0.seen(row, output)
     }
 
     fn is_interrupted(&self) -> bool {

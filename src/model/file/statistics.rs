@@ -49,6 +49,8 @@ grammar! {
         normal: Option<NormalLaw>,
         /// Cut off at the interval's ends.
         truncated_normal: Option<NormalLaw>,
+        /// Beyond the interval, too; its logarithm is normal.
+        lognormal: Option<LognormalLaw>,
         /// Linear to and from the mode.
         triangular: Option<TriangularLaw>,
         /// A beta law over the interval.
@@ -66,6 +68,14 @@ grammar! {
         sigma: Option<Number>,
         /// Mean; by default the middle of the interval.
         mean: Option<Number>,
+    }
+
+    /// Median, and standard deviation of the logarithm.
+    LognormalLaw is "`lognormal`" {
+        /// Standard deviation of the natural logarithm: of 0.1, the value is off by about 10 %.
+        sigma: f64,
+        /// Median; by default the parameter's value.
+        median: Option<Number>,
     }
 
     /// A triangle.

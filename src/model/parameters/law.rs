@@ -13,7 +13,7 @@ use crate::syntax::yaml::{Node, Value};
 /// The tolerance is so many standard deviations where nothing else is said.
 const SIGMAS: f64 = 3.0;
 
-const NAMES: [&str; 6] = ["uniform", "normal", "truncated_normal", "triangular", "beta", "table"];
+const NAMES: [&str; 7] = ["uniform", "normal", "truncated_normal", "lognormal", "triangular", "beta", "table"];
 
 /// Where a law is to lie: nominal value and interval.
 #[derive(Clone, Copy)]
@@ -43,6 +43,9 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
         if law.is_none() {
             let (message, help) = match scalar.text.as_str() {
                 "beta" => ("`beta` needs its exponents", "e.g. `{ beta: { alpha: 2, beta: 5 } }`".to_owned()),
+                "lognormal" => {
+                    ("`lognormal` needs its standard deviation", "e.g. `{ lognormal: { sigma: 0.1 } }`".to_owned())
+                }
                 "table" => ("`table` needs its points", "e.g. `{ table: [[0.1, 0], [0.2, 1], [0.3, 0]] }`".to_owned()),
                 _ => ("this is no distribution", format!("the distributions are {}", suggest::list(&NAMES))),
             };
@@ -97,6 +100,20 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             };
             let (alpha, beta) = (exponent("alpha"), exponent("beta"));
             Distribution::Beta { alpha: alpha?, beta: beta?, lower, upper }
+        }
+        ("lognormal", _) => {
+            let fields = reader.fields::<file::LognormalLaw>(&entry.value, entry.key_span.clone())?;
+            let sigma = reader.required(&fields, "sigma").and_then(|node| positive(reader, node));
+            let (median, at) = match fields.get("median") {
+                None => (nominal, entry.key_span.clone()),
+                Some(node) => (interval::bare_number(reader, draft, node, kind)?, node.span.clone()),
+            };
+            if median <= 0.0 || lower <= 0.0 {
+                let help = format!("the median is {median}, and the interval begins at {lower}");
+                reader.error(at, "a lognormal law is one of positive values", help);
+                return None;
+            }
+            Distribution::Lognormal { median, sigma: sigma?, lower: 0.0, upper: f64::INFINITY }
         }
         ("table", _) => Distribution::Table(table(reader, draft, &entry.value, place, kind)?),
         _ => {

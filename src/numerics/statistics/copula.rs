@@ -1,7 +1,5 @@
 //! Correlated parameters: a Gaussian copula, whose correlations are those of the normal scores Φ⁻¹(F(x)).
 
-use super::special::{normal_cdf, normal_quantile};
-
 /// A matrix of correlations that no random numbers can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotPositive;
@@ -46,16 +44,6 @@ impl Copula {
     /// Whether nothing is correlated.
     pub fn is_independent(&self) -> bool {
         self.rows.is_empty()
-    }
-
-    /// Correlates independent shares p in place.
-    pub fn correlate(&self, shares: &mut [f64]) {
-        if self.is_independent() {
-            return;
-        }
-        let mut scores: Vec<f64> = shares.iter().map(|&p| normal_quantile(p)).collect();
-        self.correlate_scores(&mut scores);
-        shares.iter_mut().zip(scores).for_each(|(p, score)| *p = normal_cdf(score));
     }
 
     /// Correlates independent normal scores in place.

@@ -33,6 +33,17 @@ pub enum Distribution {
         /// Ends.
         upper: f64,
     },
+    /// The logarithm is normal.
+    Lognormal {
+        /// Half of the whole law lies below.
+        median: f64,
+        /// Standard deviation of the whole law's logarithm.
+        sigma: f64,
+        /// What lies below does not occur; zero where all does.
+        lower: f64,
+        /// What lies above does not occur; infinite where all does.
+        upper: f64,
+    },
     /// Its density rises to the mode and falls from it, linearly.
     Triangular {
         /// Ends.
@@ -75,6 +86,10 @@ impl Distribution {
                 };
                 (mean + sigma * value).clamp(*lower, *upper)
             }
+            Self::Lognormal { median, sigma, lower, upper } => {
+                let [low, high] = log_scores(*median, *sigma, *lower, *upper).map(normal_cdf);
+                (median * math::exp(sigma * normal_quantile(low + p * (high - low)))).clamp(*lower, *upper)
+            }
             Self::Triangular { lower, mode, upper } => {
                 let (width, left) = (upper - lower, mode - lower);
                 if p * width < left {
@@ -87,7 +102,7 @@ impl Distribution {
                 let share = beta_quantile(p, *alpha, *beta);
                 (1.0 - share) * lower + share * upper
             }
-            Self::Table(points) => table_quantile(points, p),
+            Self::Table(points) => table_quantile(points, &table_mass(points), p),
         }
     }
 
@@ -99,6 +114,10 @@ impl Distribution {
             Self::Normal { mean, sigma } => normal_cdf((x - mean) / sigma),
             Self::TruncatedNormal { mean, sigma, lower, upper } => {
                 let at = |x: f64| normal_cdf((x - mean) / sigma);
+                ((at(x.clamp(*lower, *upper)) - at(*lower)) / (at(*upper) - at(*lower))).clamp(0.0, 1.0)
+            }
+            Self::Lognormal { median, sigma, lower, upper } => {
+                let at = |x: f64| if x > 0.0 { normal_cdf(math::ln(x / median) / sigma) } else { 0.0 };
                 ((at(x.clamp(*lower, *upper)) - at(*lower)) / (at(*upper) - at(*lower))).clamp(0.0, 1.0)
             }
             Self::Triangular { lower, mode, upper } => {
@@ -126,6 +145,7 @@ impl Distribution {
                 let (_, first, _) = truncated(*mean, *sigma, *lower, *upper);
                 mean + sigma * first
             }
+            Self::Lognormal { .. } => self.log_moment(1.0),
             Self::Triangular { lower, mode, upper } => (lower + mode + upper) / 3.0,
             Self::Beta { alpha, beta, lower, upper } => lower + (upper - lower) * alpha / (alpha + beta),
             Self::Table(points) => {
@@ -144,6 +164,10 @@ impl Distribution {
                 let (_, first, second) = truncated(*mean, *sigma, *lower, *upper);
                 sigma * (1.0 + second - first * first).max(0.0).sqrt()
             }
+            Self::Lognormal { .. } => {
+                let mean = self.log_moment(1.0);
+                (self.log_moment(2.0) - mean * mean).max(0.0).sqrt()
+            }
             Self::Triangular { lower, mode, upper } => {
                 let (a, b, c) = (lower, upper, mode);
                 ((a * a + b * b + c * c - a * b - a * c - b * c) / 18.0).max(0.0).sqrt()
@@ -160,10 +184,26 @@ impl Distribution {
         }
     }
 
+    /// The mean of a lognormal law's powers; zero of others.
+    fn log_moment(&self, power: f64) -> f64 {
+        let Self::Lognormal { median, sigma, lower, upper } = self else { return 0.0 };
+        let [low, high] = log_scores(*median, *sigma, *lower, *upper);
+        let between = |shift: f64| normal_cdf(high - shift) - normal_cdf(low - shift);
+        let spread = power * sigma;
+        math::pow(*median, power) * math::exp(0.5 * spread * spread) * between(spread) / between(0.0)
+    }
+
     /// How much of the law lies outside of an interval.
     pub fn outside(&self, lower: f64, upper: f64) -> f64 {
         match self {
             Self::Normal { mean, sigma } => normal_cdf((lower - mean) / sigma) + normal_cdf((mean - upper) / sigma),
+            Self::Lognormal { median, sigma, .. } => {
+                // What was cut off does not lie outside.
+                let [low, high] = log_scores(*median, *sigma, lower, upper);
+                let cut = |score: f64, end: f64| if end > 0.0 && end.is_finite() { 0.0 } else { normal_cdf(score) };
+                let Self::Lognormal { lower: least, upper: most, .. } = self else { return 0.0 };
+                cut(low, *least) + cut(-high, *most)
+            }
             _ => 0.0,
         }
     }
@@ -174,11 +214,19 @@ impl Distribution {
             Self::Uniform { .. } => "uniform",
             Self::Normal { .. } => "normal",
             Self::TruncatedNormal { .. } => "truncated_normal",
+            Self::Lognormal { .. } => "lognormal",
             Self::Triangular { .. } => "triangular",
             Self::Beta { .. } => "beta",
             Self::Table(_) => "table",
         }
     }
+}
+
+/// Normal scores of a lognormal law's ends.
+fn log_scores(median: f64, sigma: f64, lower: f64, upper: f64) -> [f64; 2] {
+    let low = if lower > 0.0 { math::ln(lower / median) / sigma } else { f64::NEG_INFINITY };
+    let high = if upper.is_finite() { math::ln(upper / median) / sigma } else { f64::INFINITY };
+    [low, high]
 }
 
 /// Mass of a truncated standard normal law, and Σ of the boundary terms of its first and second moments.
@@ -190,7 +238,7 @@ fn truncated(mean: f64, sigma: f64, lower: f64, upper: f64) -> (f64, f64, f64) {
 }
 
 /// The mass up to each point, not normalised.
-fn table_mass(points: &[(f64, f64)]) -> Vec<f64> {
+pub(super) fn table_mass(points: &[(f64, f64)]) -> Vec<f64> {
     let mut mass = vec![0.0];
     for pair in points.windows(2) {
         let last = mass[mass.len() - 1];
@@ -210,8 +258,8 @@ fn table_below(points: &[(f64, f64)], x: f64) -> f64 {
     below
 }
 
-fn table_quantile(points: &[(f64, f64)], p: f64) -> f64 {
-    let mass = table_mass(points);
+/// The value below which a share p lies, of a table with this mass up to each point.
+pub(super) fn table_quantile(points: &[(f64, f64)], mass: &[f64], p: f64) -> f64 {
     let wanted = p * mass[mass.len() - 1];
     let place = mass.partition_point(|&below| below < wanted).clamp(1, points.len() - 1);
     let [(from, low), (to, high)] = [points[place - 1], points[place]];
@@ -244,6 +292,8 @@ mod tests {
             Distribution::Normal { mean: 0.5, sigma: 0.7 },
             Distribution::TruncatedNormal { mean: 0.0, sigma: 1.0, lower, upper },
             Distribution::TruncatedNormal { mean: -6.0, sigma: 1.0, lower, upper },
+            Distribution::Lognormal { median: 0.8, sigma: 0.3, lower: 0.0, upper: f64::INFINITY },
+            Distribution::Lognormal { median: 0.8, sigma: 0.3, lower: 0.5, upper: 1.5 },
             Distribution::Triangular { lower, mode: 0.0, upper },
             Distribution::Triangular { lower, mode: -1.0, upper },
             Distribution::Beta { alpha: 2.0, beta: 5.0, lower, upper },
@@ -279,6 +329,13 @@ mod tests {
         assert!((triangular.deviation() - (1.0_f64 / 24.0).sqrt()).abs() < 1e-15);
         let beta = Distribution::Beta { alpha: 2.0, beta: 5.0, lower: 0.0, upper: 1.0 };
         assert!((beta.deviation() - (5.0_f64 / 196.0).sqrt()).abs() < 1e-15);
+        // A lognormal law of median m has mean m e^(σ²/2) and variance m² e^σ² (e^σ² − 1).
+        let law = Distribution::Lognormal { median: 2.0, sigma: 0.5, lower: 0.0, upper: f64::INFINITY };
+        assert!((law.mean() - 2.0 * 0.125_f64.exp()).abs() < 1e-14);
+        assert!((law.deviation() - 2.0 * (0.25_f64.exp() * 0.25_f64.exp_m1()).sqrt()).abs() < 1e-13);
+        assert!(
+            (law.outside(2.0 * (-3.0_f64).exp(), 2.0 * 3.0_f64.exp()) / 1.973_175_290_075_396e-9 - 1.0).abs() < 1e-12
+        );
         // Six sigma on both sides: 2 · 9.8659e-10.
         let normal = Distribution::Normal { mean: 0.0, sigma: 1.0 };
         assert!((normal.outside(-6.0, 6.0) / 1.973_175_290_075_396e-9 - 1.0).abs() < 1e-12);

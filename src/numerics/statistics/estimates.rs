@@ -4,7 +4,7 @@ use super::beta::beta_quantile;
 use super::points::REPLICATES;
 
 /// Student's t for 95 % on both sides with one degree of freedom less than there are replicates (Abramowitz & Stegun, table 26.10).
-const STUDENT: f64 = 2.131;
+pub(super) const STUDENT: f64 = 2.131;
 
 /// An estimate, and the half width of its 95 % confidence interval as far as sampling goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -31,6 +31,11 @@ impl Mixture {
         }
     }
 
+    /// Number of places.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
     /// Whether there is no place: points are then of the law itself.
     pub fn is_plain(&self) -> bool {
         self.places.is_empty()
@@ -54,7 +59,7 @@ impl Mixture {
     }
 
     /// The law's density over the mixture's.
-    fn weight(&self, point: &[f64]) -> f64 {
+    pub fn weight(&self, point: &[f64]) -> f64 {
         if self.is_plain() {
             return 1.0;
         }

@@ -1,48 +1,223 @@
-//! Shares that are so small that few samples see them, by importance sampling about the likeliest points at which something fails.
+//! Shares that are so small that few samples see them: by importance sampling about the likeliest points that fail, by directional
+//! sampling, or by subset simulation, whichever says most; each is held against the points that subset simulation finds to fail.
 
-use super::estimates::Estimate;
+use super::estimates::{Estimate, STUDENT};
 use super::mixture::{Mixture, distance, value_and_slopes};
-use super::points::REPLICATES;
+use super::points::{REPLICATES, replicate};
+use super::rays::{Slacks, direction, shares_along, unit};
+use super::subset::{Subset, subset};
 use crate::numerics::dot;
 
 /// Points of a replicate.
-const POINTS: usize = 1 << 12;
+const POINTS: usize = 1 << 13;
 
-/// Most places about which samples are drawn.
+/// Directions of a replicate, and of those toward points that fail.
+const DIRECTIONS: usize = 1 << 8;
+const TOWARD: usize = 256;
+
+/// Most places about which samples are drawn: of the first search, and where more are needed to cover what fails.
 const PLACES: usize = 6;
+const MOST_PLACES: usize = 48;
+
+/// An interval that is this share of what it is of is good enough.
+const CLOSE: f64 = 5e-3;
+
+/// The narrowest of several intervals is too narrow by chance: so much wider is each.
+const NARROWEST: f64 = 1.25;
+
+/// Subset simulation's chains depend on each other, and its replicates are not normal: so much wider is its interval.
+const DEPENDENT: f64 = 1.6;
+
+/// A point that fails is left out where it stands for more than so many times the share.
+const UNCOVERED: f64 = 30.0;
+
+/// Rays find where the slack changes its sign to so much of the share.
+const ALONG: f64 = 1e-3;
+
+/// Of intervals of two methods, so many times the wider one may part them.
+const APART: f64 = 2.0;
 
 /// Steps to the likeliest point that fails, the longest of them, and how far out is looked.
 const ROUNDS: usize = 25;
 const STRIDE: f64 = 1.5;
 const FARTHEST: f64 = 8.0;
 
-/// Samples that a share takes.
-pub const RARE_SAMPLES: usize = REPLICATES * POINTS;
+/// By what a share was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RareMethod {
+    /// Samples about the likeliest points that fail.
+    Importance,
+    /// Rays from the middle.
+    Directional,
+    /// Chains, level by level.
+    Subset,
+}
 
-/// The share with a negative slack, where there is a place that fails. `slack` has the values of points in independent
-/// normal scores, `starts` are points from which such places are looked for.
-///
-/// The likeliest point that fails is found by the iteration of A. M. Hasofer & N. C. Lind and of R. Rackwitz & B. Fiessler (Computers &
-/// Structures 9 (1978) 489). Samples are of a mixture of normal laws about these points and of the law itself.
-pub fn rare_share(starts: &[Vec<f64>], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Estimate> {
-    let mut mixture = Mixture::default();
-    for start in starts {
-        if let Some(place) = likeliest(start, slack) {
-            mixture.add(place, PLACES);
+impl RareMethod {
+    /// As it is printed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Importance => "importance sampling",
+            Self::Directional => "directional sampling",
+            Self::Subset => "subset simulation",
         }
     }
-    if mixture.is_plain() {
-        return None;
+}
+
+/// A small share that fails.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RareShare {
+    /// The share.
+    pub value: f64,
+    /// Its 95 % confidence interval, from what fails if errors help to what fails if they harm; unknown (NaN) where methods contradict one another.
+    pub interval: [f64; 2],
+    /// By what it was found.
+    pub method: RareMethod,
+    /// Samples that this took.
+    pub samples: usize,
+}
+
+/// Estimates for slacks that errors help, as they are, and that errors harm.
+type Estimates = [Estimate; 3];
+
+/// The share with a negative slack, where something is found to fail. `slacks` has the values of points in independent normal scores, with
+/// errors that help, none, and errors that harm; `starts` are points from which places that fail are looked for.
+pub fn rare_share(starts: &[Vec<f64>], slacks: &Slacks) -> Option<RareShare> {
+    let k = starts.first()?.len();
+    let count = std::cell::Cell::new(0);
+    let counted = |points: &[Vec<f64>]| {
+        count.set(count.get() + points.len());
+        slacks(points)
+    };
+    let slack = |points: &[Vec<f64>]| counted(points).into_iter().map(|[_, own, _]| own).collect::<Vec<f64>>();
+    let seen = subset(k, &slack);
+    let mut mixture = Mixture::default();
+    starts.iter().filter_map(|start| likeliest(start, &slack)).for_each(|place| mixture.add(place, PLACES));
+    let Some(seen) = seen else {
+        // Nothing to hold it against: farther out than chains come.
+        let found = (!mixture.is_plain()).then(|| by_importance(&mixture, k, &counted))?;
+        return Some(shared(found, RareMethod::Importance, count.get()));
+    };
+    let level = Estimate::of(&seen.shares);
+    let level = Estimate { sampling: DEPENDENT * level.sampling, ..level };
+    let mut best = Best(RareMethod::Directional, by_directions(k, &seen, level.value, &counted));
+    if !best.is_close() && !mixture.is_plain() {
+        let found = by_importance(&mixture, k, &counted);
+        best.consider(RareMethod::Importance, foreseen(found, of_weights(&mixture, &seen, level.value)));
     }
-    let k = starts[0].len();
+    if !best.is_close() && cover(&mut mixture, &seen, level.value, &slack) {
+        let found = by_importance(&mixture, k, &counted);
+        best.consider(RareMethod::Importance, foreseen(found, of_weights(&mixture, &seen, level.value)));
+    }
+    if !best.is_close() {
+        // What errors change is as with the other estimates.
+        let base = best.1[1].value;
+        let change = best.1.map(|other| if base > 0.0 { other.value / base } else { f64::NAN });
+        let of = |change: f64| Estimate { value: change * level.value, sampling: change * level.sampling };
+        best.consider(RareMethod::Subset, change.map(of));
+    }
+    let Best(method, found) = best;
+    let mut share = shared(found, method, count.get());
+    let apart = (found[1].value - level.value).abs();
+    if apart > APART * (level.sampling + found[1].sampling) || apart.is_nan() {
+        share.interval = [f64::NAN; 2];
+    }
+    Some(share)
+}
+
+fn shared([better, own, worse]: Estimates, method: RareMethod, samples: usize) -> RareShare {
+    let interval = [(better.value - better.sampling).max(0.0), (worse.value + worse.sampling).min(1.0)];
+    RareShare { value: own.value, interval, method, samples }
+}
+
+/// The estimates that say most so far.
+struct Best(RareMethod, Estimates);
+
+impl Best {
+    fn is_close(&self) -> bool {
+        self.1[1].sampling <= CLOSE * self.1[1].value
+    }
+
+    fn consider(&mut self, method: RareMethod, found: Estimates) {
+        let width = |found: &Estimates| found[1].sampling / found[1].value;
+        // Of nothing nothing is known.
+        if width(&found) < width(&self.1) || width(&self.1).is_nan() {
+            *self = Self(method, found);
+        }
+    }
+}
+
+/// Estimates of the three slacks from shares of replicates.
+fn estimates(of_replicate: &[[f64; 3]]) -> Estimates {
+    [0, 1, 2].map(|which| Estimate::of(&of_replicate.iter().map(|shares| shares[which]).collect::<Vec<_>>()))
+}
+
+/// By samples of a mixture of normal laws about places that fail and of the law itself.
+fn by_importance(mixture: &Mixture, k: usize, slacks: &Slacks) -> Estimates {
     let of_replicate = |number: usize| {
         let (points, weights) = mixture.replicate(number, k, POINTS);
-        let values = slack(&points);
+        let values = slacks(&points);
         // NaN fails.
-        let fails = weights.iter().zip(&values).filter(|(_, value)| **value < 0.0 || value.is_nan());
-        fails.map(|(weight, _)| weight).sum::<f64>() / POINTS as f64
+        let share = |which: usize| {
+            let fails = weights.iter().zip(&values).filter(|(_, value)| value[which] < 0.0 || value[which].is_nan());
+            fails.map(|(weight, _)| weight).sum::<f64>() / POINTS as f64
+        };
+        [0, 1, 2].map(share)
     };
-    Some(Estimate::of(&(0..REPLICATES).map(of_replicate).collect::<Vec<_>>()))
+    estimates(&(0..REPLICATES).map(of_replicate).collect::<Vec<_>>())
+}
+
+/// The deviation about the share, relative to it, that points which fail foresee, where some of them are left out: such samples do not say so
+/// themselves. The mean square of all weights is the share times the mean weight of what fails. Where none is left out, evenly spread points do
+/// better, and their replicates say how much.
+fn of_weights(mixture: &Mixture, seen: &Subset, share: f64) -> f64 {
+    let weights: Vec<f64> = seen.failing.iter().map(|point| mixture.weight(point)).collect();
+    if weights.iter().all(|weight| *weight < UNCOVERED * share) {
+        return 0.0;
+    }
+    let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+    (mean / share - 1.0).max(0.0).sqrt() / ((REPLICATES * POINTS) as f64).sqrt()
+}
+
+/// Estimates with deviations that are at least those foreseen of random points.
+fn foreseen(found: Estimates, deviation: f64) -> Estimates {
+    found.map(|of| Estimate { sampling: (NARROWEST * of.sampling).max(STUDENT * deviation * of.value), ..of })
+}
+
+/// By rays from the middle.
+fn by_directions(k: usize, seen: &Subset, share: f64, slacks: &Slacks) -> Estimates {
+    let of_replicate = |number: usize| {
+        let numbers = replicate(number, k, DIRECTIONS);
+        let directions: Vec<Vec<f64>> = numbers.chunks_exact(k).map(direction).collect();
+        let shares = shares_along(&directions, slacks);
+        [0, 1, 2].map(|which| shares.iter().map(|own| own[which]).sum::<f64>() / DIRECTIONS as f64)
+    };
+    let found = estimates(&(0..REPLICATES).map(of_replicate).collect::<Vec<_>>());
+    let every = seen.failing.len().div_ceil(TOWARD);
+    let toward: Vec<Vec<f64>> = seen.failing.iter().step_by(every).map(|point| unit(point)).collect();
+    let along = shares_along(&toward, slacks);
+    let mean = along.iter().map(|own| own[1]).sum::<f64>() / along.len() as f64;
+    let found = found.map(|of| Estimate { sampling: of.sampling + ALONG * of.value, ..of });
+    foreseen(found, (mean / share - 1.0).max(0.0).sqrt() / ((REPLICATES * DIRECTIONS) as f64).sqrt())
+}
+
+/// Adds places until none of the points that fail is left out. Returns whether one was added.
+fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> bool {
+    let before = mixture.len();
+    let mut skipped = vec![false; seen.failing.len()];
+    for _ in 0..2 * MOST_PLACES {
+        let weights = seen.failing.iter().map(|point| mixture.weight(point));
+        let left = weights.enumerate().filter(|(place, _)| !skipped[*place]);
+        let Some((far, weight)) = left.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        if weight < UNCOVERED * share || mixture.len() >= MOST_PLACES {
+            break;
+        }
+        skipped[far] = true;
+        if let Some(place) = likeliest(&seen.failing[far], slack) {
+            mixture.add(place, MOST_PLACES);
+        }
+    }
+    mixture.len() > before
 }
 
 /// The point nearest to the middle, as far as can be seen from the start, at which nothing is left.
@@ -70,41 +245,119 @@ fn likeliest(start: &[f64], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<V
 
 #[cfg(test)]
 mod tests {
+    use super::super::normals::{Normals, farther_than};
     use super::super::special::normal_cdf;
     use super::*;
+
+    type Slack = dyn Fn(&[f64]) -> f64;
+
+    /// The share of a slack without errors.
+    fn found(starts: &[Vec<f64>], slack: &dyn Fn(&[f64]) -> f64) -> Option<RareShare> {
+        rare_share(starts, &|points: &[Vec<f64>]| points.iter().map(|z| [slack(z); 3]).collect())
+    }
+
+    /// Of points of the law itself, those with the least slack.
+    fn starts(k: usize, slack: &dyn Fn(&[f64]) -> f64) -> Vec<Vec<f64>> {
+        let mut normals = Normals::new(77);
+        let mut points: Vec<Vec<f64>> = (0..4000).map(|_| normals.draw(k)).collect();
+        points.sort_by(|a, b| slack(a).total_cmp(&slack(b)));
+        points.truncate(12);
+        points
+    }
 
     #[test]
     fn tails_that_no_sample_would_see() {
         for beta in [4.0, 5.5, 7.0] {
             // Φ(−β) along one direction, and twice that where both sides fail.
             let direction = [0.6, 0.0, 0.8];
-            let one = |points: &[Vec<f64>]| points.iter().map(|z| beta - dot(z, &direction)).collect::<Vec<f64>>();
-            let found = rare_share(&[vec![1.0, 0.1, 1.0]], &one).unwrap();
+            let share = found(&[vec![1.0, 0.1, 1.0]], &|z| beta - dot(z, &direction)).unwrap();
             let truth = normal_cdf(-beta);
-            assert!((found.value - truth).abs() < 2.0 * found.sampling && found.sampling < 0.02 * truth, "{found:?}");
-            let two =
-                |points: &[Vec<f64>]| points.iter().map(|z| beta - dot(z, &direction).abs()).collect::<Vec<f64>>();
-            let found = rare_share(&[vec![1.0, 0.1, 1.0], vec![-1.0, 0.0, -1.0]], &two).unwrap();
-            assert!((found.value - 2.0 * truth).abs() < 0.02 * truth, "{found:?}");
+            let [low, high] = share.interval;
+            assert!(low <= truth && truth <= high && high - low < 0.05 * truth, "{beta} {share:?} {truth}");
+            let two = found(&[vec![1.0, 0.1, 1.0], vec![-1.0, 0.0, -1.0]], &|z| beta - dot(z, &direction).abs());
+            let two = two.unwrap();
+            assert!((two.value - 2.0 * truth).abs() < 0.03 * truth, "{two:?} {truth}");
         }
     }
 
     #[test]
-    fn a_curved_limit() {
-        // |z|² > r² in two dimensions: exp(−r²/2), about a ring on which every point is likeliest.
-        let slack = |points: &[Vec<f64>]| points.iter().map(|z| 5.0 - dot(z, z).sqrt()).collect::<Vec<f64>>();
-        let starts: Vec<Vec<f64>> = [[3.0, 0.0], [-3.0, 0.1], [0.0, 3.0], [0.1, -3.0]].map(Vec::from).to_vec();
-        let found = rare_share(&starts, &slack).unwrap();
-        let truth = (-12.5_f64).exp();
-        assert!(
-            (found.value - truth).abs() < 3.0 * found.sampling && found.sampling < 0.2 * truth,
-            "{found:?} {truth}"
-        );
+    fn where_nothing_fails_there_is_no_share() {
+        assert_eq!(found(&[vec![1.0, 1.0]], &|_| 1.0), None);
+    }
+
+    /// A set in k dimensions about the middle, whose share is known in closed form.
+    fn drawn(number: usize) -> (usize, Box<Slack>, f64) {
+        let mut normals = Normals::new(1000 + number);
+        let k = 1 + (20.0 * normals.uniform()) as usize;
+        let rare = symdiff::math::pow(10.0, -3.0 - 4.0 * normals.uniform());
+        let radius = |m: usize| {
+            let (mut low, mut high) = (0.0, 20.0);
+            for _ in 0..80 {
+                let middle = 0.5 * (low + high);
+                if farther_than(middle, m) > rare { low = middle } else { high = middle }
+            }
+            high
+        };
+        let first = normals.draw(k);
+        let along = unit(&first);
+        let m = 1 + (k as f64 * normals.uniform()) as usize;
+        match number % 5 {
+            // A sphere, of some or all of the parameters.
+            0 => {
+                let r = radius(k);
+                (k, Box::new(move |z| r * r - dot(z, z)), farther_than(r, k))
+            }
+            1 => {
+                let r = radius(m);
+                (k, Box::new(move |z| r - dot(&z[..m], &z[..m]).sqrt()), farther_than(r, m))
+            }
+            // Two limits of one quantity, at different distances.
+            2 => {
+                let (a, b) = (radius(1), radius(1) + normals.uniform());
+                let slack = move |z: &[f64]| (a - dot(z, &along)).min(b + dot(z, &along));
+                (k, Box::new(slack), normal_cdf(-a) + normal_cdf(-b))
+            }
+            // Two limits of each of many.
+            3 => {
+                let beta = radius(1);
+                let inside = 1.0 - 2.0 * normal_cdf(-beta);
+                let slack = move |z: &[f64]| z[..m].iter().map(|x| beta - x.abs()).fold(f64::INFINITY, f64::min);
+                (k, Box::new(slack), 1.0 - inside.powi(m as i32))
+            }
+            // One limit, with an even part that vanishes nowhere near.
+            _ => {
+                let a = radius(1);
+                (k, Box::new(move |z| (a - dot(z, &along)) * (1.0 + 0.05 * dot(z, z))), normal_cdf(-a))
+            }
+        }
+    }
+
+    /// How many of so many draws hold the truth, and how many are stated.
+    fn held(count: usize) -> (usize, usize) {
+        let (mut held, mut stated) = (0, 0);
+        for number in 0..count {
+            let (k, slack, truth) = drawn(number);
+            let share = found(&starts(k, &slack), &slack).unwrap();
+            let [low, high] = share.interval;
+            if low.is_nan() {
+                continue;
+            }
+            stated += 1;
+            held += usize::from(low <= truth && truth <= high);
+        }
+        (held, stated)
     }
 
     #[test]
-    fn where_nothing_fails_there_is_no_share() {
-        let slack = |points: &[Vec<f64>]| vec![1.0; points.len()];
-        assert_eq!(rare_share(&[vec![1.0, 1.0]], &slack), None);
+    fn sets_about_the_middle() {
+        let (held, stated) = held(10);
+        assert!(stated >= 9 && held + 1 >= stated, "{held} of {stated}");
+    }
+
+    #[test]
+    #[ignore = "200 draws take a minute"]
+    fn two_hundred_sets_about_the_middle() {
+        let (held, stated) = held(200);
+        assert!(stated >= 180 && 100 * held >= 95 * stated, "{held} of {stated}");
     }
 }

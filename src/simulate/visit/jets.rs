@@ -77,7 +77,7 @@ impl Simulator {
         memory.run(start.sample());
         let order = space.monomials().order();
         let mut values = Vec::new();
-        self.walk(center, times, &mut |assembly| {
+        let way = self.walk(center, times, &mut |assembly| {
             for register in layout.state().chain([layout.time]) {
                 memory.set_constant(register, assembly.tile().lane(register)[0]);
             }
@@ -86,7 +86,8 @@ impl Simulator {
             values.clear();
             start.outputs.iter().for_each(|&register| values.extend_from_slice(memory.jet(register)));
             row(&values);
-        })
+        })?;
+        Ok(way.stop)
     }
 }
 

@@ -11,6 +11,7 @@ mod modes;
 mod statics;
 
 use super::control::{Controller, Schedule};
+use super::diagnostics::SingularPass;
 use super::ensemble::{Channel, Stop};
 use super::error::SimulationError;
 use super::simulator::Simulator;
@@ -24,6 +25,8 @@ pub struct Visit {
     pub values: Vec<f64>,
     /// Where it stopped, if it did; it is no sample's number yet.
     pub stop: Option<Stop>,
+    /// Singular configurations on the way that were passed smoothly.
+    pub singular: Vec<SingularPass>,
     /// What the outputs are reduced to, channel by channel; NaN where it stopped.
     pub reduced: Vec<f64>,
 }

@@ -17,6 +17,6 @@ impl Simulator {
         }
         let mut reduction = Reduction::new(channels, values.len(), 1);
         reduction.push(0.0, values.clone(), &[true]);
-        Ok(Visit { values, stop: None, reduced: reduction.finish() })
+        Ok(Visit { values, reduced: reduction.finish(), ..Visit::default() })
     }
 }

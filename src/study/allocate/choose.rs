@@ -2,7 +2,7 @@
 
 use super::items::{Choice, Item};
 use super::worst::Slack;
-use crate::numerics::{Power, cheapest};
+use crate::numerics::{Linear, Power, cheapest};
 use symdiff::math;
 
 /// Rounds of linearisation, what a round may change at most, and when it has settled: of worst cases, and of samples, which tell less.
@@ -105,6 +105,16 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     let costs: Vec<f64> = priced.iter().filter_map(|&i| items[i].cost(1.0)).collect();
     let mut multiples = tightest.to_vec();
     priced.iter().for_each(|&i| multiples[i] = start[i].clamp(tightest[i], items[i].widest));
+    // Where worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all requirements hold.
+    if slack.power() == Power::First && is_flat(slack, &multiples, tightest) {
+        let from = multiples.clone();
+        let with = |factor: f64| -> Vec<f64> {
+            let of = |i: usize| if priced.contains(&i) { (factor * from[i]).max(tightest[i]) } else { from[i] };
+            (0..items.len()).map(of).collect()
+        };
+        let least = priced.iter().map(|&i| tightest[i] / from[i]).fold(1.0, f64::min);
+        multiples = with(largest(slack, least, 1.0, &with));
+    }
     let which = usize::from(slack.power() == Power::Second);
     let (rounds, settled) = (ROUNDS[which], SETTLED[which]);
     let pick = |all: &[f64]| -> Vec<f64> { priced.iter().map(|&i| all[i]).collect() };
@@ -135,6 +145,16 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     };
     let least = priced.iter().map(|&i| tightest[i] / multiples[i]).fold(1.0, f64::min);
     with(largest(slack, least, 1.0, &with))
+}
+
+/// Whether, by its linearisation in the multiples, a constraint does not hold with the tightest ones either, with which all do.
+fn is_flat(slack: &mut dyn Slack, multiples: &[f64], tightest: &[f64]) -> bool {
+    slack.left(multiples);
+    let moves: Vec<f64> = multiples.iter().zip(tightest).map(|(at, least)| least - at).collect();
+    let with_tightest = |constraint: &Linear| {
+        constraint.value + constraint.slopes.iter().zip(&moves).map(|(slope, moved)| slope * moved).sum::<f64>()
+    };
+    slack.linearised(multiples).iter().any(|constraint| with_tightest(constraint) < -ROUNDING)
 }
 
 /// A search through grades, depth first, the cheapest of each first.
@@ -182,7 +202,6 @@ impl Grades<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::Linear;
 
     /// 1 − Σ s f.
     struct Stack(Vec<f64>);

@@ -123,7 +123,7 @@ fn follows_tolerance(law: &Law, nominal: f64) -> bool {
         Distribution::Uniform { .. } | Distribution::Beta { .. } => true,
         Distribution::Normal { .. } | Distribution::TruncatedNormal { .. } => law.by_tolerance,
         Distribution::Triangular { mode, .. } => *mode == nominal,
-        Distribution::Table(_) => false,
+        Distribution::Table(_) | Distribution::Lognormal { .. } => false,
     }
 }
 
@@ -164,6 +164,6 @@ fn scale(law: &mut Law, nominal: f64, multiple: f64) {
             [mean, lower, upper].into_iter().for_each(move_to);
             *sigma *= multiple;
         }
-        Distribution::Table(_) => (),
+        Distribution::Table(_) | Distribution::Lognormal { .. } => (),
     }
 }

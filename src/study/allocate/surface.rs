@@ -40,9 +40,10 @@ impl<'k> Surface<'k> {
         self.kept.surrogate_error(requirement)
     }
 
-    /// The size of a margin that others are compared with.
+    /// The size of a margin that others are compared with: its unit, where nothing is left of it at the nominal values.
     pub fn scale(&self, requirement: usize) -> f64 {
-        self.nominal[requirement].abs().max(f64::MIN_POSITIVE)
+        let nominal = self.nominal[requirement].abs();
+        if nominal > f64::MIN_POSITIVE { nominal } else { 1.0 }
     }
 
     /// Margins in their units, requirement by requirement.

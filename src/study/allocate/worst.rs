@@ -31,7 +31,8 @@ pub trait Slack {
         let slopes = self.slopes_at_least(multiples, requirement);
         let taken: Vec<f64> = slopes.iter().zip(multiples).map(|(slope, multiple)| (slope * multiple).abs()).collect();
         let all: f64 = taken.iter().sum();
-        taken.into_iter().map(|own| own / all).collect()
+        // Where the worst case lies inside of the box, no tolerance takes anything.
+        taken.into_iter().map(|own| if all > 0.0 { own / all } else { 0.0 }).collect()
     }
 
     /// What requirements leave at least.

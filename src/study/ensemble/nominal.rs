@@ -16,13 +16,14 @@ impl Motions<'_> {
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
         if self.simulator.system.analysis.visits() {
             let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
-            let simulated = self.visit(std::slice::from_ref(&self.domain.nominal), sampling, &mut |rows, values| {
+            let nominal = std::slice::from_ref(&self.domain.nominal);
+            let (simulated, singular) = self.visit_watching(nominal, sampling, &mut |rows, values| {
                 for (row, output) in rows.flat_map(|row| (0..outputs).map(move |output| (row, output))) {
                     let value = values[row * outputs + output];
                     bands.set(row, output, Range { lower: value, upper: value }, 0.0);
                 }
             })?;
-            return Ok((bands.finish(1, simulated), Vec::new()));
+            return Ok((bands.finish(1, simulated), singular));
         }
         let sample = std::slice::from_ref(&self.domain.nominal);
         let mut run = self.start(sample)?.watching();

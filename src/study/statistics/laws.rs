@@ -2,8 +2,9 @@
 
 use super::{intervals, law_summary};
 use crate::model::{Description, Law, ParameterValue};
-use crate::numerics::statistics::{Copula, Distribution, normal_cdf, replicate};
+use crate::numerics::statistics::{Copula, Distribution, Quantiles, normal_quantile, replicate};
 use crate::results::LawSummary;
+use symdiff::math;
 
 /// A surrogate reaches as many standard deviations to either side of a normal law: 2e-9 of it lies beyond.
 const REACH: f64 = 6.0;
@@ -12,6 +13,8 @@ const REACH: f64 = 6.0;
 pub struct Laws {
     names: Vec<String>,
     laws: Vec<Law>,
+    /// Their values.
+    quantiles: Vec<Quantiles>,
     /// The box that is bounded.
     pub lower: Vec<f64>,
     pub upper: Vec<f64>,
@@ -51,8 +54,9 @@ impl Laws {
         let copula =
             Copula::new(&matrix).map_err(|_| "the matrix of correlations is not positive definite".to_owned())?;
         let (nominal, lower, upper) = (along(0), along(1), along(2));
-        let laws = all.iter().map(of).collect();
-        Ok(Self { names, laws, least: lower.clone(), most: upper.clone(), lower, upper, nominal, copula })
+        let laws: Vec<Law> = all.iter().map(of).collect();
+        let quantiles = laws.iter().map(|law| Quantiles::new(&law.distribution)).collect();
+        Ok(Self { names, laws, quantiles, least: lower.clone(), most: upper.clone(), lower, upper, nominal, copula })
     }
 
     /// Number of parameters.
@@ -81,7 +85,7 @@ impl Laws {
         wider
     }
 
-    /// Cuts off normal laws at the box' ends.
+    /// Cuts off normal and lognormal laws at the box' ends.
     pub fn cut_off(&mut self) {
         (self.least, self.most) = (self.lower.clone(), self.upper.clone());
         for (place, law) in self.laws.iter_mut().enumerate() {
@@ -89,6 +93,10 @@ impl Laws {
                 let (lower, upper) = (self.lower[place], self.upper[place]);
                 law.distribution = Distribution::TruncatedNormal { mean, sigma, lower, upper };
             }
+            if let Distribution::Lognormal { lower, upper, .. } = &mut law.distribution {
+                (*lower, *upper) = (lower.max(self.lower[place]), upper.min(self.upper[place]));
+            }
+            self.quantiles[place] = Quantiles::new(&law.distribution);
         }
     }
 
@@ -114,9 +122,13 @@ impl Laws {
     pub fn samples(&self, number: usize, count: usize) -> Vec<f64> {
         let mut samples = replicate(number, self.dimension(), count);
         for sample in samples.chunks_exact_mut(self.dimension()) {
-            self.copula.correlate(sample);
-            for (place, value) in sample.iter_mut().enumerate() {
-                let found = self.laws[place].distribution.quantile(*value);
+            let is_correlated = !self.copula.is_independent();
+            if is_correlated {
+                sample.iter_mut().for_each(|share| *share = normal_quantile(*share));
+                self.copula.correlate_scores(sample);
+            }
+            for (value, (place, quantiles)) in sample.iter_mut().zip(self.quantiles.iter().enumerate()) {
+                let found = if is_correlated { quantiles.of_score(*value) } else { quantiles.of_share(*value) };
                 *value = found.clamp(self.least[place], self.most[place]);
             }
         }
@@ -128,7 +140,7 @@ impl Laws {
         let mut scores = scores.to_vec();
         self.copula.correlate_scores(&mut scores);
         let value = |(place, score): (usize, &f64)| {
-            self.laws[place].distribution.quantile(normal_cdf(*score)).clamp(self.least[place], self.most[place])
+            self.quantiles[place].of_score(*score).clamp(self.least[place], self.most[place])
         };
         scores.iter().enumerate().map(value).collect()
     }
@@ -144,6 +156,10 @@ impl Laws {
 pub(super) fn ends(law: &Law, (lower, upper): (f64, f64)) -> (f64, f64) {
     match law.distribution {
         Distribution::Normal { mean, sigma } => (lower.min(mean - REACH * sigma), upper.max(mean + REACH * sigma)),
+        Distribution::Lognormal { median, sigma, .. } => {
+            let far = math::exp(REACH * sigma);
+            (lower.min(median / far), upper.max(median * far))
+        }
         _ => (lower, upper),
     }
 }

@@ -4,9 +4,7 @@ use rayon::prelude::*;
 
 use super::rows::Rows;
 use crate::model::Requirement;
-use crate::numerics::statistics::{
-    Estimate, RARE_SAMPLES, REPLICATES, normal_quantile, rare_share, replicate, share_interval,
-};
+use crate::numerics::statistics::{REPLICATES, RareShare, normal_quantile, rare_share, replicate, share_interval};
 use crate::results::YieldSummary;
 use crate::study::reduced;
 
@@ -74,16 +72,17 @@ impl Margins<'_> {
         let (share, mut interval) =
             (seen(0.0), [share_interval(seen(1.0), count)[0], share_interval(seen(-1.0), count)[1]]);
         let mut fails = 1.0 - share as f64 / count as f64;
-        let (mut samples, mut about_failures) = (count, false);
+        let (mut samples, mut method) = (count, None);
         if count - share < MANY
-            && let [Some(better), Some(nominal), Some(worse)] =
-                [-1.0, 0.0, 1.0].map(|sign| self.rare(of, &errors, sign))
+            && let Some(rare) = self.rare(of, &errors)
         {
-            let most = worse.value + worse.sampling;
-            let rare = [(1.0 - most).max(0.0), (1.0 - better.value + better.sampling).min(1.0)];
-            if count - share < FEW || rare[1] - rare[0] < interval[1] - interval[0] {
-                (fails, interval) = (nominal.value, rare);
-                (samples, about_failures) = (RARE_SAMPLES, true);
+            let [least, most] = rare.interval.map(|fails| 1.0 - fails);
+            // Where methods contradict one another, or what was seen, that alone is stated.
+            // `least` is the share that fulfils at most: what fails least leaves most.
+            let agrees = least >= interval[0] && most <= interval[1];
+            if agrees && (count - share < FEW || least - most < interval[1] - interval[0]) {
+                (fails, interval) = (rare.value, [most, least]);
+                (samples, method) = (rare.samples, Some(rare.method.name().to_owned()));
             }
         }
         // What lies outside of the surrogate counts against it.
@@ -99,26 +98,29 @@ impl Margins<'_> {
             cpk: None,
             time: None,
             samples,
-            about_failures,
+            method,
         })
     }
 
-    /// The share that fails, with so many times the errors counted against it.
-    fn rare(&self, of: &[usize], errors: &[f64], sign: f64) -> Option<Estimate> {
+    /// The share that fails, by samples that look for it.
+    fn rare(&self, of: &[usize], errors: &[f64]) -> Option<RareShare> {
         let laws = self.rows.laws;
         let scales: Vec<f64> = of.iter().map(|&number| mean_size(&self.values[number])).collect();
-        // The least of all, each in its own scale.
-        let slack = |points: &[Vec<f64>]| -> Vec<f64> {
+        // The least of all, each in its own scale, with errors that help, none, and errors that harm.
+        let slacks = |points: &[Vec<f64>]| -> Vec<[f64; 3]> {
             let samples: Vec<Vec<f64>> = points.iter().map(|scores| laws.of_scores(scores)).collect();
             let found = self.kept.values(&samples);
             let of_sample = |sample: usize| {
-                let slack =
-                    |place: usize| (found[of[place] * samples.len() + sample] - sign * errors[place]) / scales[place];
-                (0..of.len()).map(slack).fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
+                [-1.0, 0.0, 1.0].map(|sign| {
+                    let slack = |place: usize| {
+                        (found[of[place] * samples.len() + sample] - sign * errors[place]) / scales[place]
+                    };
+                    (0..of.len()).map(slack).fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
+                })
             };
             (0..samples.len()).map(of_sample).collect()
         };
-        rare_share(&self.starts(of), &slack)
+        rare_share(&self.starts(of), &slacks)
     }
 
     /// Independent normal scores of those of the first replicate's samples that have the least margins.

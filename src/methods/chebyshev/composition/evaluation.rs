@@ -80,8 +80,8 @@ impl Row<'_> {
         }
     }
 
-    /// Every output at some ξ as it follows from the motion there, 2n lines of points. Behind it is what was simulated of the
-    /// outputs, which counts where there are no coordinates.
+    /// Every output at some ξ as it follows from the motion there, 2n lines of points. Behind it are the simulated
+    /// outputs, which count where there are no coordinates.
     pub fn evaluate_motion(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
         if self.extent.is_empty() {
             return motion[..self.ensemble.outputs() * points.len()].to_vec();
@@ -95,13 +95,18 @@ impl Row<'_> {
         self.evaluate_moved(points, &[Moves::default()])
     }
 
-    /// The same, or where there are no coordinates what its own polynomial says.
+    /// The same; without coordinates, the values of the outputs' own polynomials.
     pub fn predict(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        if !self.extent.is_empty() {
-            return self.evaluate(points);
-        }
         let every: Vec<usize> = (0..self.ensemble.outputs()).collect();
-        self.own_polynomials(&every, points)
+        self.predict_some(&every, points)
+    }
+
+    /// [`predict`](Self::predict) for some of the outputs.
+    pub fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
+        if self.extent.is_empty() {
+            return self.own_polynomials(outputs, points);
+        }
+        self.evaluate_some(outputs, points, &[Moves::default()])
     }
 
     /// Every output with the motion moved in some ways, output by output, way by way, point by point.

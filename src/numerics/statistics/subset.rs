@@ -1,0 +1,98 @@
+//! Subset simulation: the way to what fails rarely, level by level. It sees failing sets of any shape, in many dimensions.
+
+use super::normals::Normals;
+use super::points::REPLICATES;
+
+/// Samples of a replicate in each level, and how many of them begin the next one.
+const SAMPLES: usize = 500;
+const SEEDS: usize = 50;
+
+/// Levels at most: less than 1e-16 fails then.
+const LEVELS: usize = 17;
+
+/// The acceptance of a chain that moves best, and the share of new numbers in its first steps.
+const ACCEPTED: f64 = 0.44;
+const FIRST_SHARE: f64 = 0.6;
+
+/// What subset simulation says.
+#[derive(Clone, Debug)]
+pub struct Subset {
+    /// The share that fails, by replicate.
+    pub shares: Vec<f64>,
+    /// Points that fail, as they are distributed among all that do.
+    pub failing: Vec<Vec<f64>>,
+}
+
+/// The share of the normal law in k dimensions with a negative slack (S.-K. Au & J. L. Beck, Probabilistic Engineering Mechanics 16 (2001) 263), by
+/// chains of I. Papaioannou et al., Probabilistic Engineering Mechanics 41 (2015) 89. `None` where nothing is found to fail.
+pub fn subset(k: usize, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Subset> {
+    let mut found = Subset { shares: Vec::with_capacity(REPLICATES), failing: Vec::new() };
+    for number in 0..REPLICATES {
+        let (share, failing) = replicate(number, k, slack);
+        found.shares.push(share);
+        found.failing.extend(failing);
+    }
+    (!found.failing.is_empty()).then_some(found)
+}
+
+fn replicate(number: usize, k: usize, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> (f64, Vec<Vec<f64>>) {
+    let mut normals = Normals::new(number);
+    let mut points: Vec<Vec<f64>> = (0..SAMPLES).map(|_| normals.draw(k)).collect();
+    let mut values = known(slack(&points));
+    let (mut share, mut level) = (1.0, f64::INFINITY);
+    for _ in 0..LEVELS {
+        let mut order: Vec<usize> = (0..SAMPLES).collect();
+        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
+        let next = values[order[SEEDS - 1]];
+        if next < 0.0 {
+            let failing: Vec<usize> = order.into_iter().take_while(|&place| values[place] < 0.0).collect();
+            share *= failing.len() as f64 / SAMPLES as f64;
+            return (share, failing.into_iter().map(|place| std::mem::take(&mut points[place])).collect());
+        }
+        if next >= level {
+            break;
+        }
+        level = next;
+        share *= SEEDS as f64 / SAMPLES as f64;
+        let seeds = order[..SEEDS].iter().map(|&place| (std::mem::take(&mut points[place]), values[place])).collect();
+        (points, values) = chains(seeds, level, &mut normals, slack);
+    }
+    (0.0, Vec::new())
+}
+
+/// Chains from each seed below a level, until there are as many samples as before.
+fn chains(
+    seeds: Vec<(Vec<f64>, f64)>,
+    level: f64,
+    normals: &mut Normals,
+    slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>,
+) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let (mut at, mut of): (Vec<Vec<f64>>, Vec<f64>) = seeds.into_iter().unzip();
+    let (mut points, mut values) = (at.clone(), of.clone());
+    let mut share = FIRST_SHARE;
+    for step in 1..SAMPLES / SEEDS {
+        let kept = (1.0 - share * share).sqrt();
+        let moved = |point: &Vec<f64>| -> Vec<f64> {
+            point.iter().zip(normals.draw(point.len())).map(|(old, new)| kept * old + share * new).collect()
+        };
+        let tried: Vec<Vec<f64>> = at.iter().map(moved).collect();
+        let found = known(slack(&tried));
+        let mut accepted = 0;
+        for (place, (point, value)) in tried.into_iter().zip(found).enumerate() {
+            if value <= level {
+                (at[place], of[place]) = (point, value);
+                accepted += 1;
+            }
+        }
+        let apart = accepted as f64 / SEEDS as f64 - ACCEPTED;
+        share = (share * symdiff::math::exp(apart / (step as f64).sqrt())).clamp(0.05, 1.0);
+        points.extend_from_slice(&at);
+        values.extend_from_slice(&of);
+    }
+    (points, values)
+}
+
+/// What has no value fails.
+fn known(values: Vec<f64>) -> Vec<f64> {
+    values.into_iter().map(|value| if value.is_nan() { f64::NEG_INFINITY } else { value }).collect()
+}
