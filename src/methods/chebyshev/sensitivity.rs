@@ -6,7 +6,6 @@ use symdiff::math;
 
 use super::composition::Row;
 use super::range_search::block;
-use crate::methods::expansion::Moves;
 use crate::methods::result::Sensitivity;
 use crate::numerics::{
     Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseWork, Surrogate, SurrogateWork, TensorGrid,
