@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Error, Study};
-use crate::model::{Description, Override, ParameterValue, Reading, read, read_str};
+use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
 use crate::syntax::Diagnostics;
 
 /// A mechanism with its uncertain parameters and outputs, free of errors.
@@ -21,7 +21,7 @@ pub struct Model {
 /// Where a model came from; it is read again when a parameter is replaced.
 #[derive(Clone, Debug)]
 enum Origin {
-    File(PathBuf),
+    File { path: PathBuf, root: Option<PathBuf> },
     Text { name: String, text: String },
 }
 
@@ -31,7 +31,16 @@ impl Model {
     /// # Errors
     /// [`Error::Model`]: everything that is wrong with the file.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::read(Origin::File(path.as_ref().to_owned()), Vec::new(), None)
+        Self::read(Origin::File { path: path.as_ref().to_owned(), root: None }, Vec::new(), None)
+    }
+
+    /// Like [`Model::from_file`], where the model may also name files of another folder or below: robots, tables, meshes, included files.
+    ///
+    /// # Errors
+    /// [`Error::Model`]: everything that is wrong with the files.
+    pub fn from_file_rooted(path: impl AsRef<Path>, root: impl AsRef<Path>) -> Result<Self, Error> {
+        let (path, root) = (path.as_ref().to_owned(), Some(root.as_ref().to_owned()));
+        Self::read(Origin::File { path, root }, Vec::new(), None)
     }
 
     /// Reads a model from a text. Error messages call it `name`; files that it names are looked for beside `name`.
@@ -65,7 +74,7 @@ impl Model {
 
     fn read(origin: Origin, overrides: Vec<Override>, scene: Option<String>) -> Result<Self, Error> {
         let reading = match &origin {
-            Origin::File(path) => read(path, &overrides),
+            Origin::File { path, root } => read_rooted(path, &overrides, root.as_deref()),
             Origin::Text { name, text } => read_str(name, text, &overrides),
         };
         let warnings = reading.diagnostics.clone();

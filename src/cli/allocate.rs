@@ -13,8 +13,8 @@ use crate::results::{AllocatedTolerance, Allocation, Criterion, ToleranceZone};
 use crate::study::{self, AllocateError, AllocateOptions, RunError};
 
 pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Status, Failure> {
-    let overrides = args.set.overrides()?;
-    let Some(model) = load::load(&args.model, &overrides, args.run.scene.as_ref(), console)? else {
+    let given = args.set.given()?;
+    let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));

@@ -20,7 +20,7 @@ pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
-pub(super) use shared::{AskedArgs, OneRunArgs, SetArgs, Threads, overlaid};
+pub(super) use shared::{AskedArgs, OneRunArgs, RootArgs, SetArgs, Threads, overlaid};
 pub(super) use sweep::SweepArgs;
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, coordinates, count, to_json};
+use super::load::Given;
 use super::{Failure, Status, load, structure, tree};
-use crate::model::{self, Description, Override};
+use crate::model::{self, Description};
 use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
 use crate::study::{self, RunError};
@@ -117,8 +118,8 @@ struct Whole {
 
 pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, Failure> {
     load::input_once(&args.models)?;
-    let overrides = args.set.overrides()?;
-    let check = |path: &PathBuf| match study::caught("check", || check_one(path, &overrides)) {
+    let given = args.set.given()?;
+    let check = |path: &PathBuf| match study::caught("check", || check_one(path, &given)) {
         Ok(checked) => checked,
         Err(error) => Checked { error: Some(error.to_string()), is_internal: true, ..Checked::nothing(path) },
     };
@@ -155,8 +156,8 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
     Ok(checked.iter().map(status).max().unwrap_or(Status::Done))
 }
 
-fn check_one(path: &Path, overrides: &[Override]) -> Checked {
-    let reading = model::read(path, overrides);
+fn check_one(path: &Path, given: &Given) -> Checked {
+    let reading = model::read_rooted(path, &given.overrides, given.root.as_deref());
     let (diagnostics, found) = (reading.diagnostics.records(), reading.diagnostics.clone());
     let read = Checked { diagnostics, found, ..Checked::nothing(path) };
     let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };

@@ -15,7 +15,7 @@ use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostOptions};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
-    let Some(model) = load::load(&args.model, &args.set.overrides()?, args.run.scene.as_ref(), console)? else {
+    let Some(model) = load::load(&args.model, &args.set.given()?, args.run.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));

@@ -13,7 +13,7 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
     let Some(path) = &args.model else {
         return console.print(&listed(args)?).map(|()| Status::Done);
     };
-    let Some(model) = load::load(path, &args.set.overrides()?, args.scene.as_ref(), console)? else {
+    let Some(model) = load::load(path, &args.set.given()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let explanation = study::explain(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;

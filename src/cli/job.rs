@@ -103,7 +103,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     }
     let (bounds, mut summary) = found?;
     let named = request.named.get(job.number).unwrap_or(&job.path);
-    verdicts::add_commands(&mut summary, named, &request.overrides);
+    verdicts::add_commands(&mut summary, named, &request.given);
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     let interrupted = interrupt::asked();
     let folder = match interrupted && !request.overwrite && holds_complete_results(&job.folder) {

@@ -11,6 +11,15 @@ use crate::model::{self, Description, Override, Reading};
 use crate::results::ModelFile;
 use crate::study;
 
+/// What the command line says of models beside their files.
+#[derive(Clone, Default)]
+pub(super) struct Given {
+    /// Values of parameters.
+    pub overrides: Vec<Override>,
+    /// Folder whose files models may name, beside those of their own folders.
+    pub root: Option<PathBuf>,
+}
+
 /// The models that could be read.
 pub(super) struct Loaded {
     pub models: Vec<Model>,
@@ -41,7 +50,7 @@ pub(super) struct Model {
 /// For a name that is no scene of a model.
 pub(super) fn load_all(
     models: &[PathBuf],
-    overrides: &[Override],
+    given: &Given,
     scenes: &[String],
     console: &Console,
 ) -> Result<Option<Loaded>, Failure> {
@@ -49,7 +58,7 @@ pub(super) fn load_all(
     let mut is_complete = true;
     let mut readings: Vec<(&PathBuf, Option<Reading>)> = Vec::new();
     for path in models {
-        match study::caught("reading", || read(path, overrides, console)) {
+        match study::caught("reading", || read(path, given, console)) {
             Ok(reading) => readings.push((path, reading)),
             Err(error) => {
                 is_complete = false;
@@ -77,11 +86,11 @@ pub(super) fn load_all(
 /// For a name that is no scene of it.
 pub(super) fn load(
     path: &Path,
-    overrides: &[Override],
+    given: &Given,
     scene: Option<&String>,
     console: &Console,
 ) -> Result<Option<Description>, Failure> {
-    let Some(reading) = read(path, overrides, console) else { return Ok(None) };
+    let Some(reading) = read(path, given, console) else { return Ok(None) };
     let Some(scene) = scene else { return Ok(reading.description) };
     let chosen = reading.chosen(std::slice::from_ref(scene));
     let chosen = chosen.map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
@@ -122,8 +131,8 @@ fn files(reading: &Reading) -> (Vec<ModelFile>, Vec<(String, String)>) {
 }
 
 /// Reads a file and reports its errors and warnings; `None` if it has errors.
-fn read(path: &Path, overrides: &[Override], console: &Console) -> Option<Reading> {
-    let reading = model::read(path, overrides);
+fn read(path: &Path, given: &Given, console: &Console) -> Option<Reading> {
+    let reading = model::read_rooted(path, &given.overrides, given.root.as_deref());
     console.diagnostics(&reading.diagnostics);
     reading.description.is_some().then_some(reading)
 }

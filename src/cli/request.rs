@@ -6,8 +6,9 @@ use std::rc::Rc;
 use super::Failure;
 use super::args::{AskedArgs, RunArgs};
 use super::kept_run::KeptRun;
+use super::load::Given;
 use super::verdicts::Junit;
-use crate::model::{Description, Override};
+use crate::model::Description;
 use crate::results::{Method, ModelFile, RunRequest};
 use crate::store::Missing;
 
@@ -16,7 +17,7 @@ pub(super) struct Request {
     pub models: Vec<PathBuf>,
     /// The same models as results name them.
     pub named: Vec<PathBuf>,
-    pub overrides: Vec<Override>,
+    pub given: Given,
     /// Empty for all scenes.
     pub scenes: Vec<String>,
     pub certify: bool,
@@ -75,11 +76,10 @@ impl Request {
     pub fn check(args: RunArgs) -> Result<Self, Failure> {
         let AskedArgs { method: methods, certify, set, scene: scenes, skip_infeasible, certify_time } =
             args.asked.in_order();
-        let overrides = set.overrides()?;
         Ok(Self {
             named: args.models.clone(),
             models: args.models,
-            overrides,
+            given: set.given()?,
             scenes,
             certify,
             output: args.output,
@@ -104,7 +104,7 @@ impl Request {
     pub fn asked(&self) -> RunRequest {
         let methods = self.settings.methods.as_ref();
         RunRequest {
-            set: self.overrides.iter().map(|setting| setting.text.clone()).collect(),
+            set: self.given.overrides.iter().map(|setting| setting.text.clone()).collect(),
             methods: methods.map(|methods| methods.iter().map(|method| method.name().to_owned()).collect()),
             certify: self.certify,
             certify_time: self.settings.certify_time,

@@ -41,7 +41,7 @@ impl Kind {
 /// # Errors
 /// Where a model is wrong as a whole; nothing was run then.
 pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told) -> Result<Status, Failure> {
-    let Some(loaded) = load::load_all(&request.models, &request.overrides, &request.scenes, console)? else {
+    let Some(loaded) = load::load_all(&request.models, &request.given, &request.scenes, console)? else {
         return Ok(Status::Wrong);
     };
     let mut status = if loaded.is_complete { Status::Done } else { Status::Failed };

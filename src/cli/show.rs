@@ -10,7 +10,7 @@ use crate::results::{Drawing, DrawnBody};
 use crate::study;
 
 pub(super) fn show(args: &ShowArgs, console: &mut Console) -> Result<Status, Failure> {
-    let Some(model) = load::load(&args.model, &args.set.overrides()?, args.scene.as_ref(), console)? else {
+    let Some(model) = load::load(&args.model, &args.set.given()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let drawing =

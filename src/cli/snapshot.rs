@@ -25,7 +25,7 @@ struct Job {
 }
 
 pub(super) fn snapshot(args: SnapshotArgs, console: &mut Console) -> Result<Status, Failure> {
-    let Some(loaded) = load::load_all(&args.models, &args.set.overrides()?, &args.scene, console)? else {
+    let Some(loaded) = load::load_all(&args.models, &args.set.given()?, &args.scene, console)? else {
         return Ok(Status::Wrong);
     };
     let mut status = if loaded.is_complete { Status::Done } else { Status::Failed };

@@ -3,6 +3,7 @@
 use super::args::{SweepArgs, overlaid};
 use super::console::{BOLD, Console, count, file_names};
 use super::job;
+use super::load::Given;
 use super::request::Settings;
 use super::run::results_of;
 use super::table::{Align, Table};
@@ -90,12 +91,12 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
         let inner = axes.last().map_or(1, |axis| axis.values.len());
         let place = if axes.len() == 2 { vec![run / inner, run % inner] } else { vec![run] };
         let values: Vec<f64> = axes.iter().zip(&place).map(|(axis, &place)| axis.values[place]).collect();
-        let mut overrides = others.clone();
+        let mut given = Given { overrides: others.clone(), root: args.files.root.clone() };
         for (axis, &value) in axes.iter().zip(&values) {
-            overrides.push(setting(&axis.setting(value))?);
+            given.overrides.push(setting(&axis.setting(value))?);
         }
         let scenes: Vec<String> = args.run.scene.iter().cloned().collect();
-        let loaded = load::load_all(std::slice::from_ref(&args.model), &overrides, &scenes, console)?;
+        let loaded = load::load_all(std::slice::from_ref(&args.model), &given, &scenes, console)?;
         let Some(model) = loaded.and_then(|loaded| loaded.models.into_iter().next()) else { return Ok(Status::Wrong) };
         let Some((_, description)) = model.scenes.into_iter().next() else { return Ok(Status::Wrong) };
         if description.reduced.is_empty() && description.requirements.is_empty() {
@@ -112,7 +113,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
                 status = status.max(Status::Failed);
                 console.warning(&format!(
                     "{}: {message}",
-                    overrides.iter().map(|own| own.text.as_str()).collect::<Vec<_>>().join(", ")
+                    given.overrides.iter().map(|own| own.text.as_str()).collect::<Vec<_>>().join(", ")
                 ));
                 SweepPoint { values, summary: None }
             }

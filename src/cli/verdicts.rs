@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use super::load::Given;
 use super::table::{Align, Table};
 use super::{Failure, Status};
 use crate::export::{Suite, write_junit};
 use crate::grammar::display_unit::ShownUnit;
-use crate::model::{Override, is_standard_input, shown};
+use crate::model::{is_standard_input, shown};
 use crate::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict, foremost};
 
 /// Where verdicts are collected for a file.
@@ -49,7 +50,7 @@ pub(super) fn status(summary: &Summary) -> Status {
 }
 
 /// Adds the command that shows each requirement's nearest sample.
-pub(super) fn add_commands(summary: &mut Summary, path: &Path, overrides: &[Override]) {
+pub(super) fn add_commands(summary: &mut Summary, path: &Path, given: &Given) {
     if is_standard_input(path) {
         return;
     }
@@ -59,8 +60,12 @@ pub(super) fn add_commands(summary: &mut Summary, path: &Path, overrides: &[Over
         if let Some(scene) = &scene {
             words.extend(["--scene".to_owned(), quoted(scene)]);
         }
+        if let Some(root) = &given.root {
+            words.extend(["--root".to_owned(), quoted(&shown(root))]);
+        }
         let is_set = |name: &str| nearest.settings.iter().any(|setting| setting.split('=').next() == Some(name));
-        let others = overrides.iter().filter(|setting| !is_set(&setting.name)).map(|setting| setting.text.as_str());
+        let others =
+            given.overrides.iter().filter(|setting| !is_set(&setting.name)).map(|setting| setting.text.as_str());
         for setting in others.chain(nearest.settings.iter().map(String::as_str)) {
             words.extend(["--set".to_owned(), quoted(setting)]);
         }

@@ -96,7 +96,7 @@ fn settle(request: &Request) {
 fn marks(request: &Request) -> BTreeMap<PathBuf, Mark> {
     let mut marks = BTreeMap::new();
     for path in &request.models {
-        let reading = model::read(path, &request.overrides);
+        let reading = model::read_rooted(path, &request.given.overrides, request.given.root.as_deref());
         let named = reading.diagnostics.sources.all().map(|source| PathBuf::from(&source.name));
         // The texts of the command line are no files.
         let named = named.filter(|path| path.is_file()).chain([path.clone()]);

@@ -5,7 +5,7 @@
 
 use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::Path;
 
 use symdiff::Spline;
 
@@ -19,6 +19,7 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::{MAX_BYTES, read_text};
+use crate::syntax::within::Within;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Parts of a model read so far, with its names; `S` is the table of symbols.
@@ -58,8 +59,8 @@ pub struct Reader<'d, S> {
     pub lengths: Lengths,
     /// Functions that the file gives by their values.
     pub tables: Vec<Table>,
-    /// Where files are that the model names.
-    pub folder: PathBuf,
+    /// Where files are that the model may name.
+    pub files: Within,
 }
 
 /// Lengths of a model seen so far.
@@ -310,9 +311,13 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The text of a file that a node names, in the model's folder, and where it begins among the sources.
     pub fn file(&mut self, node: &Node) -> Option<(usize, String)> {
         let scalar = self.scalar(node, "the name of a file")?;
-        let path = self.folder.join(&scalar.text);
-        match read_text(&path, MAX_BYTES) {
-            Ok(text) => Some((self.diagnostics.sources.add(path.display().to_string(), text.clone()), text)),
+        let found = self.files.find(Path::new(""), &scalar.text).and_then(|path| {
+            let path = self.files.full(&path);
+            let text = read_text(&path, MAX_BYTES)?;
+            Ok((self.diagnostics.sources.add(path.display().to_string(), text.clone()), text))
+        });
+        match found {
+            Ok(found) => Some(found),
             Err(error) => {
                 let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
                 self.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));

@@ -21,6 +21,7 @@ use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::{MAX_BYTES, read_given, text_of};
+use crate::syntax::within::Within;
 use crate::syntax::yaml::{self, Entry, Node};
 
 /// What reading a model gave: both may be there when there are only warnings.
@@ -107,18 +108,23 @@ pub fn is_standard_input(path: &Path) -> bool {
 /// Like [`load`], with the warnings of a model that can be used. The path `-` is standard input, whose model is called `stdin` if it does
 /// not say otherwise, and finds other files from the working directory.
 pub fn read(path: &Path, overrides: &[Override]) -> Reading {
+    read_rooted(path, overrides, None)
+}
+
+/// Like [`read`], where the model may also name files of another folder or below.
+pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> Reading {
     let from_input = is_standard_input(path);
     let name = if from_input { "stdin".to_owned() } else { shown(path) };
     if urdf::is_urdf(path) {
         // A model of nothing but the robot; errors are in the robot's file.
-        return read_str(&name, &urdf::model_of(path), overrides);
+        return read_text_of(&name, &urdf::model_of(path), overrides, root);
     }
     if mjcf::is_mjcf(path) {
-        return read_str(&name, &mjcf::model_of(path), overrides);
+        return read_text_of(&name, &mjcf::model_of(path), overrides, root);
     }
     let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_given(path, MAX_BYTES) };
     match text {
-        Ok(text) => read_str(&name, &text, overrides),
+        Ok(text) => read_text_of(&name, &text, overrides, root),
         Err(error) => {
             let mut diagnostics = Diagnostics::new(name, "");
             diagnostics.push(*error);
@@ -129,6 +135,11 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
 
 /// Like [`load_str`], with the warnings of a model that can be used.
 pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
+    read_text_of(name, text, overrides, None)
+}
+
+fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Path>) -> Reading {
+    let origin = Origin { name, files: Within::of(Path::new(name), root) };
     let mut diagnostics = Diagnostics::new(name, text);
     let mut placed = Vec::new();
     for wanted in overrides {
@@ -152,12 +163,12 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
     };
     let root = match root.get("mjcf") {
         None => root,
-        Some(_) => match mjcf::write_out(&mut blank(name, &mut diagnostics), &root, Path::new(name), &placed) {
+        Some(_) => match mjcf::write_out(&mut blank(&origin, &mut diagnostics), &root, Path::new(name), &placed) {
             Some(root) if !diagnostics.has_errors() => root,
             _ => return Reading { description: None, scenes: Vec::new(), diagnostics },
         },
     };
-    let written = parts::write_out(&mut blank(name, &mut diagnostics), &root, text, &placed);
+    let written = parts::write_out(&mut blank(&origin, &mut diagnostics), &root, text, &placed);
     let (root, parts) = match written {
         Some(WrittenOut { root, parts }) => (root, Some(parts)),
         None => (root, None),
@@ -170,16 +181,16 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
         placed = parts.follow(placed);
     }
     let parts = parts.as_ref();
-    let plan = Scenes::read(&mut blank(name, &mut diagnostics), &root);
+    let plan = Scenes::read(&mut blank(&origin, &mut diagnostics), &root);
     let before = diagnostics.len();
     let model = plan.model();
-    let (description, mut unused) = describe(name, &model, parts, &placed, &mut diagnostics);
+    let (description, mut unused) = describe(&origin, &model, parts, &placed, &mut diagnostics);
     diagnostics.found_without(before, &model.left_out);
     let mut scenes = Vec::with_capacity(plan.count());
     for scene in 0..plan.count() {
         let before = diagnostics.len();
-        let variant = plan.scene(&mut blank(name, &mut diagnostics), scene);
-        let (found, idle) = describe(name, &variant, parts, &placed, &mut diagnostics);
+        let variant = plan.scene(&mut blank(&origin, &mut diagnostics), scene);
+        let (found, idle) = describe(&origin, &variant, parts, &placed, &mut diagnostics);
         diagnostics.found_without(before, &variant.left_out);
         scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
         // What one of them uses is used.
@@ -194,8 +205,17 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
     Reading { description: Some(description), scenes, diagnostics }
 }
 
+/// Where a model comes from.
+struct Origin<'o> {
+    /// What diagnostics call it.
+    name: &'o str,
+    /// What it may name.
+    files: Within,
+}
+
 /// A reader of nothing yet.
-fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
+fn blank<'d>(origin: &Origin, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
+    let name = origin.name;
     let called =
         Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
     let model = Description::empty(called);
@@ -217,20 +237,20 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
         certain: HashSet::new(),
         lengths: Lengths::default(),
         tables: Vec::new(),
-        folder: Path::new(name).parent().unwrap_or(Path::new("")).to_owned(),
+        files: origin.files.clone(),
     }
 }
 
 /// Reads every section, what others refer to before what refers to it; the warnings are of parameters that are used nowhere.
 fn describe(
-    name: &str,
+    origin: &Origin,
     variant: &Variant,
     parts: Option<&Parts>,
     overrides: &[(Override, Span)],
     diagnostics: &mut Diagnostics,
 ) -> (Description, Vec<Diagnostic>) {
     let root = &variant.root;
-    let mut reader = blank(name, diagnostics);
+    let mut reader = blank(origin, diagnostics);
     reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };
@@ -238,7 +258,7 @@ fn describe(
     let mut robot = match fields.get("urdf") {
         None => None,
         Some(node) => {
-            let Some(robot) = Urdf::read(&mut reader, node, &fields, Path::new(name), root, overrides) else {
+            let Some(robot) = Urdf::read(&mut reader, node, &fields, Path::new(origin.name), root, overrides) else {
                 return (reader.model, Vec::new());
             };
             Some(robot)

@@ -48,6 +48,6 @@ pub use crate::elements::effects::*;
 pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotation, Symbol, TimeOrder};
 pub use description::*;
 pub use file::{SCHEMA_VERSION, schema};
-pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_str, shown};
+pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
 pub use overlay::read_overlay;
 pub use overrides::Override;

@@ -36,6 +36,9 @@ pub struct Asked {
     pub named: Vec<PathBuf>,
     /// Parameters that are set.
     pub set: Vec<String>,
+    /// Absolute path of the folder whose files the models may name beside those of their own folders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub root: Option<PathBuf>,
     /// Scenes; all where empty.
     pub scenes: Vec<String>,
     /// Methods; the model's where empty.

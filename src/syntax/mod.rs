@@ -13,6 +13,7 @@ pub(crate) mod source;
 pub(crate) mod suggest;
 pub(crate) mod text_file;
 mod tree;
+pub(crate) mod within;
 pub(crate) mod yaml;
 
 pub use diagnostic::{Diagnostics, Record};

@@ -21,6 +21,7 @@ mod readme;
 mod report;
 mod requirements;
 mod rooms;
+mod root;
 mod run_modes;
 mod sample;
 mod scenes;

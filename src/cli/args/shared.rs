@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::{methods, parse_override};
 use crate::cli::Failure;
+use crate::cli::load::Given;
 use crate::model::{Override, read_overlay};
 use crate::results::Method;
 use crate::syntax::Diagnostics;
@@ -83,7 +84,15 @@ impl AskedArgs {
     }
 }
 
-/// Parameters that the command line sets.
+/// Which files models may name.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct RootArgs {
+    /// Let models name files of this folder or below, too: tables, robots, meshes, included files [default: of the model's folder].
+    #[arg(long, value_name = "DIR")]
+    pub root: Option<PathBuf>,
+}
+
+/// Parameters that the command line sets, and where models find files.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct SetArgs {
     /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
@@ -93,15 +102,18 @@ pub(in crate::cli) struct SetArgs {
     /// Set the parameters of this YAML file (`parameters: { l1: 0.16 ± 2% }`), as `mbint allocate` writes it; `--set` goes before.
     #[arg(long, value_name = "FILE")]
     with: Vec<PathBuf>,
+
+    #[command(flatten)]
+    files: RootArgs,
 }
 
 impl SetArgs {
-    /// What is set; every parameter at most once.
+    /// What is said of models; every parameter is set at most once.
     ///
     /// # Errors
     /// For the first that is set twice, and for what is wrong with a file.
-    pub fn overrides(&self) -> Result<Vec<Override>, Failure> {
-        overlaid(&self.with, &self.set)
+    pub fn given(&self) -> Result<Given, Failure> {
+        Ok(Given { overrides: overlaid(&self.with, &self.set)?, root: self.files.root.clone() })
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::OneRunArgs;
+use super::{OneRunArgs, RootArgs};
 
 #[derive(Debug, Args)]
 #[command(after_help = SWEEP_HELP)]
@@ -25,6 +25,9 @@ pub(in crate::cli) struct SweepArgs {
     /// Set the parameters of this YAML file, as `mbint allocate` writes it; what is swept or set goes before.
     #[arg(long, value_name = "FILE")]
     pub with: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub files: RootArgs,
 
     #[command(flatten)]
     pub run: OneRunArgs,

@@ -8,10 +8,10 @@ pub(super) use self::points::Points;
 use super::args::{FileFormat, SampleArgs, Threads};
 use super::console::{BOLD, Console, count};
 use super::kept_run::{KeptRun, context, expected};
+use super::load::Given;
 use super::progress::Progress;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{ExportError, write_samples};
-use crate::model::Override;
 use crate::numerics::Sample;
 use crate::results::{SampleFormat, SampleTable};
 use crate::simulate::SimulationError;
@@ -21,7 +21,7 @@ use crate::study::{self, Chosen, RunError};
 /// The samples and their destination.
 pub(super) struct Sampling<'s> {
     pub model: &'s Path,
-    pub overrides: &'s [Override],
+    pub given: &'s Given,
     pub scenes: &'s [String],
     pub points: &'s Points,
     /// `None` where nothing is to be written.
@@ -40,10 +40,10 @@ pub(super) fn sample(args: SampleArgs, console: &mut Console) -> Result<Status, 
     let (path, format) = target(args.output, args.format);
     let store = args.store.map(|folder| KeptRun::new(folder, Missing::Simulate));
     let scenes: Vec<String> = args.run.scene.into_iter().collect();
-    let overrides = args.set.overrides()?;
+    let given = args.set.given()?;
     let sampling = Sampling {
         model: &args.model,
-        overrides: &overrides,
+        given: &given,
         scenes: &scenes,
         points: &points,
         output: Some((&path, format)),
@@ -92,7 +92,7 @@ impl Sampling<'_> {
     /// Where the model, the points or the file are wrong, or a simulation fails.
     pub fn run(&self, console: &mut Console) -> Result<Status, Failure> {
         let shown = self.model.display();
-        let loaded = load::load_all(&[self.model.to_owned()], self.overrides, self.scenes, console)?;
+        let loaded = load::load_all(&[self.model.to_owned()], self.given, self.scenes, console)?;
         let Some(model) = loaded.and_then(|loaded| loaded.models.into_iter().next()) else { return Ok(Status::Wrong) };
         if model.scenes.len() > 1 {
             let message = format!("{shown}: the model has scenes; choose one by --scene: {}", model.all.join(", "));
@@ -107,7 +107,7 @@ impl Sampling<'_> {
         let points =
             self.points.of(&parameters, &domain).map_err(|error| Failure::Wrong(format!("{shown}: {error}")))?;
         let name = &description.name;
-        let set: Vec<String> = self.overrides.iter().map(|setting| setting.text.clone()).collect();
+        let set: Vec<String> = self.given.overrides.iter().map(|setting| setting.text.clone()).collect();
         let context = context(&model.files, &set, scene.as_deref(), false);
         let store = self.store.map(|kept| kept.open(&context)).transpose();
         let store = store.map_err(|error| Failure::Failed(format!("{name}: {error}")))?;

@@ -4,11 +4,13 @@ mod sampling;
 mod submit;
 
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 pub(super) use self::submit::submit;
 use super::args::{AskedArgs, MergeArgs, PlanArgs, ShardArgs, StatusArgs, Threads};
 use super::console::{Console, count};
 use super::kept_run::{KeptRun, context};
+use super::load::Given;
 use super::request::{Request, Settings};
 use super::run::run_all;
 use super::sample::target;
@@ -32,13 +34,14 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
         if crate::model::is_standard_input(model) {
             return Err(Failure::Wrong("a study needs its models as files: shards read them again".to_owned()));
         }
-        let path = std::path::absolute(model);
-        models.push(path.map_err(|error| Failure::Wrong(format!("{}: {error}", model.display())))?);
+        models.push(absolute(model)?);
     }
+    let said = set.given()?;
     let asked = Asked {
         models,
         named: args.models,
-        set: set.overrides()?.iter().map(|setting| setting.text.clone()).collect(),
+        set: said.overrides.iter().map(|setting| setting.text.clone()).collect(),
+        root: said.root.map(|root| absolute(&root)).transpose()?,
         scenes: scene,
         methods: method.iter().map(|method| method.name().to_owned()).collect(),
         certify,
@@ -103,10 +106,10 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
         let last = shards.len().checked_sub(1).map_or_else(|| "none".to_owned(), |last| format!("0 to {last}"));
         return Err(Failure::Wrong(format!("there is no shard {}; there are: {last}", args.index)));
     };
-    let overrides = overrides(&asked)?;
+    let given = given(&asked)?;
     let path = asked.models.get(shard.model).ok_or_else(|| failed(&StoreError::damaged(folder.path())))?;
     let scenes: Vec<String> = shard.scene.iter().cloned().collect();
-    let Some(loaded) = load::load_all(std::slice::from_ref(path), &overrides, &scenes, console)? else {
+    let Some(loaded) = load::load_all(std::slice::from_ref(path), &given, &scenes, console)? else {
         return Ok(Status::Wrong);
     };
     let Some((model, (_, mut description))) =
@@ -162,7 +165,7 @@ fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Fa
     Ok(Request {
         models: asked.models.clone(),
         named: asked.named.clone(),
-        overrides: overrides(asked)?,
+        given: given(asked)?,
         scenes: asked.scenes.clone(),
         certify: asked.certify,
         output: None,
@@ -192,9 +195,13 @@ fn methods(asked: &Asked) -> Result<Option<Vec<Method>>, Failure> {
     Ok((!methods.is_empty()).then_some(methods))
 }
 
-fn overrides(asked: &Asked) -> Result<Vec<Override>, Failure> {
+fn absolute(path: &Path) -> Result<PathBuf, Failure> {
+    std::path::absolute(path).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))
+}
+
+fn given(asked: &Asked) -> Result<Given, Failure> {
     let parse = |text: &String| Override::parse(text).map_err(|_| Failure::Failed(format!("`{text}` cannot be read")));
-    asked.set.iter().map(parse).collect()
+    Ok(Given { overrides: asked.set.iter().map(parse).collect::<Result<_, _>>()?, root: asked.root.clone() })
 }
 
 /// Number of shards, their time on one core, and their size on the disk.

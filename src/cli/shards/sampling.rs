@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::overrides;
+use super::{absolute, given};
 use crate::cli::args::{PointArgs, Threads};
 use crate::cli::console::Console;
 use crate::cli::kept_run::KeptRun;
@@ -16,9 +16,7 @@ pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
     // Errors are reported before anything is written.
     Points::asked(args)?;
     if let Some(path) = &args.points {
-        let absolute = std::path::absolute(path);
-        let absolute = absolute.map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
-        return Ok(Some(AskedPoints::Table(absolute)));
+        return Ok(Some(AskedPoints::Table(absolute(path)?)));
     }
     Ok(args.design.clone().map(|design| AskedPoints::Design { design, seed: args.seed }))
 }
@@ -36,7 +34,7 @@ pub(super) fn simulate(
     };
     let sampling = Sampling {
         model,
-        overrides: &overrides(asked)?,
+        given: &given(asked)?,
         scenes: &asked.scenes,
         points: &Points::planned(points)?,
         output: output.as_ref().map(|(path, format)| (path.as_path(), *format)),

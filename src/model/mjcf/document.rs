@@ -1,6 +1,6 @@
 //! MJCF text → elements with places, included files in their places, every name checked against [`table`](super::table).
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use super::format::{Fate, Rule};
 use super::table;
@@ -9,6 +9,7 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file;
+use crate::syntax::within::Within;
 
 /// Largest file that is read.
 const MAX_BYTES: u64 = 50_000_000;
@@ -57,10 +58,10 @@ impl Item {
     }
 }
 
-/// Reads a file with its includes.
-pub fn read(path: &Path, at: Option<Span>, diagnostics: &mut Diagnostics) -> Option<Item> {
+/// Reads a file, whose path is seen from the model's folder, with its includes.
+pub fn read(path: &Path, at: Option<Span>, files: &Within, diagnostics: &mut Diagnostics) -> Option<Item> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let mut reader = Reader { diagnostics, folder, open: Vec::new(), files: 0, items: 0, levels: 0 };
+    let mut reader = Reader { diagnostics, within: files, folder, open: Vec::new(), files: 0, items: 0, levels: 0 };
     let mut whole = Vec::new();
     reader.file(path, at, None, &mut whole);
     whole.pop()
@@ -68,7 +69,8 @@ pub fn read(path: &Path, at: Option<Span>, diagnostics: &mut Diagnostics) -> Opt
 
 struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
-    /// Of the model's file: all others are in it or below.
+    within: &'d Within,
+    /// Of the outermost file: names are from it.
     folder: PathBuf,
     /// Files that include the next.
     open: Vec<PathBuf>,
@@ -85,7 +87,8 @@ impl Reader<'_> {
     /// The elements of a file: the outermost, or, of a file that is included in an element, those in its outermost.
     fn file(&mut self, path: &Path, at: Option<Span>, within: Option<&str>, found: &mut Vec<Item>) {
         self.files += 1;
-        let text = match text_file::read_text(path, MAX_BYTES) {
+        let full = self.within.full(path);
+        let text = match text_file::read_text(&full, MAX_BYTES) {
             Ok(text) => text,
             Err(error) => {
                 let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -97,7 +100,7 @@ impl Reader<'_> {
                 return;
             }
         };
-        let start = self.diagnostics.sources.add(path.display().to_string(), text.clone());
+        let start = self.diagnostics.sources.add(full.display().to_string(), text.clone());
         let Some(document) = xml::parse(&text, start, "an MJCF", self.diagnostics) else { return };
         let (root, places) = (document.root_element(), Places { start });
         let tag = root.tag_name().name();
@@ -134,12 +137,14 @@ impl Reader<'_> {
             return;
         };
         let span = places.value(file);
-        let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
-        let path = self.folder.join(file.value());
-        if !Path::new(file.value()).components().all(inside) {
-            let message = format!("`{}` is not within the model's folder", clip(file.value()));
-            self.error(span, message, "an included file lies beside the model or below".to_owned());
-        } else if self.open.contains(&path) {
+        let path = match self.within.find(&self.folder, file.value()) {
+            Ok(path) => path,
+            Err(error) => {
+                self.error(span, error.message, error.help);
+                return;
+            }
+        };
+        if self.open.contains(&path) {
             self.error(span, format!("`{}` includes itself", clip(file.value())), None);
         } else if self.files == MOST_FILES {
             self.error(span, format!("the model includes more than {MOST_FILES} files"), None);

@@ -75,9 +75,15 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
         }
     }
     let file = reader.scalar(&entry.value, "the path of an MJCF")?.text.clone();
-    let path = model.parent().map_or_else(|| file.clone().into(), |folder| folder.join(&file));
+    let path = match reader.files.find(Path::new(""), &file) {
+        Ok(path) => path,
+        Err(error) => {
+            reader.error(entry.value.span.clone(), error.message, error.help);
+            return None;
+        }
+    };
     let at = (!is_mjcf(model)).then(|| entry.value.span.clone());
-    let document = document::read(&path, at, reader.diagnostics)?;
+    let document = document::read(&path, at, &reader.files, reader.diagnostics)?;
     let mut values = Values::new(&document, reader.diagnostics);
     let robot = read::robot(&document, &mut values)?;
     let words = numbers::words(root, overrides);

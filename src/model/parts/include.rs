@@ -1,6 +1,6 @@
-//! `include:`, files of assemblies within the model's folder.
+//! `include:`, files of assemblies.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Writer;
@@ -32,7 +32,7 @@ pub(super) fn read(writer: &mut Writer, entries: &[Entry]) {
     names(writer, &entry.value, Path::new(""), &mut Included { open, read: Vec::new() });
 }
 
-/// The files of an `include`, whose names are from a folder within the model's.
+/// The files of an `include`, whose names are from a folder, which is seen from the model's.
 fn names(writer: &mut Writer, node: &Node, folder: &Path, included: &mut Included) {
     let items = match &node.value {
         Value::Sequence(items) => items.as_slice(),
@@ -41,31 +41,11 @@ fn names(writer: &mut Writer, node: &Node, folder: &Path, included: &mut Include
     for item in items {
         let Some(scalar) = writer.reader.scalar(item, "the name of a file, or a list of them,") else { continue };
         let (name, span) = (scalar.text.clone(), item.span.clone());
-        match within(folder, &name) {
-            Some(path) => file(writer, path, &span, included),
-            None => {
-                let message = format!("`{}` is not within the model's folder", clip(&name));
-                let help = "an included file lies beside the model or below: `parts/wishbone.yaml`".to_owned();
-                writer.reader.error(span, message, help);
-            }
+        match writer.reader.files.find(folder, &name) {
+            Ok(path) => file(writer, path, &span, included),
+            Err(error) => writer.reader.error(span, error.message, error.help),
         }
     }
-}
-
-/// The path from the model's folder, if it does not leave that.
-fn within(folder: &Path, name: &str) -> Option<PathBuf> {
-    let mut path = folder.to_path_buf();
-    for part in Path::new(name).components() {
-        match part {
-            Component::Normal(part) => path.push(part),
-            Component::CurDir => {}
-            Component::ParentDir => {
-                path.pop().then_some(())?;
-            }
-            Component::RootDir | Component::Prefix(_) => return None,
-        }
-    }
-    Some(path)
 }
 
 fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included) {
@@ -83,18 +63,7 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
         return;
     }
     included.read.push(path.clone());
-    let full = writer.reader.folder.join(&path);
-    let outside = || {
-        // A link may lead out of the folder.
-        let folder = writer.reader.folder.as_os_str();
-        let folder = if folder.is_empty() { Path::new(".") } else { Path::new(folder) };
-        Some(!full.canonicalize().ok()?.starts_with(folder.canonicalize().ok()?))
-    };
-    if outside() == Some(true) {
-        let message = format!("`{}` leads out of the model's folder", clip(&path.display().to_string()));
-        writer.reader.error(span.clone(), message, "an included file lies beside the model or below".to_owned());
-        return;
-    }
+    let full = writer.reader.files.full(&path);
     let text = match read_text(&full, MAX_BYTES) {
         Ok(text) => text,
         Err(error) => {

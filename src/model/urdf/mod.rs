@@ -88,9 +88,12 @@ impl Urdf {
             None => None,
         };
         let file = reader.scalar(node, "the path of a URDF")?.text.clone();
-        let path = model.parent().map_or_else(|| file.clone().into(), |folder| folder.join(&file));
-        let text = match text_file::read_text(&path, MAX_BYTES) {
-            Ok(text) => text,
+        let found = reader.files.find(Path::new(""), &file).and_then(|path| {
+            let path = reader.files.full(&path);
+            Ok((text_file::read_text(&path, MAX_BYTES)?, path))
+        });
+        let (text, path) = match found {
+            Ok(found) => found,
             Err(error) => {
                 let alone = is_urdf(model);
                 let span = if alone { None } else { Some(node.span.clone()) };

@@ -1,0 +1,122 @@
+//! Which files a model may name: those in its folder or below, and those in a folder that the user names or below.
+
+use std::path::{Component, Path, PathBuf};
+
+use super::diagnostic::Diagnostic;
+use super::harmless;
+use super::suggest::clip;
+
+/// Folders whose files a model may name.
+#[derive(Clone, Debug)]
+pub struct Within {
+    /// The model's: names are from it.
+    folder: PathBuf,
+    /// That of `--root`.
+    root: Option<PathBuf>,
+}
+
+impl Within {
+    /// For the model of a path.
+    pub fn of(model: &Path, root: Option<&Path>) -> Self {
+        Self { folder: model.parent().unwrap_or(Path::new("")).to_owned(), root: root.map(Path::to_owned) }
+    }
+
+    /// The path, seen from the model's folder, of a file that is named from a folder, which is seen from there too. What is there is
+    /// not looked at where the model may not name it.
+    ///
+    /// # Errors
+    /// Where the model may not name it.
+    pub fn find(&self, from: &Path, name: &str) -> Result<PathBuf, Box<Diagnostic>> {
+        let path = normal(&from.join(name));
+        let folders: Vec<PathBuf> = [Some(&self.folder), self.root.as_ref()].into_iter().flatten().map(real).collect();
+        let below = |path: &Path| folders.iter().any(|folder| path.starts_with(folder));
+        let named = below(&normal(&real(&self.folder).join(&path)));
+        // A link may lead out of the folder, or into it.
+        let is_below = self.full(&path).canonicalize().map_or(named, |found| below(&found));
+        if is_below {
+            return Ok(path);
+        }
+        let verb = if named { "leads out of" } else { "is not within" };
+        let (folder, help) = match &self.root {
+            None => ("the model's folder".to_owned(), "in that folder or below, or in that of `--root DIR` or below"),
+            Some(root) => {
+                let root = harmless(&root.display().to_string());
+                (format!("the model's folder, nor within `{}`", clip(&root)), "in one of these folders or below")
+            }
+        };
+        let message = format!("`{}` {verb} {folder}", clip(name));
+        Err(Box::new(Diagnostic::of_file(message).help(format!("a file that a model names lies {help}"))))
+    }
+
+    /// Where a path leads that is seen from the model's folder.
+    pub fn full(&self, path: &Path) -> PathBuf {
+        self.folder.join(path)
+    }
+}
+
+/// A folder without links on the way to it; as it is named where it is not there.
+fn real(folder: &PathBuf) -> PathBuf {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    folder
+        .canonicalize()
+        .or_else(|_| std::path::absolute(folder))
+        .map_or_else(|_| folder.to_owned(), |path| normal(&path))
+}
+
+/// A path without `.` and, where it can be, without `..`.
+fn normal(path: &Path) -> PathBuf {
+    let mut found = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(found.components().next_back(), Some(Component::Normal(_))) => {
+                found.pop();
+            }
+            part => found.push(part),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_model_names_what_is_below_its_folder_or_below_the_root() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = |name: &str| {
+            let path = place.path().join(name);
+            std::fs::create_dir_all(&path).unwrap();
+            path
+        };
+        let (all, robots, outside) = (folder("all"), folder("all/robots"), folder("outside"));
+        for path in [robots.join("a"), all.join("shared"), outside.join("secret")] {
+            std::fs::write(path, "").unwrap();
+        }
+        let model = robots.join("model.yaml");
+        let found = |root: Option<&Path>, name: &str| {
+            let within = Within::of(&model, root);
+            within.find(Path::new("parts"), name).map(|path| path.display().to_string()).map_err(|error| error.message)
+        };
+        let alone = |name: &str| found(None, name);
+        assert_eq!(alone("x").as_deref(), Ok("parts/x"), "files that are not there are looked for");
+        assert_eq!(alone("./y/../../a").as_deref(), Ok("a"));
+        let absolute = robots.join("a").display().to_string();
+        assert!(found(None, &absolute).is_ok(), "an absolute path within");
+        assert_eq!(alone("../../shared").unwrap_err(), "`../../shared` is not within the model's folder");
+        assert_eq!(alone("../../none").unwrap_err(), "`../../none` is not within the model's folder");
+        let rooted = |name: &str| found(Some(&all), name);
+        assert_eq!(rooted("../../shared").as_deref(), Ok("../shared"));
+        assert_eq!(rooted("../a").as_deref(), Ok("a"), "the model's folder stays");
+        let message = rooted("../../../outside/secret").unwrap_err();
+        assert!(message.starts_with("`../../../outside/secret` is not within the model's folder, nor within `"));
+        assert!(found(Some(&outside), "../../../outside/secret").is_ok());
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(outside.join("secret"), robots.join("link")).unwrap();
+            assert_eq!(alone("../link").unwrap_err(), "`../link` leads out of the model's folder");
+            assert!(found(Some(&outside), "../link").is_ok());
+        }
+    }
+}
