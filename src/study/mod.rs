@@ -32,6 +32,7 @@ mod loop_cuts;
 mod motion;
 mod outcome;
 mod price;
+mod ready;
 mod reduced;
 mod sample;
 mod shard;
@@ -49,9 +50,9 @@ use crate::assemble::BuildError;
 use crate::compile::Scheme;
 use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
-use crate::reduce::{Choices, Reduction};
+use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
-use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::simulate::{SimulationError, Simulator};
 use crate::store::PartStore;
 
 use subsystems::Prepared;
@@ -67,6 +68,7 @@ pub use internal::{InternalError, caught, record_panics};
 pub use kept::{Evaluator, Kept};
 pub use motion::{MotionOptions, motion};
 pub use price::Price;
+pub use ready::{Ready, built, ready};
 pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
 pub use structure::structure;
@@ -185,24 +187,6 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
-}
-
-/// What is simulated of a model, assembled: a part for each subsystem, as a run has them.
-///
-/// # Errors
-/// As for [`run`].
-pub fn assemble_parts(description: &Description) -> Result<Vec<Assembled>, RunError> {
-    subsystems::assembled(&reduced::expanded(description))
-}
-
-/// What is simulated of a model.
-pub fn reduction(description: &Description) -> Reduction {
-    Reduction::of(&reduced::expanded(description), Choices::default())
-}
-
-/// Whether only a run finds out in which coordinates it is shorter: what is large is not compiled to be checked.
-pub fn formulation_is_open(description: &Description) -> bool {
-    formulation::is_open(description)
 }
 
 /// The model's scheme.
