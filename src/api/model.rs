@@ -101,7 +101,7 @@ impl Model {
         })
     }
 
-    /// What is probably not meant, though the model can be used.
+    /// Warnings: the model can be used, but something in it is probably not meant.
     pub fn warnings(&self) -> &Diagnostics {
         &self.warnings
     }

@@ -55,7 +55,7 @@ impl StudyResult {
         self.summary.failure.as_deref()
     }
 
-    /// What was run and what it took, as in `summary.json`.
+    /// Record of the run and its cost, as in `summary.json`.
     pub fn summary(&self) -> &Summary {
         &self.summary
     }

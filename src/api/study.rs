@@ -104,7 +104,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Asks a function now and then whether to stop. What is finished by then is in the result.
+    /// Asks a function now and then whether to stop. The result has the parts finished by then.
     #[must_use]
     pub fn interrupted(mut self, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
         self.options.interrupted = interrupted;

@@ -1,4 +1,4 @@
-//! Effects on a mechanism: what they see of its motion, and what they add to its forces.
+//! Effects on a mechanism: the motion they read and the forces they add.
 
 use symdiff::{Builder, Formula, Scalar};
 

@@ -9,8 +9,8 @@ use super::System;
 use super::system::Start;
 
 impl System {
-    /// The equations for a configuration at rest, in which states rest, too: each is the position of its coordinate in place of its
-    /// velocity, and its rate the force on it; one that changes at instants is what it becomes there.
+    /// The equations for a configuration at rest, in which states rest, too: each is the position of its coordinate in
+    /// place of its velocity, and its rate the force on it; a state that changes at instants has its new value.
     pub fn at_rest(&self) -> Cow<'_, Self> {
         let states: Vec<usize> = (0..self.q.len()).filter(|&place| self.coordinates[place].is_state).collect();
         if states.is_empty() {
@@ -39,8 +39,8 @@ impl System {
         self.coordinates.iter().any(|coordinate| coordinate.is_state)
     }
 
-    /// A start at an equilibrium is known: nothing is given of positions, and nothing decides where they are left open. States are those
-    /// that their coordinates' positions were there.
+    /// A start at an equilibrium is known: nothing is given of positions, and nothing decides where they are left
+    /// open. States are those that their coordinates' positions were there.
     pub fn start_at_equilibrium(&mut self) {
         self.start.leave_positions();
         for place in (0..self.q.len()).filter(|&place| self.coordinates[place].is_state) {
@@ -48,8 +48,8 @@ impl System {
         }
     }
 
-    /// Without forces and masses: w minimises Σ (w/scale)², and so is what the constraints make of it. Where they leave no freedom,
-    /// nothing else is.
+    /// Without forces and masses: w minimises Σ (w/scale)², and so is what the constraints make of it. Where they
+    /// leave no freedom, nothing else is.
     pub(super) fn forget_forces(&mut self) {
         let graph = &mut self.graph;
         let mut mass = Vec::with_capacity(self.q.len());

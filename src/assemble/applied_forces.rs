@@ -13,14 +13,14 @@ use crate::multibody::{
     AxisMotion, BuildError, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates, Vector, Wrench,
 };
 
-/// What is added to: a component of a body's wrench (0 to 5), or a coordinate of its own: of a joint, a mode, a state.
+/// Target of a force: a component of a body's wrench (0 to 5), or a coordinate of its own: of a joint, a mode, a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Target {
     Body(usize, usize),
     Coordinate(usize),
 }
 
-/// Something acts only where both are positive; `within` is what is cheap to compute.
+/// Something acts only where both are positive; `within` is cheap to compute.
 #[derive(Clone, Copy)]
 struct Guard<'g> {
     within: Option<Scalar<'g>>,
@@ -47,13 +47,13 @@ pub struct AppliedForces<'g> {
     pub field: Vector<'g>,
     /// Potential energies, J.
     pub potentials: Vec<Scalar<'g>>,
-    /// States that change at instants only: the effect, the place among its states, and what it becomes.
+    /// States that change at instants only: the effect, the index among its states, and the new value.
     pub sampled: Vec<((usize, usize), Scalar<'g>)>,
-    /// What was added to since the last [`AppliedForces::begin`].
+    /// Targets added to since the last [`AppliedForces::begin`].
     touched: BTreeSet<Target>,
-    /// What was measured since then.
+    /// Sensor values recorded since then.
     measured: Vec<(Sensor, Scalar<'g>)>,
-    /// The condition of what is added now, if it has one.
+    /// Condition under which forces are added now, if any.
     guard: Option<Guard<'g>>,
     /// What acts under conditions.
     guarded: Vec<Guarded<'g>>,
@@ -83,8 +83,9 @@ impl<'g> AppliedForces<'g> {
         self.guard = None;
     }
 
-    /// What the effect adds from now on acts only where `condition` is positive, whatever its expressions are elsewhere, and is
-    /// not computed where no sample of a tile needs it. It vanishes continuously as the condition does.
+    /// What the effect adds from now on acts only where `condition` is positive, whatever its expressions are
+    /// elsewhere, and is not computed where no sample of a tile needs it. It vanishes continuously as the condition
+    /// does.
     pub fn only_where(&mut self, condition: Scalar<'g>) {
         self.guard = Some(Guard { within: None, condition });
     }
@@ -246,9 +247,9 @@ impl<'g> AppliedForces<'g> {
         }
     }
 
-    /// A torque about a joint's axis on its second body and the opposite on its first, or a force along it at the second
-    /// point and the opposite on the first body at the same place; on the joint's coordinate, where that is one of the
-    /// mechanism's own.
+    /// A torque about a joint's axis on its second body and the opposite on its first, or a force along it at the
+    /// second point and the opposite on the first body at the same place; on the joint's coordinate, where that is one
+    /// of the mechanism's own.
     pub fn add_joint_effort(
         &mut self,
         m: &Mechanism<'g, '_>,
@@ -272,7 +273,7 @@ impl<'g> AppliedForces<'g> {
         Ok(())
     }
 
-    /// What is on the coordinate whose place in q is `index`: a generalised force, or how fast a state changes.
+    /// Generalised force on coordinate `index` of q, or the rate of a state.
     pub fn add_to_coordinate(&mut self, index: usize, part: Scalar<'g>) {
         self.add(Target::Coordinate(index), part);
     }

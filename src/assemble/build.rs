@@ -29,8 +29,8 @@ const LONG: usize = 48;
 /// sides prescribed) are left out. The work is linear in the number of bodies, joints and effects.
 ///
 /// # Errors
-/// A constraint that nothing can fulfil, joint coordinates that are asked for where they are not possible, and (for descriptions
-/// that were not checked) a name out of place.
+/// A constraint that nothing can fulfil, joint coordinates that are asked for where they are not possible, and (for
+/// descriptions that were not checked) a name out of place.
 pub fn build(description: &Description) -> Result<System, BuildError> {
     match description.simulation.formulation {
         Formulation::Joint => {
@@ -50,11 +50,12 @@ pub fn in_absolute_coordinates(description: &Description) -> Result<System, Buil
     Ok(system(builder.finish()))
 }
 
-/// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With `deepest`, not
-/// where a body is more joints than that from its root on average. Loops are closed from where absolute coordinates begin to
-/// look, or from an assembled start in absolute coordinates (their values) where it is known. Where the tree cannot be used
-/// and the description leaves its cut open, the first that can and differs in one joint, or in those of several axes, takes its place: a reaction that a force
-/// depends on is known where its joint closes a loop.
+/// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With
+/// `deepest`, not where a body is more joints than that from its root on average. Loops are closed from where absolute
+/// coordinates begin to look, or from an assembled start in absolute coordinates (their values) where it is known.
+/// Where the tree cannot be used and the description leaves its cut open, the first that can and differs in one joint,
+/// or in those of several axes, takes its place: a reaction that a force depends on is known where its joint closes a
+/// loop.
 ///
 /// # Errors
 /// As for [`build`].
@@ -122,7 +123,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     if description.analysis != Analysis::Kinematics {
         constraints.add_balances(&m, &balance.massive, &balance.force, &start)?;
     }
-    // The equations' graph stays what it is without the distances; coordinates of joints are in it.
+    // The equations' graph is the same without the distances; coordinates of joints are in it.
     let of_equations = (!m.has_distances()).then(|| m.g.graph().clone());
     let distances = m.distances(description, length, &start)?;
     let coordinates = m.coordinates.iter().zip(&m.coordinate_names).map(|(owner, name)| CoordinateInfo {
@@ -245,7 +246,8 @@ struct Balance<'g> {
 }
 
 impl<'g> Balance<'g> {
-    /// With the reactions of inboard joints, which follow from it and go to the mechanism; `closures` are the other joints.
+    /// With the reactions of inboard joints, which follow from it and go to the mechanism; `closures` are the other
+    /// joints.
     fn of(m: &mut Mechanism<'g, '_>, applied: AppliedForces<'g>, closures: &[usize]) -> Result<Self, BuildError> {
         let g = m.g;
         let mut mass = Vec::new();

@@ -1,8 +1,8 @@
 //! A child's place and motion by the coordinates of its joint; [`super::mobilizers`] for joints of more axes than one.
 //!
-//! With F₁, F₂ the joint's frames, A₁, A₂ their rotations in their bodies, u the axis, φ the angle, s the displacement, the
-//! second body is rotated by A₁ R(u, φ) A₂ᵀ against the first, and F₂'s origin is u s from that of F₁. Seen from the parent
-//! (the first body, or the second with φ and s reversed):
+//! With F₁, F₂ the joint's frames, A₁, A₂ their rotations in their bodies, u the axis, φ the angle, s the
+//! displacement, the second body is rotated by A₁ R(u, φ) A₂ᵀ against the first, and F₂'s origin is u s from that of
+//! F₁. Seen from the parent (the first body, or the second with φ and s reversed):
 //!
 //! ```text
 //! R_c = R_p Rᵣ                    ω_c = ω_p + R_c a φ̇

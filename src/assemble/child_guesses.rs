@@ -1,8 +1,10 @@
 //! Where to look for the coordinates of joints that close loops, or whose bodies `guess` names, in joint coordinates.
 //!
-//! A guess of a body without coordinates of its own says where its body would be looked for if every body had coordinates: walked from the ground with what is named, as in
-//! absolute coordinates. What the inboard joints measure there is where their coordinates are looked for: those of all children, so that
-//! a loop is closed from the same place, and those of joints whose coordinates have no names, so that what the start says of their bodies is where they are looked for. It is closed in the same branch where the assembled start in absolute coordinates is known.
+//! A guess of a body without coordinates of its own says where its body would be if every body had coordinates: poses
+//! are propagated from the ground with the named coordinates, as in absolute coordinates. The inboard joints'
+//! coordinates are measured there and start from these values: those of all children, so that a loop is closed from
+//! the same place, and those of joints whose coordinates have no names, so that they start from the given coordinates
+//! of their bodies. It is closed in the same branch where the assembled start in absolute coordinates is known.
 
 use symdiff::{Builder, Scalar};
 
@@ -13,8 +15,8 @@ use crate::model::{Description, StartValue};
 use crate::multibody::BuildError;
 
 impl Mechanism<'_, '_> {
-    /// Notes where to look for the inboard joints' coordinates, if `guess` names a child or joints close loops. `assembled` are the
-    /// coordinates of an assembled start in absolute coordinates, where it is known.
+    /// Notes where to look for the inboard joints' coordinates, if `guess` names a child or joints close loops.
+    /// `assembled` are the coordinates of an assembled start in absolute coordinates, where it is known.
     ///
     /// # Errors
     /// A formula with a name that cannot stand in it.

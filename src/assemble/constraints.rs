@@ -38,8 +38,8 @@ pub struct Constraints<'g> {
 }
 
 impl<'g> Constraints<'g> {
-    /// Those of a mechanism of size `length`. The joints' reactions go to the mechanism; those of inboard joints follow from
-    /// the motion, once the forces are known, and are zero here.
+    /// Those of a mechanism of size `length`. The joints' reactions go to the mechanism; those of inboard joints
+    /// follow from the motion, once the forces are known, and are zero here.
     pub fn of(
         m: &mut Mechanism<'g, '_>,
         description: &Description,
@@ -164,7 +164,7 @@ fn is_effective(m: &Mechanism, length: f64, info: &ConstraintInfo, row: Row) -> 
     ];
     for (at, values) in samples {
         let residual = values[0];
-        // What is NaN is not closed.
+        // NaN is not closed.
         let closed = residual.abs() <= CLOSED * length.min(1.0);
         if !closed {
             let (joint, constraint) = (info.joint.clone(), info.name.clone());

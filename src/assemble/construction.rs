@@ -17,8 +17,8 @@ use crate::multibody::{
 };
 
 impl<'g, 'd> Mechanism<'g, 'd> {
-    /// The symbols and bodies of a description; with `by_joints`, as many bodies as can be are children, without coordinates of
-    /// their own.
+    /// The symbols and bodies of a description; with `by_joints`, as many bodies as can be are children, without
+    /// coordinates of their own.
     pub fn new(g: &'g Builder, description: &'d Description, by_joints: bool) -> Result<Self, BuildError> {
         let time = g.variable("t");
         let mut mechanism = Self {

@@ -8,9 +8,10 @@
 //! displacement s:    Φ = R₁ a · (r_B − r_A) − s = 0
 //! ```
 //!
-//! so that angles are continuous over any number of turns, and can be driven, coupled and kept at the start like any other
-//! coordinate. Forces on them reach the bodies through the constraint's multiplier, which is no part of the joint's reaction.
-//! In the plane an angle is the difference θ₂ − θ₁, and is a coordinate of its own only where the start names it.
+//! so that angles are continuous over any number of turns, and can be driven, coupled and kept at the start like any
+//! other coordinate. Forces on them reach the bodies through the constraint's multiplier, which is no part of the
+//! joint's reaction. In the plane an angle is the difference θ₂ − θ₁, and is a coordinate of its own only where the
+//! start names it.
 
 use std::collections::BTreeSet;
 

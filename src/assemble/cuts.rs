@@ -1,9 +1,9 @@
 //! Which joints can close loops in joint coordinates.
 //!
-//! A mechanism with loops has a tree for every choice of the joints that close them (Wittenburg, *Dynamics of Systems of Rigid Bodies*
-//! (1977), ch. 5.3). Every tree is reached from every other by exchanges: a joint that closes a loop becomes an inboard joint, and another
-//! of its loop closes it. Joints of several axes can be constraints where they close no loop, too: the bodies behind them have coordinates of
-//! their own then.
+//! A mechanism with loops has a tree for every choice of the joints that close them (Wittenburg, *Dynamics of Systems
+//! of Rigid Bodies* (1977), ch. 5.3). Every tree is reached from every other by exchanges: a joint that closes a loop
+//! becomes an inboard joint, and another of its loop closes it. Joints of several axes can be constraints where they
+//! close no loop, too: the bodies behind them have coordinates of their own then.
 
 use super::tree::Tree;
 use crate::elements::joints::Mobilizer;
@@ -12,8 +12,8 @@ use crate::model::Description;
 /// Of more bodies only the cut of the shallowest trees is looked at.
 const MOST_BODIES: usize = 50;
 
-/// The cuts that differ from a description's own in one exchange, each with all joints that are constraints; first those that promise the
-/// fewest operations; none of large mechanisms.
+/// The cuts that differ from a description's own in one exchange, each with all joints that are constraints; first
+/// those that promise the fewest operations; none of large mechanisms.
 pub fn other_cuts(description: &Description) -> Vec<Vec<usize>> {
     if description.bodies.len() > MOST_BODIES {
         return Vec::new();
@@ -72,7 +72,8 @@ pub fn cuts_of_several_axes(description: &Description) -> Vec<Vec<usize>> {
     cuts
 }
 
-/// About how many operations a cut takes: those of the elimination of M, and of each closure with the joints of its loop.
+/// About how many operations a cut takes: those of the elimination of M, and of each closure with the joints of its
+/// loop.
 fn effort(description: &Description) -> usize {
     let tree = Tree::spanning(description, |_| true);
     let lengths = tree.closing(description).into_iter().filter_map(|joint| {

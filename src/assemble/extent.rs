@@ -11,8 +11,8 @@ use crate::model::{Description, StartValue};
 use crate::multibody::{BuildError, Context};
 
 impl Mechanism<'_, '_> {
-    /// The largest length that the model names and uses, m, at its nominal parameters: coordinates of points, distances,
-    /// prescribed and initial positions; 1 where it names none.
+    /// The largest length that the model names and uses, m, at its nominal parameters: coordinates of points,
+    /// distances, prescribed and initial positions; 1 where it names none.
     pub fn characteristic_length(&self, description: &Description) -> Result<f64, BuildError> {
         let mut lengths: Vec<Scalar> = Vec::new();
         // Euler parameters of zero turn nothing, so that children say nothing then.

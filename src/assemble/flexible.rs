@@ -12,17 +12,18 @@
 //!             ⎣ −13   −3  −22    4 ⎦
 //! ```
 //!
-//! So d'Alembert's forces on the ends are −Σ m_kl ë_l, with L ẗ = L (θ̈ n − θ̇² t), and their moments L n · (…); M is their slope
-//! by the accelerations. For small bending it is the consistent mass matrix of Euler and Bernoulli's beam (Przemieniecki, *Theory of
-//! Matrix Structural Analysis* (1968), ch. 11); in the plane, sections
-//! have no inertia of rotation. Gravity acts on r(s):
+//! So d'Alembert's forces on the ends are −Σ m_kl ë_l, with L ẗ = L (θ̈ n − θ̇² t), and their moments L n · (…); M is
+//! their slope by the accelerations. For small bending it is the consistent mass matrix of Euler and Bernoulli's beam
+//! (Przemieniecki, *Theory of Matrix Structural Analysis* (1968), ch. 11); in the plane, sections have no inertia of
+//! rotation. Gravity acts on r(s):
 //!
 //! ```text
 //! ∫ r ds = L/2 (r_A + r_B) + L²/12 (t_A − t_B)
 //! ```
 //!
-//! In space ẗ = ω̇ × t + ω × (ω × t), the moments are t × L (…), and half of the element's sections turn with each end: with I in its
-//! axes, i_y = μ EI_y/EA, i_z = μ EI_z/EA, i_x = i_y + i_z (a section of one material), T gains ¼ L ω · I ω.
+//! In space ẗ = ω̇ × t + ω × (ω × t), the moments are t × L (…), and half of the element's sections turn with each
+//! end: with I in its axes, i_y = μ EI_y/EA, i_z = μ EI_z/EA, i_x = i_y + i_z (a section of one material), T gains ¼ L
+//! ω · I ω.
 
 use symdiff::Scalar;
 
@@ -52,7 +53,7 @@ struct Element<'g> {
 }
 
 impl<'g> Mechanism<'g, '_> {
-    /// What is flexible and has mass, if there is something.
+    /// Flexible body with mass, if any.
     pub fn flexible(&self) -> Option<String> {
         let beam = self.line_masses.first().map(|beam| format!("beam `{}` bends", beam.body));
         beam.or_else(|| self.superelements.first().map(|_| "a superelement deforms".to_owned()))
@@ -184,7 +185,8 @@ impl<'g> Mechanism<'g, '_> {
         Ok(())
     }
 
-    /// A beam starts straight and moves as a rigid body, but between nodes whose coordinates (velocities) are all given.
+    /// A beam starts straight and moves as a rigid body, but between nodes whose coordinates (velocities) are all
+    /// given.
     pub fn start_of_beams(&self, description: &Description) -> Result<Vec<StartCondition>, BuildError> {
         let mut conditions = Vec::new();
         for beam in &self.line_masses {
@@ -259,7 +261,7 @@ fn is_given_at_start(description: &Description, body: usize, wanted: TimeOrder) 
 }
 
 impl<'g> Element<'g> {
-    /// Something of e: (r_A, L t_A, r_B, L t_B), from what it is of r and t at each end.
+    /// Vector over e: (r_A, L t_A, r_B, L t_B), from its parts in r and t at each end.
     fn end_values(&self, of: impl Fn(usize) -> [Vector<'g>; 2]) -> [Vector<'g>; 4] {
         let ([first, turning_first], [second, turning_second]) = (of(0), of(1));
         [first, self.length * turning_first, second, self.length * turning_second]
@@ -276,7 +278,7 @@ impl<'g> Element<'g> {
         })
     }
 
-    /// What does F · δr + G · δt for every motion of an end.
+    /// Generalised force with the virtual work F · δr + G · δt for every motion of an end.
     fn push_by(&self, applied: &mut AppliedForces<'g>, end: usize, force: Vector<'g>, turning: Vector<'g>) {
         applied.add_force(&self.ends[end], force);
         let axis = self.axes[end];

@@ -11,8 +11,9 @@ use crate::multibody::Context;
 impl Mechanism<'_, '_> {
     /// What prevents joint coordinates; `None` where nothing does.
     ///
-    /// Where joint coordinates are one choice of two (`is_chosen`), a start that names coordinates of bodies speaks for absolute ones,
-    /// and a guess where no joints close loops: those are closed from the assembled start in absolute coordinates.
+    /// Where joint coordinates are one choice of two (`is_chosen`), a start that names coordinates of bodies speaks
+    /// for absolute ones, and a guess where no joints close loops: those are closed from the assembled start in
+    /// absolute coordinates.
     pub fn obstacle(&self, description: &Description, is_chosen: bool) -> Option<String> {
         if self.tree.is_absolute() {
             return Some("no joint can give a body its position".to_owned());

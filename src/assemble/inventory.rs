@@ -38,7 +38,8 @@ impl Inventory {
             }
             // What nothing can change constrains nothing.
             let rows = rows.iter().filter(|row| !m.is_given(&[row.value])).count();
-            // A joint that changes with t moves one of its freedoms; the rows of one on a body that is moved do not say so.
+            // A joint that changes with t moves one of its freedoms; the rows of one on a body that is moved do not
+            // say so.
             let changes = || joint.kind.formulas().into_iter().any(|formula| is_of_time(description, formula));
             let drives = usize::from(rows > 0 && (joint.kind.drives() || changes()));
             inventory.drives += drives;

@@ -1,14 +1,15 @@
 //! Coordinates without inertia that no constraint moves: they are where their forces balance.
 //!
-//! M has nothing in the row of such a coordinate i, so its equation of motion is Q_i = 0. It is written as a constraint as well,
+//! M has nothing in the row of such a coordinate i, so its equation of motion is Q_i = 0. It is written as a
+//! constraint as well,
 //!
 //! ```text
 //! Φ_i = Q_i(q, t)/k = 0      k = max_j |∂Q_i/∂q_j| where the start is looked for: Φ_i is in metres or radians
 //! ```
 //!
-//! so that the start, velocities and accelerations follow it. In the rows of these coordinates m then stands Q_m = 0 = (∂Φ/∂q_m)ᵀ μ: where the
-//! stiffness ∂Q_m/∂q_m is regular the multipliers μ are zero, and the constraint pushes on nothing else. That is static condensation
-//! (Guyan, AIAA J. 3 (1965) 380), without its linearisation.
+//! so that the start, velocities and accelerations follow it. In the rows of these coordinates m then stands Q_m = 0 =
+//! (∂Φ/∂q_m)ᵀ μ: where the stiffness ∂Q_m/∂q_m is regular the multipliers μ are zero, and the constraint pushes on
+//! nothing else. That is static condensation (Guyan, AIAA J. 3 (1965) 380), without its linearisation.
 
 use rustc_hash::FxHashSet;
 use symdiff::{Expr, Scalar};
@@ -20,8 +21,8 @@ use super::system::{ConstraintInfo, ResidualUnit, Start};
 use crate::multibody::BuildError;
 
 impl<'g> Constraints<'g> {
-    /// Adds a constraint for each coordinate without inertia that stands in no other: that its force is zero. `is_massive` says which have
-    /// inertia, `force` is Q.
+    /// Adds a constraint for each coordinate without inertia that stands in no other: that its force is zero.
+    /// `is_massive` says which have inertia, `force` is Q.
     ///
     /// # Errors
     /// A force that depends on velocities, accelerations or reactions, or on no such coordinate.

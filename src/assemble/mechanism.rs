@@ -127,7 +127,8 @@ pub struct Mechanism<'g, 'd> {
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
     /// Places in the constraints of the normalisations of joints' Euler parameters.
     pub normalisations: BTreeMap<usize, usize>,
-    /// Where the bodies behind joints without names for their coordinates are looked for: x, y, z, then the Euler parameters.
+    /// Where the bodies behind joints without names for their coordinates are looked for: x, y, z, then the Euler
+    /// parameters.
     pub body_guesses: BTreeMap<usize, [f64; DEGREES_OF_FREEDOM]>,
     /// Of the joints built so far.
     pub reactions: Vec<Reaction<'g>>,
@@ -137,7 +138,7 @@ pub struct Mechanism<'g, 'd> {
     pub teeth: Vec<ToothForce<'g>>,
     /// Potential energies of the effects built so far, J.
     pub potentials: Vec<Scalar<'g>>,
-    /// Kinetic energy of what is no rigid body, J.
+    /// Kinetic energy of flexible bodies, J.
     pub kinetic_energy_of_flexible: Scalar<'g>,
     /// Places in `q` of the coordinates whose velocities are states, by effect and place among its states.
     pub states: BTreeMap<(usize, usize), usize>,

@@ -1,4 +1,5 @@
-//! Bodies that are welded together as one: mass, centre of mass and inertia of all are those of the body that the others follow.
+//! Bodies that are welded together as one: mass, centre of mass and inertia of all are those of the body that the
+//! others follow.
 //!
 //! With R the rotation from a body's axes to those of the body it is welded to, and o its origin there (`child`),
 //!
@@ -30,7 +31,7 @@ impl<'g> Inertial<'g> {
 }
 
 impl Mechanism<'_, '_> {
-    /// Hands the inertia of merged bodies on to what they follow.
+    /// Adds the inertia of merged bodies to the bodies they follow.
     pub fn merge(&mut self) {
         // From the ends of the trees inwards, so that each has all of its own before it hands it on.
         for &index in self.tree.order.iter().rev().filter(|&&index| self.tree.merges(index)) {

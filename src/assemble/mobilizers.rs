@@ -1,7 +1,7 @@
 //! The relative motion of joints of more axes than one, by coordinates that formulas have no names for.
 //!
-//! R is the rotation from the second frame F₂ to the first F₁, d the origin of F₂ in F₁, n the normal of a plane and e₁, e₂ two unit vectors
-//! across it, r the Euler parameters of R.
+//! R is the rotation from the second frame F₂ to the first F₁, d the origin of F₂ in F₁, n the normal of a plane and
+//! e₁, e₂ two unit vectors across it, r the Euler parameters of R.
 //!
 //! ```text
 //! universal    R = R(a, φ₁) C R(b, φ₂)      d = 0                 Ω = a φ̇₁ + R(a, φ₁) C b φ̇₂
@@ -9,8 +9,8 @@
 //! spherical    R = R(r),  rᵀr = 1           d = 0                 Ω = 2 E(r) ṙ
 //! ```
 //!
-//! a is an axis of F₁ and b one of F₂; C turns b the shortest way until it is perpendicular to a. Where the child is the joint's first body the
-//! motion is the opposite one.
+//! a is an axis of F₁ and b one of F₂; C turns b the shortest way until it is perpendicular to a. Where the child is
+//! the joint's first body the motion is the opposite one.
 
 use symdiff::Scalar;
 
@@ -186,7 +186,8 @@ impl<'g> Mechanism<'g, '_> {
             drift: None,
         };
         if inboard.reversed {
-            // F₁ in F₂ is at δ = −Rᵀ d: δ̇ = σ + δ × n φ̇ with σ = −Rᵀ ḋ, and δ̈ = −Rᵀ d̈ + δ × n φ̈ + 2 σ × n φ̇ − δ φ̇².
+            // F₁ in F₂ is at δ = −Rᵀ d: δ̇ = σ + δ × n φ̇ with σ = −Rᵀ ḋ, and δ̈ = −Rᵀ d̈ + δ × n φ̈ + 2 σ × n φ̇ − δ
+            // φ̇².
             let back = |direction: Vector<'g>| -(matrix.transposed() * direction);
             let [first, second] = [back(first), back(second)];
             let [slides, rate] = [places.map(|place| self.v[place]), [self.v[turning]; 2]];
@@ -239,8 +240,8 @@ impl<'g> Mechanism<'g, '_> {
             .collect()
     }
 
-    /// A coordinate of a joint whose second frame is turned and displaced so against the first; of frames that the joint does not allow one
-    /// that is near.
+    /// A coordinate of a joint whose second frame is turned and displaced so against the first; of frames that the
+    /// joint does not allow one that is near.
     pub(super) fn relative_coordinate(
         &self,
         mobilizer: &Mobilizer,

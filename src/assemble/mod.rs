@@ -1,9 +1,9 @@
 //! Description → [`System`]: the equations of motion as expressions.
 //!
 //! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `construction`), constraints
-//! (`joints`), applied forces (`applied_forces`), inertial forces (`recursion`; `links` what they go through), outputs (`symbols`),
-//! and where the motion starts (`start`, `placement` in the plane,
-//! `pose` in space, `nearest` where it is open); how large the model is (`extent`), and what can be counted of it (`inventory`).
+//! (`joints`), applied forces (`applied_forces`), inertial forces (`recursion`; `links` their propagation), outputs
+//! (`symbols`), and where the motion starts (`start`, `placement` in the plane, `pose` in space, `nearest` where it is
+//! open); how large the model is (`extent`), and what can be counted of it (`inventory`).
 //!
 //! | symbol  | meaning                                   | unit                       |
 //! |---------|-------------------------------------------|----------------------------|

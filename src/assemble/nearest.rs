@@ -1,7 +1,8 @@
-//! What the start is nearest to where the model leaves it open: the coordinates of the inboard joints, at zero.
+//! Reference of the start where the model leaves it open: the coordinates of the inboard joints, at zero.
 //!
-//! These are the inboard joints of joint coordinates, so that the start does not depend on the formulation, nor on what is
-//! observed. A root stays near the place where assembly begins to look, and so does a body behind a joint whose coordinates have no names.
+//! These are the inboard joints of joint coordinates, so that the start does not depend on the formulation, nor on the
+//! outputs. A root stays near the place where assembly begins to look, and so does a body behind a joint whose
+//! coordinates have no names.
 
 use symdiff::Scalar;
 
@@ -13,7 +14,8 @@ use crate::model::Description;
 use crate::multibody::{BuildError, Context};
 
 impl<'g> Mechanism<'g, '_> {
-    /// The distances that are smallest at the start, of coordinates that `start` does not keep, in a model of size `length`.
+    /// The distances that are smallest at the start, of coordinates that `start` does not keep, in a model of size
+    /// `length`.
     ///
     /// # Errors
     /// A formula with a name that cannot stand in it.
@@ -86,7 +88,8 @@ impl<'g> Mechanism<'g, '_> {
         !self.coordinates.iter().any(|owner| matches!(owner, Owner::Body(..) | Owner::Relative(..)))
     }
 
-    /// A joint's coordinate, whether it is a coordinate of the mechanism or not: then an angle of space is between −π and π.
+    /// A joint's coordinate, whether it is a coordinate of the mechanism or not: then an angle of space is between −π
+    /// and π.
     pub(super) fn measured_coordinate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError> {
         let kind = &self.joints[on.joint].kind;
         let planar_angle = on.coordinate == JointCoordinate::Angle && !self.is_spatial;

@@ -6,12 +6,12 @@
 //!
 //! - pins and welds before slides, since a slide does not say where along its line a body is;
 //! - bodies whose angle is given (kept, guessed or prescribed, or by that of a pin) before others;
-//! - the angle, where it is not given: that of a weld, slide or given pin to a placed body; or towards the other pin, where the
-//!   body's second pin is on a placed body; or, where a second unplaced body leads on to a placed pin, that of the
-//!   triangle with both bodies' lengths as sides, its corner on top; or 0.
+//! - the angle, where it is not given: that of a weld, slide or given pin to a placed body; or towards the other pin,
+//!   where the body's second pin is on a placed body; or, where a second unplaced body leads on to a placed pin, that
+//!   of the triangle with both bodies' lengths as sides, its corner on top; or 0.
 //!
-//! Angles, sides and the top are those of the ground of the body's instance, in its mirror. Bodies that nothing joins to the ground
-//! stay where that is, else at 0.
+//! Angles, sides and the top are those of the ground of the body's instance, in its mirror. Bodies that nothing joins
+//! to the ground stay where that is, else at 0.
 
 use std::collections::VecDeque;
 
@@ -256,7 +256,8 @@ fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
     (distance(from, to) > 0.0).then(|| math::atan2(to[1] - from[1], to[0] - from[0]))
 }
 
-/// The joints of each body, and the elements of beams, straight. A pin whose angle is known holds its bodies as a weld does.
+/// The joints of each body, and the elements of beams, straight. A pin whose angle is known holds its bodies as a weld
+/// does.
 fn links<'g>(m: &Mechanism<'g, '_>, known: &[Option<Scalar<'g>>]) -> Result<Vec<Vec<Link>>, BuildError> {
     let mut links = vec![Vec::new(); m.bodies.len()];
     for (index, joint) in m.joints.iter().enumerate() {

@@ -1,16 +1,16 @@
 //! A first guess of where the bodies are in space, in numbers, at the nominal parameters.
 //!
-//! Bodies are placed one after the other, each onto a joint with a body that is already placed, so that a chain of joints
-//! is closed from the start and only loops are left to assembly:
+//! Bodies are placed one after the other, each onto a joint with a body that is already placed, so that a chain of
+//! joints is closed from the start and only loops are left to assembly:
 //!
-//! - at a joint that leaves the frames an axis or less, with the joint's angle and displacement where they are known, else
-//!   at zero; these joints are walked first;
-//! - at a spherical joint, and after those, with its next spherical joint towards its place where that is on a placed body,
-//!   else along the ground's axes;
+//! - at a joint that leaves the frames an axis or less, with the joint's angle and displacement where they are known,
+//!   else at zero; these joints are walked first;
+//! - at a spherical joint, and after those, with its next spherical joint towards its place where that is on a placed
+//!   body, else along the ground's axes;
 //! - at what holds less, last: a distance away along x.
 //!
-//! What is known of a body's own coordinates is kept. Axes are those of the ground of the body's instance, in its mirror. Bodies that
-//! nothing joins to the ground stay where that is, else at 0.
+//! Known coordinates of a body are unchanged. Axes are those of the ground of the body's instance, in its mirror.
+//! Bodies that nothing joins to the ground stay where that is, else at 0.
 
 use std::collections::VecDeque;
 
@@ -46,7 +46,7 @@ impl Pose {
     }
 }
 
-/// What is known of a body's pose.
+/// Known parts of a body's pose.
 #[derive(Clone, Copy, Default)]
 struct Known {
     position: [Option<f64>; 3],
@@ -202,7 +202,7 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
         Ok(())
     }
 
-    /// Notes what is between two points at both of their bodies.
+    /// Records the relation between two points at both of their bodies.
     fn link(&mut self, between: [PointRef; 2], kind: LinkKind) {
         let [here, there] = between.map(|point| local(self.mechanism, point));
         let back = match kind {
@@ -219,7 +219,8 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
         Ok(self.mechanism.nominal([value])[0])
     }
 
-    /// A joint's second frame against the first: turned by `twist`, the joint's coordinates zero where they are not known.
+    /// A joint's second frame against the first: turned by `twist`, the joint's coordinates zero where they are not
+    /// known.
     fn across(&self, joint: usize, twist: UnitQuaternion<f64>) -> Result<Pose, BuildError> {
         let kind = &self.mechanism.joints[joint].kind;
         let mut pose = Pose::at(Vector3::zeros(), twist);
@@ -301,7 +302,7 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
 }
 
 impl Known {
-    /// This pose, but for what is known.
+    /// This pose, with known parts replaced.
     fn or(&self, position: Vector3<f64>, orientation: UnitQuaternion<f64>) -> Pose {
         let position = Vector3::from_fn(|axis, _| self.position[axis].unwrap_or(position[axis]));
         Pose::at(position, self.orientation.unwrap_or(orientation))

@@ -7,17 +7,17 @@
 //! a_c = Rᵣᵀ (a_p + U_p ρ + 2 ω_p × ρ̇ + ρ̈) − U_c f
 //! ```
 //!
-//! with the relative motion Ω = Σ u φ̇, ρ̇ = Σ e ṡ of the joint ([`crate::multibody::RelativeMotion`]), and back, m s being the body's first and
-//! Σ = ½ tr J₀ 1 − J₀ its second moment of mass about the origin,
+//! with the relative motion Ω = Σ u φ̇, ρ̇ = Σ e ṡ of the joint ([`crate::multibody::RelativeMotion`]), and back, m s
+//! being the body's first and Σ = ½ tr J₀ 1 − J₀ its second moment of mass about the origin,
 //!
 //! ```text
 //! F = m a + U m s          N = m s × a + 2 ax(U Σ)          ax(A) = ½ (A₃₂ − A₂₃, A₁₃ − A₃₁, A₂₁ − A₁₂)
 //! φ: u · (N − f × F),   s: u · F          onto the parent: Rᵣ F,   Rᵣ (N − f × F) + ρ × Rᵣ F
 //! ```
 //!
-//! A uniform field of acceleration g enters as −g on the roots, so that weights need no terms of their own. (Luh, Walker &
-//! Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69; with U, Khalil & Dombre, *Modeling, Identification and Control of
-//! Robots*, ch. 9.) The generalised forces are linear in w; their Jacobian is the mass matrix.
+//! A uniform field of acceleration g enters as −g on the roots, so that weights need no terms of their own. (Luh,
+//! Walker & Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69; with U, Khalil & Dombre, *Modeling, Identification and
+//! Control of Robots*, ch. 9.) The generalised forces are linear in w; their Jacobian is the mass matrix.
 
 use symdiff::Scalar;
 
@@ -77,7 +77,7 @@ impl<'g> Motion<'g> {
     }
 }
 
-/// What it takes to move the bodies of the trees.
+/// Inertial forces of the bodies of the trees.
 pub struct InertialForces<'g> {
     /// On each coordinate, n.
     pub generalised: Vec<Scalar<'g>>,
@@ -170,7 +170,8 @@ fn inertial_wrench<'g>(body: &Body<'g>, motion: &Motion<'g>) -> Wrench<'g> {
     Wrench { force, torque: first.cross(motion.acceleration) + Vector::from(rotational) }
 }
 
-/// 4 μ r rᵀ r̈ on Euler parameters r of a joint, μ a third of the trace of the inertia about it: M knows nothing else of a change of
+/// 4 μ r rᵀ r̈ on Euler parameters r of a joint, μ a third of the trace of the inertia about it: M knows nothing else
+/// of a change of
 /// |r|. It changes no motion, since the multiplier of rᵀr = 1 takes it up.
 fn add_along_euler<'g>(
     m: &Mechanism<'g, '_>,
@@ -202,9 +203,9 @@ fn add_on_root<'g>(body: &Body<'g>, Wrench { force, torque }: Wrench<'g>, genera
 }
 
 impl<'g> Mechanism<'g, '_> {
-    /// The reactions of the joints of the trees, in the ground's axes: what moves a body and all its children, less the
-    /// forces on them and the reactions of the joints `closures`, which are constraints. Along its own coordinates a joint
-    /// has none.
+    /// The reactions of the joints of the trees, in the ground's axes: what moves a body and all its children, less
+    /// the forces on them and the reactions of the joints `closures`, which are constraints. Along its own coordinates
+    /// a joint has none.
     pub fn add_reactions_of_trees(
         &mut self,
         applied: AppliedForces<'g>,

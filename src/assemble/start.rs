@@ -1,4 +1,4 @@
-//! What is known at the start.
+//! Known values at the start.
 
 use symdiff::{Formula, Scalar};
 
@@ -31,8 +31,8 @@ pub enum Named {
 
 impl<'g> Mechanism<'g, '_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
-    /// where the joints put the bodies when they are walked from the ground ([`PlanarPoses`], [`Poses`]), with the nominal
-    /// parameters.
+    /// where the joints put the bodies when they are walked from the ground ([`PlanarPoses`], [`Poses`]), with the
+    /// nominal parameters.
     pub fn start(&self, description: &Description) -> Result<Start, BuildError> {
         let position = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Position)?;
         let velocity = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Velocity)?;
@@ -128,8 +128,8 @@ impl<'g> Mechanism<'g, '_> {
         Ok(found)
     }
 
-    /// The coordinate that stands for an angle at the start of a child in the plane: its inboard joint's, where the angle of
-    /// the parent is named too or is the ground's. A value that is kept needs one that is kept.
+    /// The coordinate that stands for an angle at the start of a child in the plane: its inboard joint's, where the
+    /// angle of the parent is named too or is the ground's. A value that is kept needs one that is kept.
     pub fn angle_of_inboard_joint<'d>(
         &self,
         description: &'d Description,

@@ -1,5 +1,5 @@
-//! Values at the start of what is no coordinate of the equations: of points, of parts of angular velocities, and in joint
-//! coordinates of bodies whose place follows from their joint's.
+//! Start values of quantities that are not coordinates of the equations: of points, of parts of angular velocities,
+//! and in joint coordinates of bodies whose place follows from their joint's.
 //!
 //! They are conditions that hold at the start alone, beside the constraints.
 
@@ -55,7 +55,7 @@ impl<'g> Mechanism<'g, '_> {
                     );
                 }
                 StartValue::Orientation { body, rotation } if self.is_child(*body) => {
-                    // Twice the vector part of what is left of the rotation: its angle about each axis, for a small one.
+                    // Twice the vector part of the remaining rotation: its angle about each axis, for a small one.
                     let left = (self.rotation(rotation)?.conjugate() * self.bodies[*body].orientation()).vector_part();
                     conditions.extend((0..3).map(|axis| {
                         let name = format!("{}.orientation.{}", description.bodies[*body].name, AXES[axis]);

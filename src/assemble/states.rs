@@ -10,7 +10,7 @@ use crate::model::{Description, Effect, TimeOrder};
 use crate::multibody::{BuildError, Context};
 
 impl<'g> Mechanism<'g, '_> {
-    /// The coordinates of all states; what they are called in formulas.
+    /// Coordinates of all states, with their names in formulas.
     pub fn add_states(&mut self, effects: &[Effect]) {
         for (effect, Effect { name, kind }) in effects.iter().enumerate() {
             for (place, state) in kind.states().into_iter().enumerate() {
@@ -44,7 +44,7 @@ impl<'g> Mechanism<'g, '_> {
         Ok(())
     }
 
-    /// Those that change at instants, each with what it becomes.
+    /// States that change at instants, each with its new value.
     pub fn sampled_states(
         &self,
         description: &Description,

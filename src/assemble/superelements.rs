@@ -1,7 +1,8 @@
 //! Flexible bodies by their matrices: inertia, weight, and how they start.
 //!
-//! R is the orientation of the first node, Ω its angular velocity in its own axes. The nodes' velocities V_i = Rᵀ ṙ_i and W_i = Rᵀ ω_i
-//! against the ground and the rates q̇ of the modes are v; with p_i, h_i and π the parts of M v, and M constant,
+//! R is the orientation of the first node, Ω its angular velocity in its own axes. The nodes' velocities V_i = Rᵀ ṙ_i
+//! and W_i = Rᵀ ω_i against the ground and the rates q̇ of the modes are v; with p_i, h_i and π the parts of M v, and
+//! M constant,
 //!
 //! ```text
 //! T = ½ vᵀ M v          J
@@ -10,8 +11,8 @@
 //! ```
 //!
 //! are what d/dt ∂T/∂v − ∂T/∂q comes to: T depends on where the first node points, too (Géradin & Cardona, *Flexible
-//! Multibody Dynamics* (2001), ch. 10). Gravity acts on S, the mass times the centre of mass from the first node, which is linear in the displacements
-//! u of [`crate::elements::effects::superelement`]:
+//! Multibody Dynamics* (2001), ch. 10). Gravity acts on S, the mass times the centre of mass from the first node,
+//! which is linear in the displacements u of [`crate::elements::effects::superelement`]:
 //!
 //! ```text
 //! V = −g · (m r_1 + R S),   S = S_0 + A u          J
@@ -187,7 +188,7 @@ impl<'g> Mechanism<'g, '_> {
             let total = matrices.total_mass() * factor;
             let first = inertia.nodes[0];
             let outward = self.frame(first).orientation.matrix();
-            // g in the axes of the first node, and what it does by a row of u.
+            // g in the axes of the first node, and its work by a row of u.
             let pull = factor * (outward.transposed() * field);
             let by = |row: usize| {
                 let [x, y, z] = matrices.first_moment(row);

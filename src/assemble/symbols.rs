@@ -104,7 +104,8 @@ impl<'g> Mechanism<'g, '_> {
         }
     }
 
-    /// A trajectory or its derivative, exactly: kinks are those of its timing. Its formulas are of parameters, as the reader saw to.
+    /// A trajectory or its derivative, exactly: kinks are those of its timing. Its formulas are of parameters, as the
+    /// reader saw to.
     fn trajectory(&self, trajectory: usize, order: TimeOrder) -> Scalar<'g> {
         let number = |formula: &Formula| self.formula(formula, Context::Parameters);
         let value =
@@ -153,7 +154,8 @@ impl<'g> Mechanism<'g, '_> {
         self.local_frame(second).matrix().transposed() * in_body
     }
 
-    /// The unit vector of a joint's own axis in the ground's axes, of a coupling that of what it drives; zero where it has none.
+    /// The unit vector of a joint's own axis in the ground's axes, of a coupling, the axis of the driven body; zero
+    /// without an axis.
     fn axis_of(&self, joint: usize) -> Vector<'g> {
         let kind = &self.joints[joint].kind;
         let own =

@@ -1,5 +1,5 @@
-//! The equations of motion as expressions: q̇ = v, M v̇ = Q − Φ_qᵀλ, Φ = 0 (design: index-3 form), and where something rolls, Ψ(q, v, t) = 0 with
-//! −Ψ_vᵀλ.
+//! The equations of motion as expressions: q̇ = v, M v̇ = Q − Φ_qᵀλ, Φ = 0 (design: index-3 form), and where something
+//! rolls, Ψ(q, v, t) = 0 with −Ψ_vᵀλ.
 
 use std::sync::Arc;
 
@@ -10,7 +10,8 @@ use crate::model::{Analysis, ModesRequest, Space};
 
 /// A mechanism's equations of motion over the symbols of `graph`.
 ///
-/// n coordinates, m constraints: first those of positions, then those of velocities. `w` stands for the true acceleration v̇.
+/// n coordinates, m constraints: first those of positions, then those of velocities. `w` stands for the true
+/// acceleration v̇.
 #[derive(Clone, Debug)]
 pub struct System {
     /// Holds every expression below.
@@ -31,12 +32,13 @@ pub struct System {
     pub coordinates: Vec<CoordinateInfo>,
     /// Names of the constraints, m.
     pub constraints: Vec<ConstraintInfo>,
-    /// M(q)'s nonzero entries (row, column, value), both triangles; none of long trees, where they follow from `inertia`
-    /// ([`System::mass_entries`]).
+    /// M(q)'s nonzero entries (row, column, value), both triangles; none of long trees, where they follow from
+    /// `inertia` ([`System::mass_entries`]).
     pub mass: Vec<(usize, usize, Expr)>,
     /// Which coordinates have inertia, n.
     pub massive: Vec<bool>,
-    /// M w, n; in joint coordinates with the velocity-dependent inertial forces and the weights, and with those forces of beams.
+    /// M w, n; in joint coordinates with the velocity-dependent inertial forces and the weights, and with those forces
+    /// of beams.
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
     pub force: Vec<Expr>,
@@ -52,17 +54,17 @@ pub struct System {
     pub sampled: Vec<SampledState>,
     /// In joint coordinates the children, parents first.
     pub links: Vec<Link>,
-    /// What is observed, over t, q, v, w, λ and the parameters.
+    /// Observed quantities over t, q, v, w, λ and the parameters.
     pub outputs: Vec<OutputInfo>,
     /// The model's size, m: the largest length that it names.
     pub length: f64,
     /// Mass of all bodies, kg, nominally.
     pub mass_of_bodies: f64,
-    /// What is known at the start.
+    /// Known values at the start.
     pub start: Start,
-    /// What is done with it.
+    /// Analysis of the system.
     pub analysis: Analysis,
-    /// What is asked of small vibrations.
+    /// Questions about small vibrations.
     pub modes: ModesRequest,
     /// What each effect came to, in file order.
     pub effects: Vec<EffectInfo>,
@@ -123,7 +125,7 @@ pub struct LeftOut {
 pub struct SampledState {
     /// The coordinate whose velocity it is.
     pub coordinate: usize,
-    /// What it becomes, over t, q, v, λ and the parameters just before.
+    /// New value, over t, q, v, λ and the parameters just before.
     pub value: Expr,
     /// T, s.
     pub period: f64,
@@ -166,7 +168,8 @@ pub struct UncertainParameter {
 pub struct CoordinateInfo {
     /// E.g. `crank.angle`.
     pub name: String,
-    /// Typical size: 1 for an angle or an Euler parameter, the model's length for a position. Newton's tolerance is relative to it.
+    /// Typical size: 1 for an angle or an Euler parameter, the model's length for a position. Newton's tolerance is
+    /// relative to it.
     pub scale: f64,
     /// Whether it tells of a rotation (an angle, an Euler parameter) rather than of a position.
     pub is_angle: bool,
@@ -209,7 +212,7 @@ pub struct OutputInfo {
     pub expr: Expr,
 }
 
-/// What is known at the start; expressions over the parameters.
+/// Known values at the start; expressions over the parameters.
 #[derive(Clone, Debug)]
 pub struct Start {
     /// Positions that are kept, n; `None` where assembly finds them.
@@ -255,7 +258,7 @@ pub struct Distance {
 /// Ψ(q, t), which is zero at the start, or has the rate zero there, and is free afterwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartCondition {
-    /// What it is called, and what it is of.
+    /// Name and subject.
     pub info: ConstraintInfo,
     /// Who asks for it.
     pub of: ConditionOf,

@@ -1,9 +1,9 @@
 //! Which bodies are children, and of which.
 //!
-//! In joint coordinates a child has none of its own: its place follows from that of its parent and from the coordinates of
-//! its inboard joint, the one between them. The inboard joints form trees, whose roots are the ground and bodies with
-//! coordinates of their own; the joints that are left close loops, by constraints. Bodies that are merged are children of
-//! one of them in absolute coordinates too.
+//! In joint coordinates a child has none of its own: its place follows from that of its parent and from the
+//! coordinates of its inboard joint, the one between them. The inboard joints form trees, whose roots are the ground
+//! and bodies with coordinates of their own; the joints that are left close loops, by constraints. Bodies that are
+//! merged are children of one of them in absolute coordinates too.
 
 use std::collections::VecDeque;
 
@@ -71,7 +71,8 @@ impl Tree {
         for root in (0..bodies.len()).filter(|&body| reached[body]).collect::<Vec<_>>() {
             tree.merge(root, &welds, &mut reached, &mut queue);
         }
-        // What nothing joins to a root moves freely, and may have children; of merged bodies the one that the start names.
+        // What nothing joins to a root moves freely, and may have children; of merged bodies the one that the start
+        // names.
         let named = if welds.iter().all(Vec::is_empty) { Vec::new() } else { named_at_start(description) };
         let mut roots = named.into_iter().chain(0..bodies.len());
         loop {
@@ -185,9 +186,9 @@ impl Tree {
         depths
     }
 
-    /// Least number of multiplications that an elimination takes in joint coordinates. A coordinate's row of M has an entry for each joint on
-    /// its way to the root, and changes as many rows (Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 6.5); or links are
-    /// eliminated one by one.
+    /// Least number of multiplications that an elimination takes in joint coordinates. A coordinate's row of M has an
+    /// entry for each joint on its way to the root, and changes as many rows (Featherstone, *Rigid Body Dynamics
+    /// Algorithms* (2008), ch. 6.5); or links are eliminated one by one.
     pub fn elimination(&self) -> usize {
         let of_joints: Vec<usize> = self.order.iter().copied().filter(|&body| !self.merged[body]).collect();
         let depths = self.depths();
@@ -201,7 +202,7 @@ impl Tree {
     }
 }
 
-/// Bodies whose own coordinates the start gives, what is kept before what is guessed.
+/// Bodies whose own coordinates the start gives: given values before guesses.
 fn named_at_start(description: &Description) -> Vec<usize> {
     let body = |value: &StartValue| match value {
         StartValue::Coordinate { body, .. }

@@ -68,7 +68,7 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
     })
 }
 
-/// What was found, for people.
+/// Prints the result for people.
 fn overview(found: &Allocation) -> String {
     let criterion = match found.criterion {
         Criterion::WorstCase => "every case".to_owned(),

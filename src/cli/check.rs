@@ -94,7 +94,7 @@ struct Counts {
     /// Why it is in space, where the model does not say so.
     #[serde(skip_serializing_if = "Option::is_none")]
     spatial_because: Option<String>,
-    /// What is done with it, where that is not a motion.
+    /// Analysis, unless it is a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     analysis: Option<&'static str>,
     /// Parts that no output depends on.
@@ -181,7 +181,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 }
 
 impl Counts {
-    /// Numbers of what is simulated; names of the whole model, parts that will not be simulated included.
+    /// Sizes of the simulated parts; names of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
         let Ready { sizes, formulation, is_whole, left_out, price } = study::ready(model)?;
         let (Assembled { system, mobility, undetermined, shared, .. }, structure) = study::structure(model)?;

@@ -65,7 +65,7 @@ pub(super) struct Console {
     closed: bool,
     /// Whether something could not be written.
     failed: bool,
-    /// What has been written of files, where it is to be written once.
+    /// Texts about files already written, where each is written once.
     written: Option<RefCell<BTreeSet<String>>>,
 }
 
@@ -92,7 +92,7 @@ impl Console {
         }
     }
 
-    /// Whether standard output could not take what was to be written.
+    /// Whether writing to standard output failed.
     pub fn has_failed(&self) -> bool {
         self.failed
     }

@@ -10,7 +10,7 @@ use crate::grammar::{ElementDocs, KeyDocs};
 use crate::results::EffectCost;
 use crate::study::language_costs;
 
-/// An effect with what it costs.
+/// An effect with its cost.
 #[derive(Debug, Serialize)]
 pub(super) struct EffectDocs {
     #[serde(flatten)]

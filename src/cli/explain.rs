@@ -127,7 +127,7 @@ fn newton(e: &Explanation) -> String {
     body
 }
 
-/// A line each, and what it saves below.
+/// A line each, with its saving below.
 fn decisions(decisions: &[Decision]) -> String {
     let line = |decision: &Decision| {
         let saves = decision.saves.map_or(String::new(), |saving| format!("\n    {}", saving.text()));

@@ -1,4 +1,4 @@
-//! One job of `mbint run`: a model or a scene, its run, its files and what is reported of it.
+//! One job of `mbint run`: a model or a scene, its run, its files and its report.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::request::{Job, Request, Settings};
 use super::verdicts;
 use super::{Failure, Status, interrupt, report as page};
-use crate::export::{holds_complete_results, write_results};
+use crate::export::{holds_complete_results, remove_comparison, write_results};
 use crate::model::Description;
 use crate::results::{Bounds, OutputBounds, Provenance, Summary};
 use crate::simulate::SimulationError;
@@ -24,7 +24,7 @@ pub(super) struct Done {
     pub files: Vec<PathBuf>,
     /// Where they are; an interrupted run does not replace a complete one.
     pub folder: PathBuf,
-    /// What was taken from where simulations are stored, and what was added, in words.
+    /// Simulations read from the store and added to it, in words.
     pub stored: Option<String>,
 }
 
@@ -109,6 +109,10 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         true => beside(&job.folder),
         false => job.folder.clone(),
     };
+    // What compares scenes compares those of one run.
+    if let Some(all) = folder.parent().filter(|_| !job.page && folder == job.folder) {
+        remove_comparison(all).map_err(|error| failed(&error))?;
+    }
     let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
     let parts = (request.report && !interrupted).then(|| page::parts(job, request.settings.threads));
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
@@ -128,7 +132,7 @@ fn beside(folder: &Path) -> PathBuf {
     folder.with_file_name(name)
 }
 
-/// Prints what is wrong with a run's results.
+/// Prints the warnings about a run's results.
 pub(super) fn report(done: &Done, console: &Console) {
     let name = &done.summary.model;
     if let Some(failure) = &done.summary.failure {

@@ -9,7 +9,7 @@ use super::console::count;
 use crate::results::ModelFile;
 use crate::store::{Asked, Content, Missing, PartStore, Shard, StoreError};
 
-/// Where a run's simulations are kept, and what it left to shards.
+/// Store of a run's simulations, with the tasks it left to shards.
 #[derive(Debug)]
 pub(super) struct KeptRun {
     folder: PathBuf,
@@ -66,7 +66,7 @@ impl KeptRun {
         deferred.is_empty() && !self.plans
     }
 
-    /// What was taken from the folder, and what was added.
+    /// Simulations read from the folder and added to it.
     pub fn found(&self, store: &PartStore) -> String {
         let (found, simulated) = store.counts();
         let found = count(found, "part", "parts");

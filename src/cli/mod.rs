@@ -61,7 +61,7 @@ enum Failure {
 }
 
 impl Failure {
-    /// Reports it, and tells what it comes to.
+    /// Reports it; returns the exit status.
     fn report(&self, console: &Console) -> Status {
         // What comes next is said once for all models.
         if !matches!(self, Self::Deferred) {

@@ -204,7 +204,7 @@ pub(super) fn excluded(bounds: &Bounds, summary: &Summary) -> Option<String> {
     Some(format!("the bounds cover {first:.3} % of the box ({pieces}{hulls}){later}: see the column `covered`"))
 }
 
-/// What was run, how reliable the results are and where they are, for people.
+/// Prints for people what ran, the reliability of the results, and their files.
 pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
     let mut table = Table::new([
         ("method", Align::Left),

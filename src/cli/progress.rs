@@ -23,7 +23,7 @@ const TICK: Duration = Duration::from_millis(250);
 /// A bar on a terminal's standard error, gone when dropped; elsewhere a line every ten seconds.
 pub(super) struct Progress {
     bar: ProgressBar,
-    /// What is being done.
+    /// Current activity.
     stage: Arc<Mutex<String>>,
     /// Writes the lines where there is no terminal, until the sender is gone.
     lines: Option<(Sender<()>, JoinHandle<()>)>,
@@ -71,7 +71,7 @@ impl Progress {
         self.bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}")));
     }
 
-    /// Shows what is being done.
+    /// Shows the current activity.
     pub fn stage(&self, stage: &str) {
         stage.clone_into(&mut self.stage.lock().unwrap_or_else(PoisonError::into_inner));
         self.bar.set_message(stage.to_owned());
@@ -85,7 +85,7 @@ fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Rec
     while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
         let done = bar.position() as f64 / PARTS as f64;
         let stage = stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        // What has not gone on is not said again.
+        // An unchanged state is not repeated.
         if known.as_ref().is_some_and(|known| *known == (stage.clone(), percent(done))) {
             continue;
         }
@@ -96,7 +96,7 @@ fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Rec
     }
 }
 
-/// What is being done, how much is done, and how long the rest takes.
+/// Current activity, share done, and remaining time.
 fn line(name: &str, stage: &str, fraction: f64, elapsed: Duration) -> String {
     let mut line = name.to_owned();
     let separator = if stage.is_empty() { ": " } else { ", " };

@@ -1,4 +1,4 @@
-//! What is asked of `mbint run`: its arguments, checked, and a job for each model or scene.
+//! The request to `mbint run`: its arguments, checked, and a job for each model or scene.
 
 use std::path::PathBuf;
 use std::rc::Rc;

@@ -14,7 +14,7 @@ use crate::methods::Certified;
 use crate::model::shown;
 use crate::study;
 
-/// What is to be done of a file.
+/// Work on a file.
 struct Work {
     path: PathBuf,
     kind: Kind,

@@ -67,7 +67,7 @@ fn rows(drawing: &Drawing) -> impl Iterator<Item = (String, [f64; 3], Option<&Dr
     })
 }
 
-/// Six decimals; what is nothing but rounding is zero.
+/// Six decimals; rounding errors are zero.
 fn digits(value: f64) -> String {
     let text = format!("{value:.6}");
     if text.trim_start_matches('-').parse() == Ok(0.0) { text.trim_start_matches('-').to_owned() } else { text }

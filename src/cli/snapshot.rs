@@ -1,4 +1,4 @@
-//! `mbint snapshot`: bounds as small text files beside the models, and what has moved since they were recorded.
+//! `mbint snapshot`: bounds as small text files beside the models, and the changes since they were recorded.
 
 use std::collections::HashMap;
 use std::io::ErrorKind;

@@ -99,13 +99,13 @@ fn parts(ppm: f64) -> String {
     if ppm >= 100.0 || ppm == 0.0 { format!("{ppm:.0}") } else { format!("{ppm:.2e}") }
 }
 
-/// Digits behind the point that show four of a deviation; none of what is better shown with an exponent.
+/// Digits behind the point that show four of a deviation; `None` where an exponent is better.
 fn decimals(deviation: f64) -> Option<usize> {
     let digits = 3.0 - symdiff::math::log10(deviation).floor();
     if deviation == 0.0 { Some(6) } else { (-3.0..=8.0).contains(&digits).then(|| digits.max(0.0) as usize) }
 }
 
-/// What is taken for each parameter's law.
+/// Law assumed for each parameter.
 fn laws(found: &StatisticsSummary) -> String {
     let law = |law: &crate::results::LawSummary| {
         let rule = if law.tolerance_is_three_sigma { ", of which the tolerance is three" } else { "" };

@@ -12,7 +12,7 @@ pub(super) fn is_asked(arguments: &[OsString]) -> bool {
     matches!(rest[..], ["--verbose", "--version"] | ["--verbose", "-V"])
 }
 
-/// Version, commit, build, instruction set in use, cores, and versions of what is written.
+/// Version, commit, build, instruction set in use, cores, and versions of the written formats.
 pub(super) fn verbose() -> String {
     let library = if cfg!(target_env = "gnu") {
         ", glibc"

@@ -1,10 +1,10 @@
 //! The Newton matrix's factors as a step uses them: frozen between factorisations, in one version or in two.
 //!
-//! Conditional effects (contacts, stops) couple coordinates that nothing else couples, so that elimination has more to do,
-//! and entries that were constant change with the iterate. Where it saves enough, the matrix is eliminated twice: with
-//! conditional effects active, and with them inactive. The iterate of each lane at its factorisation decides which version
-//! solves for its corrections, so its numbers do not depend on the lanes that share its tile. Values that no lane of a tile
-//! needs are not computed.
+//! Conditional effects (contacts, stops) couple coordinates that nothing else couples, so that elimination has more to
+//! do, and entries that were constant change with the iterate. Where it saves enough, the matrix is eliminated twice:
+//! with conditional effects active, and with them inactive. The iterate of each lane at its factorisation decides
+//! which version solves for its corrections, so its numbers do not depend on the lanes that share its tile. Values
+//! that no lane of a tile needs are not computed.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
@@ -17,16 +17,16 @@ use crate::assemble::ConstraintId;
 /// Largest growth factor of freely chosen pivots; above it only pivots that cannot vanish are allowed.
 const MOST_GROWTH: f64 = 1e4;
 
-/// A pivot may fall this far below its size at the pivot samples: the corrections then still have some six digits, which
-/// is all that Newton's iteration needs of them.
+/// A pivot may fall this far below its size at the pivot samples: the corrections then still have some six digits,
+/// which is all that Newton's iteration needs of them.
 const PIVOT_LOSS: f64 = 1e-10;
 
-/// Regularisation of a redundant constraint's multiplier, relative to the size of its row. The other constraints imply this
-/// one, so its multiplier stays near the zero from which every step starts it.
+/// Regularisation of a redundant constraint's multiplier, relative to the size of its row. The other constraints imply
+/// this one, so its multiplier stays near the zero from which every step starts it.
 const REDUNDANT_WEIGHT: f64 = 1.0;
 
-/// Largest share of the first version's operations in the iteration at which a second version is worthwhile; tiles whose
-/// lanes need both versions compute both.
+/// Largest share of the first version's operations in the iteration at which a second version is worthwhile; tiles
+/// whose lanes need both versions compute both.
 const WORTHWHILE: f64 = 0.8;
 
 /// How pivots are chosen.
@@ -87,8 +87,8 @@ impl PivotChoice<'_> {
         if graph.is_full() { Err(NoFactors::TooLong) } else { Ok(Version { factors, equilibration }) }
     }
 
-    /// The matrix and its numbers with the multipliers of redundant constraints regularised, whose pivots would be zero. The
-    /// residual stays as it is.
+    /// The matrix and its numbers with the multipliers of redundant constraints regularised, whose pivots would be
+    /// zero. The residual stays as it is.
     fn regularised(
         &self,
         graph: &mut Graph,
@@ -131,7 +131,8 @@ pub(super) struct Elimination {
 }
 
 impl Elimination {
-    /// Freezes one version of factors, or two with the condition that decides between them. Registers are taken from `next` on.
+    /// Freezes one version of factors, or two with the condition that decides between them. Registers are taken from
+    /// `next` on.
     pub fn new(
         graph: &mut Graph,
         inputs: &mut Vec<Input>,

@@ -27,7 +27,8 @@ pub struct EquationsProgram {
     pub constraint_by_position: Entries,
     /// Registers of the outputs after [`observe`](Self::observe).
     pub outputs: Vec<usize>,
-    /// (coordinate, register) of the positions, and of the velocities, that are given at the start, after [`given`](Self::given).
+    /// (coordinate, register) of the positions, and of the velocities, that are given at the start, after
+    /// [`given`](Self::given).
     pub kept: [Vec<(usize, usize)>; 2],
     lowered: Lowered,
 }

@@ -1,5 +1,5 @@
-//! The first correction after a factorisation: both are at one iterate, so that what the factorisation has computed is kept for the
-//! correction, sines and cosines and the entries of the constraint Jacobian above all.
+//! The first correction after a factorisation: both are at one iterate, so that what the factorisation has computed is
+//! kept for the correction, sines and cosines and the entries of the constraint Jacobian above all.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Guard, Input, Node, Stages};
@@ -9,8 +9,9 @@ use super::newton_matrix::ITERATION;
 /// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);
 
-/// `correct` over values that `frozen`, the factorisation, has in registers after it. What it does not keep yet is added to it, in registers
-/// from `next` on. Values that matter under a guard only, or in a region that may be skipped, are computed again.
+/// `correct` over values that `frozen`, the factorisation, has in registers after it. Missing values are added to it,
+/// in registers from `next` on. Values that matter under a guard only, or in a region that may be skipped, are
+/// computed again.
 pub(super) fn first_correction(
     graph: &mut Graph,
     inputs: &mut Vec<Input>,

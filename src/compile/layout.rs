@@ -6,8 +6,8 @@ use symdiff::{Expr, Input};
 
 use crate::assemble::System;
 
-/// The registers that integration reads and writes; a program's own values stand above them. All programs of a system share
-/// this part, so that a state can be copied from one to another.
+/// The registers that integration reads and writes; a program's own values stand above them. All programs of a system
+/// share this part, so that a state can be copied from one to another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Uncertain parameters, k.

@@ -1,18 +1,19 @@
 //! Derivatives of the equations of motion of trees, link by link.
 //!
-//! In joint coordinates each coordinate moves all bodies behind it, so that the derivatives of the equations of motion r(x) fill a
-//! matrix. The equations go through few values z of each link, though: how it moves, and the sum of the forces on it and on all behind
-//! it. With z = g(x, z) the derivatives are those of a larger and sparse system,
+//! In joint coordinates each coordinate moves all bodies behind it, so that the derivatives of the equations of motion
+//! r(x) fill a matrix. The equations go through few values z of each link, though: how it moves, and the sum of the
+//! forces on it and on all behind it. With z = g(x, z) the derivatives are those of a larger and sparse system,
 //!
 //! ```text
 //! [ r_x   r_z    ] [δx]   [ −r ]
 //! [ g_x   g_z − 1] [δz] = [  0 ]
 //! ```
 //!
-//! whose right side is zero for z, since residuals are computed through z. It is eliminated link by link from the leaves: forces,
-//! then motions, each with the pivot −1, and then the coordinates of the link's joint, with the multiplier that normalises them, whose pivots are those of articulated
-//! bodies (Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 7). What is left on the link before is as large for a
-//! long chain as for a short one. (Vertices in the sense of Griewank & Walther, *Evaluating Derivatives*, 2nd ed., ch. 9.)
+//! whose right side is zero for z, since residuals are computed through z. It is eliminated link by link from the
+//! leaves: forces, then motions, each with the pivot −1, and then the coordinates of the link's joint, with the
+//! multiplier that normalises them, whose pivots are those of articulated bodies (Featherstone, *Rigid Body Dynamics
+//! Algorithms* (2008), ch. 7). The remainder on the previous link is as large for a long chain as for a short one.
+//! (Vertices in the sense of Griewank & Walther, *Evaluating Derivatives*, 2nd ed., ch. 9.)
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Expr, Graph, Node, SparseMatrix};
@@ -56,7 +57,7 @@ struct Value {
     value: Expr,
     /// In its place in their derivatives.
     symbol: Expr,
-    /// What it is, by other values' symbols.
+    /// Its expression over other values' symbols.
     definition: Expr,
     /// Whose it is.
     link: usize,
@@ -85,8 +86,9 @@ impl Linked {
             }
         }
         let mut found: Vec<(Expr, usize)> = Vec::new();
-        // What several links share belongs to the one before. But inertial forces that are the same for a link and its parent belong to the
-        // child: one may be the whole residual of the child's coordinate, which has no pivot before it is eliminated.
+        // What several links share belongs to the one before. But inertial forces that are the same for a link and its
+        // parent belong to the child: one may be the whole residual of the child's coordinate, which has no pivot
+        // before it is eliminated.
         for (link, child) in system.links.iter().enumerate().rev() {
             let of_parent = child.parent.map_or(&[][..], |parent| &system.links[parent].inertial_forces);
             let shared =
@@ -128,8 +130,8 @@ impl Linked {
         self.values.len()
     }
 
-    /// Adds derivatives to a matrix of the equations' rows, whose rows and columns from `size` on are those of values; over
-    /// values' symbols ([`Linked::symbols`]).
+    /// Adds derivatives to a matrix of the equations' rows, whose rows and columns from `size` on are those of values;
+    /// over values' symbols ([`Linked::symbols`]).
     pub fn differentiate(&self, graph: &mut Graph, matrix: &mut SparseMatrix, size: usize, by: &[Unknowns]) {
         let symbols: Vec<Expr> = self.values.iter().map(|value| value.symbol).collect();
         let definitions = self.values.iter().map(|value| value.definition);

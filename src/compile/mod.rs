@@ -2,10 +2,13 @@
 //!
 //! - `equations`: the equations of motion and the constraints' rates as expressions;
 //! - `scheme`: the integration schemes' coefficients;
-//! - `newton_matrix`: residual, Newton matrix and new state of a step; `links`: derivatives of deep trees, link by link;
+//! - `newton_matrix`: residual, Newton matrix and new state of a step; `links`: derivatives of deep trees, link by
+//!   link;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step, `first_correction` what a factorisation spares the correction after it; `start`: the tapes of a consistent start (`start_equations`, `start_program`,
-//!   `start_factors`), `at_sample` the numbers that it is planned by, `nearest` what decides where it is open; `rounding`: how exactly constraints can be computed; `equation_tapes`: the equations alone;
+//! - `step` → `program`: the tapes of a step, `first_correction` what a factorisation spares the correction after it;
+//!   `start`: the tapes of a consistent start (`start_equations`, `start_program`, `start_factors`), `at_sample` the
+//!   numbers that it is planned by, `nearest` what decides where it is open; `rounding`: how exactly constraints can
+//!   be computed; `equation_tapes`: the equations alone;
 //! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
 

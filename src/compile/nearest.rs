@@ -5,8 +5,8 @@
 //!                                    [ Φ_q                       −ε   ] [μ ] = − [ Φ                ]
 //! ```
 //!
-//! Ψ are the distances ([`crate::assemble::Distance`]), for velocities Ψ̇. η D only keeps each correction small in what no
-//! distance depends on: it is no part of the right side, so the solution does not depend on it.
+//! Ψ are the distances ([`crate::assemble::Distance`]), for velocities Ψ̇. η D only keeps each correction small in
+//! what no distance depends on: it is no part of the right side, so the solution does not depend on it.
 
 use symdiff::{Expr, Graph};
 
@@ -65,7 +65,8 @@ impl LeastSquares {
         Self::of(system, graph, &distances, &values)
     }
 
-    /// `values` are the distances, or their rates: the derivatives of both, by q and by v, are those of the distances by q.
+    /// `values` are the distances, or their rates: the derivatives of both, by q and by v, are those of the distances
+    /// by q.
     fn of(system: &System, graph: &mut Graph, distances: &[&Distance], values: &[Expr]) -> Self {
         let mut metric = diagonal(system, graph, PROXIMITY);
         let mut gradient = vec![graph.constant(0.0); system.q.len()];

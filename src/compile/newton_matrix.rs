@@ -1,4 +1,5 @@
-//! A step of HHT-I3, or of another scheme of its family, as expressions: residual, Newton matrix, and the state at its end.
+//! A step of HHT-I3, or of another scheme of its family, as expressions: residual, Newton matrix, and the state at its
+//! end.
 //!
 //! Negrut, Rampalli, Ottarsson & Sajdak, J. Comput. Nonlinear Dynam. 2 (2007) 73, in the form of Arnold & Brüls,
 //! Multibody Syst. Dyn. 18 (2007) 185, which keeps the algorithmic acceleration a apart from the true one, w = v̇:
@@ -10,10 +11,10 @@
 //! β = (1−α)²/4,   γ = 1/2 − α
 //! ```
 //!
-//! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊: q₊ = q̂ + b x
-//! and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration. The constraint is divided
-//! by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c = 0 in its place. Velocity constraints are
-//! Ψ(q₊,v₊,t₊)/c = 0 in each of them.
+//! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊: q₊ = q̂
+//! + b x and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration. The
+//! constraint is divided by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c
+//! = 0 in its place. Velocity constraints are Ψ(q₊,v₊,t₊)/c = 0 in each of them.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Input, SparseMatrix};

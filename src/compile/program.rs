@@ -1,4 +1,4 @@
-//! A step's program: the tapes of one step of a scheme, and the registers of what they compute.
+//! A step's program: the tapes of one step of a scheme, and the registers of their results.
 
 use symdiff::{Lowered, Tape};
 
@@ -22,7 +22,8 @@ pub struct WatchedPivot {
     pub largest_inverse: f64,
 }
 
-/// Which lanes solve with a version of the factors: decided by the active condition at the iterate of the factorisation.
+/// Which lanes solve with a version of the factors: decided by the active condition at the iterate of the
+/// factorisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// Register of the active condition.
@@ -59,14 +60,15 @@ pub struct Program {
     pub scale: Vec<f64>,
     /// Registers of the outputs after [`Program::observe`].
     pub outputs: Vec<usize>,
-    /// Registers of the Newton matrix's entries (row, column, register) after [`Program::matrix`]. Rows and columns from n + m on are
-    /// those of values of links, each by those before it.
+    /// Registers of the Newton matrix's entries (row, column, register) after [`Program::matrix`]. Rows and columns
+    /// from n + m on are those of values of links, each by those before it.
     pub matrix_entries: Vec<(usize, usize, usize)>,
     /// Rows of the matrix that is eliminated: n + m, and those of values of links.
     pub size: usize,
     /// Registers of the residual after [`Program::matrix`], n + m.
     pub residual: Vec<usize>,
-    /// What rounding makes of each constraint near the pivot samples, m, in the constraint's unit; zero of a scheme of index 2.
+    /// What rounding makes of each constraint near the pivot samples, m, in the constraint's unit; zero of a scheme of
+    /// index 2.
     pub rounding: Vec<f64>,
     /// Registers of the multipliers of redundant constraints: undetermined reactions, which are taken as zero.
     pub redundant: Vec<usize>,
@@ -136,8 +138,8 @@ impl Program {
         &self.lowered.kernels[MATRIX]
     }
 
-    /// In the correction's first n registers the part of a₊ − a that moves the mechanism, J⁻¹(M (a₊ − a), 0), with the last
-    /// factors: after the iteration, and before the state is advanced.
+    /// In the correction's first n registers the part of a₊ − a that moves the mechanism, J⁻¹(M (a₊ − a), 0), with the
+    /// last factors: after the iteration, and before the state is advanced.
     pub fn estimate(&self) -> &Tape {
         &self.lowered.kernels[ESTIMATE]
     }

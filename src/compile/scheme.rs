@@ -1,14 +1,16 @@
-//! The integration schemes: HHT, generalised-α and the trapezoidal rule are one family, and differ in coefficients only.
+//! The integration schemes: HHT, generalised-α and the trapezoidal rule are one family, and differ in coefficients
+//! only.
 //!
-//! Chung & Hulbert, J. Appl. Mech. 60 (1993) 371, in the form of Arnold & Brüls, Multibody Syst. Dyn. 18 (2007) 185, with
-//! the algorithmic acceleration a apart from the true one, w = v̇:
+//! Chung & Hulbert, J. Appl. Mech. 60 (1993) 371, in the form of Arnold & Brüls, Multibody Syst. Dyn. 18 (2007) 185,
+//! with the algorithmic acceleration a apart from the true one, w = v̇:
 //!
 //! ```text
 //! (1−α_m) a₊ + α_m a = (1−α_f) w₊ + α_f w
 //! q₊ = q + h v + h²/2 [(1−2β) a + 2β a₊]                      v₊ = v + h [(1−γ) a + γ a₊]
 //! ```
 //!
-//! γ = ½ − Δ with Δ = α_m − α_f makes it of second order, and then a ≈ w(t + Δh); β = (γ + ½)²/4 damps high frequencies most.
+//! γ = ½ − Δ with Δ = α_m − α_f makes it of second order, and then a ≈ w(t + Δh); β = (γ + ½)²/4 damps high
+//! frequencies most.
 //!
 //! | scheme | α_m | α_f | ρ∞: amplification of the highest frequencies |
 //! |---|---|---|---|
@@ -24,16 +26,17 @@ pub enum Scheme {
         /// α ∈ [−1/3, 0); 0 diverges on constraints.
         alpha: f64,
     },
-    /// Generalised-α (Chung & Hulbert 1993), index 3: positions fulfil the constraints. The nearer ρ∞ to 1, the smaller the
-    /// error and the sooner long steps fail: with 0.9 the slider crank fails at h = 2e-3, where HHT of ρ∞ = 0.9 does not.
+    /// Generalised-α (Chung & Hulbert 1993), index 3: positions fulfil the constraints. The nearer ρ∞ to 1, the
+    /// smaller the error and the sooner long steps fail: with 0.9 the slider crank fails at h = 2e-3, where HHT of ρ∞
+    /// = 0.9 does not.
     GeneralisedAlpha {
         /// ρ∞ ∈ [0, 1); 1 diverges on constraints.
         spectral_radius: f64,
     },
-    /// The trapezoidal rule (Newmark's with β = ¼, γ = ½), index 2: velocities fulfil the constraints, positions drift from
-    /// them by O(h²): 5e-6 of a pendulum's length squared in 10 s at h = 1e-3. The rule damps nothing: an error of a step in
-    /// reactions and accelerations alternates from then on, O(h²), 8e-7 of the pendulum's tension. Near singular positions
-    /// the energy may jump, and the order is lost.
+    /// The trapezoidal rule (Newmark's with β = ¼, γ = ½), index 2: velocities fulfil the constraints, positions drift
+    /// from them by O(h²): 5e-6 of a pendulum's length squared in 10 s at h = 1e-3. The rule damps nothing: an error
+    /// of a step in reactions and accelerations alternates from then on, O(h²), 8e-7 of the pendulum's tension. Near
+    /// singular positions the energy may jump, and the order is lost.
     TrapezoidalIndex2,
 }
 

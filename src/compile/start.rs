@@ -1,5 +1,5 @@
-//! The start as tapes: Gauss–Newton corrections of positions, velocities, accelerations and multipliers that make them fulfil
-//! the constraints.
+//! The start as tapes: Gauss–Newton corrections of positions, velocities, accelerations and multipliers that make them
+//! fulfil the constraints.
 //!
 //! ```text
 //! positions       [ D  Φ_qᵀ ] [δq]   [ 0 ]        velocities      the same matrix,  right side −(Φ_q v + Φ_t)
@@ -10,22 +10,24 @@
 //!
 //! Velocity constraints Ψ are below Φ̇ and Φ̈, with Ψ_v below Φ_q; positions know nothing of them.
 //!
-//! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to them.
+//! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to
+//! them.
 //!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
-//! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it cannot vanish (the
-//! angle of a joint), the two are eliminated as a pair, without ε. Where it may vanish, both sides are augmented: μ Φ_kᵀ Φ_k is added
-//! to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0, but couples what k couples.
+//! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it
+//! cannot vanish (the angle of a joint), the two are eliminated as a pair, without ε. Where it may vanish, both sides
+//! are augmented: μ Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈
+//! = 0, but couples what k couples.
 //!
 //! Where positions or velocities are left open, D gives way to the least squares of [`super::nearest`].
 //!
 //! For positions and velocities, Φ has further rows: the conditions of the start ([`crate::assemble::StartCondition`]).
 //!
-//! D = diag(1/scale²) minimises the change of the coordinates that are not given; given ones have no column. ε > 0 makes
-//! the matrices quasi-definite (Vanderbei, SIAM J. Optim. 5 (1995) 100): every diagonal elimination order exists, also
-//! where constraints are redundant, and the corrections still converge to the exact solution, since the right sides are
-//! exact.
+//! D = diag(1/scale²) minimises the change of the coordinates that are not given; given ones have no column. ε > 0
+//! makes the matrices quasi-definite (Vanderbei, SIAM J. Optim. 5 (1995) 100): every diagonal elimination order
+//! exists, also where constraints are redundant, and the corrections still converge to the exact solution, since the
+//! right sides are exact.
 
 use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower, with_reciprocals};
 
@@ -52,8 +54,8 @@ const MANY: usize = 100;
 /// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);
 
-/// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `sample` is a state near
-/// the start (values of the layout's registers).
+/// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `sample` is a state
+/// near the start (values of the layout's registers).
 ///
 /// # Errors
 /// Where the equations have no finite values at the sample, and where the graph is full.
@@ -131,7 +133,7 @@ pub fn compile_nearest_start(
     })
 }
 
-/// What is known of a correction's matrix.
+/// Known properties of a correction's matrix.
 #[derive(Clone, Copy)]
 struct Known<'m> {
     /// Coordinates that do not change.
@@ -249,8 +251,8 @@ impl Builder<'_> {
         Ok([position, velocity, acceleration, projection])
     }
 
-    /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates have
-    /// δ = 0.
+    /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates
+    /// have δ = 0.
     fn correction(
         &mut self,
         metric: &[(usize, usize, Expr)],
@@ -302,8 +304,8 @@ impl Builder<'_> {
             *scale = size.abs().sqrt().recip();
         }
         let pairs: Vec<(usize, usize)> = pairs.iter().map(|&(row, constraint)| (row, n + constraint)).collect();
-        // Where the metric couples coordinates along a chain, all of them before the first constraint would couple every pair of
-        // constraints. Few may be.
+        // Where the metric couples coordinates along a chain, all of them before the first constraint would couple
+        // every pair of constraints. Few may be.
         let late = if is_coupled && n > MANY { n + m } else { n };
         let known = self.factorised.iter().position(|known| known.is_of(&matrix, &pairs, late));
         let known = match known {
@@ -327,7 +329,8 @@ impl Builder<'_> {
         Ok(solution)
     }
 
-    /// Massless coordinates with the constraints that define them by massive ones, where the derivative by them cannot vanish.
+    /// Massless coordinates with the constraints that define them by massive ones, where the derivative by them cannot
+    /// vanish.
     fn pairs(&self, jacobian: &SparseMatrix) -> Vec<(usize, usize)> {
         let diagonal = &self.masses;
         let mut taken = vec![false; diagonal.len()];
@@ -335,7 +338,8 @@ impl Builder<'_> {
         for (constraint, derivatives) in jacobian.rows.iter().enumerate() {
             let mut massless = derivatives.iter().filter(|&&(column, _)| diagonal[column] == 0.0);
             let (Some(&(column, derivative)), None) = (massless.next(), massless.next()) else { continue };
-            // A joint's coordinate and the constraint that measures it have one name; the derivative is −1 wherever that is closed.
+            // A joint's coordinate and the constraint that measures it have one name; the derivative is −1 wherever
+            // that is closed.
             let names = (&self.system.constraints[constraint].name, &self.system.coordinates[column].name);
             let is_measured = names.0 == names.1;
             let is_number = self.graph.as_constant(derivative).is_some_and(|number| number != 0.0);
@@ -349,8 +353,8 @@ impl Builder<'_> {
         pairs
     }
 
-    /// M and the equations of motion, augmented by the constraints that define massless coordinates. μ gives the defined
-    /// coordinate about the mass of those that define it.
+    /// M and the equations of motion, augmented by the constraints that define massless coordinates. μ gives the
+    /// defined coordinate about the mass of those that define it.
     fn with_defined_coordinates(
         &mut self,
         jacobian: &SparseMatrix,

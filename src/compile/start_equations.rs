@@ -1,4 +1,5 @@
-//! The equations that hold at the start — constraints, their rates, and the conditions of the start alone — and what their rows are.
+//! The equations that hold at the start — constraints, their rates, and the conditions of the start alone — and what
+//! their rows are.
 
 use symdiff::{Expr, Graph, SparseMatrix};
 

@@ -4,7 +4,8 @@ use symdiff::SparseMatrix;
 
 use super::sparse_lu::Factors;
 
-/// A matrix with its factors: corrections of positions and velocities often have one matrix, those of accelerations and impulses too.
+/// A matrix with its factors: corrections of positions and velocities often have one matrix, those of accelerations
+/// and impulses too.
 pub(super) struct Factorised {
     /// The matrix.
     pub matrix: SparseMatrix,

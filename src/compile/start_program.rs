@@ -23,7 +23,7 @@ pub struct StartProgram {
     pub sampled: Vec<SampledValue>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
-    /// What is nearest to rest.
+    /// Coordinates nearest to rest.
     pub open: OpenStart,
     pub(super) lowered: Lowered,
 }
@@ -33,7 +33,7 @@ pub struct StartProgram {
 pub struct SampledValue {
     /// Its register: that of a velocity.
     pub state: usize,
-    /// Register of what it becomes.
+    /// Register of the new value.
     pub value: usize,
     /// T, s.
     pub period: f64,

@@ -165,8 +165,8 @@ fn at(values: &[Expr], start: usize) -> Vec<Target> {
     values.iter().zip(start..).map(|(&value, register)| (value, Some(register as u32))).collect()
 }
 
-/// The Newton matrix with its numbers where the conditional forces are active, and where they are inactive; `None` if the
-/// two are the same.
+/// The Newton matrix with its numbers where the conditional forces are active, and where they are inactive; `None` if
+/// the two are the same.
 fn versions(
     graph: &mut Graph,
     newton: &NewtonSystem,
@@ -192,8 +192,8 @@ fn versions(
     (versions[0].0 != versions[1].0).then_some(versions)
 }
 
-/// By coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies. Where M is left out, all are
-/// one block.
+/// By coordinate, the first of those that M couples it with: the coordinates of a body, or of a tree of bodies. Where
+/// M is left out, all are one block.
 fn mass_blocks(system: &System) -> Vec<usize> {
     if system.is_mass_left_out() {
         return vec![0; system.q.len()];
@@ -243,9 +243,9 @@ fn rounding_of_constraints(system: &System, inputs: &[Input], samples: &[PivotSa
     largest
 }
 
-/// Symmetric diagonal scaling: unit diagonal for the equations of motion, then unit largest entry for the constraints. A
-/// massless coordinate is scaled by the constraints that define it instead, and constraints between massless coordinates
-/// after those.
+/// Symmetric diagonal scaling: unit diagonal for the equations of motion, then unit largest entry for the constraints.
+/// A massless coordinate is scaled by the constraints that define it instead, and constraints between massless
+/// coordinates after those.
 fn equilibrate(matrix: &SparseMatrix, numbers: &[Numbers], massive: &[bool]) -> Vec<f64> {
     let n = massive.len();
     let mut scale = vec![1.0; matrix.rows.len()];

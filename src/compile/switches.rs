@@ -1,5 +1,5 @@
-//! Where the equations switch: arguments of `abs`, `sign`, `min`, `max` and of conditions, with their rates, as one tape. Where
-//! `floor` jumps, the sine of π times its argument changes its sign.
+//! Where the equations switch: arguments of `abs`, `sign`, `min`, `max` and of conditions, with their rates, as one
+//! tape. Where `floor` jumps, the sine of π times its argument changes its sign.
 
 use std::f64::consts::PI;
 

@@ -21,7 +21,7 @@ pub type Rim<'g> = Vec<(Member, Scalar<'g>)>;
 /// How teeth rub.
 #[derive(Clone, Debug)]
 pub enum Meshing<'g> {
-    /// Teeth of these rims roll on one another: what they lose is a share of what they transmit.
+    /// Teeth of these rims roll on one another: their loss is a share of the transmitted power.
     Rolling(Vec<Rim<'g>>),
     /// Flanks of a thread slide along one another.
     Sliding(Flanks<'g>),

@@ -129,7 +129,7 @@ fn quintic<'g>(u: Scalar<'g>, h: Scalar<'g>, [_, x, v]: &Knot<'g>, [_, next, end
     *x + u * (w + u * u * (a + u * (b + u * c)))
 }
 
-/// Both ramps, r long, and what is between them, if anything is.
+/// Both ramps, r long, and the part between them, if any.
 fn trapezoidal<'g>(pieces: &mut Vec<Piece<'g>>, u: Scalar<'g>, r: Option<Scalar<'g>>, from: &Knot<'g>, to: &Knot<'g>) {
     let one = u.builder().number(1.0);
     let r = r.unwrap_or_else(|| u.builder().number(0.25));
@@ -150,7 +150,7 @@ fn set_spline_rates(knots: &mut [Knot]) {
     let last = knots.len() - 1;
     let widths: Vec<Scalar> = (0..last).map(|place| knots[place + 1][0] - knots[place][0]).collect();
     let slope = |place: usize| (knots[place + 1][1] - knots[place][1]) / widths[place];
-    // Of each inner knot, what is left of its row: diagonal and right side.
+    // Of each inner knot, the rest of its row: diagonal and right side.
     let mut rows: Vec<(Scalar, Scalar)> = Vec::with_capacity(last);
     for place in 1..last {
         let (before, after) = (widths[place - 1], widths[place]);

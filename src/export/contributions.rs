@@ -112,7 +112,7 @@ pub fn contributions_svg(
     Ok(finished(&figure))
 }
 
-/// From the lowest to the highest: the parameters by their mean share, all others, and what they have together. Rows without
+/// From the lowest to the highest: the parameters by their mean share, all others, and their interactions. Rows without
 /// variance or without known shares stay free.
 fn layers(contributions: &[Contribution], rows: usize) -> Vec<Layer> {
     let mut ranked: Vec<&Contribution> = contributions.iter().collect();

@@ -33,7 +33,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A nominal course with its bands.
 pub(super) struct Course<'a> {
-    /// What it belongs to: begins with a letter, and has letters, digits and `-`.
+    /// Key of its group: begins with a letter, and has letters, digits and `-`.
     pub group: String,
     /// Label of the course; empty where the labels of its bands suffice.
     pub label: &'a str,
@@ -83,7 +83,7 @@ pub(super) fn courses_svg(caption: Caption, shown: &Shown) -> Result<String, ser
     Ok(finished(&Figure::new(caption, shown).drawn()?))
 }
 
-/// What is drawn, and where.
+/// Contents of the drawing and their positions.
 struct Figure<'a> {
     caption: Caption<'a>,
     shown: &'a Shown<'a>,

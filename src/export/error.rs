@@ -24,7 +24,7 @@ pub enum ExportError {
     /// The table cannot be written as CSV.
     #[error("cannot write the table of bounds: {0}")]
     Csv(#[from] csv::Error),
-    /// What is written as JSON cannot be.
+    /// A value cannot be written as JSON.
     #[error("cannot write the results as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }

@@ -1,23 +1,24 @@
 //! Atomic files: a set of files that appears in a folder completely or not at all.
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
-
 use super::error::ExportError;
+use super::owned::{OWNED, Owned, sha256};
+use super::replacing::{self, Replacement};
 
-/// Files that are written under temporary names next to their destinations and renamed when all are written. Neither a failure
-/// nor a killed run leaves a partial file; a full disk leaves older results unchanged; and of two runs into one folder, the
-/// files of one remain, not a mixture.
+/// Files that are written into a folder of their own within their destination, and replace older ones as one when all are written: neither
+/// a failure nor a killed run leaves a partial file; a full disk leaves older results unchanged; and of two runs into one folder, the files
+/// of one remain, not a mixture. None is open but that which is being written.
 ///
 /// The folder is locked meanwhile: temporary files that are there already are those of a run that was killed, and are removed.
 pub(super) struct AtomicFiles<'d> {
     dir: &'d Path,
-    files: Vec<(PathBuf, NamedTempFile)>,
-    /// Files of an older run that go when these are in place.
-    older: Vec<PathBuf>,
+    replacement: Replacement,
+    /// Their SHA-256.
+    hashes: BTreeMap<String, String>,
     /// Not every system opens folders, and not every file system locks: then the files of two runs may mix.
     folder: Option<fs::File>,
 }
@@ -26,10 +27,10 @@ pub(super) struct AtomicFiles<'d> {
 const TEMPORARY: (&str, &str) = (".mbint-", ".tmp");
 
 impl<'d> AtomicFiles<'d> {
-    /// An empty set, for a folder that is created if it does not exist.
+    /// An empty set, for a folder that is created if it does not exist. What a killed run left half replaced is replaced.
     ///
     /// # Errors
-    /// As [`prepare_folder`].
+    /// As [`prepare_folder`], or where what was left cannot be replaced.
     pub fn in_folder(dir: &'d Path) -> Result<Self, ExportError> {
         prepare_folder(dir)?;
         let folder = fs::File::open(dir).ok();
@@ -37,55 +38,82 @@ impl<'d> AtomicFiles<'d> {
         if locked {
             remove_left_over(dir);
         }
-        Ok(Self { dir, files: Vec::new(), older: Vec::new(), folder })
+        replacing::finish(dir)?;
+        let new = temporary().tempdir_in(dir).map_err(plain).and_then(Replacement::in_folder);
+        let replacement = new.map_err(|source| ExportError::Folder { path: dir.to_owned(), source })?;
+        Ok(Self { dir, replacement, hashes: BTreeMap::new(), folder })
     }
 
-    /// Writes a file under a temporary name.
+    /// Writes a file to the disk, not yet under its name.
     ///
     /// # Errors
-    /// If it cannot be written; temporary files are deleted with `self`.
+    /// If it cannot be written; what was written is deleted with `self`.
     pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), ExportError> {
-        let path = self.dir.join(name);
-        let written = temporary(self.dir).and_then(|mut file| file.as_file_mut().write_all(contents).map(|()| file));
-        let file = written.map_err(|source| ExportError::Write { path: path.clone(), source })?;
-        self.files.push((path, file));
+        let written = self.replacement.add(name, contents);
+        written.map_err(|source| ExportError::Write { path: self.dir.join(name), source: plain(source) })?;
+        self.hashes.insert(name.to_owned(), sha256(contents));
         Ok(())
     }
 
     /// The names of all files so far.
     pub fn names(&self) -> Vec<String> {
-        let names = self.files.iter().filter_map(|(path, _)| path.file_name());
-        names.map(|name| name.to_string_lossy().into_owned()).collect()
+        self.replacement.names().to_vec()
     }
 
-    /// Removes these files of the folder when the others are in place. What is no plain name is left alone, and so is what these files
-    /// replace.
-    pub fn without(&mut self, names: impl IntoIterator<Item = String>) {
-        let known = self.names();
-        let plain = |name: &String| Path::new(name).file_name().is_some_and(|plain| plain == name.as_str());
-        let gone = names.into_iter().filter(|name| plain(name) && !known.contains(name));
-        self.older.extend(gone.map(|name| self.dir.join(name)));
-    }
-
-    /// Renames the files to their destinations, in the order in which they were added, when they are on the disk.
+    /// These files, all of which are there, replace all that older runs wrote into the folder and its scenes' folders but for these.
     ///
     /// # Errors
-    /// At the first file that cannot be renamed; those before it are kept.
+    /// If the list of what is ours cannot be written.
+    pub fn replace_older(&mut self, scenes: Vec<String>) -> Result<(), ExportError> {
+        let older = Owned::of(self.dir);
+        let files = older.unchanged(self.dir).into_iter().filter(|name| !self.hashes.contains_key(name));
+        let gone = older.scenes.iter().filter(|scene| !scenes.contains(scene));
+        let of_scenes = gone.flat_map(|scene| {
+            let folder = self.dir.join(scene);
+            let own = Owned::of(&folder).unchanged(&folder).into_iter().chain([OWNED.to_owned()]);
+            own.filter(|name| folder.join(name).exists()).map(|name| format!("{scene}/{name}")).collect::<Vec<_>>()
+        });
+        let gone = files.chain(of_scenes).collect();
+        self.replacement.without(gone);
+        self.list(Owned { files: self.hashes.clone(), scenes })
+    }
+
+    /// These files, all of which are there, are beside those that older runs wrote, and are as much ours.
+    ///
+    /// # Errors
+    /// If the list of what is ours cannot be written.
+    pub fn join_older(&mut self) -> Result<(), ExportError> {
+        let mut own = Owned::of(self.dir);
+        own.files.extend(self.hashes.clone());
+        self.list(own)
+    }
+
+    fn list(&mut self, own: Owned) -> Result<(), ExportError> {
+        self.add(OWNED, &own.to_json()?)
+    }
+
+    /// Replaces older files by these, in the order in which they were added.
+    ///
+    /// # Errors
+    /// At the first that cannot be replaced; all are then as they were.
     pub fn put_in_place(self) -> Result<Vec<PathBuf>, ExportError> {
-        let put = |(path, file): (PathBuf, NamedTempFile)| {
-            let written = file.as_file().sync_all();
-            match written.and_then(|()| file.persist(&path).map_err(|error| error.error)) {
-                Ok(_) => Ok(path),
-                Err(source) => Err(ExportError::Write { path, source: plain(source) }),
-            }
-        };
-        let written = self.files.into_iter().map(put).collect::<Result<Vec<_>, _>>()?;
-        // What cannot be removed is in nobody's way.
-        self.older.iter().for_each(|path| drop(fs::remove_file(path)));
+        let names = self.names();
+        self.replacement.begin(self.dir)?;
+        replacing::finish(self.dir)?;
         // Not every system writes folders to the disk.
         let _ = self.folder.as_ref().map(fs::File::sync_all);
-        Ok(written)
+        Ok(names.iter().filter(|name| *name != OWNED).map(|name| self.dir.join(name)).collect())
     }
+}
+
+/// Ends what a killed run began: its files are all there, but not yet all under their names. Waits for a run that is at it.
+///
+/// # Errors
+/// Where a file cannot be replaced.
+pub(super) fn settle(dir: &Path) -> Result<(), ExportError> {
+    let folder = fs::File::open(dir).ok();
+    let _locked = folder.as_ref().is_some_and(|folder| folder.lock().is_ok());
+    replacing::finish(dir)
 }
 
 /// Writes texts under their names into a folder, which is created if it does not exist. Returns their paths.
@@ -111,7 +139,7 @@ pub fn prepare_folder(dir: &Path) -> Result<(), ExportError> {
         return Err(folder(io::ErrorKind::NotADirectory.into()));
     }
     fs::create_dir_all(dir).map_err(folder)?;
-    temporary(dir).map_err(folder)?;
+    temporary().tempfile_in(dir).map_err(|error| folder(plain(error)))?;
     Ok(())
 }
 
@@ -122,27 +150,28 @@ fn remove_left_over(dir: &Path) {
         let name = entry.file_name();
         let left_over = name.to_str().is_some_and(|name| name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1));
         if left_over {
-            let _ = fs::remove_file(entry.path());
+            let path = entry.path();
+            let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
         }
     }
 }
 
-/// An empty file with a unique name, deleted when dropped.
-fn temporary(dir: &Path) -> io::Result<NamedTempFile> {
+/// Unique names, deleted when dropped.
+fn temporary() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
-    // Temporary files are private; results are to be as readable as the user's other files (less the umask).
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(dir).map_err(plain)
+    builder
 }
 
-/// The error without the temporary path that tempfile adds to it.
+/// The error without the temporary path that tempfile adds to it, and without the kind's name where that says nothing.
 fn plain(error: io::Error) -> io::Error {
-    match error.kind() {
-        _ if error.raw_os_error().is_some() => error,
-        io::ErrorKind::Other => error,
-        kind => kind.into(),
+    let kind = error.kind();
+    match error.to_string().split_once(" at path ") {
+        Some((own, _)) if kind == io::ErrorKind::Other || kind.to_string() == "uncategorized error" => {
+            io::Error::new(kind, own.to_owned())
+        }
+        Some(_) => kind.into(),
+        None => error,
     }
 }
 
@@ -166,20 +195,65 @@ mod tests {
         assert_eq!((contents().as_str(), fs::read_dir(dir.path()).unwrap().count()), ("new", 1));
     }
 
-    #[test]
-    fn what_killed_and_older_runs_left_goes() {
-        let dir = tempfile::tempdir().unwrap();
-        for name in [".mbint-x1.tmp", "mine.tmp", "old.svg", "a.csv"] {
-            fs::write(dir.path().join(name), "").unwrap();
-        }
-        let mut files = AtomicFiles::in_folder(dir.path()).unwrap();
-        files.add("a.csv", b"new").unwrap();
-        files.without(["old.svg", "a.csv", "../elsewhere", "never.svg"].map(str::to_owned));
-        assert!(dir.path().join("old.svg").exists());
-        files.put_in_place().unwrap();
-        let mut names: Vec<_> = fs::read_dir(dir.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    fn names(dir: &Path) -> Vec<String> {
+        let entries = fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = entries.filter(|name| name != OWNED).collect();
         names.sort();
-        assert_eq!(names, ["a.csv", "mine.tmp"]);
+        names
+    }
+
+    fn replace(dir: &Path, files: &[(&str, &str)], scenes: &[&str]) {
+        let mut set = AtomicFiles::in_folder(dir).unwrap();
+        files.iter().for_each(|(name, text)| set.add(name, text.as_bytes()).unwrap());
+        set.replace_older(scenes.iter().map(|&scene| scene.to_owned()).collect()).unwrap();
+        set.put_in_place().unwrap();
+    }
+
+    #[test]
+    fn what_killed_and_older_runs_left_goes_and_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        let dir = dir.path();
+        for name in [".mbint-x1.tmp", "mine.tmp", "a.csv"] {
+            fs::write(dir.join(name), "").unwrap();
+        }
+        fs::create_dir(dir.join(".mbint-x2.tmp")).unwrap();
+        replace(dir, &[("a.csv", "1"), ("old.svg", "1"), ("edited.svg", "1"), ("gone.svg", "1")], &["one", "two"]);
+        for scene in ["one", "two"] {
+            replace(&dir.join(scene), &[("a.csv", "1")], &[]);
+        }
+        fs::write(dir.join("two/notes.txt"), "mine").unwrap();
+        fs::write(dir.join("edited.svg"), "by hand").unwrap();
+        fs::remove_file(dir.join("gone.svg")).unwrap();
+        replace(dir, &[("a.csv", "2")], &["one"]);
+        assert_eq!(names(dir), ["a.csv", "edited.svg", "mine.tmp", "one", "two"]);
+        assert_eq!(
+            (names(&dir.join("one")), names(&dir.join("two"))),
+            (vec!["a.csv".into()], vec!["notes.txt".into()])
+        );
+        replace(dir, &[("a.csv", "3")], &[]);
+        assert_eq!(names(dir), ["a.csv", "edited.svg", "mine.tmp", "two"]);
+    }
+
+    /// Whoever writes such a list names files that mbint did not write, or paths elsewhere.
+    #[test]
+    fn a_list_by_others_removes_nothing() {
+        let dir = tempfile::tempdir().unwrap();
+        let (dir, out) = (dir.path(), dir.path().join("out"));
+        fs::create_dir(&out).unwrap();
+        fs::create_dir(out.join("scene")).unwrap();
+        let mine = [dir.join("beside.txt"), out.join("notes.txt"), out.join("scene/notes.txt")];
+        mine.iter().for_each(|path| fs::write(path, "mine").unwrap());
+        let hash = sha256(b"mine");
+        let list = format!(
+            r#"{{"files": {{"notes.txt": "0", "../beside.txt": "{hash}", "scene/notes.txt": "{hash}"}}, "scenes": ["scene", "..", "."]}}"#
+        );
+        fs::write(out.join(OWNED), list).unwrap();
+        for file in ["summary.json", "scenes.json"] {
+            fs::write(out.join(file), r#"{"model": "m", "files": ["notes.txt"], "scenes": ["scene"]}"#).unwrap();
+        }
+        replace(&out, &[("a.csv", "1")], &[]);
+        assert!(mine.iter().all(|path| path.exists()));
+        assert_eq!(names(&out), ["a.csv", "notes.txt", "scene", "scenes.json", "summary.json"]);
     }
 
     #[cfg(unix)]

@@ -55,7 +55,7 @@ impl Limit {
         Entry { group: self.group.clone(), label, sign: Sign::Limit }
     }
 
-    /// The limit in a panel of values, and what it forbids.
+    /// The limit in a panel of values, and the forbidden side.
     pub fn drawn(&self, panel: &Panel) -> Group {
         let (first, last) = (panel.x.min * panel.x.unit.factor, panel.x.max * panel.x.unit.factor);
         let [from, to] = [self.times.0.max(first), self.times.1.min(last)].map(|time| panel.place(time, self.value));

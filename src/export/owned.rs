@@ -1,9 +1,15 @@
-//! Which files of a folder are an older run's: its summary, or its list of scenes, says so.
+//! Which files of a folder are ours: those that a run has written there, as it has written them.
 
-use std::fs;
+use std::collections::BTreeMap;
+use std::io;
 use std::path::Path;
 
-use serde::Deserialize;
+use data_encoding::HEXLOWER;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::folder::settle;
+use crate::syntax::text_file::regular;
 
 /// The summary's file.
 pub const SUMMARY: &str = "summary.json";
@@ -14,10 +20,71 @@ pub(super) const PAGE: &str = "report.html";
 /// The file that lists the scenes.
 pub(super) const SCENES: &str = "scenes.json";
 
+/// The list of files that are ours.
+pub(super) const OWNED: &str = ".mbint.json";
+
 /// Version of the results' files: greater when a key or a column goes or changes its meaning. New ones do not count.
 pub(super) const SCHEMA: u32 = 1;
 
-/// What an older run says of itself.
+/// Largest file of results that is read, bytes.
+const LARGEST: u64 = 1 << 30;
+
+/// What runs have written into a folder, and the next one may remove.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Owned {
+    /// SHA-256 by name.
+    pub files: BTreeMap<String, String>,
+    /// Folders of scenes, each with a list of its own.
+    pub scenes: Vec<String>,
+}
+
+impl Owned {
+    /// Nothing where there is no such list that can be read. Names of other folders' files are left out.
+    pub fn of(dir: &Path) -> Self {
+        let mut own: Self =
+            read(&dir.join(OWNED)).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
+        own.files.retain(|name, _| is_plain(name));
+        own.scenes.retain(|name| is_plain(name));
+        own
+    }
+
+    /// Files that are there as they were written.
+    pub fn unchanged(&self, dir: &Path) -> Vec<String> {
+        let is_ours = |name: &&String| read(&dir.join(name)).is_ok_and(|bytes| sha256(&bytes) == self.files[*name]);
+        self.files.keys().filter(is_ours).cloned().collect()
+    }
+
+    /// As it is written.
+    ///
+    /// # Errors
+    /// Only if memory cannot be written to.
+    pub fn to_json(&self) -> serde_json::Result<Vec<u8>> {
+        let mut json = serde_json::to_vec_pretty(self)?;
+        json.push(b'\n');
+        Ok(json)
+    }
+}
+
+/// SHA-256 in hexadecimal.
+pub(super) fn sha256(bytes: &[u8]) -> String {
+    HEXLOWER.encode(&Sha256::digest(bytes))
+}
+
+/// A file of results. What is no regular file is none: a pipe may never end.
+///
+/// # Errors
+/// Where it cannot be read.
+pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    regular(path, LARGEST)
+}
+
+/// Whether a name is of a file or folder in the folder itself.
+fn is_plain(name: &str) -> bool {
+    Path::new(name).file_name().is_some_and(|plain| plain == name)
+}
+
+/// What a summary, or a list of scenes, says of an older run.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Earlier {
@@ -25,44 +92,24 @@ struct Earlier {
     interrupted: bool,
     /// Folders of the scenes.
     scenes: Vec<String>,
-    files: Vec<String>,
 }
 
 impl Earlier {
     /// Nothing where there is no such file that can be read.
     fn of(dir: &Path, file: &str) -> Self {
-        let text = fs::read(dir.join(file)).unwrap_or_default();
-        serde_json::from_slice(&text).unwrap_or_default()
+        read(&dir.join(file)).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
     }
 }
 
 /// Whether a folder holds the results of a run that was not interrupted.
 pub fn holds_complete_results(dir: &Path) -> bool {
+    // What a killed run left to do is done by who writes next, or reported there.
+    let _ = settle(dir);
     let earlier = Earlier::of(dir, SUMMARY);
     !earlier.model.is_empty() && !earlier.interrupted
 }
 
-/// Names of all files in a folder that older runs wrote, be it of a model or of its scenes.
-pub(super) fn owned(dir: &Path) -> Vec<String> {
-    let listed: Vec<String> = [SUMMARY, SCENES].into_iter().flat_map(|file| Earlier::of(dir, file).files).collect();
-    // A report may have been made after its run.
-    let page = (!listed.is_empty()).then(|| PAGE.to_owned());
-    listed.into_iter().chain(page).collect()
-}
-
 /// Folders of the scenes that an older run had.
 pub(super) fn scene_folders(dir: &Path) -> Vec<String> {
-    let plain = |name: &String| Path::new(name).file_name().is_some_and(|plain| plain == name.as_str());
-    Earlier::of(dir, SCENES).scenes.into_iter().filter(plain).collect()
-}
-
-/// Removes a scene's results. What is not of its run stays, and so then does the folder.
-pub(super) fn remove_scene(folder: &Path) {
-    for file in
-        owned(folder).iter().filter(|name| Path::new(name).file_name().is_some_and(|plain| plain == name.as_str()))
-    {
-        // What cannot be removed is in nobody's way.
-        let _ = fs::remove_file(folder.join(file));
-    }
-    let _ = fs::remove_dir(folder);
+    Earlier::of(dir, SCENES).scenes.into_iter().filter(|name| is_plain(name)).collect()
 }

@@ -22,7 +22,7 @@ fn style(method: Method) -> Style {
     Style { label: label.to_owned(), color: Color(color), edge: 2.0, fill, dashes, slant }
 }
 
-/// What is drawn into the plot of an output beside its bounds.
+/// Further series in the plot of an output, beside its bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
     /// What moves by less is a constant, as [`noise`] has it.
@@ -63,7 +63,7 @@ pub fn plot_svg(
 /// The number of the quantiles' colour.
 const QUANTILES: usize = 5;
 
-/// The band from an output's least to its greatest quantile, and what it is called.
+/// The band from an output's least to its greatest quantile, and its name.
 fn quantiles(statistics: &StatisticsResult, name: &str, rows: usize) -> Option<(String, Band)> {
     let found = statistics.outputs.iter().find(|own| own.name == name)?;
     let [first, .., last] = &found.quantiles[..] else { return None };
@@ -96,7 +96,7 @@ pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [Cour
     Shown { name: &output.name, unit: BaseUnit::of(output), across, noise, courses, limits: &[] }
 }
 
-/// What is a constant of an output, for it moves by no more: rounding beside the largest of all outputs of its unit.
+/// Width below which an output counts as constant: rounding beside the largest of all outputs of its unit.
 pub fn noise(bounds: &Bounds, output: &OutputBounds) -> f64 {
     let same = bounds.outputs.iter().filter(|other| other.unit == output.unit);
     let sizes = same.flat_map(|output| &output.nominal).filter(|x| x.is_finite()).map(|x| x.abs());

@@ -10,7 +10,7 @@ use super::error::ExportError;
 use super::figure::Caption;
 use super::folder::AtomicFiles;
 use super::overlay::{SceneBounds, overlay_svg};
-use super::owned::{PAGE, SCENES, SCHEMA, owned, remove_scene, scene_folders};
+use super::owned::{Owned, PAGE, SCENES, SCHEMA};
 use super::report::page_of_folders;
 use super::stems::{file_stem, unique_stems};
 use crate::results::OutputBounds;
@@ -71,8 +71,7 @@ pub fn write_scenes(
     files.add("scenes.csv", &scenes_csv(scenes)?)?;
     let all: Vec<String> = all.iter().map(|name| file_stem(name)).collect();
     let written: Vec<String> = scenes.iter().map(|scene| file_stem(scene.name)).collect();
-    let (kept, gone): (Vec<String>, Vec<String>) =
-        scene_folders(dir).into_iter().partition(|folder| all.contains(folder));
+    let kept = Owned::of(dir).scenes;
     let listed = Listed {
         schema: SCHEMA,
         model,
@@ -85,13 +84,21 @@ pub fn write_scenes(
     let mut json = serde_json::to_vec_pretty(&listed)?;
     json.push(b'\n');
     files.add(SCENES, &json)?;
-    files.without(owned(dir));
-    let written = files.put_in_place()?;
-    gone.iter().for_each(|folder| remove_scene(&dir.join(folder)));
-    Ok(written)
+    files.replace_older(listed.scenes)?;
+    files.put_in_place()
 }
 
-/// What is of the scenes' runs together.
+/// Removes what compares scenes, since one of them is about to be replaced.
+///
+/// # Errors
+/// As [`write_results`](super::write_results).
+pub fn remove_comparison(dir: &Path) -> Result<(), ExportError> {
+    let mut files = AtomicFiles::in_folder(dir)?;
+    files.replace_older(Owned::of(dir).scenes)?;
+    files.put_in_place().map(drop)
+}
+
+/// Results of the scenes' runs together.
 #[derive(Serialize)]
 struct Listed<'s> {
     schema: u32,

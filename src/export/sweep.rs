@@ -1,4 +1,4 @@
-//! Bounds against a parameter that is swept, and a cost against what it buys.
+//! Bounds against a parameter that is swept, and a cost against its benefit.
 
 use svg::node::element::{Circle, Group, Title};
 
@@ -15,7 +15,7 @@ use super::overlay::style;
 use super::plot;
 use crate::results::{OutputBounds, RequirementSummary, foremost};
 
-/// What is swept: a name, its unit as models write it, and what one of it is in SI.
+/// A swept parameter: its name, its unit as models write it, and the value of one unit in SI.
 #[derive(Clone, Copy, Debug)]
 pub struct Swept<'a> {
     /// Name of the parameter.
@@ -74,7 +74,7 @@ fn edges<'a>(place: usize, row: &SweptBounds<'a>) -> Course<'a> {
     }
 }
 
-/// An axis of a trade-off: what it shows, and its unit as models write it; numbers are in this unit.
+/// An axis of a trade-off: its quantity, and its unit as models write it; numbers are in this unit.
 #[derive(Clone, Copy, Debug)]
 pub struct TradeAxis<'a> {
     /// For people.

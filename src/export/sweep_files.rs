@@ -21,7 +21,7 @@ pub struct SweepAxis {
     pub values: Vec<f64>,
 }
 
-/// What was found of one value of each.
+/// Results for one value of each.
 pub struct SweepPoint {
     pub values: Vec<f64>,
     /// Absent where the run failed.

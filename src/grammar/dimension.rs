@@ -2,7 +2,7 @@
 //!
 //! A bare number is a pure factor in a product with a parameter, and takes the other side's dimension in a sum. Beside
 //! `t` or a motion (`-5*slider.vx`, `sin(2*t)`) it may be a coefficient of any unit, so such a product fits anywhere.
-//! A parameter without unit fits anywhere, and so does what is made with it.
+//! A parameter without unit fits anywhere, and so do formulas of it.
 
 use symdiff::formula::Term;
 use symdiff::{Binary, Formula, Spline, Unary};
@@ -10,7 +10,7 @@ use symdiff::{Binary, Formula, Spline, Unary};
 use super::quantity::Dimension;
 use crate::syntax::source::Span;
 
-/// What is known of the dimension of a part of a formula.
+/// Known dimension of a part of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// Made of bare numbers; its value where that is plain.
@@ -49,14 +49,14 @@ impl Kind {
 /// Two parts that do not go together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mismatch {
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// Bytes of the formula's text.
     pub span: Span,
 }
 
-/// The formula's dimension, each name's given by `name`, those of a table's argument and value by `table`; every mismatch within
-/// it goes to `mismatches`.
+/// The formula's dimension, each name's given by `name`, those of a table's argument and value by `table`; every
+/// mismatch within it goes to `mismatches`.
 pub fn analyse(
     formula: &Formula,
     mut name: impl FnMut(&str) -> Kind,

@@ -20,7 +20,7 @@ impl DisplayUnit {
         Self { text: text.trim().to_owned(), unit }
     }
 
-    /// What it measures.
+    /// Dimension.
     pub fn dimension(&self) -> Dimension {
         self.unit.dimension
     }

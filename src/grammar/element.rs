@@ -1,7 +1,7 @@
 //! What an element of the language is: a struct whose fields are its keys.
 //!
-//! `#[derive(Element)]` (crate `mbint-derive`) makes all of this from the struct: the reader, the schema, the documentation, the
-//! formulas and references within, and whether it leaves the plane.
+//! `#[derive(Element)]` (crate `mbint-derive`) makes all of this from the struct: the reader, the schema, the
+//! documentation, the formulas and references within, and whether it leaves the plane.
 
 use schemars::{Schema, SchemaGenerator};
 use serde::Serialize;
@@ -22,7 +22,8 @@ pub trait Group: Sized {
     /// The keys with all that is known of them.
     fn keys(generator: &mut SchemaGenerator) -> Vec<Key>;
 
-    /// Reads the keys; `units` is the place of the unit that holds in those that have several. `None` where an error was reported.
+    /// Reads the keys; `units` is the place of the unit that holds in those that have several. `None` where an error
+    /// was reported.
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, units: usize) -> Option<Self>;
 
     /// The place of the unit that holds for the keys after these; `None` where these do not decide it.
@@ -46,11 +47,11 @@ pub trait Group: Sized {
 pub trait Element: Group {
     /// The word for it in a model file.
     const KEYWORD: &'static str;
-    /// What it is, for messages: `a drag`.
+    /// Noun for messages: `a drag`.
     const WHAT: &'static str;
-    /// What it is, in a line.
+    /// Summary in one line.
     const DESCRIPTION: &'static str;
-    /// What it does, in the symbols of its file's head.
+    /// Equation, in the symbols of its file's head.
     const EQUATIONS: &'static [&'static str];
     /// Where that is from.
     const SOURCE: &'static str;
@@ -153,7 +154,7 @@ pub fn ordered<S: SymbolTable>(
 pub struct Key {
     /// As it is written.
     pub name: &'static str,
-    /// What it is.
+    /// Summary.
     pub doc: &'static str,
     /// Its unit, or several divided by ` or `; empty where it is no quantity.
     pub unit: &'static str,
@@ -172,7 +173,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// What it is, with its unit and default, in a line.
+    /// Description with unit and default, in one line.
     pub fn description(&self) -> String {
         let mut text = self.doc.trim_end_matches('.').to_owned();
         if !self.unit.is_empty() && self.unit != "1" {
@@ -281,9 +282,9 @@ pub fn number_as_json(number: f64) -> serde_json::Value {
 pub struct ElementDocs {
     /// The word for it in a model file.
     pub keyword: &'static str,
-    /// What it is.
+    /// Summary.
     pub description: &'static str,
-    /// What it does.
+    /// Equation.
     pub formulas: &'static [&'static str],
     /// Where that is from.
     pub source: &'static str,
@@ -291,7 +292,7 @@ pub struct ElementDocs {
     pub example: &'static str,
     /// Its keys.
     pub keys: Vec<KeyDocs>,
-    /// What it measures, for outputs, with units.
+    /// Sensors for outputs, with units.
     pub sensors: Vec<(&'static str, String)>,
 }
 
@@ -302,7 +303,7 @@ pub struct KeyDocs {
     pub name: &'static str,
     /// Whether it must be there.
     pub required: bool,
-    /// What it is, with its unit and default.
+    /// Description with unit and default.
     pub description: String,
     /// Keys within it.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -174,7 +174,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// The formula's dimension; what does not go together in it is reported.
+    /// The formula's dimension; inconsistent dimensions are reported.
     pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
         let mut mismatches = Vec::new();
         let name = |name: &str| match self.variable {
@@ -196,7 +196,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         found.map_or([None; 2], |table| table.dimensions)
     }
 
-    /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
+    /// Dimension of a name's value. An equation's multiplier is the force conjugate to the equated quantity.
     pub(super) fn kind_of(&self, symbol: Symbol) -> Kind {
         if let Symbol::Reaction { joint, component: ReactionComponent::Force } = symbol
             && let Some(left) = self.model.equated(joint)
@@ -262,7 +262,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(formula)
     }
 
-    /// A formula or a number with its unit that is what it must be.
+    /// A formula or a number with unit that has the required dimension.
     pub fn quantity(&mut self, node: &Node, quantity: &Quantity) -> Option<Formula> {
         let formula = self.formula(node, quantity.context, quantity.dimension())?;
         if let Some(Requirement { holds, message }) = quantity.requirement {

@@ -302,7 +302,8 @@ reference! {
         }));
 }
 
-/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an angle.
+/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an
+/// angle.
 impl Group for OnJoint {
     fn key_names() -> Vec<&'static str> {
         vec!["on", "coordinate"]

@@ -1,4 +1,5 @@
-//! What a model file is made of: elements with their keys, quantities with units, names, and the reader that keeps places.
+//! What a model file is made of: elements with their keys, quantities with units, names, and the reader that keeps
+//! places.
 //!
 //! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
 

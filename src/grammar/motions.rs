@@ -3,7 +3,7 @@
 use super::quantity::Dimension;
 use super::symbols::{Coordinate, JointCoordinate, TimeOrder};
 
-/// A part of a motion: its name, what it is a part of, how often that is differentiated.
+/// A part of a motion: its name, its owner, and the order of its time derivative.
 pub type Motion<T> = (&'static str, T, TimeOrder);
 
 /// Parts of a body's or a point's motion.

@@ -22,7 +22,7 @@ pub(crate) const ENERGIES: [(&str, EnergyKind); 3] = [
 /// What stands between a joint and the point about which its reaction's torque is asked for.
 const TORQUE_AT: &str = ".torque_at.";
 
-/// Where a formula stands, and so what it may be made of.
+/// Context of a formula, which decides the names it may use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Context {
     /// Parameters only.
@@ -43,7 +43,7 @@ pub enum Context {
 /// A name that means nothing, or nothing here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameError {
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// The part of the name that is wrong, in bytes.
     pub part: Range<usize>,
@@ -199,7 +199,7 @@ fn word(table: &impl SymbolTable, word: &str) -> Option<Symbol> {
     parameter.or_else(|| state(table, word)).or_else(|| table.trajectory(word).map(value))
 }
 
-/// What of a trajectory has a name of its own: its derivatives.
+/// Named parts of a trajectory: its derivatives.
 pub(super) const OF_TRAJECTORY: [(&str, TimeOrder); 2] =
     [("rate", TimeOrder::Velocity), ("acceleration", TimeOrder::Acceleration)];
 
@@ -209,7 +209,7 @@ fn trajectory(table: &impl SymbolTable, owner: &str, member: &str) -> Option<Sym
     Some(Symbol::Trajectory { trajectory, order })
 }
 
-/// What has a value is called like it.
+/// A name that has a value.
 fn state(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     measure_of(table, table.state(name)?, Sensor::VALUE.name())
 }

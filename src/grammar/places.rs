@@ -185,7 +185,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         a != b
     }
 
-    /// The joint of `on`, and its coordinate: that of `coordinate`, else the displacement of what only slides and the angle of others.
+    /// The joint of `on`, and its coordinate: that of `coordinate`, else the displacement of what only slides and the
+    /// angle of others.
     pub fn on_joint(&mut self, fields: &Fields) -> Option<OnJoint> {
         let coordinate = fields.get("coordinate").map(|node| {
             let names = [("angle", JointCoordinate::Angle), ("displacement", JointCoordinate::Displacement)];

@@ -95,7 +95,7 @@ impl Dimension {
     /// As a number of its own, for terms of formulas: whole powers of m, kg, s and rad, 16 bits each.
     pub fn mark(self) -> u64 {
         let powers = [self.length, self.mass, self.time, self.angle];
-        // Units have whole powers; what is beyond 16 bits is beyond all that anything fits.
+        // Units have whole powers; a power beyond 16 bits fits nothing.
         let bits = |power: i32| u64::from((power / ONE).clamp(-0x7fff, 0x7fff) as i16 as u16);
         powers.into_iter().fold(0, |mark, power| mark << 16 | bits(power))
     }
@@ -116,7 +116,8 @@ impl Dimension {
         self.angle < 0
     }
 
-    /// Of the generalised force on a coordinate of this dimension: what does work on it, N on a length, N m on an angle.
+    /// Of the generalised force on a coordinate of this dimension: its conjugate: N on a length, N m on an
+    /// angle.
     pub fn conjugate(self) -> Self {
         Self::TORQUE.per(Self { angle: 0, ..self })
     }

@@ -1,4 +1,5 @@
-//! Intervals in other notations than that of a model file: `0.49 - 0.51 m`, which is read as a difference, `0.49 .. 0.51 m`.
+//! Intervals in other notations than that of a model file: `0.49 - 0.51 m`, which is read as a difference, `0.49 ..
+//! 0.51 m`.
 
 use super::unit::{Unit, number_and_unit};
 
@@ -16,8 +17,8 @@ pub struct Range {
     pub is_difference: bool,
 }
 
-/// A range in another notation than that of intervals. A difference is one only where its numbers are near each other, or where one of
-/// them alone has a unit.
+/// A range in another notation than that of intervals. A difference is one only where its numbers are near each other,
+/// or where one of them alone has a unit.
 pub fn range(text: &str) -> Option<Range> {
     let text = text.trim();
     let parts = |sign: &str| {

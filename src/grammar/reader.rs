@@ -21,14 +21,14 @@ use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::{MAX_BYTES, read_text};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// What is read so far of a model of symbols `S`, and what is known of its names.
+/// Parts of a model read so far, with its names; `S` is the table of symbols.
 pub struct Reader<'d, S> {
     /// Errors and warnings so far.
     pub diagnostics: &'d mut Diagnostics,
-    /// Names first, then what they stand for.
+    /// Names first, then their meanings.
     pub model: S,
-    /// Effects that are not in the model, with what they measure: the last is being read, and its own formulas may refer to that;
-    /// the others had errors.
+    /// Effects that are not in the model, with their sensors: the last is being read, and its own formulas may
+    /// refer to that; the others had errors.
     pub unread: Vec<(String, Vec<(Sensor, Dimension)>)>,
     /// Names of joints that had errors, so that of what kind they are is not known.
     pub unread_joints: Vec<String>,
@@ -48,7 +48,7 @@ pub struct Reader<'d, S> {
     pub used: Vec<bool>,
     /// Parameters that others speak of.
     pub used_by_parameters: Vec<bool>,
-    /// Parameters that vary, but in what is left out only.
+    /// Parameters that vary in omitted parts only.
     pub idle: HashSet<String>,
     /// Parameters whose interval has no width.
     pub certain: HashSet<String>,
@@ -60,7 +60,7 @@ pub struct Reader<'d, S> {
     pub folder: PathBuf,
 }
 
-/// What has been seen of a model's lengths.
+/// Lengths of a model seen so far.
 #[derive(Clone, Debug, Default)]
 pub struct Lengths {
     /// Bare numbers that are large, with what to write.
@@ -97,7 +97,7 @@ pub struct Fields<'n> {
     entries: HashMap<&'n str, (Span, &'n Node)>,
     /// Keys that are not there, but which a key that is not known was probably meant to be: that is reported already.
     misspelt: Vec<&'static str>,
-    /// The error of the only key that is not known and like none that is: what is missing is taken for what it was meant to be.
+    /// The error of the only unknown key without a similar known one: it is taken for the missing key.
     strange: Cell<Option<usize>>,
 }
 
@@ -155,7 +155,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// The same where others refer to these names: those that are unknown are not reported where these could not be read.
+    /// The same where others refer to these names: those that are unknown are not reported where these could not be
+    /// read.
     pub fn named_entries<'n>(&mut self, node: &'n Node, what: &str) -> &'n [Entry] {
         let entries = self.entries(node, what);
         if !matches!(node.value, Value::Mapping(_)) && !node.is_null() {
@@ -221,7 +222,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         found
     }
 
-    /// Whether a key that is missing may be what the only one that is not known was meant to be: its error then says so.
+    /// Whether a key that is missing may be what the only one that is not known was meant to be: its error then says
+    /// so.
     pub fn is_strange(&mut self, fields: &Fields, key: &str) -> bool {
         let strange = fields.strange.take();
         strange.inspect(|&error| self.diagnostics.also_missing(error, key)).is_some()

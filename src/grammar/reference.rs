@@ -1,5 +1,5 @@
-//! Lists of what formulas may refer to, from the tables by which names are resolved: data for `mbint explain` and for the
-//! reference pages.
+//! Lists of what formulas may refer to, from the tables by which names are resolved: data for `mbint explain` and for
+//! the reference pages.
 
 use serde::Serialize;
 use symdiff::formula::FUNCTIONS;

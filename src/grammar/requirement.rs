@@ -1,4 +1,4 @@
-//! What the number behind a key must be: its dimension, what it may depend on, and what must hold of it.
+//! Requirements on the number of a key: dimension, permitted dependencies, and range.
 
 use super::names::Context;
 use super::quantity::Dimension;
@@ -46,8 +46,8 @@ impl Requirement {
     pub const POSITIVE: Self = Self { holds: |value| value > 0.0, message: "must be positive" };
     /// 0 or above.
     pub const NONNEGATIVE: Self = Self { holds: |value| value >= 0.0, message: "must not be negative" };
-    /// The keyword of the schema that says with 0 what the requirement refuses of negative numbers and 0; `None` where a negative
-    /// number may do.
+    /// The keyword of the schema that says with 0 what the requirement refuses of negative numbers and 0; `None` where
+    /// a negative number may do.
     pub fn limit(&self) -> Option<&'static str> {
         let refused = [-1e9, -1.0, -1e-3, -1e-9].into_iter().all(|value| !(self.holds)(value));
         refused.then(|| if (self.holds)(0.0) { "minimum" } else { "exclusiveMinimum" })

@@ -1,7 +1,7 @@
-//! Names in formulas of instances that are placed or mirrored: there they mean what they mean in the assembly.
+//! Names in formulas of instances that are placed or mirrored: there they have their meaning in the assembly.
 //!
-//! An assembly's formula is written in the assembly's frame. What stands for it in an instance has the coordinates of the model instead:
-//! of a place s = D Rᵀ (r − g), and so on ([`crate::syntax::frame`]).
+//! An assembly's formula is written in the assembly's frame. What stands for it in an instance has the coordinates of
+//! the model instead: of a place s = D Rᵀ (r − g), and so on ([`crate::syntax::frame`]).
 
 use symdiff::{Formula, Unary};
 
@@ -23,7 +23,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// What a name of an instance is in the model, where that is something else; `place` stands before the names of the frame.
+    /// What a name of an instance is in the model, where that is something else; `place` stands before the names of
+    /// the frame.
     fn of_model(&self, name: &str, frame: Frame, place: &str) -> Option<Formula> {
         let text = match self.symbol(name)? {
             Symbol::JointCoordinate { coordinate: JointCoordinate::Angle, .. } if frame.mirrors.is_odd() => {

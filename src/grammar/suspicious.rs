@@ -1,5 +1,5 @@
-//! What is probably not meant as it is written: an angle of 30 rad, a length of 150 m beside others of millimetres, an interval that
-//! is a difference.
+//! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m beside others of millimetres, an
+//! interval that is a difference.
 
 use std::f64::consts::TAU;
 
@@ -62,7 +62,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// Whether a text is an interval in another notation, which is an error; warns of a difference that may be meant as one.
+    /// Whether a text is an interval in another notation, which is an error; warns of a difference that may be meant
+    /// as one.
     pub(super) fn is_meant_as_interval(&mut self, node: &Node, text: &str) -> bool {
         let Some(Range { interval, is_difference }) = range(text) else { return false };
         let help = format!("an interval is written `{interval}`, in `parameters`");

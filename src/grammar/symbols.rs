@@ -5,8 +5,8 @@ use symdiff::Formula;
 use super::friction::{FrictionMode, MeshKind};
 use super::quantity::Dimension;
 
-/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in the file;
-/// body 0 is the ground.
+/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in
+/// the file; body 0 is the ground.
 pub trait SymbolTable {
     /// Whether the mechanism leaves the plane.
     fn is_spatial(&self) -> bool;
@@ -34,7 +34,7 @@ pub trait SymbolTable {
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
     /// Where a link of the robot is.
     fn link(&self, name: &str) -> Option<PointRef>;
-    /// What of a beam has a name of its own; nothing where there is no beam of that name.
+    /// Named parts of a beam; none without a beam of that name.
     fn parts_of_beam(&self, beam: &str) -> Option<String>;
     /// Whether a body's orientation is that of Euler parameters, and not an angle about z.
     fn has_orientation(&self, body: usize) -> bool;
@@ -229,8 +229,8 @@ pub enum ReactionComponent {
     Force,
     /// Along an axis (0 to 2: x, y, z), N.
     ForceAlong(usize),
-    /// About the second point, N m: in the plane the component about z; in space that about its axis where the joint has a
-    /// torque about its axis alone, else the magnitude.
+    /// About the second point, N m: in the plane the component about z; in space that about its axis where the joint
+    /// has a torque about its axis alone, else the magnitude.
     Torque,
     /// About an axis (0 to 2: x, y, z) through the second point, N m.
     TorqueAbout(usize),

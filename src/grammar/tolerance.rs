@@ -41,7 +41,7 @@ pub enum Deviation {
     Between(Node),
 }
 
-/// Takes a number apart. What is not of one of the forms is a value without a deviation.
+/// Splits a number. A text of none of the forms is a value without a deviation.
 ///
 /// # Errors
 /// A form that is begun but not finished.
@@ -202,8 +202,8 @@ fn sign(text: &str) -> Option<(usize, usize)> {
     None
 }
 
-/// `value +plus -minus`, in either order, perhaps with a `/` between: the places of the three, the deviations without their signs.
-/// The value is a number or nothing, so that no formula is taken for it.
+/// `value +plus -minus`, in either order, perhaps with a `/` between: the places of the three, the deviations without
+/// their signs. The value is a number or nothing, so that no formula is taken for it.
 fn sides(text: &str) -> Option<(Span, Span, Span)> {
     let mut found: Vec<(char, Span)> = Vec::new();
     let mut end = text.len();

@@ -14,7 +14,7 @@ use crate::syntax::suggest;
 pub struct Unit {
     times: f64,
     over: f64,
-    /// What it measures.
+    /// Dimension.
     pub dimension: Dimension,
 }
 
@@ -39,7 +39,7 @@ impl Unit {
     /// `N*s/m`, `kg m^2`, `N·m`, `1/s`, `N/(m/s)`, …
     ///
     /// # Errors
-    /// What is wrong, and where in the text.
+    /// The error and its span in the text.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
         let mut parser = UnitParser { text, position: 0, depth: 0, minutes: false, is_name: None };
         let unit = parser.product()?;
@@ -49,11 +49,12 @@ impl Unit {
         }
     }
 
-    /// The unit with which a text begins, in a formula, and its length. Behind an operator that stands between spaces, what is a
-    /// name of the model is not part of the unit (`250 kg/m * L`), nor are, behind any operator, functions and words of formulas.
+    /// The unit with which a text begins, in a formula, and its length. Behind an operator that stands between spaces,
+    /// a name of the model is not part of the unit (`250 kg/m * L`), nor are, behind any operator, functions
+    /// and words of formulas.
     ///
     /// # Errors
-    /// What is wrong, and where in the text.
+    /// The error and its span in the text.
     pub fn leading(text: &str, is_name: impl Fn(&str) -> bool) -> Result<(Self, usize), UnitError> {
         let mut parser = UnitParser { text, position: 0, depth: 0, minutes: false, is_name: Some(&is_name) };
         let unit = parser.product()?;
@@ -86,11 +87,11 @@ impl Unit {
     }
 }
 
-/// What is wrong with a unit.
+/// An error in a unit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct UnitError {
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// Bytes of the text.
     pub span: Span,

@@ -1,4 +1,4 @@
-//! What is known of effects and states before they are in the model.
+//! Facts about effects and states before they are in the model.
 
 use symdiff::Formula;
 use symdiff::formula::{Names, Vocabulary};

@@ -110,7 +110,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(axis)
     }
 
-    /// By what a rotation is given, `rpy`, `axis` or `quaternion`, and its keys; `at` is where to say that something is missing.
+    /// By what a rotation is given, `rpy`, `axis` or `quaternion`, and its keys; `at` is where to say that something
+    /// is missing.
     pub fn kind_of_rotation<'n>(&mut self, node: &'n Node, at: Span) -> Option<(&'static str, Fields<'n>)> {
         let fields = self.fields::<values::Rotation>(node, at)?;
         let given: Vec<&'static str> =

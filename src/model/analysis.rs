@@ -34,7 +34,7 @@ const MOST_FREQUENCIES: usize = 2000;
 /// The word for a start at rest where forces are in equilibrium.
 const EQUILIBRIUM: &str = "equilibrium";
 
-/// Reads what is done with the model, and whether it starts at an equilibrium.
+/// Reads the analysis, and whether it starts at an equilibrium.
 pub fn read(reader: &mut Reader, fields: &Fields) {
     if let Some(analysis) = fields.get("analysis").and_then(|node| reader.choice(node, &ANALYSES)) {
         reader.model.analysis = analysis;
@@ -82,13 +82,13 @@ fn section_of_modes<'n>(reader: &mut Reader, fields: &Fields<'n>) -> Option<Fiel
     reader.fields::<file::Modes>(node, fields.key_span("modes"))
 }
 
-/// Reads what is asked of small vibrations, when outputs are known.
+/// Reads the questions about small vibrations, when outputs are known.
 pub fn read_modes(reader: &mut Reader, fields: &Fields) {
     if !matches!(reader.model.analysis, Analysis::Modes(_)) {
         return;
     }
     let mut request = ModesRequest { number: MODES, responses: Vec::new() };
-    // What is wrong with the section itself has been reported.
+    // Errors of the section itself have been reported.
     let node = fields.get("modes");
     let known = node.and_then(|node| match &node.value {
         Value::Mapping(entries) => Some(entries),
@@ -222,7 +222,7 @@ pub fn check_speeds(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-/// Reports what an analysis does not have: what is one number a motion but of positions over the time, requirements of modes, forces
+/// Reports questions that an analysis cannot answer: reduced outputs except of positions over time, requirements of modes, forces
 /// in kinematics, and Taylor bounds of modes. The entries are those of outputs and requirements.
 pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 2]) {
     let analysis = reader.model.analysis;

@@ -125,7 +125,7 @@ impl Description {
         self.beams.iter().find(|known| known.name == beam).map(|beam| beam.elements)
     }
 
-    /// What of a beam has a name of its own.
+    /// Named parts of a beam.
     pub(super) fn named_parts_of_beam(&self, beam: &str) -> Option<String> {
         let elements = self.elements_of(beam)?;
         let inner = match elements {

@@ -14,7 +14,7 @@ use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::yaml::{Entry, Node, Value};
 
-/// Names of coordinates, and what they stand for. The last leave the plane.
+/// Names of coordinates, and their meanings. The last leave the plane.
 const COORDINATES: [(&str, &[Coordinate]); 5] = [
     ("x", &[Coordinate::X]),
     ("y", &[Coordinate::Y]),
@@ -107,7 +107,7 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
         let needed = needed && has_forces;
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) }?;
         let formula = reader.formula(node, Context::Constant, dimension)?;
-        // What is written as 0 has none: joints or springs have to determine where it is.
+        // A mass of 0 has none: joints or springs have to determine where it is.
         if needed && formula.as_number() != Some(0.0) {
             reader.require(node, &formula, |value| value > 0.0, "must be positive");
         } else {

@@ -29,7 +29,7 @@ pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
 pub use statistics::{Correlation, Cost, Grade, Law, Statistics};
 
-/// A mechanism, its uncertain parameters and what is asked of it.
+/// A mechanism, its uncertain parameters and its questions.
 ///
 /// A `Description` is consistent: every index is in range, every formula's names resolve (through
 /// [`Description::symbol`]) in their context, every dimension agrees. Formulas give SI values.
@@ -53,9 +53,9 @@ pub struct Description {
     pub joints: Vec<Joint>,
     /// In file order.
     pub effects: Vec<Effect>,
-    /// What is done with it.
+    /// Analysis.
     pub analysis: Analysis,
-    /// What is asked of small vibrations.
+    /// Questions about small vibrations.
     pub modes: ModesRequest,
     /// Whether the start is an equilibrium, near where assembly begins to look.
     pub starts_at_equilibrium: bool,
@@ -63,11 +63,11 @@ pub struct Description {
     pub initial: Vec<StartValue>,
     /// Where assembly begins to look for the others.
     pub guess: Vec<StartValue>,
-    /// What is observed.
+    /// Outputs.
     pub outputs: Vec<Output>,
-    /// What is observed as one number a motion.
+    /// Reduced outputs: one number a motion.
     pub reduced: Vec<ReducedOutput>,
-    /// What is required of outputs.
+    /// Requirements on outputs.
     pub requirements: Vec<Requirement>,
     /// Units in which outputs and reduced outputs are shown, by their names; the others in SI.
     pub display: BTreeMap<String, DisplayUnit>,
@@ -81,7 +81,7 @@ pub struct Description {
     pub instances: Vec<Instance>,
     /// Ports of instances: the body or the point that each is.
     pub ports: BTreeMap<String, String>,
-    /// Effects of instances on joints that turn: what they measure along the joint has the other sign in a mirror.
+    /// Effects of instances on joints that turn: their sensors along the joint have the other sign in a mirror.
     pub turning_effects: BTreeSet<String>,
     /// Effects that are states, or have some.
     pub states: BTreeSet<String>,
@@ -91,7 +91,7 @@ pub struct Description {
     pub places: Places,
 }
 
-/// Where what has a name is.
+/// Indices of named items.
 #[derive(Clone, Debug, Default)]
 pub struct Places {
     pub(crate) parameters: NameIndex,
@@ -110,7 +110,7 @@ pub struct Space {
 }
 
 impl Space {
-    /// What of the model leaves the plane, where that decides.
+    /// Part of the model that leaves the plane, where that decides.
     pub fn because(&self) -> Option<&str> {
         Some(self.why.as_str()).filter(|why| self.spatial && why.ends_with("leaves the plane"))
     }
@@ -123,11 +123,11 @@ pub struct Parameter {
     pub name: String,
     /// SI unit for people, e.g. `m` or `N*s/m`; empty where none was given.
     pub unit: String,
-    /// What it is.
+    /// Kind of the joint.
     pub value: ParameterValue,
 }
 
-/// What is known of a parameter.
+/// Facts about a parameter.
 #[derive(Clone, Debug)]
 pub enum ParameterValue {
     /// A number or a formula of other parameters.
@@ -148,7 +148,7 @@ pub enum ParameterValue {
 pub struct Joint {
     /// Its name.
     pub name: String,
-    /// What it constrains.
+    /// Constrained bodies.
     pub kind: JointKind,
     /// Whether both bodies move as one, so that there is no reaction between them; of a weld, and set by `reduce`.
     pub merged: bool,
@@ -168,7 +168,7 @@ impl Joint {
 pub struct Effect {
     /// Its name.
     pub name: String,
-    /// What it does.
+    /// Action.
     pub kind: EffectKind,
 }
 

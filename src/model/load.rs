@@ -110,7 +110,7 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
     let from_input = is_standard_input(path);
     let name = if from_input { "stdin".to_owned() } else { shown(path) };
     if urdf::is_urdf(path) {
-        // A model of nothing but the robot; what is wrong is wrong in the robot's file.
+        // A model of nothing but the robot; errors are in the robot's file.
         return read_str(&name, &urdf::model_of(path), overrides);
     }
     if mjcf::is_mjcf(path) {
@@ -163,7 +163,7 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
         None => (root, None),
     };
     if diagnostics.has_errors() && parts.is_some() {
-        // What is missing in the tree would be reported again and again.
+        // Parts missing in the tree would be reported again and again.
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     }
     if let Some(parts) = &parts {

@@ -1,4 +1,4 @@
-//! What of a motion is asked for after its end.
+//! Questions about a motion after its end.
 
 use super::description::ReducedKind;
 use crate::model::names::Reader;

@@ -8,7 +8,7 @@ use crate::grammar::formulas::MAX_TERMS;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
 
-/// The formula of one of all outputs, with those of outputs above in place of their names. A name of the model stays what it is.
+/// The formula of one of all outputs, with those of outputs above in place of their names. A name of the model is unchanged.
 /// Reports an output that stands further down, and a formula that gets too long.
 pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], formula: Formula) -> Option<Formula> {
     let place = |name: &str| all.iter().position(|entry| entry.key == name);
@@ -18,7 +18,7 @@ pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], fo
         if let Some(known) = above(reader, name) {
             named.push((name, &known.formula));
         } else if let Some(other) = place(name) {
-            // What is wrong with one above is reported there.
+            // Errors of one above are reported there.
             if Some(other) >= own {
                 let message = match Some(other) == own {
                     true => format!("the output `{}` names itself", clip(name)),

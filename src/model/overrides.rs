@@ -21,7 +21,7 @@ impl Override {
     /// `l1=0.16`, `l1=150 mm ± 1 mm`, `l1=0.16 +0.01 -0.02`, `l1=[0.1, 0.2] m`, `l1=±2%`.
     ///
     /// # Errors
-    /// What is not of that form. Whether there is such a parameter, only a model can say.
+    /// A text not of that form. Whether there is such a parameter, only a model can say.
     pub fn parse(text: &str) -> Result<Self, Diagnostics> {
         Self::at(text, 0).map_err(|diagnostic| {
             let mut diagnostics = Diagnostics::new("--set", text);

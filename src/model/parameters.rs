@@ -104,7 +104,7 @@ fn find_overrides<'o>(
     replaced
 }
 
-/// What was written, its unit and its formula read.
+/// A parameter's text, with its unit and its formula read.
 fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Draft {
     let name_span = entry.key_span.clone();
     let mut spec = Spec::read(reader, entry);

@@ -17,7 +17,7 @@ use ReducedKind::{
     When,
 };
 
-/// The keys that say what of a motion is taken.
+/// The keys of the reductions.
 const KINDS: [(&str, ReducedKind); 16] = [
     ("range", Range),
     ("max", Max),
@@ -202,7 +202,7 @@ fn sources(
     }
 }
 
-/// A path, or what is held against a line.
+/// A path, or its comparison with a line.
 fn straightness(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<(Vec<Formula>, Option<Dimension>)> {
     if let Some(line) = fields.get("line") {
         let own = source(reader, node)?;

@@ -1,4 +1,4 @@
-//! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
+//! Questions to the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::named_outputs::with_outputs;
@@ -240,7 +240,7 @@ fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
 }
 
 impl Reader<'_> {
-    /// An output may be called like what it shows (`energy: energy`), but needs a plain name for files.
+    /// An output may be called like its quantity (`energy: energy`), but needs a plain name for files.
     fn name_of_output(&mut self, entry: &Entry) {
         if !crate::grammar::names::is_reserved(&entry.key) {
             self.name(entry, "an output");

@@ -1,4 +1,4 @@
-//! What is required of outputs: `clears: x3 >= 0.4 m`.
+//! Requirements on outputs: `clears: x3 >= 0.4 m`.
 
 use symdiff::{Binary, Formula, Unary};
 
@@ -15,7 +15,7 @@ use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Two sides of a comparison.
 struct Limited {
-    /// What is limited, as it is written.
+    /// The limited quantity, as it is written.
     of: String,
     own: Source,
     limit: Source,

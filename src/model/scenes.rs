@@ -1,6 +1,6 @@
-//! `scenes:`, named variants of a model, and `without:`, what of a model is not in.
+//! `scenes:`, named variants of a model, and `without:`, omitted parts of a model.
 //!
-//! A scene is the model's tree with the scene's changes laid over it, read as a model of its own: what is absent was never
+//! A scene is the model's tree with the scene's changes laid over it, read as a model of its own: an absent part was never
 //! there, and every node keeps its place in the file.
 
 pub mod draft;
@@ -21,11 +21,11 @@ const MOST: usize = 200;
 pub struct Variant {
     /// Of the scene; absent for the model itself.
     pub scene: Option<String>,
-    /// The tree, without `scenes`, `without`, and what is left out.
+    /// The tree, without `scenes`, `without`, and the omitted parts.
     pub root: Node,
     /// Names of effects, joints and outputs that are not in it.
     pub left_out: Vec<String>,
-    /// What of a robot is left out: its names are known only when its file is read.
+    /// Omitted parts of a robot: their names are known only when its file is read.
     pub robot: LeftOut,
     /// Whether parameters may be unused because something else is left out.
     pub partial: bool,
@@ -74,7 +74,7 @@ struct Layer<'n> {
 }
 
 impl<'n> Scenes<'n> {
-    /// Reads what a model leaves out, and which scenes it has; what is wrong with their names is reported.
+    /// Reads the omitted parts of a model, and its scenes; errors of their names are reported.
     pub fn read(reader: &mut Reader, root: &'n Node) -> Self {
         let mut scenes = Self { root, model: Draft::default(), layers: Vec::new() };
         let Value::Mapping(entries) = &root.value else { return scenes };
@@ -107,7 +107,7 @@ impl<'n> Scenes<'n> {
         self.variant(self.model.clone(), None)
     }
 
-    /// A scene: the model's tree with the changes of what it extends, and then its own.
+    /// A scene: the model's tree with the changes of the scene it extends, and then its own.
     pub fn scene(&self, reader: &mut Reader, scene: usize) -> Variant {
         let mut chain = vec![scene];
         while let Some(next) = self.layers[chain[chain.len() - 1]].extends {

@@ -65,7 +65,7 @@ pub(super) fn missing_sections(
     }
 }
 
-/// Reports what is said of a robot that the model does not have.
+/// Reports keys about a robot that the model does not have.
 pub(super) fn no_robot(reader: &mut Reader, fields: &Fields) {
     if fields.get("limits").is_some() {
         let message = "`limits` are those of a robot's joints, but the model names no `urdf`";

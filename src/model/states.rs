@@ -97,7 +97,7 @@ fn report_loops(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-/// A shortest path through what is needed that comes back to its beginning.
+/// A shortest cycle of dependencies.
 fn circle<'n>(needs: &BTreeMap<&'n str, Vec<&'n str>>, first: &'n str) -> Option<Vec<&'n str>> {
     let mut came_from: BTreeMap<&str, &str> = BTreeMap::new();
     let mut next = VecDeque::from([first]);

@@ -46,7 +46,7 @@ pub fn check(reader: &mut Reader, joints: &[Entry], effects: &[Entry], outputs: 
     }
 }
 
-/// Joints that hold what has teeth, each with the gear or rack.
+/// Joints that hold toothed bodies, each with the gear or rack.
 fn bearings(reader: &Reader, joints: &[Entry]) -> BTreeMap<usize, usize> {
     let mut bearings = BTreeMap::new();
     let written: HashSet<&str> = joints.iter().map(|entry| entry.key.as_str()).collect();

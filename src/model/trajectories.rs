@@ -17,7 +17,7 @@ const MOST_POINTS: usize = 1000;
 /// Of a length that is a difference of times.
 const ROUNDING: f64 = 1e-12;
 
-/// What is said of a rate at an end.
+/// Rate given at an end.
 const AT_REST: &str = "must be 0 in the first and the last point: the trajectory rests before and after";
 
 /// Sections whose names formulas may use too.

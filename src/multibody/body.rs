@@ -1,17 +1,17 @@
 //! Kinematics of a rigid body.
 //!
-//! A body's frame has the origin r₀ = (x, y, z) and turns by an angle θ about z, counter-clockwise against the ground, or
-//! by Euler parameters p ([`super::rotation`]). Each of these coordinates is a symbol or is prescribed by a formula of the
-//! parameters and t. A planar body is one whose z is prescribed as 0 and that turns by θ. With s a point in the frame and R
-//! the rotation,
+//! A body's frame has the origin r₀ = (x, y, z) and turns by an angle θ about z, counter-clockwise against the ground,
+//! or by Euler parameters p ([`super::rotation`]). Each of these coordinates is a symbol or is prescribed by a formula
+//! of the parameters and t. A planar body is one whose z is prescribed as 0 and that turns by θ. With s a point in the
+//! frame and R the rotation,
 //!
 //! ```text
 //! r = r₀ + R s          ṙ = ṙ₀ + ω × R s          r̈ = r̈₀ + ω̇ × R s + ω × (ω × R s)
 //! ω = (0, 0, θ̇)   or   ω = 2 E(p) ṗ
 //! ```
 //!
-//! so that a force F at r and a torque τ have the generalised forces F on r₀ and T = R s × F + τ about its origin: T_z on θ,
-//! 2 Eᵀ T on p. Along p itself nothing acts; what stands there is for the multiplier of pᵀp = 1 alone.
+//! so that a force F at r and a torque τ have the generalised forces F on r₀ and T = R s × F + τ about its origin: T_z
+//! on θ, 2 Eᵀ T on p. Along p itself nothing acts; what stands there is for the multiplier of pᵀp = 1 alone.
 
 use symdiff::{Builder, Scalar};
 
@@ -201,7 +201,8 @@ impl<'g> Body<'g> {
         self.in_body(alpha, &self.acceleration)
     }
 
-    /// A rate of rotation in the body's axes, from that in the ground's where it is known, else from the coordinates' derivative.
+    /// A rate of rotation in the body's axes, from that in the ground's where it is known, else from the coordinates'
+    /// derivative.
     fn in_body(&self, in_ground: Option<Vector<'g>>, derivative: &Coordinates<'g>) -> Vector<'g> {
         match (in_ground, self.rotation_coordinates) {
             (Some(rate), _) => self.matrix().transposed() * rate,

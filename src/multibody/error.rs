@@ -23,7 +23,7 @@ pub enum BuildError {
     /// Joint coordinates are asked for where they are not possible.
     #[error("`formulation: joint` is not possible here: {why}")]
     NoJointCoordinates {
-        /// What is in the way.
+        /// Obstacle.
         why: String,
     },
     /// The speed of a motor has no integral that is known. The reader of model files lets none through.
@@ -34,7 +34,7 @@ pub enum BuildError {
     Teeth {
         /// Name of the joint that has teeth.
         joint: String,
-        /// What is in the way.
+        /// Obstacle.
         why: String,
     },
     /// A coordinate without inertia that forces do not place.
@@ -42,7 +42,7 @@ pub enum BuildError {
     Massless {
         /// Name of the coordinate.
         coordinate: String,
-        /// What is in the way, and what helps.
+        /// Obstacle and remedy.
         why: &'static str,
     },
     /// A name means nothing, or cannot be known where it is used. The reader of model files lets neither through.

@@ -1,5 +1,5 @@
-//! Numbers of what a mechanism has, as all later rooms name them: a constraint's cannot be taken for that of a coordinate or of an
-//! equation. Lists of other rooms that are read by them say so where they are.
+//! Numbers of what a mechanism has, as all later rooms name them: a constraint's cannot be taken for that of a
+//! coordinate or of an equation. Lists of other rooms that are read by them say so where they are.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Inertia of a rigid body: its part of M w − Q.
 //!
-//! With the centre of mass at s = s_c, d'Alembert's m r̈_c and J ω̇ projected on the coordinates of a body that turns by θ
-//! are, a = R s being its arm and θ̇² a the level part of the centripetal acceleration,
+//! With the centre of mass at s = s_c, d'Alembert's m r̈_c and J ω̇ projected on the coordinates of a body that turns
+//! by θ are, a = R s being its arm and θ̇² a the level part of the centripetal acceleration,
 //!
 //! ```text
 //!     ⎡ m        0        0    −m a_y                  ⎤           ⎡ m θ̇² aₓ  ⎤
@@ -17,8 +17,9 @@
 //!     ⎣ 2 m Gᵀ s̃ Rᵀ    4 Gᵀ J₀ G + 4 μ p pᵀ  ⎦           ⎣ −2 Gᵀ (ω' × J₀ ω')  ⎦       μ = tr J₀ / 3
 //! ```
 //!
-//! J is taken about the centre of mass. 4 Gᵀ J₀ G is singular: it knows nothing of a change of |p|. The term with μ makes M
-//! positive definite and changes no motion, since it acts along p, where the multiplier of pᵀp = 1 takes it up.
+//! J is taken about the centre of mass. 4 Gᵀ J₀ G is singular: it knows nothing of a change of |p|. The term with μ
+//! makes M positive definite and changes no motion, since it acts along p, where the multiplier of pᵀp = 1 takes it
+//! up.
 
 use symdiff::{Builder, Scalar};
 

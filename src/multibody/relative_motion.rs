@@ -1,6 +1,7 @@
 //! The motion of a child against its parent, by the coordinates of the joint between them.
 //!
-//! The inboard frame of the joint is fixed in the parent, its outboard frame in the child. With the rates of the coordinates
+//! The inboard frame of the joint is fixed in the parent, its outboard frame in the child. With the rates of the
+//! coordinates
 //!
 //! ```text
 //! Ω = Σ aᵢ φ̇ᵢ          Ω̇ = Σ aᵢ φ̈ᵢ + β          angular velocity against the parent, as seen from it
@@ -49,9 +50,9 @@ pub struct RelativeMotion<'g> {
     pub outboard_in_parent: Vector<'g>,
     /// f: the origin of the outboard frame in the child's own frame.
     pub outboard_in_child: Vector<'g>,
-    /// By what it turns.
+    /// Rotation.
     pub rotations: Vec<AxisMotion<'g>>,
-    /// By what it slides.
+    /// Translation.
     pub translations: Vec<AxisMotion<'g>>,
     /// β in the parent's and in the child's axes; `None` where axes do not turn against one another.
     pub gyration: Option<[Vector<'g>; 2]>,
@@ -62,7 +63,8 @@ pub struct RelativeMotion<'g> {
 }
 
 impl<'g> RelativeMotion<'g> {
-    /// The generalised force of torques about the rotations' axes and forces along the translations', on each coordinate, with its place in q.
+    /// The generalised force of torques about the rotations' axes and forces along the translations', on each
+    /// coordinate, with its place in q.
     pub fn generalised(
         &self,
         about: Vec<Scalar<'g>>,

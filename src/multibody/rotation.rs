@@ -8,9 +8,9 @@
 //! ṗ = ½ Eᵀ ω = ½ Gᵀ ω'                                 E Eᵀ = G Gᵀ = pᵀp 1,   E p = G p = 0
 //! ```
 //!
-//! ω in the ground's axes, ω' in the body's. A torque τ (τ' in the body's axes) has the generalised forces 2 Eᵀ τ = 2 Gᵀ τ'
-//! on p, since 2 E δp is the virtual rotation. (Nikravesh, *Computer-Aided Analysis of Mechanical Systems*, ch. 6.)
-//! A second rotation in the rotated frame multiplies from the right: R(p) R(r) = R(p ∘ r).
+//! ω in the ground's axes, ω' in the body's. A torque τ (τ' in the body's axes) has the generalised forces 2 Eᵀ τ = 2
+//! Gᵀ τ' on p, since 2 E δp is the virtual rotation. (Nikravesh, *Computer-Aided Analysis of Mechanical Systems*, ch.
+//! 6.) A second rotation in the rotated frame multiplies from the right: R(p) R(r) = R(p ∘ r).
 
 use std::ops::{Index, Mul};
 
@@ -175,7 +175,7 @@ pub fn angles<'g>(r: &Matrix<'g>) -> [Scalar<'g>; 3] {
     directions(r).map(|(sin, cos)| sin.atan2(cos))
 }
 
-/// Sine and cosine of these angles, times what they have in common.
+/// Sine and cosine of these angles, times their common factor.
 pub fn directions<'g>(r: &Matrix<'g>) -> [(Scalar<'g>, Scalar<'g>); 3] {
     let (square, other) = (r[2][1] * r[2][1], r[2][2] * r[2][2]);
     let (level, down) = ((square + other).sqrt(), -r[2][0]);

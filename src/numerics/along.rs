@@ -47,7 +47,7 @@ impl Along<'_> {
     }
 
     /// How far below and above a sample at the axis' end a response may go that bends back between it and its neighbour: the parabola through it
-    /// and the two next to it, as far as that may turn by what is not known of its slope.
+    /// and the two next to it, as far as that may turn within the uncertainty of its slope.
     pub fn bending_back(&self) -> [f64; 2] {
         let side = match self.at {
             0 => 1,

@@ -85,7 +85,7 @@ impl Bernstein {
         Enclosed { outer: Range { lower: lower - rounding, upper: upper + rounding }, attained }
     }
 
-    /// An upper bound of sign · p; `attained` widens by what is seen of its values.
+    /// An upper bound of sign · p; `attained` widens by the values evaluated.
     fn maximum(&mut self, coefficients: &[f64], sign: f64, attained: &mut Range) -> f64 {
         let mut whole = self.spare.pop().unwrap_or_default();
         whole.clear();

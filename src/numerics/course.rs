@@ -166,7 +166,7 @@ impl Phase<'_> {
         let (mut low, mut high) = (times[row], times[row + 1]);
         let mut time = low + (high - low) * (value - values[row]) / (values[row + 1] - values[row]);
         let settled = (CLOSE * (high - low)).max(2.0 * f64::EPSILON * time.abs());
-        // Newton's method, within what is known to hold the time.
+        // Newton's method, within the interval known to contain the time.
         for _ in 0..STEPS {
             let (at, rate) = pieces[row].at(time);
             if at > value {

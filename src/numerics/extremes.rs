@@ -2,7 +2,7 @@
 //!
 //! The lattice is as dense as the functions ask for: where a value is not what those beside it tell, by some share of the function's
 //! range, the lattice is made finer along that axis. Every local extreme from which the best may be within reach is refined. Points of
-//! a low-discrepancy sequence, which have nothing to do with the lattice, check the result: what they find beyond it makes the lattice
+//! a low-discrepancy sequence, which have nothing to do with the lattice, check the result: a value beyond it makes the lattice
 //! finer, and where that cannot be, it is an error. Nothing depends on the functions' size or sign.
 
 use rustc_hash::FxHashMap;
@@ -146,10 +146,10 @@ fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64
     searches.iter().map(Search::extent).collect()
 }
 
-/// What is sought of one function.
+/// Search for one function.
 struct Search {
     ends: Vec<End>,
-    /// Number of the function, and what of it does not matter.
+    /// Number of the function, and its negligible difference.
     output: usize,
     settled: f64,
     /// Local extremes that are not refined, the highest last: their places on the lattice, and how low and how high they may be; the
@@ -311,7 +311,7 @@ impl End {
         }
     }
 
-    /// What it is an end of.
+    /// Function of which it is an end.
     fn goal(&self) -> (usize, bool) {
         (self.output, self.sign > 0.0)
     }

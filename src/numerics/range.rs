@@ -1,6 +1,6 @@
 //! Intervals, and the range over two parts of a box with its error.
 
-/// An interval; NaN at both ends where what was to be bounded is NaN.
+/// An interval; NaN at both ends where the bounded quantity is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Lower end.
@@ -38,7 +38,7 @@ impl Range {
     }
 }
 
-/// What is known of a range: it lies within `outer`, and holds `attained`.
+/// Known parts of a range: it lies within `outer`, and holds `attained`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosed {
     /// Holds the range.

@@ -1,4 +1,4 @@
-//! The space that the rows of a small matrix span, and what is orthogonal to it.
+//! The space that the rows of a small matrix span, and its orthogonal complement.
 //!
 //! Modified Gram–Schmidt with pivoting, each vector orthogonalised twice ("twice is enough": Giraud, Langou, Rozložník & van den Eshof,
 //! Numer. Math. 101 (2005) 87). Plain loops, so that results are the same bits on every processor.
@@ -53,7 +53,7 @@ impl RowSpace {
         space
     }
 
-    /// The basis of what is orthogonal to all rows: from the unit vectors of which most is left.
+    /// Basis of the orthogonal complement of all rows: from the unit vectors with the largest remainders.
     fn complete(&mut self, n: usize) {
         let unit = |place: usize| (0..n).map(|entry| if entry == place { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
         let mut left: Vec<Vec<f64>> = (0..n).map(unit).collect();
@@ -119,13 +119,13 @@ fn norm(vector: &[f64]) -> f64 {
     dot(vector, vector).sqrt()
 }
 
-/// Takes what is along a unit vector off another one.
+/// Removes the component along a unit vector from another one.
 fn subtract(from: &mut [f64], along: &[f64]) {
     let part = dot(from, along);
     from.iter_mut().zip(along).for_each(|(entry, along)| *entry -= part * along);
 }
 
-/// Twice; `parts` get what is taken off along each.
+/// Twice; `parts` get the removed components.
 fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>], parts: &mut [f64]) {
     for _ in 0..2 {
         for (place, along) in basis.iter().enumerate() {

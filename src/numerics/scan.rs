@@ -222,7 +222,7 @@ mod tests {
             let missed = range.lower - 0.1 * at * at;
             assert!(missed <= error + 2e-3 && error < 0.06, "{at}: {missed} of {error}");
         }
-        // From what is level it leads no further than a parabola.
+        // From a level part it leads no further than a parabola.
         let (range, error) = of_line(|x| (x - 0.31).max(0.0), 20);
         assert!(range.lower == 0.0 && error < 0.01, "{error}");
     }
@@ -233,7 +233,7 @@ mod tests {
             let (_, error) = of_line(|x| 0.1 * x + if x > at { 3.0 } else { 0.0 }, 15);
             assert!((1.0..=2.0).contains(&error), "{at}: {error}");
         }
-        // What is steep, but smooth, has none.
+        // A steep but smooth function has none.
         let (_, error) = of_line(|x| (3.0 * x).exp(), 15);
         assert!(error < 1e-12, "{error}");
     }

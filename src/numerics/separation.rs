@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(groups(3, |x| 1e3 + x[1].cos()), [[1]]);
         assert_eq!(groups(2, |_| 4.0), Vec::<Vec<usize>>::new());
         assert_eq!(groups(1, |x| x[0]), [[0]]);
-        // What is not known is not taken apart.
+        // Unknown values are not separated.
         assert_eq!(groups(2, |x| if x[0] + x[1] > 1.2 { 1.0 } else { f64::NAN }), [[0, 1]]);
     }
 }

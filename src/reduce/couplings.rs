@@ -1,8 +1,8 @@
 //! Couplings of a mechanism: which bodies, joints and effects act on, or refer to, one another.
 //!
-//! The ground and the bodies merged with it couple nothing: they do not move, whatever is attached to them. Gravity acts on
-//! every body alike and couples none, unless its formula refers to the motion. A dependency couples both ways: a force on B
-//! that depends on A couples A and B, although A's motion does not depend on B.
+//! The ground and the bodies merged with it couple nothing: they do not move, whatever is attached to them. Gravity
+//! acts on every body alike and couples none, unless its formula refers to the motion. A dependency couples both ways:
+//! a force on B that depends on A couples A and B, although A's motion does not depend on B.
 
 use symdiff::Formula;
 

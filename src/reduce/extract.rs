@@ -13,7 +13,7 @@ struct Kept {
     parameters: Vec<bool>,
 }
 
-/// What is asked of a subsystem: numbers in the whole model.
+/// Questions to a subsystem; indices refer to the whole model.
 #[derive(Default)]
 pub struct Asked {
     pub outputs: Vec<usize>,
@@ -35,7 +35,7 @@ impl Asked {
         let reduced = part.reduced.iter_mut().flat_map(|own| &mut own.places);
         let required = part.requirements.iter_mut().flat_map(|own| &mut own.places);
         for place in reduced.chain(required) {
-            // What is asked comes with its outputs.
+            // Questions come with their outputs.
             *place = self.outputs.iter().position(|output| output == place).unwrap_or(*place);
         }
     }
@@ -52,8 +52,8 @@ fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
     list.retain(|_| *kept.next().unwrap_or(&true));
 }
 
-/// The model of the parts in `set`, of which this is asked. Every other part is left out, and so are parameters that no kept part
-/// refers to. Also returns the numbers of the remaining uncertain parameters among all.
+/// The model of the parts in `set`, of which this is asked. Every other part is left out, and so are parameters that
+/// no kept part refers to. Also returns the numbers of the remaining uncertain parameters among all.
 pub fn extract(
     description: &Description,
     couplings: &mut Couplings,
@@ -182,8 +182,8 @@ impl Kept {
         kept
     }
 
-    /// Points: all points of bodies that move. Of grounded bodies, which other subsystems may use too, the points that are used
-    /// here, and those that are used nowhere.
+    /// Points: all points of bodies that move. Of grounded bodies, which other subsystems may use too, the points that
+    /// are used here, and those that are used nowhere.
     fn points(&self, d: &Description, couplings: &Couplings, used: &[(usize, usize)]) -> Vec<Vec<bool>> {
         let grounded = |body: usize| couplings.is_grounded(Part::Body(body));
         let mut points: Vec<Vec<bool>> = d.bodies.iter().map(|body| vec![true; body.points.len()]).collect();

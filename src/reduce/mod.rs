@@ -3,8 +3,8 @@
 //! - `welds`: bodies that are welded together become one, unless an output needs the weld's reaction;
 //! - `couplings`: which bodies, joints and effects are coupled; the ground couples nothing;
 //! - parts that no output depends on are left out;
-//! - coupled parts are a subsystem, a model of its own (`extract`), with the uncertain parameters that it refers to, and those of the
-//!   `questions` whose outputs it has.
+//! - coupled parts are a subsystem, a model of its own (`extract`), with the uncertain parameters that it refers to,
+//!   and those of the `questions` whose outputs it has.
 //!
 //! A model of one subsystem, of which nothing is left out, stays as it is.
 
@@ -94,7 +94,7 @@ impl Reduction {
         }
         for (question, places) in questions {
             let has = |(_, asked): &(_, Asked)| places.first().is_some_and(|place| asked.outputs.contains(place));
-            // What is of parameters alone is asked of the first.
+            // Outputs of parameters alone belong to the first subsystem.
             let place = subsystems.iter().position(has).unwrap_or(0);
             match question {
                 Question::Reduced(number) => subsystems[place].1.reduced.push(number),

@@ -1,8 +1,8 @@
 //! Welds: fixed joints whose bodies are merged.
 //!
-//! A fixed joint merges its bodies if no output or effect needs its reaction, its angle is time-independent, neither body is a
-//! node of a beam, and not both bodies have positions of their own. Of merged bodies one has coordinates, and the others
-//! follow it; a body has a position of its own if it lacks a coordinate or has a value at the start.
+//! A fixed joint merges its bodies if no output or effect needs its reaction, its angle is time-independent, neither
+//! body is a node of a beam, and not both bodies have positions of their own. Of merged bodies one has coordinates,
+//! and the others follow it; a body has a position of its own if it lacks a coordinate or has a value at the start.
 
 use symdiff::Formula;
 
@@ -58,8 +58,8 @@ pub fn merge(description: &mut Description) -> Vec<Weld> {
     welds
 }
 
-/// Keeps welds apart where merging would lose a guess: a body that lacks coordinates is followed by the others, and if the start has
-/// no value for it, the guesses of the others must be kept.
+/// Keeps welds apart where merging would lose a guess: a body that lacks coordinates is followed by the others, and if
+/// the start has no value for it, the guesses of the others must be kept.
 fn keep_guesses(description: &Description, sets: &mut Sets, welds: &mut [Weld]) {
     let bodies = description.bodies.len();
     let (initial, guessed) = (named(description, &description.initial), named(description, &description.guess));

@@ -10,7 +10,7 @@ use super::{RequirementSummary, YieldSummary};
 pub enum Criterion {
     /// For every case of the box.
     WorstCase,
-    /// For this share of what is made, all requirements together.
+    /// For this share of the production, all requirements together.
     Share(f64),
 }
 
@@ -73,7 +73,7 @@ pub struct NotMet {
 pub struct TradePoint {
     /// The share of the nominal margin that is left at least.
     pub margin: f64,
-    /// What that costs: the sum of all costs, or how much tighter all tolerances are.
+    /// Cost: the sum of all costs, or how much tighter all tolerances are.
     pub cost: f64,
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::OutputBounds;
 
-/// What kind of analysis it was, and what it says of the nominal configuration.
+/// Kind of analysis, with its result for the nominal configuration.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AnalysisSummary {
     /// `motion`, `statics`, `kinematics` or `modes`.

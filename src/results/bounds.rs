@@ -16,7 +16,7 @@ pub struct Bounds {
     pub contributions: Vec<Vec<Contribution>>,
     /// Share of the box that the bounds are of, in each row; empty where they are of all of it.
     pub covered: Vec<f64>,
-    /// What was done with the mechanism.
+    /// Analysis of the mechanism.
     pub analysis: Analysis,
     /// Frequency responses, frequency by frequency.
     pub responses: Vec<ResponsePoint>,
@@ -36,7 +36,7 @@ pub struct Contribution {
     pub parameter: String,
     /// Share of the variance (every parameter spread evenly over its interval) that is its alone.
     pub main: Vec<f64>,
-    /// The same with what it has together with others.
+    /// The same with the share it has in interactions.
     pub total: Vec<f64>,
     /// Width of the output's range if this parameter were at its nominal value.
     pub width_without: Vec<f64>,

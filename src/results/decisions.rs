@@ -1,4 +1,4 @@
-//! What is not computed, or less often than it might be: each decision with its reason and what it saves.
+//! Omitted or less frequent computations: each decision with its reason and its saving.
 
 use serde::Serialize;
 

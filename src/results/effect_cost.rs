@@ -6,7 +6,7 @@ use serde::Serialize;
 /// part then even becomes longer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StepInstructions {
-    /// Once a step: prediction, and what is known when it begins.
+    /// Once a step: prediction and values known at its beginning.
     pub step: i64,
     /// When the Newton matrix is factored.
     pub factor: i64,
@@ -15,7 +15,7 @@ pub struct StepInstructions {
 }
 
 impl StepInstructions {
-    /// What is more here than in `less`.
+    /// Difference to `less`.
     #[must_use]
     pub fn beyond(self, less: Self) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! What a model was compiled to, and what was left out: the facts behind `mbint explain`.
+//! Compiled and omitted parts of a model: the facts behind `mbint explain`.
 
 use serde::Serialize;
 
@@ -12,7 +12,7 @@ pub struct Explanation {
     pub model: String,
     /// In how many dimensions it moves, and why: `planar: nothing leaves the plane`.
     pub space: String,
-    /// What is done with it, where that is not a motion: `statics: …`.
+    /// Analysis, unless it is a motion: `statics: …`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub analysis: Option<String>,
     /// By which coordinates, and why: `joint coordinates: 148 instructions a step instead of 187`.
@@ -46,7 +46,7 @@ pub struct Explanation {
     pub newton: NewtonMatrix,
     /// What the model says and the program does not hold.
     pub left_out: Vec<LeftOut>,
-    /// What is not computed, or less often than it might be.
+    /// Omitted or less frequent computations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub decisions: Vec<Decision>,
 }
@@ -62,7 +62,7 @@ pub struct EffectExplanation {
     pub forces: usize,
     /// Nodes of its expressions, before they are shared with others.
     pub expressions: usize,
-    /// What it adds to the instructions of a step, where that was asked for.
+    /// Instructions that it adds to a step, if requested.
     pub adds: Option<EffectCost>,
 }
 

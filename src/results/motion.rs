@@ -54,7 +54,7 @@ pub struct MovingSample {
     pub poses: Poses,
 }
 
-/// What is added to the nominal motion: sums of products of Chebyshev polynomials in ξ ∈ [−1, 1], a parameter's place between the
+/// Deviation from the nominal motion: sums of products of Chebyshev polynomials in ξ ∈ [−1, 1], a parameter's place between the
 /// ends of its interval.
 #[derive(Clone, Debug)]
 pub struct MotionPolynomials {

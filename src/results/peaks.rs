@@ -28,7 +28,7 @@ pub struct PeakSummary {
 pub struct Peak {
     /// The row's time, s.
     pub time: f64,
-    /// What is read from the row.
+    /// Value in the row.
     pub value: f64,
     /// The row's own error with what may lie between rows; NaN where a row is unknown.
     pub error: f64,
@@ -100,7 +100,7 @@ mod tests {
         let found = peak(0.1, 11, |time| 1.0 - (time - 0.45) * (time - 0.45));
         assert_eq!((found.time, found.value), (0.4, 1.0 - (0.4_f64 - 0.45) * (0.4 - 0.45)));
         assert!(found.error > 0.0025 && found.error < 0.0051, "{found:?}");
-        // A line has nothing between its rows, and what is unknown stays so.
+        // A line has no extreme between its rows; unknown values stay unknown.
         let line = peak(0.1, 11, |time| 2.0 * time);
         assert!((line.error - 1e-6).abs() < 1e-12 && line.time == 1.0, "{line:?}");
         let unknown = peak(0.1, 11, |time| if time > 0.75 { f64::NAN } else { time });

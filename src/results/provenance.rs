@@ -1,4 +1,4 @@
-//! What a result comes from: the model's files and what was asked of it.
+//! Provenance of a result: the model's files and the questions asked.
 
 use serde::Serialize;
 

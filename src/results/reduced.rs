@@ -9,7 +9,7 @@ use crate::grammar::display_unit::DisplayUnit;
 pub struct ReducedSummary {
     /// Its name in the model.
     pub name: String,
-    /// What it is of the motion, as the model writes it: `max of pin.force`.
+    /// Its definition in the model: `max of pin.force`.
     pub of: String,
     /// Its SI unit; empty where dimensionless or unknown.
     pub unit: String,

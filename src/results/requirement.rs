@@ -30,7 +30,7 @@ impl Verdict {
 pub struct RequirementSummary {
     /// Its name in the model.
     pub name: String,
-    /// What is required, as the model writes it: `x3 >= 0.4 m`.
+    /// The requirement as the model writes it: `x3 >= 0.4 m`.
     pub text: String,
     /// SI unit of the margin; empty where dimensionless or unknown.
     pub unit: String,
@@ -71,7 +71,7 @@ pub struct NearestCase {
     pub margin: f64,
     /// How far its margin may be from the truth, by its time steps.
     pub error: f64,
-    /// When it is nearest, s; absent of what has no time.
+    /// When it is nearest, s; absent without a time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     /// Whether every parameter is at an end of its interval.

@@ -11,7 +11,7 @@ pub enum SampleFormat {
     Csv,
 }
 
-/// What is known of samples before they are simulated.
+/// Properties of samples before they are simulated.
 pub struct SampleTable<'t> {
     /// Number of samples.
     pub count: usize,

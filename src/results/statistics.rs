@@ -131,7 +131,7 @@ pub struct OutputStatisticsSummary {
     pub quantiles: Vec<Uncertain>,
 }
 
-/// The share of what is made that fulfils a requirement, by samples of the surrogate of its margin: over the whole motion, between rows too.
+/// The share of the production that fulfils a requirement, by samples of the surrogate of its margin: over the whole motion, between rows too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct YieldSummary {
     /// Name of the requirement.
@@ -147,7 +147,7 @@ pub struct YieldSummary {
     /// Capability at the worst time, (U − L)/(6σ); of a requirement with two limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cp: Option<f64>,
-    /// Capability at the worst time, the mean's distance from the nearer limit over 3σ; that of the margin of what is one number a motion.
+    /// Capability at the worst time, the mean's distance from the nearer limit over 3σ; that of the margin for a reduced output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cpk: Option<f64>,
     /// When that is, s.

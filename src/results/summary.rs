@@ -1,4 +1,4 @@
-//! `summary.json`: what was run, and what it took.
+//! `summary.json`: record of a run and its cost.
 
 use serde::Serialize;
 
@@ -53,7 +53,7 @@ pub struct Summary {
     pub alpha: f64,
     /// Length of the run, s.
     pub duration: f64,
-    /// What was done other than a motion from a given start.
+    /// Analysis other than a motion from a given start.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub analysis: Option<AnalysisSummary>,
     /// The uncertain parameters.
@@ -71,7 +71,7 @@ pub struct Summary {
     /// Outputs that are one number a motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub reduced: Vec<ReducedSummary>,
-    /// What is required, and whether it is fulfilled.
+    /// Requirements with their verdicts.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementSummary>,
     /// How the outputs are distributed, where that was asked.
@@ -158,7 +158,7 @@ pub struct PieceSummary {
     pub until: f64,
 }
 
-/// A subsystem, with the names of what is in it and of the uncertain parameters on which it depends.
+/// A subsystem, with the names of its parts and of the uncertain parameters on which it depends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SubsystemSummary {
     /// Names of its bodies.

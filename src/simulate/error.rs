@@ -54,7 +54,7 @@ pub enum SimulationError {
     /// No static equilibrium was found.
     #[error("{}", equilibrium_message(pushed, *is_state, *is_free, parameters))]
     NoEquilibrium {
-        /// What is pushed most, and by how much; or which state changes most.
+        /// Coordinate with the largest force, and that force; or the state that changes most.
         pushed: String,
         /// Whether it is a state.
         is_state: bool,
@@ -164,7 +164,7 @@ pub enum SimulationError {
         if *most > 0 { format!("{most} are the most") } else { "finding them takes too long".to_owned() }
     )]
     TooFast {
-        /// The function and what it is part of.
+        /// The function and its owner.
         function: String,
         /// About its period, or the time between its jumps, s.
         period: f64,

@@ -1,4 +1,4 @@
-//! What excites fast modes after the start: a jump of a force, a stop, a contact. Steps that are long for a mode damp what it does then,
+//! Excitations of fast modes after the start: a jump of a force, a stop, a contact. Steps that are long for a mode damp its vibration,
 //! and halved steps do too.
 //!
 //! Of the nominal motion, f = φᵀM(ẅ + ω²(q − q₀)) is what acts on a mode φ: for as long as it is smooth, the mode follows it. Where f
@@ -86,12 +86,12 @@ struct State {
     acceleration: f64,
 }
 
-/// What is known of a mode up to a step.
+/// State of a mode up to a step.
 #[derive(Debug, Default)]
 struct Watch {
     /// The last times, and f there.
     forces: VecDeque<(f64, f64)>,
-    /// How far f was from what was extrapolated in the last steps.
+    /// Distance of f from its extrapolation in the last steps.
     differences: VecDeque<f64>,
     /// Since steps resolve the mode: its velocity before, and its state.
     followed: Option<(f64, State)>,
@@ -120,7 +120,7 @@ impl Watch {
             let expected = self.differences.iter().fold(0.0_f64, |most, difference| most.max(difference.abs()));
             if self.differences.len() == BEFORE && difference.abs() > JUMP * expected {
                 self.found.push(Excitation { time, amplitude: difference.abs() / square });
-                // What comes is compared with what was before, with the jump.
+                // The next value is compared with the one before, with the jump.
                 self.forces.iter_mut().for_each(|(_, force)| *force += difference);
             } else {
                 self.differences.push_back(difference);

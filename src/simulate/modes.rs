@@ -1,8 +1,8 @@
 //! Fast modes that the start or something later excites and that the scheme damps: with steps of any size that are long for them, it damps them alike, so that
-//! halving the steps does not show what they damp.
+//! halving the steps does not show this damping.
 //!
 //! About the nominal start the equations of motion are M δẅ + C δv + K δq + Φ_qᵀ δλ = 0 with Φ_q δq = 0. A mode φ (φᵀMφ = 1, frequency ω)
-//! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): what is slow has hardly any part in φᵀMw/ω².
+//! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): slow modes have hardly any part in φᵀMw/ω².
 
 use nalgebra::{DMatrix, DVector, Dyn, Matrix3, SVD, SymmetricEigen, Vector3};
 use symdiff::{Expr, math, slopes};
@@ -40,8 +40,8 @@ pub struct ExcitedMode {
 }
 
 impl ExcitedMode {
-    /// What the steps have damped of its amplitude in an output up to a time, of what is left then, and halving them does not show
-    /// (4/3 of the difference is what it shows).
+    /// Amplitude in an output lost by damping of the steps up to a time, relative to the rest, that halving them does not show
+    /// (halving shows 4/3 of the difference).
     pub fn lost(&self, output: usize, time: f64) -> f64 {
         let of_one = |excitation: &Excitation| {
             let since = time - excitation.time;

@@ -43,7 +43,7 @@ impl<'s> Instants<'s> {
             from = self.between(begin, end);
             Some(match from {
                 Some(instant) => (instant - begin, instant),
-                // What is not divided keeps its length, to the bit.
+                // An undivided step keeps its length, to the bit.
                 None if begin == end - h => (h, end),
                 None => (end - begin, end),
             })

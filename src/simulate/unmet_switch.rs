@@ -30,7 +30,7 @@ const INTERVALS_OF_TIME: usize = 4;
 /// A switch is looked at more closely where its least distance from zero is less than this share of its range.
 const NEAR: f64 = 0.25;
 
-/// What of a switch is zero, as a share of its largest value.
+/// Values of a switch below this share of its largest value are zero.
 const ZERO: f64 = 1e-9;
 
 /// The same sign at another sample no further away than so many rows, or this share of all, is the same event.
@@ -49,7 +49,7 @@ const BLOCK: usize = 64;
 /// How far a switch went below and above zero since the row before.
 type Depths = [f64; 2];
 
-/// What held-out samples meet tells of what goes at most this many times as far: one that only grazes a post says little of those
+/// Largest ratio of penetration depths for which a validation sample counts as evidence: one that only grazes a post says little of those
 /// that hit it.
 const AS_DEEP: f64 = 2.0;
 
@@ -67,7 +67,7 @@ struct Suspect {
     xi: Vec<f64>,
 }
 
-/// What is known of the switches in a box.
+/// Known behaviour of the switches in a box.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SwitchSearch {
     /// The first row before which a switch changes its sign for some parameter values and for none of the samples that are held out.
@@ -172,7 +172,7 @@ fn chosen(suspects: Vec<Suspect>, switches: usize) -> Vec<Vec<f64>> {
     chosen
 }
 
-/// What is seen of samples.
+/// Values seen in samples.
 struct Observations {
     /// How far switches went before each row, of the first samples and of the others.
     depths: Vec<[Vec<Depths>; 2]>,

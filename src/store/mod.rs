@@ -1,9 +1,10 @@
 //! Simulations kept as files, so that a run can be cut into shards, interrupted, and resumed.
 //!
-//! What a method asks of an ensemble is a [`Task`]; what comes of it is a part, a file in the store whose name is a hash of all that decides
-//! it. A run with a store simulates what is missing and reads the rest. While a study is planned or merged, what takes long is deferred
-//! instead: tasks are written for `mbint shard`, and the study ends there. A part is cut where the number of rows and values says, never where
-//! a shard ends, so no bit of the results depends on shards.
+//! What a method asks of an ensemble is a [`Task`]; what comes of it is a part, a file in the store whose name is a
+//! hash of all that decides it. A run with a store simulates missing parts and reads the rest. While a study is
+//! planned or merged, long tasks are deferred instead: tasks are written for `mbint shard`, and the study ends there.
+//! A part is cut where the number of rows and values says, never where a shard ends, so no bit of the results depends
+//! on shards.
 
 mod error;
 mod part;
@@ -25,12 +26,12 @@ pub use task::{ScanPart, Task};
 /// Version of the files of parts and tasks. Files of another version are not read.
 pub const FORMAT: u32 = 1;
 
-/// What is done where a part is missing.
+/// Action where a part is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Missing {
     /// It is simulated, and kept.
     Simulate,
-    /// What is expected to take longer, s, is deferred to shards.
+    /// Tasks expected to take longer than this, s, are deferred to shards.
     Defer(f64),
 }
 
@@ -41,7 +42,7 @@ pub struct Deferred {
     pub part: String,
     /// Samples.
     pub simulations: usize,
-    /// What it is expected to take, s.
+    /// Expected time, s.
     pub seconds: f64,
     /// Size of the part.
     pub bytes: u64,
@@ -69,14 +70,14 @@ pub struct Content {
     pub bytes: u64,
 }
 
-/// What is behind a lock. A panic elsewhere leaves it whole: it only grows.
+/// Value behind a lock. A panic elsewhere leaves it whole: it only grows.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl PartStore {
-    /// Parts of a run in a folder, which is made where it does not exist. `context` is all that decides the results beside the tasks: the
-    /// model's files, overrides and scene, in any unambiguous form.
+    /// Parts of a run in a folder, which is made where it does not exist. `context` is all that decides the results
+    /// beside the tasks: the model's files, overrides and scene, in any unambiguous form.
     ///
     /// # Errors
     /// Where the folder cannot be made.
@@ -101,7 +102,8 @@ impl PartStore {
         })
     }
 
-    /// What the folder has. Half-written files of programs that were killed are removed. Shards do without this: they list nothing.
+    /// What the folder has. Half-written files of programs that were killed are removed. Shards do without this: they
+    /// list nothing.
     ///
     /// # Errors
     /// Where the folder cannot be read.
@@ -164,7 +166,7 @@ impl PartStore {
         Ok(())
     }
 
-    /// What was deferred, in the order of the study.
+    /// Deferred tasks, in the order of the study.
     pub fn deferred(&self) -> Vec<Deferred> {
         locked(&self.deferred).clone()
     }

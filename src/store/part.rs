@@ -1,6 +1,7 @@
 //! The file of a part: values row by row as they come, then what became of the samples, then a hash of all before.
 //!
-//! Values are f64 in little-endian order, each row with its lines, each line with its samples. A file appears under its name when it is whole.
+//! Values are f64 in little-endian order, each row with its lines, each line with its samples. A file appears under
+//! its name when it is whole.
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
@@ -20,8 +21,8 @@ const MAGIC: &[u8; 8] = b"mbint\x00pt";
 const HEADER: u64 = 12;
 const HASH: u64 = 32;
 
-/// What took longer to simulate is on the disk before it appears. Of the rest a loss of power costs the last half minute's at most, which a
-/// system writes by itself.
+/// What took longer to simulate is on the disk before it appears. Of the rest a loss of power costs the last half
+/// minute's at most, which a system writes by itself.
 const WORTH_SYNCING: Duration = Duration::from_secs(1);
 
 /// The end of a part: what became of the samples, and the bounds of a scan.
@@ -85,7 +86,8 @@ impl PartWriter {
     }
 }
 
-/// A part that is whole. Its file is open only while it is read: a study may have more parts than a process may have files.
+/// A part that is whole. Its file is open only while it is read: a study may have more parts than a process may have
+/// files.
 #[derive(Debug)]
 pub struct PartReader {
     path: PathBuf,

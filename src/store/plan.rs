@@ -1,4 +1,4 @@
-//! `plan.json`: what is to be simulated in a round of a study, cut into shards.
+//! `plan.json`: the simulations of a round of a study, cut into shards.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -21,13 +21,13 @@ pub struct Plan {
     pub mbint: String,
     /// Rounds planned so far; what a study asks for next may depend on the results of the round before.
     pub round: usize,
-    /// What was asked for.
+    /// Request of the study.
     pub asked: Asked,
-    /// What is to be simulated, by number of the shard.
+    /// Simulations, by number of the shard.
     pub shards: Vec<Shard>,
 }
 
-/// What was asked for: the arguments of `mbint run` that decide results.
+/// Request of a study: the arguments of `mbint run` that decide results.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Asked {
     /// Absolute paths of the models.
@@ -81,14 +81,14 @@ pub struct Shard {
     pub parts: Vec<String>,
     /// Samples.
     pub simulations: usize,
-    /// What it is expected to take on one core, s.
+    /// Expected time on one core, s.
     pub seconds: f64,
     /// Size of the parts.
     pub bytes: u64,
 }
 
 impl Shard {
-    /// Shards of at most so many seconds, where a part does not take longer, from what was deferred of a model.
+    /// Shards of at most so many seconds, where a part does not take longer, from the deferred tasks of a model.
     pub fn of(model: usize, scene: Option<&str>, deferred: &[Deferred], seconds: f64) -> Vec<Self> {
         let mut shards: Vec<Self> = Vec::new();
         for task in deferred {

@@ -20,7 +20,7 @@ pub struct Task {
     pub schedule: Schedule,
     /// What the steps' local errors are kept within, where they are controlled.
     pub tolerance: Option<Controller>,
-    /// What is kept in each row.
+    /// Values stored in each row.
     pub observed: Observed,
     /// When to end.
     pub until: Until,

@@ -1,7 +1,7 @@
 //! Files that appear under their names when they are whole.
 //!
-//! A file that is being written has a temporary name and is locked by who writes it. One that is not locked was left by a program that was
-//! killed.
+//! A file that is being written has a temporary name and is locked by who writes it. One that is not locked was left
+//! by a program that was killed.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -20,7 +20,7 @@ const TEMPORARY: &str = ".part-";
 pub(super) enum Durable {
     /// Its bytes are on the disk before it appears.
     Now,
-    /// The system writes it when it likes to. What is lost or half there then is made again.
+    /// The system writes it when it likes to. Lost or partial files are made again.
     Soon,
 }
 
@@ -33,7 +33,7 @@ pub(super) fn begin(folder: &Path) -> io::Result<NamedTempFile> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
     loop {
         let file = builder.tempfile_in(folder)?;
-        // Not every file system locks; what is left over stays there then.
+        // Not every file system locks; left-over files stay there then.
         let _ = file.as_file().lock();
         // Between the two it may have been taken for one that was left over.
         if file.path().exists() {

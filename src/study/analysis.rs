@@ -5,7 +5,7 @@ use crate::model::{Analysis, Description};
 use crate::results::{AnalysisSummary, Band, Bounds, OutputBounds, ResponsePoint, Summary, ValueSummary};
 
 impl Study<'_> {
-    /// What it is, and what it says of the nominal equilibrium; nothing of a motion from a given start.
+    /// Analysis and its result for the nominal equilibrium; none for a motion from a given start.
     pub(super) fn analysis_summary(&self) -> Option<AnalysisSummary> {
         let system = &self.simulator.system;
         let mut summary = AnalysisSummary { kind: system.analysis.name().to_owned(), ..AnalysisSummary::default() };
@@ -55,7 +55,7 @@ pub(super) fn arrange(description: &Description, bounds: &mut Bounds, summary: &
     {
         analysis.values = bounds.outputs.iter().map(|output: &OutputBounds| ValueSummary::of(output)).collect();
         let has_growth = matches!(description.analysis, Analysis::Modes(_)) && !description.states.is_empty();
-        // It stands first of what is told besides the model's outputs.
+        // It is the first result beside the model's outputs.
         if let Some(growth) = analysis.values.get(description.outputs.len()).filter(|_| has_growth) {
             analysis.growth = Some(growth.nominal);
             analysis.largest_growth = growth.bounds.iter().map(|(_, _, upper, _)| *upper).reduce(f64::max);

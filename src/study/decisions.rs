@@ -1,4 +1,4 @@
-//! What is not computed, or less often than it might be: what each decision saves is counted by compiling without it.
+//! Omitted or less frequent computations: the saving of each decision is counted by compiling without it.
 
 use symdiff::{Formula, Input, lower};
 
@@ -11,7 +11,7 @@ use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};
 use crate::results::{Decision, Each, Saving};
 
-/// Instructions a step up to which a model is compiled again to count what is saved.
+/// Instructions a step up to which a model is compiled again to count the saving.
 const COUNTED: usize = 30_000;
 
 /// Names told of many.
@@ -125,7 +125,7 @@ fn subsystems(description: &Description, prepared: &[Prepared]) -> Vec<Decision>
     found
 }
 
-/// What is computed before the iteration, and what M is made of.
+/// Values computed before the iteration, and the parts of M.
 fn constants(prepared: &[Prepared]) -> Vec<Decision> {
     let (mut entries, mut numbers, mut of_parameters, mut operations) = (0, 0, 0, 0);
     let (mut sample, mut step_size) = (0, 0);

@@ -1,4 +1,4 @@
-//! What each effect costs: a model is compiled without it, and what is missing then is counted.
+//! Cost of each effect: a model is compiled without it, and the difference is counted.
 
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ use crate::simulate::Simulator;
 /// A model is compiled once more for each of its effects as long as that makes no more instructions than this.
 const MOST_INSTRUCTIONS: usize = 3_000_000;
 
-/// The mechanism in which effects are compared. Every number is deterministic, so what is counted depends on the motion.
+/// The mechanism in which effects are compared. Every number is deterministic, so the counts depend on the motion.
 const MECHANISM: &str = "
 bodies:
   arm: { mass: 2, inertia: 0.04, points: { pin: [-0.2, 0], tip: [0.2, 0], socket: [0.3, 2] } }
@@ -52,7 +52,7 @@ fn example(effect: Option<(&str, &str)>) -> Description {
         .unwrap_or_else(|wrong| panic!("a test loads every example: {}", wrong.render(false)))
 }
 
-/// What each effect of a model adds, in file order. `None` where others cannot do without it (they use what it measures, or
+/// Cost added by each effect of a model, in file order. `None` where others need it (they use its sensors, or
 /// only it holds something), and for models with too many effects for their size.
 pub(super) fn effect_costs(description: &Description, simulator: &Simulator) -> Vec<Option<EffectCost>> {
     let all = step_instructions(&simulator.program, true);

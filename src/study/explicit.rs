@@ -14,7 +14,7 @@ use crate::simulate::{ExplicitObstacle, Schedule, SimulationError, Simulator, ex
 /// A step may err by this share of what the run may be off by, until it is known how errors grow.
 pub(super) const OF_STEPS: f64 = 0.01;
 
-/// Schedules that are tried, what is aimed at, and the most that a trial sharpens the tolerance.
+/// Schedules that are tried, the target, and the most that a trial sharpens the tolerance.
 const ROUNDS: usize = 6;
 const AIM: f64 = 0.1;
 const SHARPEST: f64 = 1e-4;
@@ -42,7 +42,7 @@ pub(super) enum Obstacle {
     /// It cannot integrate the motion.
     #[error("{0}")]
     Explicit(#[from] ExplicitObstacle),
-    /// What is asked for is not reached.
+    /// The requested tolerance is not reached.
     #[error("its error does not come down to the tolerance")]
     Inaccurate,
     /// The scheme takes less work.

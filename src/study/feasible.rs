@@ -1,7 +1,7 @@
 //! A box in part of which the mechanism cannot be assembled, or does not move to the end: how much of it that is and where,
 //! and bounds of the rest.
 //!
-//! The box is cut into pieces, across the parameter that tells best what fails from what does not, as long as held-out
+//! The box is cut into pieces, across the parameter that separates failing samples from others best, as long as held-out
 //! samples of a piece fail. Each piece whose samples do not is bounded as if it were the whole; a row's bounds are those of the
 //! pieces that reached it together, and what share of the box these are is said with them.
 
@@ -64,7 +64,7 @@ impl fmt::Display for Survey {
     }
 }
 
-/// What is to be told of a run that found a sample that cannot be assembled.
+/// Messages of a run with a sample that cannot be assembled.
 pub(super) fn explained(study: &Study, error: RunError) -> RunError {
     match error {
         RunError::Simulation(source @ SimulationError::Assembly { .. }) if study.domain.dimension() > 0 => {

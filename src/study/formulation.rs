@@ -42,7 +42,7 @@ const MOST_LOOKS: f64 = 10_000.0;
 /// Eliminations of the start.
 const ELIMINATIONS: usize = 3;
 
-/// Most bodies for which a whole model is compiled to be checked; what is larger is only assembled.
+/// Most bodies for which a whole model is compiled to be checked; larger models are only assembled.
 const FEW_BODIES: usize = 50;
 
 /// Builds and compiles a model in the formulation that it asks for, or in the shorter one. A formulation that takes too many operations
@@ -83,7 +83,7 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
             };
         }
     };
-    // What is singular in one formulation may be regular in the other.
+    // A position singular in one formulation may be regular in the other.
     let Ok(mut joint) = compile(joint) else { return Ok(compile(absolute)?) };
     if joint.system.space.spatial && joint.system.is_mass_left_out() {
         joint.system.formulation.why =
@@ -138,7 +138,7 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
     if !absolute.mobility.singular_at_start.is_empty() {
         return keep(absolute, "the start is singular".to_owned());
     }
-    // Joint coordinates do not have them, and would not show what they leave undetermined.
+    // Joint coordinates do not have them, and would not show the undetermined ones.
     if !absolute.mobility.redundant.is_empty() {
         return keep(absolute, "constraints are redundant".to_owned());
     }

@@ -1,4 +1,4 @@
-//! Errors of this program itself: a panic costs what was being computed, and nothing else.
+//! Errors of this program itself: a panic costs the current computation, and nothing else.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook, take_hook};
@@ -16,7 +16,7 @@ static LAST: Mutex<Option<String>> = Mutex::new(None);
     env!("CARGO_PKG_VERSION")
 )]
 pub struct InternalError {
-    /// What was being computed.
+    /// Computation that panicked.
     stage: String,
     /// The panic's message, and where known its place in the source.
     message: String,

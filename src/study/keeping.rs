@@ -24,7 +24,7 @@ impl Study<'_> {
         self.request.methods_mut().into_iter().try_for_each(|(_, method)| method.fit(&problem))
     }
 
-    /// What is kept of a run, with the errors of its values in the first `rows` rows; where it is to be kept and is known.
+    /// Surrogate kept of a run, with the errors of its values in the first `rows` rows; where requested and known.
     pub(super) fn kept(&self, results: &mut Results, rows: usize) -> Option<KeptPart> {
         if !self.request.keep {
             return None;

@@ -46,7 +46,7 @@ struct Placed {
     requirements: Vec<usize>,
 }
 
-/// Evaluates what is kept of a run.
+/// Evaluates the kept surrogate of a run.
 pub struct Evaluator<'k> {
     kept: &'k Kept,
     /// By subsystem, for each choice of independent coordinates.

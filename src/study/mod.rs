@@ -92,7 +92,7 @@ pub struct Options<'a> {
     pub disk: &'a (dyn Fn(u64) + Sync),
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
-    /// Told what is being done, in a few words, whenever something else begins.
+    /// Called with the current activity, in a few words, whenever it changes.
     pub stage: &'a (dyn Fn(&str) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
@@ -142,7 +142,7 @@ pub enum RunError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs every method asked for. A sample that stops early ends the bounds there that need it: what was reached is returned, and
+/// Runs every method asked for. A sample that stops early ends the bounds there that need it: the rows reached are returned, and
 /// the summary's `failure` says what happened. So it does where a method panics: the other methods' bounds are kept.
 ///
 /// # Errors
@@ -194,7 +194,7 @@ fn scheme(description: &Description) -> Scheme {
     Scheme::Hht { alpha: description.simulation.alpha }
 }
 
-/// Step size for what is computed before the first step.
+/// Step size for computations before the first step.
 fn first_step(description: &Description) -> f64 {
     match description.simulation.stepping {
         Stepping::Fixed(step) => step,

@@ -14,7 +14,7 @@ pub(super) struct Outcome {
     pub summary: MethodSummary,
 }
 
-/// What is known of contacts and kinks in the equations, and its line in the summary.
+/// Contacts and kinks in the equations, with their line in the summary.
 pub(super) type Switches = (SwitchSearch, MethodSummary);
 
 /// What one schedule yields.
@@ -22,7 +22,7 @@ pub(super) struct Results {
     pub schedule: Schedule,
     /// The first row before which a step does not resolve a function of the time.
     pub unresolved_from: Option<usize>,
-    /// What is known of contacts and kinks, where the equations have any.
+    /// Contacts and kinks, where the equations have any.
     pub switches: Option<Switches>,
     /// Fast modes that the start excites and the steps damp.
     pub damped: Vec<ExcitedMode>,
@@ -36,7 +36,7 @@ pub(super) struct Results {
     pub halved: Vec<(Method, Outcome)>,
     /// What this program did wrong; of what failed nothing is known.
     pub internal: Vec<InternalError>,
-    /// What is one number a motion.
+    /// Reduced outputs.
     pub found: Found,
 }
 

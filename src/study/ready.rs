@@ -1,4 +1,4 @@
-//! The one way up to the start: what `check` accepts is what a run begins to simulate.
+//! The one way up to the start: `check` accepts the models that a run begins to simulate.
 
 use super::ensemble::Stored;
 use super::price::Price;
@@ -21,14 +21,14 @@ pub(super) struct Studied<'s> {
 }
 
 impl Studied<'_> {
-    /// What it takes, where that is to be asked for.
+    /// The price, where a run asks before it begins.
     fn asked(&self, description: &Description) -> Option<Price> {
         self.price.is_costly(description.bounds.budget.simulations).then_some(self.price)
     }
 }
 
-/// Reduces and compiles a model, and fits the methods to its subsystems; where surrogates are kept, the method that has them. All that can
-/// be refused is, before the first is run.
+/// Reduces and compiles a model, and fits the methods to its subsystems; where surrogates are kept, the method that has
+/// them. Every refusal comes before the first subsystem is run.
 ///
 /// # Errors
 /// Where a subsystem cannot be built, assembled or bounded; where the run takes long, and nobody has allowed it.
@@ -81,7 +81,7 @@ pub struct Ready {
     pub is_whole: bool,
     /// Parts that no output depends on.
     pub left_out: Vec<String>,
-    /// What a run takes, where it asks before it begins.
+    /// Of a run, where it asks before it begins.
     pub price: Option<Price>,
 }
 
@@ -114,7 +114,7 @@ pub fn ready(description: &Description) -> Result<Ready, RunError> {
     })
 }
 
-/// Builds a whole model's equations, with the parts that no output depends on: what is wrong there is wrong.
+/// Builds a whole model's equations, with the parts that no output depends on: errors there are errors of the model.
 ///
 /// # Errors
 /// Where they cannot be built.

@@ -181,7 +181,7 @@ impl Trajectories<'_> {
         closed
     }
 
-    /// Simulates what is missing of the parts, or leaves all of it to shards.
+    /// Simulates the missing parts, or leaves all of them to shards.
     fn store(&self, motions: &[Motions], size: usize, closed: &[bool]) -> Result<(), SimulationError> {
         let mut deferred = false;
         for (number, (study, motions)) in self.studies.iter().zip(motions).enumerate() {

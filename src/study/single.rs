@@ -18,7 +18,7 @@ use crate::simulate::{
     Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance,
 };
 
-/// A compiled subsystem, and what is asked of it.
+/// A compiled subsystem, and its questions.
 pub(super) struct Study<'a> {
     pub(super) description: &'a Description,
     pub(super) simulator: Simulator,
@@ -28,12 +28,12 @@ pub(super) struct Study<'a> {
     pub(super) time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
     pub(super) certify_time: bool,
-    /// Where outputs are reduced to one number: what is accumulated for that, and what samples were reduced to.
+    /// Reductions of outputs to one number, and their values in samples, if any.
     pub(super) store: OnceLock<Store>,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
-    /// Told what is being done.
+    /// Called with the current activity.
     pub(super) stage: &'a (dyn Fn(&str) + Sync),
-    /// Whether what is finished is enough.
+    /// Whether to stop with the finished parts.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
     /// Where simulations are stored, if they are.
     pub(super) stored: Option<Stored<'a>>,
@@ -279,7 +279,7 @@ impl<'a> Study<'a> {
         Ok(outcome)
     }
 
-    /// What is left of a subsystem whose study panicked.
+    /// Result of a subsystem whose study panicked.
     pub(super) fn lost(&self, error: InternalError) -> Result<Ran, SimulationError> {
         let simulation = &self.description.simulation;
         let schedule = Schedule::fixed(simulation.duration, simulation.output_step, simulation.output_step);

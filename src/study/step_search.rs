@@ -7,7 +7,7 @@ use crate::simulate::{Integration, Schedule};
 /// Share of the tolerance that the steps may take; the surrogate has the rest.
 pub(super) const SHARE: f64 = 0.5;
 
-/// The share that is aimed at, so that what is found is within that with some room.
+/// The target share, so that the result is within the tolerance with some room.
 const AIM: f64 = 0.4;
 
 /// Steps are joined where they take less than this share.
@@ -97,7 +97,7 @@ impl StepSearch {
         other
     }
 
-    /// Parts that would bring an error down, or up, to what is aimed at.
+    /// Parts that would bring an error down, or up, to the target.
     fn parts_for(&self, error: f64) -> f64 {
         match self.integration.order() {
             2 => (error / AIM).sqrt(),

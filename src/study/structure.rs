@@ -15,8 +15,8 @@ use crate::reduce::Reduction;
 use crate::results::{KindCount, MassRange, MobilityCount, Structure};
 use crate::simulate::Assembled;
 
-/// Assembles a whole model, with the parts that no output depends on, and nothing merged, and counts what it has. Where those parts have no
-/// start, of what is simulated.
+/// Assembles a whole model, with the parts that no output depends on, and nothing merged, and counts its parts. Where
+/// parts that no output depends on have no start, without them.
 ///
 /// # Errors
 /// Where the mechanism cannot be built or assembled.

@@ -25,7 +25,7 @@ use crate::simulate::{SimulationError, Simulator};
 
 /// A subsystem, compiled.
 pub struct Prepared {
-    /// What it is.
+    /// Model of the subsystem.
     pub subsystem: Subsystem,
     /// Its programs.
     pub simulator: Simulator,
@@ -60,7 +60,7 @@ impl Prepared {
     }
 }
 
-/// Reduces a model to what has to be simulated, and compiles that.
+/// Reduces a model to its simulated part, and compiles that.
 ///
 /// # Errors
 /// Where a subsystem cannot be built or assembled.

@@ -1,5 +1,5 @@
-//! Formulas that YAML cuts at their commas: between braces, `torque: max(a, b)` is `torque: max(a`, and a key `b)`. The pieces are
-//! put together again, so that the message is about the comma, and not what follows from it.
+//! Formulas that YAML cuts at their commas: between braces, `torque: max(a, b)` is `torque: max(a`, and a key `b)`.
+//! The pieces are put together again, so that the message is about the comma, and not what follows from it.
 
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::source::Span;

@@ -1,4 +1,4 @@
-//! What is wrong with a model, and where: collected, not thrown one by one.
+//! Diagnostics of a model with their locations: collected, not thrown one by one.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -13,7 +13,7 @@ use super::source::{Sources, Span, Within};
 pub enum Severity {
     /// The model cannot be used.
     Error,
-    /// The model can be used, but probably does not say what was meant.
+    /// The model can be used, but something is probably not meant as written.
     Warning,
 }
 
@@ -22,7 +22,7 @@ pub enum Severity {
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// What is wrong, in one line.
+    /// Description in one line.
     pub message: String,
     /// Where; absent where the file as a whole is meant.
     pub span: Option<Span>,
@@ -99,7 +99,7 @@ pub struct Diagnostics {
 pub struct Record {
     /// An error or a warning.
     pub severity: Severity,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// Name of the text.
     pub file: String,
@@ -124,7 +124,7 @@ impl Diagnostics {
 
     /// Adds one that is not there yet; of a copy, with the place of the instance that it is of, and of those around it.
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
-        // One text may be read several times, one after the other: for each component of what it is turned into.
+        // One text may be read several times, one after the other: for each component of its expansion.
         let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.message == diagnostic.message;
         if self.names_lost && diagnostic.is_of_unknown_name() || self.items.iter().rev().take(8).any(is_same) {
             return;
@@ -143,7 +143,7 @@ impl Diagnostics {
         let result = read(&mut own);
         let moved = |span: Span| start + span.start..start + span.end;
         self.items.extend(own.items.into_iter().map(|found| Diagnostic {
-            // What is said of the file as a whole is said of its beginning.
+            // A diagnostic of the whole file points to its beginning.
             span: Some(moved(found.span.clone().unwrap_or(0..0))),
             secondary: found.secondary.iter().map(|(span, label)| (moved(span.clone()), label.clone())).collect(),
             ..found
@@ -178,8 +178,8 @@ impl Diagnostics {
         }
     }
 
-    /// Of those behind the `first`, which were found in a scene: forgets what was said before, and points to the scene from the
-    /// others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
+    /// Of those behind the `first`, which were found in a scene: removes repetitions, and points to the scene
+    /// from the others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
     pub(crate) fn found_in_scene(&mut self, first: usize, name: &Span, whole: &Span) {
         let found = self.items.split_off(first);
         let key = |diagnostic: &Diagnostic| (diagnostic.span.clone(), diagnostic.message.clone());

@@ -1,14 +1,15 @@
 //! How an instance stands in the model: mirrored, then turned, then moved.
 //!
-//! A place s of the instance is at r = g + R D s: D has the signs of its mirrors, R and g are what its parameters `at.model.x`, `at.model.y`,
-//! `at.model.z`, and `at.model.angle` or the Euler parameters `at.model.p0` … `at.model.p3` say. Here are the formulas of that, as text.
+//! A place s of the instance is at r = g + R D s: D has the signs of its mirrors, R and g are what its parameters
+//! `at.model.x`, `at.model.y`, `at.model.z`, and `at.model.angle` or the Euler parameters `at.model.p0` …
+//! `at.model.p3` say. Here are the formulas of that, as text.
 
 use super::mirrors::Mirrors;
 
 /// Three components, or rows of them, as text.
 pub type Vector = [String; 3];
 
-/// How an instance stands; of the place only what is not zero is known by a parameter.
+/// How an instance stands; only nonzero parts of the placement have parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
     /// D

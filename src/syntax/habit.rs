@@ -2,7 +2,7 @@
 
 use super::diagnostic::{Diagnostic, Severity};
 
-/// Diagnostics with equal habits differ in their places, and in what has no such part.
+/// Diagnostics with equal habits differ in their locations and in the owner of the missing part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Habit<'d> {
     severity: Severity,
@@ -22,7 +22,7 @@ impl<'d> Habit<'d> {
     }
 }
 
-/// What has no part of some name, in "body `crank` has no `angel`", or is not used.
+/// The owner of the missing part, in "body `crank` has no `angel`", or is not used.
 pub fn owner(message: &str) -> Option<&str> {
     around_owner(message).map(|(_, owner, _)| owner)
 }

@@ -1,10 +1,10 @@
 //! Text from files, made harmless for a terminal.
 //!
-//! A name may hold characters that move the cursor, set the window's title or reverse the line. Everything that is shown to people goes
-//! through [`harmless`]; files for other programs (CSV, JSON) keep names as they are.
+//! A name may hold characters that move the cursor, set the window's title or reverse the line. Everything that is
+//! shown to people goes through [`harmless`]; files for other programs (CSV, JSON) keep names as they are.
 
-/// The text with every control character (but line ends and tabs), and every character that changes the direction of writing or breaks
-/// lines, replaced by U+FFFD.
+/// The text with every control character (but line ends and tabs), and every character that changes the direction of
+/// writing or breaks lines, replaced by U+FFFD.
 pub fn harmless(text: &str) -> String {
     text.replace(is_harmful, "\u{fffd}")
 }

@@ -1,6 +1,7 @@
 //! Axes across which something is mirrored.
 
-/// Reflections at planes through the origin, one for each axis at most: a mirror in the same mirror shows the original again.
+/// Reflections at planes through the origin, one for each axis at most: a mirror in the same mirror shows the original
+/// again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mirrors([bool; 3]);
 

@@ -32,8 +32,8 @@ const LONG_LINE: usize = 400;
 const LONG_HELP: usize = 100;
 
 impl Diagnostics {
-    /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty. The only control
-    /// characters are those of the colours.
+    /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty.
+    /// The only control characters are those of the colours.
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let mut text = String::new();
@@ -210,7 +210,7 @@ impl<'d> Excerpt<'d> {
         let Place { line, column } = self.source.place(mark);
         let start = text[..first].rfind('\n').map_or(0, |newline| newline + 1);
         let end = text[last..].find('\n').map_or(text.len(), |newline| last + newline);
-        // What is rendered of very long lines begins and ends near the marks.
+        // Very long lines are cut near the marks.
         let cut_start = match text[start..first].char_indices().rev().nth(LONG_LINE - 1) {
             Some((offset, _)) => start + offset,
             None => start,

@@ -1,4 +1,5 @@
-//! What names stand for in a copy of a piece of a file: in an instance of an assembly, or in one of several repetitions.
+//! What names stand for in a copy of a piece of a file: in an instance of an assembly, or in one of several
+//! repetitions.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -9,8 +10,8 @@ use super::frame::Frame;
 
 /// The instance and the indices of a copy.
 ///
-/// In an instance every name is one of the instance, but for the ground of a part that is not placed; what means something by itself
-/// (`t`, `energy`) the reader knows. A repetition outside of instances has no prefix.
+/// In an instance every name is one of the instance, but for the ground of a part that is not placed; what means
+/// something by itself (`t`, `energy`) the reader knows. A repetition outside of instances has no prefix.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
     /// The instance's name with a dot behind it, `front_left.`; empty outside of instances.
@@ -27,7 +28,7 @@ pub struct Scope {
     frame: Option<Frame>,
 }
 
-/// What does not move.
+/// Bodies that do not move.
 const GROUND: &str = "ground";
 
 impl Scope {
@@ -109,7 +110,8 @@ impl Scope {
         }
     }
 
-    /// A name that may have braces, as all others know it; what is wrong in the braces was reported when the copy was made.
+    /// A name that may have braces, as all others know it; errors in the braces were reported when the copy was
+    /// made.
     pub fn reference(&self, text: &str) -> String {
         let filled = indices::fill(text, &|name| self.whole(name));
         self.full(&filled.unwrap_or_else(|_| text.to_owned()))

@@ -11,7 +11,7 @@ use super::harmless::harmless;
 /// Bytes of the texts that were read.
 pub type Span = Range<usize>;
 
-/// A text and what it is called.
+/// A text and its name.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// Path, or the command-line option that the text came with; harmless to a terminal.
@@ -54,7 +54,7 @@ struct Placed {
 pub struct Within {
     /// Its full name.
     pub instance: String,
-    /// What it is an instance of.
+    /// Assembly of the instance.
     pub of: String,
     /// Where it is asked for.
     pub span: Span,
@@ -67,8 +67,8 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Adds a text and gives the offset of its first byte. A text that is there already, as a file that several scenes name,
-    /// is not added again.
+    /// Adds a text and gives the offset of its first byte. A text that is there already, as a file that several scenes
+    /// name, is not added again.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
         let (name, text) = (harmless(&name.into()).replace('\n', "\u{fffd}"), text.into());
         let known =
@@ -80,7 +80,8 @@ impl Sources {
         self.place_at_end(Arc::new(Source { name, text, lines }), None)
     }
 
-    /// Places the text of a span once more, for a copy of it: how far the copy's spans lie behind those of the original.
+    /// Places the text of a span once more, for a copy of it: how far the copy's spans lie behind those of the
+    /// original.
     pub fn copy(&mut self, original: &Span, within: Within) -> usize {
         let Some(placed) = self.placed(original) else { return 0 };
         let (first, source) = (placed.start, Arc::clone(&placed.source));

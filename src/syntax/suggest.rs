@@ -43,8 +43,8 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
         .map(|(_, candidate)| candidate)
 }
 
-/// Help for an unknown name: the nearest known one, or all, or those of many that are most alike. `kind` is their plural: `bodies`.
-/// `None` where no known name is short enough to be shown.
+/// Help for an unknown name: the nearest known one, or all, or those of many that are most alike. `kind` is their
+/// plural: `bodies`. `None` where no known name is short enough to be shown.
 pub fn help<'c>(name: &str, kind: &str, known: impl IntoIterator<Item = &'c str>) -> Option<String> {
     help_beside(name, kind, known, &[])
 }

@@ -1,7 +1,7 @@
 //! The text of a file, or why it cannot be read.
 
 use std::fs;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 use super::diagnostic::Diagnostic;
@@ -22,9 +22,22 @@ pub(crate) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic
     text_of(fs::File::open(path).map_err(cannot)?, most)
 }
 
+/// The bytes of a regular file of at most so many: a pipe or a device may have no end.
+pub(crate) fn regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("it has more than {} MB", most / 1_000_000)));
+    }
+    Ok(bytes)
+}
+
 /// The text that can be read somewhere, of at most so many bytes.
 pub(crate) fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> {
-    // What is not a regular file (a pipe) says no length: never read more than allowed.
+    // A file that is not regular (a pipe) has no length: never read more than allowed.
     let mut bytes = Vec::new();
     source.take(most + 1).read_to_end(&mut bytes).map_err(cannot)?;
     if bytes.len() as u64 > most {
@@ -46,10 +59,10 @@ pub(crate) fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagno
     })
 }
 
-fn cannot(error: std::io::Error) -> Box<Diagnostic> {
+fn cannot(error: io::Error) -> Box<Diagnostic> {
     let reason = match error.kind() {
-        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
         _ => error.to_string(),
     };
     Box::new(Diagnostic::of_file(format!("the file cannot be read: {reason}")))

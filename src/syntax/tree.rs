@@ -14,7 +14,7 @@ use super::source::Span;
 pub struct Node {
     /// Its bytes.
     pub span: Span,
-    /// What it is.
+    /// Kind of the node.
     pub value: Value,
 }
 
@@ -54,7 +54,7 @@ pub struct Scalar {
 }
 
 impl Scalar {
-    /// A text without quotes that means what it says.
+    /// A text without quotes, taken literally.
     pub fn plain(text: impl Into<String>, start: Option<usize>) -> Self {
         Self { text: text.into(), plain: true, start, scope: None }
     }
@@ -76,7 +76,7 @@ impl Scalar {
     /// The text with the values of its indices.
     ///
     /// # Errors
-    /// For what is wrong in its braces.
+    /// For errors in its braces.
     pub fn filled(&self) -> Result<String, SyntaxError> {
         indices::fill(&self.text, &|name| self.scope.as_ref()?.whole(name))
     }
@@ -157,7 +157,7 @@ impl Node {
         self.scalar().is_some_and(Scalar::is_null)
     }
 
-    /// What it is, for messages.
+    /// Noun for messages.
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Scalar(scalar) if scalar.is_null() => "nothing",

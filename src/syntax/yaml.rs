@@ -1,7 +1,7 @@
 //! YAML text → a tree whose every node knows its place.
 //!
 //! Of YAML, a model file uses scalars, sequences and mappings in one document. Anchors, aliases, tags and several
-//! documents are refused: a model is read by people, and what stands in a place is what is meant there.
+//! documents are refused: a model is read by people, and read as it is written.
 
 use std::collections::HashMap;
 

@@ -73,3 +73,18 @@ fn unsafe_code_is_forbidden_in_every_crate_but_one() {
         .collect();
     assert_eq!(crates.iter().collect::<Vec<_>>(), ["mbint-derive", "symdiff"], "a new crate forbids it, too");
 }
+
+/// A tag can be moved to other code.
+#[test]
+fn workflows_name_actions_by_commit() {
+    let workflows = fs::read_dir(Path::new(ROOT).join(".github/workflows")).unwrap();
+    let texts: Vec<String> = workflows.map(|entry| fs::read_to_string(entry.unwrap().path()).unwrap()).collect();
+    let lines = texts.iter().flat_map(|text| text.lines()).map(str::trim);
+    let used: Vec<&str> = lines.filter_map(|line| line.trim_start_matches("- ").strip_prefix("uses:")).collect();
+    let is_commit = |action: &str| {
+        let commit = action.split_once('@').map_or("", |(_, rest)| rest.split(' ').next().unwrap_or(""));
+        commit.len() == 40 && commit.chars().all(|c| c.is_ascii_hexdigit())
+    };
+    let others: Vec<&&str> = used.iter().filter(|action| !is_commit(action)).collect();
+    assert!(used.len() > 10 && others.is_empty(), "{others:?}");
+}

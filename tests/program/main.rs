@@ -30,5 +30,6 @@ mod show;
 mod snapshot;
 mod statistics;
 mod structure;
+mod submit;
 mod tables;
 mod tolerance_forms;

@@ -46,9 +46,11 @@ impl Place {
         fs::write(path, short).unwrap();
     }
 
+    /// Names of what is in a folder, but for the list of what is mbint's.
     pub fn files(&self, folder: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path().join(folder)).unwrap();
         let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.retain(|name| name != ".mbint.json");
         names.sort();
         names
     }

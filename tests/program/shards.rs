@@ -133,6 +133,34 @@ fn a_run_goes_on_from_what_is_stored() {
     assert_eq!(place.files("kept/parts"), names);
 }
 
+/// A pendulum whose reduced outputs need simulations of their own: Taylor's method has none of its samples for them.
+#[test]
+fn simulations_for_reduced_outputs_count_wherever_they_come_from() {
+    let place = Place::new();
+    let bounds = "bounds: { tolerance: 1e-3, chebyshev: {}, scan: { points: 9 } }";
+    let text = PENDULUM.replace(bounds, "bounds: { taylor: { order: 2 } }");
+    assert_ne!(text, PENDULUM);
+    fs::create_dir(place.path().join("models")).unwrap();
+    fs::write(place.path().join("models/pendulum.yaml"), text).unwrap();
+    place.run("run models/pendulum.yaml -o direct -q", 0);
+    let direct = tree(&place.path().join("direct"));
+    let summary = fs::read_to_string(place.path().join("direct/whole/summary.json")).unwrap();
+    assert!(summary.contains("reduced outputs"), "{summary}");
+    for folder in ["stored", "resumed"] {
+        place.run(&format!("run models/pendulum.yaml -o {folder} -q --store kept"), 0);
+        assert_eq!(direct, tree(&place.path().join(folder)), "{folder}");
+    }
+    place.run("plan models/pendulum.yaml -o study --at-once 0", 0);
+    finish(&place, "study", 0);
+    assert_eq!(direct, tree(&place.path().join("study-results")));
+    // Merged elsewhere.
+    fs::create_dir(place.path().join("elsewhere")).unwrap();
+    let mut merge = place.command("merge ../study -o ../merged -q");
+    let merged = merge.current_dir(place.path().join("elsewhere")).output().unwrap();
+    assert_eq!(merged.status.code(), Some(0), "{}", String::from_utf8_lossy(&merged.stderr));
+    assert_eq!(direct, tree(&place.path().join("merged")));
+}
+
 /// A ball thrown up: reduced outputs, requirements, statistics; its pull comes from a table.
 const THROWN: &str = "
 model: thrown

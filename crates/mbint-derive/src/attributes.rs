@@ -44,7 +44,7 @@ impl Struct {
     }
 }
 
-/// What is there where a key is not.
+/// Value of a key that the file does not give.
 pub enum Absent {
     /// An error.
     Required,
@@ -52,7 +52,7 @@ pub enum Absent {
     Nothing,
     /// A value.
     Default(TokenStream),
-    /// A value made of the fields before it, and what it is in words.
+    /// A value computed from the fields before it, and its description.
     Computed(LitStr, Expr),
 }
 

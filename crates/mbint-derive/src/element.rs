@@ -6,7 +6,7 @@ use syn::{Data, DeriveInput, Field, Fields, LitStr, Result};
 
 use crate::attributes::{Absent, Key, Struct};
 
-/// A field with what is said of it.
+/// A field with its attributes.
 struct Part<'a> {
     field: &'a Field,
     key: Key,
@@ -39,7 +39,7 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
     let role = match (&about.keyword, &about.what) {
         (Some(keyword), Some(what)) => element(ident, &about, keyword, what)?,
         (Some(keyword), None) => {
-            return Err(syn::Error::new_spanned(keyword, "say what it is, for messages: `what = \"a …\"`"));
+            return Err(syn::Error::new_spanned(keyword, "describe it for messages: `what = \"a …\"`"));
         }
         (None, Some(what)) => mapping(ident, &about, what),
         (None, None) => TokenStream::new(),

@@ -1,4 +1,4 @@
-//! Derives what `mbint` needs of an element from its struct: reader, schema, documentation, and what it refers to.
+//! Derives an element's reader, schema, documentation and references from its struct.
 //!
 //! ```text
 //! /// A drive that controls a joint's coordinate.                     description
@@ -13,11 +13,13 @@
 //! }
 //! ```
 //!
-//! `equation` may be repeated; `short = "key"` lets a list stand for the mapping with that key alone. A struct without `keyword` is a
-//! mapping within an element where it says `what`, and else a group of keys. `checked` calls the struct's
-//! `grammar::Checked`. Of a key: `default = …`, `otherwise = "in words"` of an `Option`, `default_with("in words", expression of earlier keys)`, `constant`, `time` or `command` for
-//! what its formula may depend on, `dimension = …` where its unit depends on earlier keys, `above = key` of an earlier key that must be smaller, `positive`, `nonnegative`, `nonzero` or `requires = REQUIREMENT`. A `#[derived]` field is no key;
-//! it is its type's default, and an `Option` of something that has `formulas()`.
+//! `equation` may be repeated; `short = "key"` lets a list stand for the mapping with that key alone. A struct without
+//! `keyword` is a mapping within an element where it says `what`, and else a group of keys. `checked` calls the
+//! struct's `grammar::Checked`. Of a key: `default = …`, `otherwise = "in words"` of an `Option`, `default_with("in
+//! words", expression of earlier keys)`, `constant`, `time` or `command` for what its formula may depend on,
+//! `dimension = …` where its unit depends on earlier keys, `above = key` of an earlier key that must be smaller,
+//! `positive`, `nonnegative`, `nonzero` or `requires = REQUIREMENT`. A `#[derived]` field is no key; it is its type's
+//! default, and an `Option` of something that has `formulas()`.
 
 #![forbid(unsafe_code)]
 

@@ -1,7 +1,7 @@
 //! Hash-consed expressions, symbolic derivatives, and tapes of instructions evaluated over tiles of samples.
 //!
-//! The data flow: text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → [`lower`] → [`Tape`]s → numbers in a [`Tile`],
-//! polynomials in a [`JetMemory`], or enclosures in a [`ModelMemory`].
+//! The data flow: text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → [`lower`] → [`Tape`]s → numbers in a
+//! [`Tile`], polynomials in a [`JetMemory`], or enclosures in a [`ModelMemory`].
 //!
 //! ```
 //! use symdiff::{Builder, Input, Tile, lower};

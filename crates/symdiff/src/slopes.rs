@@ -7,8 +7,8 @@ use crate::lower::{Input, lower};
 /// Symbols by which the derivatives are taken at once.
 const BLOCK: usize = 31;
 
-/// ∂of/∂by where each symbol has the value that `value_of` gives it: a row for each of `of`. A derivative takes a few operations for each
-/// expression, where its own expression would have to be written down.
+/// ∂of/∂by where each symbol has the value that `value_of` gives it: a row for each of `of`. A derivative takes a few
+/// operations for each expression, where its own expression would have to be written down.
 pub fn slopes(graph: &Graph, of: &[Expr], by: &[Expr], value_of: impl Fn(Expr) -> f64) -> Vec<Vec<f64>> {
     let symbols = graph.symbols_of(of);
     let inputs: Vec<Input> =

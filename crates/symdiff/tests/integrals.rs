@@ -1,4 +1,4 @@
-//! Antiderivatives: their derivatives are what they are of, and they are zero at zero.
+//! Antiderivatives: their derivatives are the integrands, and they vanish at zero.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 

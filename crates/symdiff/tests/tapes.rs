@@ -27,7 +27,7 @@ enum Step {
 fn step() -> impl Strategy<Value = Step> {
     use Unary::*;
     let unary = prop::sample::select(vec![Neg, Sin, Cos, Tan, Asin, Acos, Atan, Sqrt, Exp, Log, Abs, Tanh, Sign]);
-    // Sums and products most often: what is fused.
+    // Sums and products most often, since these are fused.
     let binary = prop_oneof![
         6 => prop::sample::select(vec![Binary::Add, Binary::Sub, Binary::Mul]),
         1 => prop::sample::select(vec![Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min, Binary::Max, Binary::Select, Binary::SelectElse]),

@@ -46,8 +46,8 @@ fn touching(between: [PointRef; 2]) -> Contact {
     }
 }
 
-/// What pulls, touches, meshes and presses without loss: its power is minus the rate of its energy. Radii and lengths are
-/// such that it acts wherever the bodies are, and nowhere just at its corner.
+/// What pulls, touches, meshes and presses without loss: its power is minus the rate of its energy. Radii and lengths
+/// are such that it acts wherever the bodies are, and nowhere just at its corner.
 #[test]
 fn what_takes_nothing_has_its_potential() {
     let m = two_bodies();

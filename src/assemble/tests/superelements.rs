@@ -11,7 +11,8 @@ use crate::elements::effects::matrices::Matrices;
 use crate::grammar::Components;
 use crate::model::{Gravity, Rotation, Superelement};
 
-/// Made-up symmetric matrices with large diagonals; no body has such a mass, but every law that is tested here holds for any.
+/// Made-up symmetric matrices with large diagonals; no body has such a mass, but every law that is tested here holds
+/// for any.
 fn matrices(nodes: Vec<[f64; 3]>, modes: usize) -> Matrices {
     let size = 6 * nodes.len() + modes;
     let entry = |seed: f64, i: usize, j: usize| {
@@ -71,7 +72,8 @@ fn forces_have_their_potential() {
     }
 }
 
-/// M w and what depends on velocities is d/dt ∂T/∂v − ∂T/∂q, but for what acts along Euler parameters, and T is ½ vᵀ M v.
+/// M w and what depends on velocities is d/dt ∂T/∂v − ∂T/∂q, but for what acts along Euler parameters, and T is ½ vᵀ M
+/// v.
 #[test]
 fn inertia_agrees_with_lagrange() {
     for is_spatial in [false, true] {

@@ -18,7 +18,7 @@ use crate::simulate::SimulationError;
 use crate::store::Missing;
 use crate::study::{self, Chosen, RunError};
 
-/// What is sampled, and where the samples go.
+/// The samples and their destination.
 pub(super) struct Sampling<'s> {
     pub model: &'s Path,
     pub overrides: &'s [Override],
@@ -86,7 +86,7 @@ impl From<ExportError> for Ended {
 }
 
 impl Sampling<'_> {
-    /// Simulates what is missing and writes the file; leaves to shards what takes long where the study says so.
+    /// Simulates missing samples and writes the file; leaves long tasks to shards where the study says so.
     ///
     /// # Errors
     /// Where the model, the points or the file are wrong, or a simulation fails.

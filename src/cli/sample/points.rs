@@ -11,7 +11,7 @@ use crate::store::AskedPoints;
 /// Most points of a design.
 const MOST: usize = 1 << 32;
 
-/// What was asked for.
+/// The request.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) enum Points {
     /// Evenly over the tolerances.

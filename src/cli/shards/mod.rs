@@ -22,7 +22,7 @@ fn failed(error: &StoreError) -> Failure {
     Failure::Failed(error.to_string())
 }
 
-/// `mbint plan`: decides what is to be simulated, and cuts it into shards.
+/// `mbint plan`: lists the simulations, and cuts them into shards.
 pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Failure> {
     let folder = StudyFolder::new(&args.output);
     let points = sampling::asked(&args.points)?;
@@ -134,7 +134,7 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     if super::interrupt::asked() { Ok(Status::Interrupted) } else { Ok(Status::Done) }
 }
 
-/// `mbint status`: what is missing of a plan.
+/// `mbint status`: the missing parts of a plan.
 pub(super) fn status(args: &StatusArgs, console: &mut Console) -> Result<Status, Failure> {
     let folder = StudyFolder::new(&args.study);
     let plan = folder.plan().map_err(|error| failed(&error))?;
@@ -197,7 +197,7 @@ fn overrides(asked: &Asked) -> Result<Vec<Override>, Failure> {
     asked.set.iter().map(parse).collect()
 }
 
-/// Number of shards, what they take on one core, and their size on the disk.
+/// Number of shards, their time on one core, and their size on the disk.
 fn overview(shards: &[Shard]) -> String {
     let simulations: usize = shards.iter().map(|shard| shard.simulations).sum();
     let seconds = shards.iter().fold(0.0, |sum, shard| sum + shard.seconds);

@@ -23,7 +23,7 @@ pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
     Ok(args.design.clone().map(|design| AskedPoints::Design { design, seed: args.seed }))
 }
 
-/// Simulates or defers what is missing of a study's samples, and writes them where a file is given.
+/// Simulates or defers the missing samples of a study, and writes them where a file is given.
 pub(super) fn simulate(
     asked: &Asked,
     kept: &KeptRun,

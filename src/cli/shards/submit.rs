@@ -8,6 +8,7 @@ use crate::cli::args::SubmitArgs;
 use crate::cli::console::{Console, count};
 use crate::cli::{Failure, Status};
 use crate::store::StudyFolder;
+use crate::syntax::is_harmful;
 
 /// Most tasks of an array that every cluster takes: Slurm's default `MaxArraySize` less one.
 const MOST_TASKS: usize = 1000;
@@ -22,6 +23,7 @@ pub(in crate::cli) fn submit(args: &SubmitArgs, console: &mut Console) -> Result
         std::path::absolute(&args.study).map_err(|error| failed(format!("{}: {error}", args.study.display())))?;
     let output = args.output.as_ref().map(std::path::absolute).transpose();
     let output = output.map_err(|error| failed(error.to_string()))?;
+    [Some(&folder), output.as_ref()].into_iter().flatten().try_for_each(|path| takes(path)).map_err(Failure::Wrong)?;
     let program = std::env::current_exe().map_err(|error| failed(format!("where this program is: {error}")))?;
     let study = StudyFolder::new(&folder);
     let plan = study.plan().map_err(|error| failed(error.to_string()))?;
@@ -54,7 +56,7 @@ impl Job<'_> {
         let tasks = missing.len().min(MOST_TASKS);
         let list = self.write("shards", &missing.iter().map(|number| format!("{number}\n")).collect::<String>())?;
         let (program, folder) = (quoted(&self.program), quoted(&self.folder));
-        let mut script = self.head("shards", "%A_%a");
+        let mut script = head("shards");
         let _ = write!(
             script,
             "#SBATCH --array=0-{last}\n\
@@ -72,7 +74,7 @@ impl Job<'_> {
             last = tasks - 1,
             list = quoted(&list),
         );
-        self.sbatch("array.sh", &script, None)
+        self.sbatch(("array.sh", "shards-%A_%a"), &script, None)
     }
 
     /// Merging, when all tasks of the array ended; it submits the next round where there is one.
@@ -81,7 +83,7 @@ impl Job<'_> {
         let output = self.output.as_ref().map_or_else(String::new, |output| format!(" --output {}", quoted(output)));
         let options: String = self.options.iter().map(|option| format!(" {}", quoted(Path::new(option)))).collect();
         let options = if options.is_empty() { options } else { format!(" --{options}") };
-        let mut script = self.head("merge", "%j");
+        let mut script = head("merge");
         let _ = write!(
             script,
             "\n{program} merge {folder}{output} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n\
@@ -90,15 +92,7 @@ impl Job<'_> {
              if [ $status -eq 75 ]; then exec {program} submit {folder} --slurm{output}{options}; fi\n\
              exit $status\n"
         );
-        self.sbatch("merge.sh", &script, array)
-    }
-
-    fn head(&self, what: &str, log: &str) -> String {
-        let logs = self.folder.join(format!("logs/round-{}-{what}-{log}.log", self.round));
-        format!(
-            "#!/bin/bash\n#SBATCH --job-name=mbint-{what}\n#SBATCH --output={}\n#SBATCH --open-mode=append\n",
-            logs.display()
-        )
+        self.sbatch(("merge.sh", "merge-%j"), &script, array)
     }
 
     fn write(&self, name: &str, text: &str) -> Result<PathBuf, String> {
@@ -108,11 +102,15 @@ impl Job<'_> {
         written.map(|()| path.clone()).map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    fn sbatch(&self, name: &str, script: &str, after: Option<&str>) -> Result<String, String> {
+    /// Submits a script of this name, with a log of that one. A directive in the script would need a quoting of its own.
+    fn sbatch(&self, (name, log): (&str, &str), script: &str, after: Option<&str>) -> Result<String, String> {
         let path = self.write(name, script)?;
+        // Slurm puts numbers in place of `%A`; twice, the sign stands for itself.
+        let folder = self.folder.join("logs").to_string_lossy().replace('%', "%%");
         let mut command = Command::new("sbatch");
         command
             .arg("--parsable")
+            .arg(format!("--output={folder}/round-{}-{log}.log", self.round))
             .args(after.map(|job| format!("--dependency=afterany:{job}")))
             .args(self.options)
             .arg(&path);
@@ -124,6 +122,24 @@ impl Job<'_> {
         // Behind a semicolon stands the cluster's name.
         Ok(said(&done.stdout).split(';').next().unwrap_or_default().to_owned())
     }
+}
+
+/// The first lines of a script.
+fn head(what: &str) -> String {
+    format!("#!/bin/bash\n#SBATCH --job-name=mbint-{what}\n#SBATCH --open-mode=append\n")
+}
+
+/// Whether Slurm takes a path as it is.
+fn takes(path: &Path) -> Result<(), String> {
+    let refused = path.to_str().is_none_or(|path| path.chars().any(|c| is_harmful(c) || "\n\t\\".contains(c)));
+    if refused {
+        let name = path.display();
+        return Err(format!(
+            "{name}: Slurm does not take a path with a control character, a backslash or bytes that are not UTF-8: \
+             rename the folder"
+        ));
+    }
+    Ok(())
 }
 
 /// A path as one word of a shell.

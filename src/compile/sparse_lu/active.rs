@@ -99,8 +99,9 @@ impl Active {
         self.rows[row].remove(&column).expect("columns list the rows that have an entry there")
     }
 
-    /// Entries below the diagonal whose mirror images are the same expressions, and stay so if both change by the mirror image's
-    /// product: what an entry of the pivot's row is multiplied by there. A symmetric matrix then takes half the operations.
+    /// Entries below the diagonal whose mirror images are the same expressions, and stay so if both change by the
+    /// mirror image's product: what an entry of the pivot's row is multiplied by there. A symmetric matrix then takes
+    /// half the operations.
     fn mirrored(
         &self,
         (row, column): (usize, usize),

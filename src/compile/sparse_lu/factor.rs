@@ -33,12 +33,13 @@ impl NoFactors {
 
 /// Factorises a square matrix.
 ///
-/// `numbers` runs over the matrix's entries row by row. `scale` (one factor a row, symmetric) makes entries comparable for
-/// the threshold and changes nothing else. The pivots `first` (row, column) come before those that are searched for; the search
-/// saves operations at the stage `costly`.
+/// `numbers` runs over the matrix's entries row by row. `scale` (one factor a row, symmetric) makes entries comparable
+/// for the threshold and changes nothing else. The pivots `first` (row, column) come before those that are searched
+/// for; the search saves operations at the stage `costly`.
 ///
 /// # Errors
-/// Where no entry of the rows left is large enough at every pivot sample, where one of `first` vanishes, and where the graph is full.
+/// Where no entry of the rows left is large enough at every pivot sample, where one of `first` vanishes, and where the
+/// graph is full.
 pub fn factorise(
     graph: &mut Graph,
     (matrix, numbers, scale): (&SparseMatrix, &[Numbers], &[f64]),

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-/// The order of each coordinate's block in `[M Φᵀ; Φ 0]`, from 1. A block holds the coordinates that M couples (a body);
-/// `block` has each coordinate's, `coordinates_of_row` the coordinates of each constraint.
+/// The order of each coordinate's block in `[M Φᵀ; Φ 0]`, from 1. A block holds the coordinates that M couples (a
+/// body); `block` has each coordinate's, `coordinates_of_row` the coordinates of each constraint.
 ///
 /// The next block is the one that shares constraints with the fewest other blocks, where blocks joined by an eliminated
 /// one count as neighbours (minimum degree; Tinney & Walker, Proc. IEEE 55 (1967) 1801). A chain is eliminated from an

@@ -11,8 +11,8 @@ use super::ordering::block_order;
 /// A pivot is at least this large against the largest entry of its column, at every pivot sample.
 const THRESHOLD: f64 = 0.1;
 
-/// The same for pivots of [`Pivoting::Symmetric`], which cannot vanish: their order matters more. The corrections lose up
-/// to as many digits, and have more than they need.
+/// The same for pivots of [`Pivoting::Symmetric`], which cannot vanish: their order matters more. The corrections lose
+/// up to as many digits, and have more than they need.
 const THRESHOLD_SYMMETRIC: f64 = 1e-3;
 
 /// Where no pivot passes the threshold, it is lowered down to this; below it the matrix counts as singular.
@@ -35,26 +35,26 @@ const MANY: usize = 500;
 pub enum Pivoting<'m> {
     /// Any entry, by cost and size.
     Any,
-    /// Entries that cannot vanish wherever the mechanism moves, in a matrix [M Φᵀ; Φ 0] with M positive definite but for
-    /// massless coordinates: diagonal entries of M; a derivative of Φ by a massless coordinate or, in a row of Φ without
-    /// one, a constant derivative, twice, which eliminates the coordinate and the multiplier together; and, where all coordinates of its row of Φ are
-    /// eliminated, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
+    /// Entries that cannot vanish wherever the mechanism moves, in a matrix [M Φᵀ; Φ 0] with M positive definite but
+    /// for massless coordinates: diagonal entries of M; a derivative of Φ by a massless coordinate or, in a row of Φ
+    /// without one, a constant derivative, twice, which eliminates the coordinate and the multiplier together; and,
+    /// where all coordinates of its row of Φ are eliminated, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
     ///
-    /// Bodies that rotate freely need it: each of their Euler parameters, and so each derivative by them, passes through
-    /// zero.
+    /// Bodies that rotate freely need it: each of their Euler parameters, and so each derivative by them, passes
+    /// through zero.
     Symmetric {
         /// Whether each coordinate has inertia; as many as there are coordinates.
         massive: &'m [bool],
         /// By coordinate, the first of those that M couples it with.
         blocks: &'m [usize],
     },
-    /// The diagonal only, the rows before `constraints` first: for quasi-definite matrices, where this order exists for all
-    /// numbers.
+    /// The diagonal only, the rows before `constraints` first: for quasi-definite matrices, where this order exists
+    /// for all numbers.
     Diagonal {
         /// First row of the block that is nearly zero until the others are eliminated.
         constraints: usize,
-        /// Entries that are eliminated before, each with the one across the diagonal: a coordinate without inertia and a constraint
-        /// that defines it, whose derivative by it cannot vanish.
+        /// Entries that are eliminated before, each with the one across the diagonal: a coordinate without inertia and
+        /// a constraint that defines it, whose derivative by it cannot vanish.
         pairs: &'m [(usize, usize)],
     },
 }
@@ -83,15 +83,15 @@ impl Pivoting<'_> {
     }
 }
 
-/// The search for pivots, and what it knows of the rows left.
+/// The search for pivots and its record of the remaining rows.
 pub struct PivotSearch<'m> {
     pivoting: Pivoting<'m>,
     stages: Stages,
     /// The stage whose operations count.
     costly: usize,
-    /// For [`Pivoting::Symmetric`], by row: the coordinates that must be eliminated before the constraint. Fill in its row
-    /// from other eliminations is small against M and is not waited for; otherwise a chain's multipliers would all come
-    /// last, when every pair of them is coupled.
+    /// For [`Pivoting::Symmetric`], by row: the coordinates that must be eliminated before the constraint. Fill in its
+    /// row from other eliminations is small against M and is not waited for; otherwise a chain's multipliers would all
+    /// come last, when every pair of them is coupled.
     awaited: Vec<BTreeSet<usize>>,
     /// For [`Pivoting::Symmetric`], by coordinate: the order of its block.
     order: Vec<usize>,
@@ -123,8 +123,8 @@ impl<'m> PivotSearch<'m> {
         Self { pivoting, stages, costly, awaited, order, in_order, ready: BTreeSet::new(), second: None, paired: 0 }
     }
 
-    /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where no
-    /// row has one, the threshold is lowered.
+    /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched;
+    /// where no row has one, the threshold is lowered.
     pub fn choose(&mut self, graph: &Graph, active: &Active) -> Option<(usize, usize)> {
         if let Some(second) = self.second.take() {
             return Some(second);
@@ -174,8 +174,8 @@ impl<'m> PivotSearch<'m> {
         None
     }
 
-    /// Columns and rows that are searched before the threshold is lowered. A diagonal order exists for all numbers, so that in large
-    /// matrices none has to be waited for: searching all of them for each pivot would be quadratic.
+    /// Columns and rows that are searched before the threshold is lowered. A diagonal order exists for all numbers, so
+    /// that in large matrices none has to be waited for: searching all of them for each pivot would be quadratic.
     fn widest(&self, active: &Active) -> usize {
         match self.pivoting {
             Pivoting::Diagonal { .. } if active.rows.len() > MANY => SEARCHED * WIDER,

@@ -144,7 +144,7 @@ impl ForceElement for Beam {
                 [free * (slope - bend), free * (slope + bend)]
             }
         };
-        // A form of second degree is half of its gradient times what it is of.
+        // A quadratic form is half of its gradient times its argument.
         let bow = 0.5 * sum_of_products(gradient, [first.angle, second.angle]);
         let stretch = length - free + bow;
         let stretching = rate + sum_of_products(gradient, [first.rate, second.rate]);
@@ -198,7 +198,7 @@ const TORQUE_Y: Sensor = Sensor::of_force("torque_y");
 const START_TORQUE_Y: Sensor = Sensor::of_force("start_torque_y");
 /// The moment about x at the end.
 const TORSION: Sensor = Sensor::of_force("torsion");
-/// What is measured in space besides.
+/// Further sensors in space.
 const OF_SPACE: [TypedSensor; 3] =
     [(TORQUE_Y, Dimension::TORQUE), (START_TORQUE_Y, Dimension::TORQUE), (TORSION, Dimension::TORQUE)];
 

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! n pushes the cylinder. g grows with τ: sixteen halvings find its root, and two steps of Newton's method from there make it smooth.
-//! Where the line is parallel to the side or to a face many points are as near: m, the middle of what is beside it, takes over within an
+//! Where the line is parallel to the side or to a face many points are as near: m, the middle of the part beside it, takes over within an
 //! angle of 10⁻⁴.
 //!
 //! At φ = 0 each rim's deepest point touches, so that a cylinder rolls on the line between two of them and tips about its rim; on a face

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Padé's approximation with a numerator of one degree less than the denominator: its Taylor series is that of the delay up to (s T)²ⁿ⁻¹,
-//! and the output follows from states alone, so that what is delayed may depend on the output. It begins at rest, settled at a constant
+//! and the output follows from states alone, so that the delayed formula may depend on the output. It begins at rest, settled at a constant
 //! input. (Golub & Van Loan, *Matrix Computations* (2013), sec. 9.3.)
 
 use std::borrow::Cow;

@@ -14,7 +14,7 @@ pub(super) const SENSORS: &[TypedSensor] = &[
     (Sensor::FRICTION, Dimension::FORCE),
 ];
 
-/// What is measured of two surfaces.
+/// Sensors of two surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Felt<'g> {
     /// m

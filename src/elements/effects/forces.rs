@@ -78,7 +78,7 @@ pub trait Forces<'g> {
     fn state(&self, place: usize) -> Scalar<'g>;
     /// How fast a state of the effect changes, by its place among them.
     fn state_rate(&mut self, place: usize, rate: Scalar<'g>);
-    /// What a state of the effect that has a period, by its place among them, becomes at its instants, of what was just before.
+    /// Sets the value that sampled state `place` takes at its next sampling instant, from values just before it.
     fn hold(&mut self, place: usize, value: Scalar<'g>);
     /// A modal coordinate of the effect and its rate, by its place among them.
     fn mode(&self, place: usize) -> [Scalar<'g>; 2];
@@ -94,7 +94,7 @@ impl<'g> dyn Forces<'g> + '_ {
         [TimeOrder::Position, TimeOrder::Velocity].map(|order| self.coordinate(on, order))
     }
 
-    /// A torque about z on what has an angle: on a body from the ground, or on a joint's second body from its first, N m.
+    /// A torque about z: on a body from the ground, or on a joint's second body from its first, N m.
     pub fn torque_about(&mut self, on: Rotating, torque: Scalar<'g>) -> Result<(), BuildError> {
         match on {
             Rotating::Body(body) => {

@@ -45,7 +45,7 @@ pub struct Impact {
         positive
     )]
     pub stiffness: Formula,
-    /// χ, what is lost.
+    /// χ, the loss coefficient.
     #[quantity(unit = "s/m or s/rad", constant, nonnegative, otherwise = "0: nothing is lost")]
     pub dissipation: Option<Formula>,
     /// Instead of `dissipation`: speed after over speed before, above 0 and at most 1.

@@ -130,7 +130,7 @@ impl Matrices {
         }
     }
 
-    /// What is wrong with the matrices: the key, the message, and what would be right.
+    /// An error in the matrices: the key, the message, and the remedy.
     fn defect(&self, is_spatial: bool) -> Option<(&'static str, String, &'static str)> {
         let in_plane = |row: usize| row >= OF_NODE * self.nodes.len() || OF_PLANE.contains(&(row % OF_NODE));
         let used: Vec<usize> = (0..self.size()).filter(|&row| is_spatial || in_plane(row)).collect();

@@ -1,7 +1,7 @@
 //! Effects: what moves bodies.
 //!
 //! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema, documentation,
-//! what it refers to, its forces, what it costs.
+//! its references, its forces, its cost.
 
 mod along_hull;
 mod arc;
@@ -75,12 +75,12 @@ effects! {
     superelement::Superelement,
 }
 
-/// Something that an effect measures, and what it is.
+/// A sensor of an effect, with its description.
 pub type TypedSensor = (Sensor, Dimension);
 
 /// What an effect does.
 pub trait ForceElement: Element {
-    /// What it may measure; its own formulas may refer to what of this follows from the motion.
+    /// Sensors; its own formulas may refer to those that follow from the motion.
     const SENSORS: &'static [TypedSensor];
 
     /// Adds its forces to a mechanism.
@@ -89,7 +89,7 @@ pub trait ForceElement: Element {
     /// A formula with a name that cannot stand in it; the reader of model files lets none through.
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError>;
 
-    /// What it measures.
+    /// Sensors.
     fn sensors(&self) -> Vec<TypedSensor> {
         Self::SENSORS.to_vec()
     }
@@ -110,7 +110,7 @@ pub trait ForceElement: Element {
         Vec::new()
     }
 
-    /// What it acts on.
+    /// Bodies and joints it acts on.
     fn scope(&self) -> Scope {
         Scope::Named
     }

@@ -1,4 +1,4 @@
-//! The registry: from a list of files and structs, the enum of all effects and what is asked of each.
+//! The registry: from a list of files and structs, the enum of all effects with its delegating methods.
 
 /// `effects! { file::Struct, … }`
 macro_rules! effects {
@@ -23,7 +23,7 @@ macro_rules! effects {
             /// The words for effects in a model file.
             pub const KEYWORDS: &'static [&'static str] = &[$(<$name as $crate::grammar::Element>::KEYWORD),*];
 
-            /// Reads an effect; `own` is its name, by which its formulas may refer to what it measures.
+            /// Reads an effect; `own` is its name, by which its formulas may refer to its sensors.
             pub(crate) fn read<S: $crate::grammar::SymbolTable>(
                 reader: &mut $crate::grammar::Reader<'_, S>,
                 own: &str,
@@ -95,7 +95,7 @@ macro_rules! effects {
                 found
             }
 
-            /// What it measures, for outputs.
+            /// Sensors for outputs.
             pub fn measures(&self) -> Vec<TypedSensor> {
                 match self {
                     $(Self::$name(effect) => ForceElement::sensors(effect),)*
@@ -140,7 +140,7 @@ macro_rules! effects {
                 }
             }
 
-            /// What it acts on.
+            /// Bodies and joints it acts on.
             pub fn scope(&self) -> Scope {
                 match self {
                     $(Self::$name(effect) => ForceElement::scope(effect),)*

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Against a block see `beside`, against a hull `along_hull`. Lines that cross have one nearest pair of points. Parallel ones have many: m
-//! is the middle of what they have beside one another, and ε = 10⁻⁴ the angle at which it takes over.
+//! is the middle of their common part, and ε = 10⁻⁴ the angle at which it takes over.
 
 use symdiff::Scalar;
 

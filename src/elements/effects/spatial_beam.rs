@@ -211,7 +211,7 @@ pub(super) fn bow_of_shear(number: Scalar<'_>) -> Scalar<'_> {
 }
 
 impl<'g> Shape<'g> {
-    /// What it is after a time at a rate.
+    /// Value after a time at a rate.
     fn after(&self, time: Scalar<'g>, rate: &Self) -> Self {
         Self {
             slopes: std::array::from_fn(|axis| self.slopes[axis] + time * rate.slopes[axis]),

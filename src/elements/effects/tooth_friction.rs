@@ -1,4 +1,4 @@
-//! Friction between teeth, proportional to what they transmit.
+//! Friction between teeth, proportional to the transmitted force.
 //!
 //! ```text
 //! gear, rack, planetary    f = −(1 − η)/(1 + η) |λ| R(u) u          on each rim, along its speed u

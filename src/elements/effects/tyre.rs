@@ -32,7 +32,7 @@ const SLIP_ANGLE: Sensor = Sensor::of_motion("slip_angle");
 const SLIP: Sensor = Sensor::of_motion("slip");
 /// The force along the heading.
 const FORCE_ALONG: Sensor = Sensor::of_force("force_along");
-/// What is measured of a wheel besides.
+/// Further sensors of a wheel.
 const OF_WHEEL: [TypedSensor; 2] = [(SLIP, Dimension::NUMBER), (FORCE_ALONG, Dimension::FORCE)];
 
 /// Under the square root of s, so that it has a derivative at no slip.

@@ -13,7 +13,7 @@ use crate::multibody::BuildError;
 use super::rows::{Kinematics, Rows};
 use super::teeth::ToothForce;
 
-/// What is the same of every joint of a kind, beside its keys.
+/// Properties of a kind of joint, beside its keys.
 pub trait JointElement: Element + Joint {
     /// Whether it leaves the plane, whatever its axes.
     const SPATIAL: bool = false;
@@ -63,7 +63,7 @@ pub trait Joint: Debug {
         None
     }
 
-    /// The axis about which, or along which, the joint has the coordinate; `None` where it has it not.
+    /// Axis of this coordinate of the joint; `None` if the joint does not have the coordinate.
     fn axis_of(&self, coordinate: JointCoordinate) -> Option<&[Formula; 3]> {
         self.mobilizer()?.axis_of(coordinate)
     }
@@ -82,7 +82,7 @@ pub trait Joint: Debug {
         Ok(None)
     }
 
-    /// What it pushes on by teeth of which nothing is known: bearings feel more than its own torque and force.
+    /// Bodies it pushes on by teeth of unknown geometry: bearings feel more than its own torque and force.
     fn toothed(&self) -> Toothed {
         Toothed::default()
     }

@@ -15,7 +15,7 @@
 //! ```
 //!
 //! −Φ_qᵀ λ is the force or torque −λ on the coordinate: along or about the joint's axis on its second body, the opposite on its
-//! first. The motor's reaction is what it has to give. Cycloidal and quintic moves have continuous accelerations;
+//! first. The motor's reaction is the force or torque it must provide. Cycloidal and quintic moves have continuous accelerations;
 //! trapezoidal ones jump, and with them the forces. Profiles: Biagiotti & Melchiorri, *Trajectory Planning for Automatic
 //! Machines and Robots* (2008), ch. 2 and 3.
 

@@ -1,4 +1,4 @@
-//! The registry: from a list of files and structs, the closed enum of all joints and what is asked of each.
+//! The registry: from a list of files and structs, the closed enum of all joints with its delegating methods.
 
 use serde::Serialize;
 
@@ -75,7 +75,7 @@ macro_rules! joints {
                 }
             }
 
-            /// What of a joint leaves the plane, by the text alone.
+            /// Keys of a joint that leave the plane, by the text alone.
             pub(crate) fn leaves_plane(keyword: &str, mapping: &$crate::grammar::Node) -> Option<&'static str> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD if <$name as JointElement>::SPATIAL => Some("kind"),

@@ -18,7 +18,7 @@ use crate::multibody::{BuildError, Pair, Vector};
 
 /// One scalar constraint.
 ///
-/// The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is −Φ_qᵀ λ, or −Ψ_vᵀ λ of a velocity constraint. `force` and `torque` are what that
+/// The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is −Φ_qᵀ λ, or −Ψ_vᵀ λ of a velocity constraint. `force` and `torque` are those that
 /// is on the joint's second body, for λ = 1; the first body has the opposite, at the same place (but for gears and racks).
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'g> {

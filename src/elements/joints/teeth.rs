@@ -1,4 +1,4 @@
-//! The force between teeth: on the second gear, at the pitch point, with what it transmits, presses apart and pushes along.
+//! The force between teeth: on the second gear, at the pitch point, with its transmitted, radial and axial components.
 //!
 //! ```text
 //! F = F_t t + |F_t| (tan αₙ / cos β) m − h F_t tan β g          on the second gear at P, the opposite on the first          N

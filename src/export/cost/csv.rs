@@ -30,7 +30,7 @@ const COLUMNS: [&str; 15] = [
     "failure",
 ];
 
-/// The table of all settings as CSV: those that bound, then those that simulate the nominal sample. What does not apply is
+/// The table of all settings as CSV: those that bound, then those that simulate the nominal sample. Fields that do not apply are
 /// empty; a setting without a result has the error `inf`.
 ///
 /// # Errors

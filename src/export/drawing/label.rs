@@ -1,4 +1,4 @@
-//! Names beside what they name, not on one another.
+//! Labels beside their points, not on one another.
 
 use svg::node::element::Text;
 

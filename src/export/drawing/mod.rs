@@ -43,7 +43,7 @@ svg { background: #111; fill: #eee; } .element { fill: #111; stroke: #eee; } .fi
 /// The file.
 const NAME: &str = "mechanism.svg";
 
-/// Space around what is drawn, px.
+/// Margin of the drawing, px.
 const MARGIN: f64 = 70.0;
 
 /// Most bodies and points of which the names are written.
@@ -88,7 +88,7 @@ pub(super) fn drawing_svg(drawing: &Drawing) -> String {
     panels.fold(document, Document::add).to_string() + "\n"
 }
 
-/// What has to be in view.
+/// Points that have to be in view.
 fn places(drawing: &Drawing) -> Vec<[f64; 3]> {
     let bodies = drawing.bodies[1..].iter().flat_map(body::places);
     let elements = drawing.elements.iter().filter(|element| element.glyph != Glyph::Nothing);

@@ -46,7 +46,7 @@ impl Projection {
         self.extent(positions).1.y
     }
 
-    /// The scale at which positions fill a rectangle, px by m. What has no extent is shown as if it were 1 m.
+    /// The scale at which positions fill a rectangle, px by m. A point is shown as if it were 1 m.
     pub fn scale(&self, positions: &[[f64; 3]], size: Px) -> f64 {
         let (_, extent) = self.extent(positions);
         let filled = [size.x / extent.x, size.y / extent.y].into_iter().filter(|scale| scale.is_finite());
@@ -66,7 +66,7 @@ pub(super) struct View {
     projection: Projection,
     /// px by m.
     pub scale: f64,
-    /// What is shown in the middle, m.
+    /// Position shown in the middle, m.
     middle: Vector2<f64>,
     /// Where the middle is, px.
     centre: Px,

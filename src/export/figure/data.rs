@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::axis::Axis;
 
-/// Rows that a series has at most; what is longer has the extremes of several rows in one.
+/// Rows that a series has at most; longer series have the extremes of several rows in one.
 const ROWS: usize = 400;
 
 /// The part of an axis' range to which numbers are written.
@@ -60,7 +60,7 @@ pub struct ScaleData {
 pub struct SeriesData {
     /// As its group has it.
     pub id: String,
-    /// What it belongs to in all panels: groups and entries of the legend have it too.
+    /// Key of its group in all panels: groups and entries of the legend have it too.
     pub group: String,
     /// For people.
     pub label: String,

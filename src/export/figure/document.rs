@@ -22,7 +22,7 @@ pub enum Anchor {
     End,
 }
 
-/// A figure without contents: its size in px, and what it is of.
+/// A figure without contents: its size in px, and its title.
 pub fn document(size: (f64, f64), title: &str) -> Document {
     Document::new()
         .set("class", "mbint-figure")

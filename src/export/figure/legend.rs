@@ -15,7 +15,7 @@ const SIGN: f64 = 26.0;
 
 /// An entry.
 pub struct Entry {
-    /// What it belongs to, as the series have it.
+    /// Key of its group, as the series have it.
     pub group: String,
     /// For people.
     pub label: String,

@@ -28,7 +28,7 @@ impl LogAxis {
         Self { first, last: (high.ceil() as i32).max(first + 1) }
     }
 
-    /// Where `x` lies: 0 at the lower end, 1 at the upper end; what is below the axis or not positive, at its lower end.
+    /// Where `x` lies: 0 at the lower end, 1 at the upper end; values below the axis or not positive, at its lower end.
     pub fn place(&self, x: f64) -> f64 {
         let exponent = if x > 0.0 { symdiff::math::log10(x) } else { f64::NEG_INFINITY };
         ((exponent - f64::from(self.first)) / f64::from(self.last - self.first)).clamp(0.0, 1.0)

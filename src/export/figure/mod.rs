@@ -11,7 +11,7 @@ pub mod prefix;
 pub mod style;
 pub mod view;
 
-/// Where a figure is: what it is named, and what its ids begin with.
+/// Identity of a figure: its name, and the prefix of its ids.
 #[derive(Clone, Copy, Debug)]
 pub struct Caption<'a> {
     /// The model's name.

@@ -64,19 +64,19 @@ pub struct Panel<'a> {
     pub y: &'a Axis,
 }
 
-/// What is drawn in a panel: its name in the figure's data, and what it belongs to.
+/// A drawing in a panel: its name in the figure's data, and the key of its group.
 #[derive(Clone, Copy, Debug)]
 pub struct Named<'a> {
     /// The series.
     pub id: &'a str,
-    /// What it belongs to in all panels.
+    /// Key of its group in all panels.
     pub group: &'a str,
     /// For people.
     pub title: &'a str,
 }
 
 impl Panel<'_> {
-    /// The panel's group around what is drawn in it.
+    /// The panel's group around its drawings.
     pub fn framed(&self, title: &str, y_title: &str, series: impl IntoIterator<Item = Group>) -> Group {
         let clip = format!("{}-clip", self.id);
         let (x, y, width, height) = (px(self.left), px(self.top), self.right - self.left, self.bottom - self.top);
@@ -254,7 +254,7 @@ impl Panel<'_> {
         line_data(&outline)
     }
 
-    /// Where a point of the data lies on the page; what is far beyond the panel, not so far.
+    /// Where a point of the data lies on the page; points far beyond the panel are moved nearer.
     pub fn place(&self, t: f64, y: f64) -> Point {
         let across = self.left + self.x.place(t) * (self.right - self.left);
         let up = self.y.place(y).clamp(-BEYOND, 1.0 + BEYOND);

@@ -91,7 +91,7 @@ impl ScaleUnit {
     }
 }
 
-/// The first factor of a unit without its power, its power where that is 1, 2 or 3, and what is behind the symbol.
+/// The first factor of a unit without its power, its power where that is 1, 2 or 3, and the text behind the symbol.
 fn first_factor(unit: &str) -> (&str, i32, &str) {
     let end = unit.find(|c: char| !c.is_alphabetic() && c != 'µ').unwrap_or(unit.len());
     let (first, rest) = unit.split_at(end);

@@ -27,7 +27,7 @@ pub fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>, Vec<b
     (values, beyond)
 }
 
-/// The lowest and the highest of what is finite; (∞, −∞) of nothing.
+/// The lowest and the highest finite value; (∞, −∞) of nothing.
 fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     let finite = values.filter(|x| x.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))

@@ -72,7 +72,7 @@ export class Camera {
     this.target = plus(plus(this.target, times(-dx * scale, right)), times(dy * scale, up));
   }
 
-  /** Nearer, while what is under the pointer stays there. @param {number} factor @param {number} x @param {number} y px from the middle, upwards @param {number} height */
+  /** Nearer, while the point under the pointer stays there. @param {number} factor @param {number} x @param {number} y px from the middle, upwards @param {number} height */
   approach(factor, x, y, height, width = height) {
     const before = (2 * this.halfHeight(width / height)) / height;
     this.zoom = Math.max(0.1, Math.min(200, this.zoom * factor));

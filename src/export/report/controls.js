@@ -54,7 +54,7 @@ export function player(clock) {
   ]);
 }
 
-/** What is shown of the uncertainty. @param {View} view */
+/** Controls of the uncertainty's display. @param {View} view */
 export function options(view) {
   const { movie, mechanism } = view;
   const holder = element('div', { class: 'options' });

@@ -1,6 +1,5 @@
 //! A report of results that are in a folder.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -9,8 +8,8 @@ use super::motion::MOTION;
 use super::page::{PageFigure, PageScene, page};
 use super::tables::{list, text};
 use crate::export::error::ExportError;
-use crate::export::folder::AtomicFiles;
-use crate::export::owned::{PAGE, SCENES, SUMMARY, scene_folders};
+use crate::export::folder::{AtomicFiles, settle};
+use crate::export::owned::{PAGE, SCENES, SUMMARY, read, scene_folders};
 use crate::export::stems::unique_stems;
 
 /// Writes `report.html` again from the results in a folder: of a model, or of its scenes. Returns its path.
@@ -18,6 +17,7 @@ use crate::export::stems::unique_stems;
 /// # Errors
 /// Where the folder has no results, or cannot be written into.
 pub fn write_report(dir: &Path) -> Result<PathBuf, ExportError> {
+    settle(dir)?;
     let text = match dir.join(SCENES).is_file() {
         true => {
             let listed = read_json(&dir.join(SCENES))?;
@@ -30,6 +30,7 @@ pub fn write_report(dir: &Path) -> Result<PathBuf, ExportError> {
     };
     let mut files = AtomicFiles::in_folder(dir)?;
     files.add(PAGE, text.as_bytes())?;
+    files.join_older()?;
     files.put_in_place()?;
     Ok(dir.join(PAGE))
 }
@@ -52,14 +53,15 @@ pub(in crate::export) fn page_of_folders(dir: &Path, model: &str, folders: &[Str
 /// # Errors
 /// Where one of the files cannot be read.
 pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, ExportError> {
+    settle(dir)?;
     if !dir.join(SUMMARY).exists() {
         return Err(ExportError::NoResults { folder: dir.to_owned() });
     }
     let summary = read_json(&dir.join(SUMMARY))?;
-    // Without it, what it says is not on the page.
+    // Without it, its contents are not on the page.
     let motion = read_json(&dir.join(MOTION)).unwrap_or(Value::Null);
     let names = list(&summary, "outputs").iter().map(|output| text(output, "name"));
-    let svg = |name: String| fs::read_to_string(dir.join(name)).ok();
+    let svg = |name: String| String::from_utf8(read(&dir.join(name)).ok()?).ok();
     let figures = names.clone().zip(unique_stems(names)).map(|(output, stem)| {
         let plots = [format!("{stem}.svg"), format!("{stem}.contributions.svg")];
         PageFigure { output: output.to_owned(), plots: plots.into_iter().filter_map(svg).collect() }
@@ -69,7 +71,7 @@ pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, Export
 }
 
 fn read_json(path: &Path) -> Result<Value, ExportError> {
-    let read = |source| ExportError::Read { path: path.to_owned(), source };
-    let bytes = fs::read(path).map_err(read)?;
-    serde_json::from_slice(&bytes).map_err(|error| read(std::io::Error::other(error)))
+    let failed = |source| ExportError::Read { path: path.to_owned(), source };
+    let bytes = read(path).map_err(failed)?;
+    serde_json::from_slice(&bytes).map_err(|error| failed(std::io::Error::other(error)))
 }

@@ -107,7 +107,7 @@ export class Mechanism {
       if (shown.has(body)) continue;
       this.body(made, instant, body, [...(look.color || colorOf(body, dark)), look.alpha], look.shift);
     }
-    // What does not move has no ghosts.
+    // Bodies that do not move have no ghosts.
     for (const visual of this.visuals) if (look.symbols || visual.body > 0) this.visual(made, instant, visual, look, dark);
     if (look.symbols) this.elements.forEach((one) => this.symbol(made, instant, one, [...neutral, 1], look.shift));
     return made;

@@ -22,10 +22,10 @@ const MODULES: [&str; 13] = [
     include_str!("main.js"),
 ];
 
-/// All modules as one script: what they import from each other is in it.
+/// All modules as one script: including their imports from each other.
 pub(super) static SCRIPT: LazyLock<String> = LazyLock::new(|| MODULES.map(plain).concat());
 
-/// A module without imports, and without the word for what it exports. Comments stay out of pages.
+/// A module without imports, and without the word `export`. Comments stay out of pages.
 fn plain(module: &str) -> String {
     let mut text = String::with_capacity(module.len());
     let mut in_comment = false;

@@ -1,5 +1,5 @@
 // @ts-check
-// Meshes of unit size: of each vertex its place, its normal, and whether it is at the far end of what is stretched.
+// Meshes of unit size: of each vertex its position, its normal, and whether it is at the far end of a stretched part.
 
 /** @typedef {{vertices: Float32Array, count: number}} Mesh */
 

@@ -184,7 +184,7 @@ pub(super) fn warning_list(warnings: &[String]) -> String {
     if items.is_empty() { String::new() } else { section("warnings", "Warnings", &format!("<ul>{items}</ul>")) }
 }
 
-/// What was simulated, with which settings, and by which version.
+/// The simulation, its settings, and the version.
 pub(super) fn settings(summary: &Value) -> String {
     let number_of = |key: &str| number(&summary[key]);
     let mut rows = vec![

@@ -6,7 +6,7 @@ import { Mechanism } from './mechanism.js';
 import { sweptRegion } from './regions.js';
 import { Renderer } from './renderer.js';
 import { norm, times } from './vectors.js';
-// The picture of the mechanism: what it shows, and the pointer on it. It is drawn when something has changed.
+// The picture of the mechanism: its contents, and the pointer on it. It is drawn when something has changed.
 
 /** @typedef {import('./motion.js').Movie} Movie */
 /** @typedef {import('./clock.js').Clock} Clock */

@@ -1,4 +1,4 @@
-//! What is not as it was recorded.
+//! Differences from a recorded snapshot.
 
 use super::read::{Curve, Kind, Output, Snapshot};
 
@@ -14,9 +14,9 @@ pub struct Moved {
     pub unit: String,
     /// When it moved most, s; empty where that is no matter of a time.
     pub time: String,
-    /// What was recorded.
+    /// Recorded value.
     pub before: String,
-    /// What is so now.
+    /// Present value.
     pub after: String,
     /// How far it may move there: the sum of both stated errors and of what rounding hides.
     pub allowed: Option<f64>,
@@ -25,17 +25,17 @@ pub struct Moved {
 }
 
 impl Moved {
-    /// What is no matter of a time.
+    /// A difference without a time.
     fn whole(what: String, unit: &str, before: &str, after: &str) -> Self {
         let [before, after] = [before, after].map(str::to_owned);
         Self { what, unit: unit.to_owned(), time: String::new(), before, after, allowed: None, times: None }
     }
 }
 
-/// What is not as it was recorded, in the order of the model's outputs; last what is no more.
+/// Differences from the record, in the order of the model's outputs; last the missing ones.
 ///
 /// A bound may move by the sum of the errors that are stated of it, the nominal course by the smallest sum of those of a method. An
-/// error may double. What is rounded may differ in its last digit.
+/// error may double. Rounded values may differ in their last digit.
 pub fn moved(before: &Snapshot, after: &Snapshot) -> Vec<Moved> {
     let mut found = Vec::new();
     for now in &after.outputs {
@@ -91,7 +91,7 @@ fn ends(times: &[String]) -> String {
     }
 }
 
-/// The time at which a curve moved most, relative to what is allowed; `None` if it did not. `what` is left empty.
+/// The time at which a curve moved most, relative to the allowance; `None` if it did not. `what` is left empty.
 fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)]) -> Option<Moved> {
     let earlier = then.curve(&curve.method, curve.kind)?;
     let mut worst: Option<(f64, Moved)> = None;

@@ -52,7 +52,7 @@ impl Kind {
     }
 }
 
-/// A file that is no snapshot: the line, from 1, and what is wrong with it.
+/// A file that is no snapshot: the line, from 1, and its error.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {message}")]
 pub struct SnapshotError {

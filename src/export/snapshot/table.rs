@@ -50,7 +50,7 @@ pub fn snapshot_table(bounds: &Bounds) -> String {
     text
 }
 
-/// A snapshot as a file, in the format of the crate insta: what it is of between lines of hyphens, then the table.
+/// A snapshot as a file, in the format of the crate insta: its subject between lines of hyphens, then the table.
 pub fn snapshot_file(of: &str, table: &str) -> String {
     let of = of.replace('\\', "\\\\").replace('"', "\\\"");
     format!("---\ndescription: \"{of}\"\n---\n{}\n", table.trim_end())

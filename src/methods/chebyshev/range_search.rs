@@ -40,10 +40,19 @@ pub(super) struct Functions<'f> {
     pub are_polynomials: bool,
     /// What of each output is too small to be looked for, by number of the output.
     pub rounding: &'f [f64],
-    /// Where some of them are known to be large or small.
-    pub places: &'f [Vec<f64>],
+    /// Where some of them are known to be large or small, by [`block`].
+    pub places: &'f [Vec<Vec<f64>>],
     /// Their values.
     pub evaluate: &'f Evaluate<'f>,
+}
+
+/// Outputs that are searched together: each is known at the points of all. Of more, memory and time would grow with the square of their
+/// number.
+const TOGETHER: usize = 64;
+
+/// Number of the block of outputs that are searched together with this one.
+pub(super) const fn block(output: usize) -> usize {
+    output / TOGETHER
 }
 
 /// How ranges over a box are found.
@@ -75,6 +84,16 @@ impl RangeSearch {
 
     /// Ranges of functions, given their values at [`points`](Self::points).
     pub fn range(&self, functions: &Functions, values: &[Vec<f64>], previous: &mut Previous) -> Vec<Extent> {
+        let mut found = Vec::with_capacity(values.len());
+        for outputs in functions.outputs.chunk_by(|a, b| block(*a) == block(*b)) {
+            let of_block = Functions { outputs: outputs.to_vec(), ..*functions };
+            found.extend(self.range_of_block(&of_block, &values[found.len()..][..outputs.len()], previous));
+        }
+        found
+    }
+
+    /// The same of functions that are searched together.
+    fn range_of_block(&self, functions: &Functions, values: &[Vec<f64>], previous: &mut Previous) -> Vec<Extent> {
         let k = functions.degrees.len();
         // Outputs that come apart in the same way are searched together.
         let mut alike: Vec<(Vec<Vec<usize>>, Vec<usize>)> = Vec::new();
@@ -117,14 +136,16 @@ impl RangeSearch {
         previous.resize(previous.len().max(outputs.iter().max().map_or(0, |most| most + 1)), None);
         // Of all, or of none.
         let neighbours: Option<Vec<Extremes>> = outputs.iter().map(|&output| previous[output].clone()).collect();
-        let mut found = climb(search, outputs.len(), &neighbours.unwrap_or_default(), functions.places, &evaluate);
+        let places = outputs.first().and_then(|&output| functions.places.get(block(output)));
+        let places = places.map_or(&[][..], Vec::as_slice);
+        let mut found = climb(search, outputs.len(), &neighbours.unwrap_or_default(), places, &evaluate);
         let checked = evaluate(&self.checks);
         let lines = || checked.chunks_exact(self.checks.len());
         let beyond = |(found, line): (&Extremes, &[f64])| {
             line.iter().any(|&value| found.range.distance(value) > BEYOND * found.range.width())
         };
         if found.iter().zip(lines()).any(beyond) {
-            let places = [functions.places, &self.checks].concat();
+            let places = [places, &self.checks].concat();
             found = climb(search, outputs.len(), &[], &places, &evaluate);
         }
         outputs.iter().zip(&found).for_each(|(&output, found)| previous[output] = Some(found.clone()));

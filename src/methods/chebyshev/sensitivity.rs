@@ -5,6 +5,8 @@ use std::f64::consts::PI;
 use symdiff::math;
 
 use super::composition::Row;
+use super::range_search::block;
+use crate::methods::expansion::Moves;
 use crate::methods::result::Sensitivity;
 use crate::numerics::{
     Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseWork, Surrogate, SurrogateWork, TensorGrid,
@@ -81,9 +83,14 @@ impl SensitivityAnalysis {
             place[axis] = self.nominal[axis];
             place
         };
-        let points: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().map(replaced)).collect();
-        let values = row.evaluate(&points);
-        values.chunks_exact(points.len()).map(|line| Range::of(line).width()).collect()
+        let outputs: Vec<usize> = (0..found.len()).collect();
+        let of_block = |outputs: &[usize]| -> Vec<f64> {
+            let found = outputs.iter().map(|&output| &found[output]);
+            let points: Vec<Vec<f64>> = found.flat_map(|found| found.places.iter().map(replaced)).collect();
+            let values = row.evaluate_some(outputs, &points, &[Moves::default()]);
+            values.chunks_exact(points.len()).map(|line| Range::of(line).width()).collect()
+        };
+        outputs.chunk_by(|a, b| block(*a) == block(*b)).flat_map(of_block).collect()
     }
 }
 

@@ -1,6 +1,6 @@
-//! What is done with a mechanism: it moves, or it is looked at in one configuration or in many.
+//! Analysis of a mechanism: it moves, or it is looked at in one configuration or in many.
 
-/// What is done with a mechanism.
+/// Analysis of a mechanism.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Analysis {
     /// It moves by its forces.
@@ -37,7 +37,7 @@ impl Analysis {
         }
     }
 
-    /// What is done, for people; nothing of a motion.
+    /// Analysis, for people; `None` of a motion.
     pub fn in_words(self) -> Option<&'static str> {
         match self {
             Self::Motion => None,
@@ -62,7 +62,7 @@ impl Analysis {
     }
 }
 
-/// What is asked of small vibrations.
+/// Questions about small vibrations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModesRequest {
     /// How many modes, the slowest first.

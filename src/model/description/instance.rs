@@ -1,11 +1,11 @@
-//! What has parts with names of their own.
+//! Instances of parts with names of their own.
 
 /// An instance of an assembly, or an effect that acts on many.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Instance {
     /// Its full name: `front_left`, in an assembly `car.front_left`.
     pub name: String,
-    /// What it is.
+    /// Kind.
     pub kind: InstanceKind,
 }
 

@@ -1,4 +1,4 @@
-//! Outputs that are one number a motion, and what is required of outputs.
+//! Outputs that are one number a motion, and requirements on outputs.
 
 use symdiff::Formula;
 
@@ -9,15 +9,15 @@ use crate::grammar::quantity::Dimension;
 pub struct ReducedOutput {
     /// Its name.
     pub name: String,
-    /// What it is, as the file writes it: `max of pin.force`.
+    /// Its definition in the file: `max of pin.force`.
     pub text: String,
     /// SI unit; empty where dimensionless or unknown.
     pub unit: String,
     /// What kind of quantity it is; `None` where unknown.
     pub dimension: Option<Dimension>,
-    /// What of the motion.
+    /// Reduction of the motion.
     pub kind: ReducedKind,
-    /// What it is taken of, over names of [`Description::symbol`](super::Description::symbol).
+    /// The reduced formula, over names of [`Description::symbol`](super::Description::symbol).
     pub sources: Vec<Formula>,
     /// Places of these among the outputs, once they are there.
     pub places: Vec<usize>,
@@ -27,7 +27,7 @@ pub struct ReducedOutput {
     pub to: f64,
 }
 
-/// What is taken of a motion.
+/// Reduction of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReducedKind {
     /// The greatest value less the smallest.
@@ -71,7 +71,7 @@ pub struct Requirement {
     pub text: String,
     /// SI unit of the slacks; empty where dimensionless or unknown.
     pub unit: String,
-    /// How far the limits are from what is limited.
+    /// Distance of the limits from the limited quantity.
     pub slacks: Vec<Formula>,
     /// Places of these among the outputs, once they are there.
     pub places: Vec<usize>,
@@ -84,7 +84,7 @@ pub struct Requirement {
 /// A constant limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// What is limited, as the file writes it.
+    /// The limited quantity, as the file writes it.
     pub of: String,
     /// The limit, SI.
     pub value: f64,

@@ -24,7 +24,7 @@ pub struct TreeLink {
     pub place: Option<PointRef>,
     /// The joint that leads to it; absent for the root.
     pub joint: Option<TreeJoint>,
-    /// What it looks like.
+    /// Appearance.
     pub visuals: Vec<Visual>,
 }
 

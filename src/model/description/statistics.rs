@@ -2,7 +2,7 @@
 
 use crate::numerics::statistics::Distribution;
 
-/// What is asked beside the bounds.
+/// Questions beside the bounds.
 #[derive(Clone, Debug, Default)]
 pub struct Statistics {
     /// Whether anything is.
@@ -55,7 +55,7 @@ pub struct Grade {
     pub name: String,
     /// To either side, in the parameter's SI unit.
     pub tolerance: f64,
-    /// What it costs.
+    /// Cost.
     pub cost: f64,
 }
 

@@ -57,7 +57,7 @@ pub(super) fn allow(root: &mut Map<String, Value>) {
     );
 }
 
-/// Lets what is given at the start be repeated.
+/// Allows repetition of start values.
 fn start_values(properties: Option<&mut Value>) {
     let Some(properties) = properties else { return };
     for key in ["initial", "guess"] {

@@ -42,7 +42,7 @@ impl<'r> Source<'r> {
         if self.named.contains(&number.name) { Value::Text(number.name.clone()) } else { Value::Number(number.value) }
     }
 
-    /// A mass, a length or a moment of inertia over its unit: what is made of them has its unit when it is whole.
+    /// A mass, a length or a moment of inertia over its unit: a product of them has its unit when it is whole.
     fn plain(&self, number: &Number) -> Value {
         let units = number.unit.split('*').map(|unit| format!("/ 1 {unit}")).collect::<Vec<_>>().join(" ");
         match self.value(number) {

@@ -57,7 +57,7 @@ impl Item {
     }
 }
 
-/// Reads a file with what it includes.
+/// Reads a file with its includes.
 pub fn read(path: &Path, at: Option<Span>, diagnostics: &mut Diagnostics) -> Option<Item> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut reader = Reader { diagnostics, folder, open: Vec::new(), files: 0, items: 0, levels: 0 };

@@ -71,7 +71,7 @@ fn gravity(root: &Item, values: &mut Values) -> [f64; 3] {
     if values.settings.flags.gravity { gravity } else { [0.0; 3] }
 }
 
-/// What is around an element.
+/// Context of an element.
 struct Around {
     /// Of `<frame>`s in the body.
     pose: Pose,

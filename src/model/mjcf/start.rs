@@ -1,4 +1,4 @@
-//! Where a robot begins: the file's configuration, for what the model says nothing of; and what of it is observed.
+//! Start of a robot: the file's configuration, where the model gives none; and its default outputs.
 
 use std::collections::HashSet;
 
@@ -12,7 +12,7 @@ use crate::syntax::yaml::Value as Tree;
 pub fn start(sections: &mut Sections, source: &Source) {
     let robot = source.robot;
     let said = said(sections);
-    // What is in equilibrium says no values.
+    // A start at equilibrium gives no values.
     let is_found = sections
         .0
         .iter()

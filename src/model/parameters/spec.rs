@@ -44,7 +44,7 @@ impl Spec {
         spec
     }
 
-    /// A number in one piece that deviates from no other: what is wrong with a percentage is reported of values.
+    /// A number in one piece that deviates from no other: errors of a percentage are reported of values.
     fn first(&mut self, reader: &mut Reader, node: &Node) {
         self.whole(reader, node);
         if self.value.is_none() && self.tolerance.as_ref().is_some_and(|tolerance| tolerance.span == node.span) {
@@ -66,7 +66,7 @@ impl Spec {
             self.value = before.value;
         }
         if !self.is_uncertain() {
-            // What is set to one number varies no more.
+            // A parameter set to one number varies no more.
             (self.distribution, self.cost) = (None, None);
         }
     }

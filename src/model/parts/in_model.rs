@@ -112,7 +112,7 @@ impl Writer<'_, '_> {
             Some(_) => return,
             None => Vec::new(),
         };
-        // What is not well formed its reader reports.
+        // The reader reports malformed values.
         let Some(wanted) = held_in_model(&held, frame, free, turns.contains(&true), (scope, &span)) else { return };
         for (name, value) in wanted {
             held.retain(|key| key.key != name && !(name == "orientation" && key.key == "angle"));
@@ -127,7 +127,7 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What is held in the model's frame, of a body that has some lengths as coordinates, and perhaps turns.
+/// Coordinates held in the model's frame, of a body that has some lengths as coordinates, and perhaps turns.
 fn held_in_model(
     held: &[Entry],
     frame: Frame,

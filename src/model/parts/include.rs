@@ -14,7 +14,7 @@ use crate::syntax::yaml::{self, Entry, Node, Value};
 /// Most files of a model.
 const MOST: usize = 1000;
 
-/// Files that are read, with what they are called from the model's folder.
+/// Files that are read, with their names from the model's folder.
 #[derive(Default)]
 struct Included {
     /// Those that include the next.

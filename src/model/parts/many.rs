@@ -40,7 +40,7 @@ fn wanted(scalar: &Scalar) -> Option<&str> {
     scalar.text.trim().strip_prefix("all ").map(str::trim)
 }
 
-/// The effect for each of what it acts on.
+/// The effect for each of its subjects.
 fn one_each(writer: &mut Writer, effect: &Entry, node: &Node) -> Vec<Entry> {
     let Some((scalar, wanted)) = node.scalar().and_then(|scalar| Some((scalar, wanted(scalar)?))) else {
         return Vec::new();

@@ -14,7 +14,7 @@ use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 /// The key.
 const REPEAT: &str = "repeat";
 
-/// The key of what is repeated, where that is no mapping.
+/// The key of the repeated value, where that is no mapping.
 const VALUE: &str = "value";
 
 /// Most copies that one `repeat` makes.
@@ -216,7 +216,7 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What is repeated: the mapping without `repeat`, or what stands behind `value` where nothing else is there.
+/// The repeated node: the mapping without `repeat`, or the node behind `value` where nothing else is there.
 fn without_repeat(node: &Node) -> Node {
     let Value::Mapping(entries) = &node.value else { return node.clone() };
     let rest: Vec<Entry> = entries.iter().filter(|entry| entry.key != REPEAT).cloned().collect();

@@ -78,7 +78,7 @@ fn scope_of(node: &Node, instance: &Arc<Scope>) -> Arc<Scope> {
     Arc::new(own.unwrap_or(instance).with_sign(false))
 }
 
-/// The formula of a number, its sign included; nothing for what is no number, which its reader reports.
+/// The formula of a number, its sign included; `None` without a number, which its reader reports.
 pub(super) fn text(node: &Node) -> Option<String> {
     let scalar = node.scalar()?;
     let is_negated = scalar.scope.as_ref().is_some_and(|scope| scope.is_negated());

@@ -14,7 +14,7 @@ const MOST_OF_ONE: usize = 100;
 /// Elements of a file, and attributes of a file. A humanoid with all its meshes has a few thousand.
 const MOST: usize = 200_000;
 
-/// What has neither elements nor attributes, from its beginning to its end.
+/// A part with neither elements nor attributes, from its beginning to its end.
 const SKIPPED: [(&str, &str); 3] = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
 
 /// Finds the first place at which a text exceeds a limit, and says which.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use crate::grammar::names::{GROUND, is_reserved};
 
-/// A name as formulas can have it: `_` for what cannot stand there, and more of them for what is taken.
+/// A name as formulas can have it: `_` for characters not allowed, and more of them for names in use.
 pub fn in_formulas(written: &str, taken: &mut HashSet<String>) -> String {
     let mut name: String = written.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
     if name.starts_with(|c: char| c.is_numeric()) {

@@ -17,7 +17,7 @@ pub struct Number {
     pub name: String,
     /// SI.
     pub value: f64,
-    /// Empty where what it is of decides.
+    /// Empty where its owner decides.
     pub unit: &'static str,
     /// Where it stands, or where it would.
     pub span: Span,

@@ -15,7 +15,7 @@ use crate::syntax::yaml::{Entry, Node, Value};
 /// Sections whose entries can be left out by name.
 const NAMED: [&str; 4] = ["effects", "joints", "states", "outputs"];
 
-/// Those of what moves and acts, and that of what is observed.
+/// Sections of bodies, joints and effects, and that of outputs.
 const PARTS: &[&str] = &["effects", "joints", "states"];
 const OUTPUTS: &[&str] = &["outputs"];
 
@@ -142,7 +142,7 @@ impl Draft {
         }
     }
 
-    /// `with`: puts in again what is left out.
+    /// `with`: adds omitted parts again.
     fn with(&mut self, reader: &mut Reader, node: &Node) {
         for (name, span) in self.all_names(names(reader, node, "a list of effects, joints and outputs"), true) {
             let sections = self.sections_with(&name);
@@ -198,7 +198,7 @@ impl Draft {
         unknown(reader, name, span, known);
     }
 
-    /// A parameter's new value; its unit and description stay, what is said of its deviation does not.
+    /// A parameter's new value; its unit and description stay, its deviation does not.
     fn parameters(&mut self, reader: &mut Reader, node: &Node, key_span: Span) {
         let has_robot = self.has_robot();
         for entry in reader.entries(node, "parameters") {
@@ -238,7 +238,7 @@ impl Draft {
         }
     }
 
-    /// The tree's entries, without what is left out.
+    /// The tree's entries, without omitted parts.
     pub fn finished(mut self) -> Vec<Entry> {
         for section in NAMED {
             let found = self.entries.iter_mut().find(|entry| entry.key == section);

@@ -93,7 +93,7 @@ fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<Part>
     part.collect()
 }
 
-/// What has to be added to a tensor that turns the equations singular, or nearly; uncertain ones are as they are said to be.
+/// Amount added to a tensor that makes the equations singular, or nearly; uncertain tensors are unchanged.
 fn too_small(mass: &Value, inertia: &[Vector; 3]) -> Option<f64> {
     let Value::Number(mass) = mass else { return None };
     let mut numbers = [0.0; 9];

@@ -122,7 +122,7 @@ fn stop<'r>(
     RobotEffect { effect, numbers: ends.into_iter().flatten().collect() }
 }
 
-/// Adds to the model what is not left out.
+/// Adds the effects that are not omitted.
 pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left_out: &LeftOut) {
     for (name, span) in left_out.given() {
         if !effects.iter().any(|known| known.effect.name == *name) {
@@ -144,7 +144,7 @@ pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left
         acting.extend(numbers.iter().map(|number| number.name.as_str()));
         reader.model.effects.push(effect);
     }
-    // Numbers of bodies and frames are used by them; these by what is not left out.
+    // Numbers of bodies and frames are used by them; these by the effects kept.
     for number in source.robot.numbers().filter(|number| source.named.contains(&number.name)) {
         let of_effect = number.name.starts_with("joint.") && !number.name.contains(".origin.");
         let place = reader.model.parameters.iter().position(|parameter| parameter.name == number.name);

@@ -12,7 +12,7 @@ use crate::model::robots::algebra::{Pose, Value, Vector};
 use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::Diagnostic;
 
-/// What is read of a URDF, and how numbers are looked at.
+/// Parsed URDF, and the treatment of its numbers.
 pub struct Source<'s> {
     pub robot: &'s Robot,
     pub floating: bool,

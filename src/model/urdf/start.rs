@@ -1,4 +1,4 @@
-//! The zero configuration of a robot, and what of it is observed.
+//! The zero configuration of a robot, and its default outputs.
 
 use std::collections::HashSet;
 
@@ -70,7 +70,7 @@ fn body_of(value: &StartValue) -> Option<usize> {
     }
 }
 
-/// What is observed where the model says nothing: the joints' positions, and the place of a base that floats.
+/// Outputs where the model gives none: the joints' positions, and the place of a base that floats.
 pub fn outputs(reader: &mut Reader, source: &Source, built: &Built) {
     let mut push = |name: String, text: String, dimension: Dimension| {
         let formula = formula(reader, &Value::Text(text));

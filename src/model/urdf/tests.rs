@@ -1,4 +1,4 @@
-//! What is read of a URDF: versions of the format, limits of size, and the checks that urdf-rs does not make.
+//! Reading of a URDF: versions of the format, limits of size, and the checks that urdf-rs does not make.
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};

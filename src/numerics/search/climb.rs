@@ -21,7 +21,7 @@ pub(super) struct Climb {
     pub(super) last: Vec<usize>,
     /// Best point of the round.
     best: usize,
-    /// All axes' targets, and what they promise together.
+    /// All axes' targets, and their joint promise.
     targets: Vec<f64>,
     promised: f64,
     pub(super) arrived: bool,
@@ -111,7 +111,7 @@ impl Climb {
         self.at = self.best;
         let least = ExtremeSearch::TOLERANCE * seen.width(self.goal);
         let hopeless = value + self.promised.max(gained) < seen.best_value(self.goal);
-        // What is NaN ends it too.
+        // NaN ends it too.
         let goes_on = gained > least && self.promised > least;
         self.arrived = hopeless || !goes_on;
     }

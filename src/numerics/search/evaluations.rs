@@ -38,7 +38,7 @@ pub(super) fn bits(point: &[f64]) -> Vec<u64> {
 }
 
 impl Evaluations {
-    /// Evaluates what is new; returns the places of all.
+    /// Evaluates new points; returns the indices of all.
     pub(super) fn look<E>(
         &mut self,
         wanted: Vec<Vec<f64>>,

@@ -90,7 +90,7 @@ fn what_is_not_a_number_is_unknown() {
 }
 
 /// Largest share of a range that was missed, and points a row, while nine functions of eight parameters change from
-/// row to row as a mechanism's outputs do: sines of angles that vary by ±`wide` or more, and what is coupled to them.
+/// row to row as a mechanism's outputs do: sines of angles that vary by ±`wide` or more, and functions coupled to them.
 fn over_time(wide: f64) -> (f64, usize) {
     let functions = |t: f64| {
         (0..9).map(f64::from).map(move |output| {

@@ -1,7 +1,7 @@
 //! Pareto's front: what nothing else betters.
 
 /// The places of those (error, seconds) that no other is as good as in both and better than in one, by rising error. Of
-/// equals the first is kept; what is not finite is on no front.
+/// equals the first is kept; points that are not finite are on no front.
 pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..points.len()).collect();
     places.retain(|&place| points[place].0.is_finite() && points[place].1.is_finite());
@@ -9,7 +9,7 @@ pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
         let ((error, seconds), (other_error, other_seconds)) = (points[a], points[b]);
         error.total_cmp(&other_error).then(seconds.total_cmp(&other_seconds))
     });
-    // By rising error, only what is cheaper than all before it is worth its error.
+    // By rising error, only points cheaper than all before them are worth their error.
     let mut cheapest = f64::INFINITY;
     places.retain(|&place| {
         let better = points[place].1 < cheapest;

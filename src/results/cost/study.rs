@@ -24,7 +24,7 @@ pub struct CostStudy {
     pub bounds: Vec<CostPoint>,
     /// Schemes on the nominal trajectory, likewise.
     pub trajectories: Vec<CostPoint>,
-    /// What was not looked at, and why.
+    /// Omitted settings, with reasons.
     pub left_out: Vec<String>,
 }
 
@@ -48,7 +48,7 @@ impl CostStudy {
         self.bounds.iter().chain(trajectories).filter(|point| point.failure.is_none())
     }
 
-    /// The reference's own error in what is chosen from.
+    /// The reference's own error in the candidates.
     pub fn own_error(&self) -> f64 {
         if self.is_deterministic() { self.reference.trajectory_error } else { self.reference.bounds_error }
     }
@@ -92,7 +92,7 @@ pub struct CostReference {
 /// A setting, its error and its price.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostPoint {
-    /// What is varied within a curve are order, points and steps.
+    /// Order, points and steps vary within a curve.
     pub method: CostMethod,
     /// Degree of a polynomial in the parameters.
     pub order: Option<usize>,
@@ -123,7 +123,7 @@ pub enum Deviation {
     Bounds {
         /// How far they lie outside of the reference's.
         over_width: f64,
-        /// How far they lie inside: what they leave out.
+        /// Distance to the true ends, inside.
         under_coverage: f64,
     },
     /// Of a trajectory.
@@ -142,7 +142,7 @@ pub fn cost_curves(points: &[CostPoint]) -> Vec<CostMethod> {
 }
 
 impl CostPoint {
-    /// (error, seconds) with the reference's `own` error for what is below it: no better is known.
+    /// (error, seconds) with the reference's `own` error for points below it: no better is known.
     pub fn place(&self, own: f64) -> (f64, f64) {
         (self.deviation.largest().max(own), self.seconds)
     }

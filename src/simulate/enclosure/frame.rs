@@ -15,7 +15,7 @@
 //! coordinates and velocities out, and the inverse is that at the box's centre: nothing slow becomes fast, and the slow
 //! coordinates are mapped by numbers that do not depend on ξ. Lohner's constant orthogonal Q, the column with the largest
 //! remainder first, is then enough for them. P is the reactions' push M⁻¹Φ_qᵀ(Φ_q M⁻¹ Φ_qᵀ)⁻¹, which is orthogonal to the
-//! motion in the metric of the masses: what is fast fades without becoming slow, up to O(h). It stands in the Newton
+//! motion in the metric of the masses: fast modes fade without becoming slow, up to O(h). It stands in the Newton
 //! matrix's inverse. V brings the map of a gap ν and its derivatives, the same 3 × 3 numbers for every constraint, nearly
 //! to diagonal form, so that absolute values contract too. T is what accelerations have beside.
 
@@ -247,7 +247,7 @@ impl Frame {
     }
 }
 
-/// Adds |Δ x| to `to`, for x = (what is bounded by `rough`) + Δ x.
+/// Adds |Δ x| to `to`, for x = (a vector bounded by `rough`) + Δ x.
 fn add_skew(space: &ModelSpace, skew: &Models, rough: &[f64], to: &mut [f64]) -> Result<(), EnclosureError> {
     let norm = skew.row_norm(space);
     // NaN is not small.
@@ -305,7 +305,7 @@ mod tests {
 
     #[test]
     fn gaps_fade_in_absolute_values_too() {
-        // The scheme's damping at infinite frequency, (1 + α)/(1 − α), and what is left beside the diagonal.
+        // The scheme's damping at infinite frequency, (1 + α)/(1 − α), and the off-diagonal remainder.
         for alpha in [-0.05, -0.1, -0.2, -1.0 / 3.0] {
             let bound = (1.0 + alpha) / (1.0 - alpha) + 2.0 * OFF_DIAGONAL;
             for h in [1e-2, 1e-3, 1e-5] {

@@ -167,7 +167,7 @@ impl<'s> ExtrapolatedRun<'s> {
     }
 }
 
-/// What is observed in rows (row, line, lane), from a motion (row, line, sample) whose samples from `first` on are the lanes.
+/// Observed values in rows (row, line, lane), from a motion (row, line, sample) whose samples from `first` on are the lanes.
 fn closed(
     closure: &mut RowClosure,
     schedule: &Schedule,

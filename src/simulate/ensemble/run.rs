@@ -174,7 +174,7 @@ impl<'s> EnsembleRun<'s> {
         values
     }
 
-    /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records what is `observed`: row by
+    /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records the `observed` values: row by
     /// row, value by value, sample by sample. With a tolerance, a sample that exceeds it takes shorter steps. Returns the
     /// samples that stopped.
     pub fn advance(
@@ -349,7 +349,7 @@ impl TileRun<'_> {
         }
     }
 
-    /// Takes the outputs into what they are reduced to, if they are.
+    /// Accumulates the outputs' reductions, if any.
     fn reduce(&mut self, time: f64) {
         if let Some(mut reduction) = self.reduction.take() {
             let mut values = reduction.buffer();

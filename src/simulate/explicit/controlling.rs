@@ -16,7 +16,7 @@ const MOST_PASSED: f64 = 0.75;
 #[derive(Debug)]
 pub(super) struct Tiles<'s> {
     tiles: Vec<Tile<'s>>,
-    /// Where equations switch, of a sample that is the only one: steps that end where some do would hide what they do to others between.
+    /// Where equations switch, of a sample that is the only one: steps that end where some do would hide their effect on the others between.
     watch: Option<SwitchWatch<'s>>,
     features: Option<&'s Features>,
     samples: Vec<Sample>,

@@ -141,7 +141,7 @@ impl<'s> ExplicitRun<'s> {
         values
     }
 
-    /// Advances to `rows`, which follow the rows of the last call, and records what is `observed`: row by row, value by value,
+    /// Advances to `rows`, which follow the rows of the last call, and records the `observed` values: row by row, value by value,
     /// sample by sample. Returns the samples that stopped: whose state is no longer finite.
     pub fn advance(
         &mut self,
@@ -233,7 +233,7 @@ impl Tile<'_> {
     }
 }
 
-/// Takes the outputs of a state into what they are reduced to, if they are.
+/// Accumulates the reductions of a state's outputs, if any.
 fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[bool], time: f64, state: &mut [f64]) {
     if let Some(reduction) = reduction {
         let mut values = reduction.buffer();
@@ -243,7 +243,7 @@ fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[boo
     }
 }
 
-/// What is done after a step, given its end.
+/// Action after a step, given its end.
 type Stepped<'f, M> = dyn FnMut(&mut RungeKutta, &mut M, f64) + 'f;
 
 /// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is called after each,

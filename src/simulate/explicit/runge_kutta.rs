@@ -4,7 +4,7 @@ use symdiff::{Vectorise, vectorised};
 
 use super::tableau::{DENSE, FIFTH, Row, STAGES, THIRD, TIMES, WEIGHTS, WITH_DENSE};
 
-/// What is integrated.
+/// Integrated system.
 pub(super) trait Motion {
     /// Rates v, w (2n lines) of a state q, v at a time.
     fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]);
@@ -33,10 +33,10 @@ pub(super) struct RungeKutta {
     dense: Vec<Vec<f64>>,
 }
 
-/// Largest share of what is allowed, and how stiff the step is, in one lane.
+/// Largest error over the allowance, and the stiffness of the step, in one lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepError {
-    /// 1 where the error is what is allowed.
+    /// 1 where the error equals the allowance.
     pub ratio: f64,
     /// h times the largest eigenvalue, as far as the last stages show it.
     pub stiffness: f64,

@@ -27,7 +27,7 @@ const STABLE: f64 = 6.1;
 const STIFF_STEPS: usize = 15;
 const OTHERS: usize = 6;
 
-/// Safety of the step size, and what it may change by at once.
+/// Safety of the step size, and the limits of its change at once.
 const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 6.0;

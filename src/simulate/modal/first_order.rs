@@ -6,7 +6,7 @@
 //! ```
 //!
 //! N are the motions that Φ_q allows, and the states. Eigenvalues are those of the strongly connected blocks of A, each balanced (Parlett &
-//! Reinsch, Numer. Math. 13 (1969) 293), by real Schur decomposition: what does not depend on a filter has no error of it. Eigenvectors come from
+//! Reinsch, Numer. Math. 13 (1969) 293), by real Schur decomposition: values independent of a filter have no error of it. Eigenvectors come from
 //! inverse iteration.
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
@@ -18,7 +18,7 @@ use crate::simulate::statics::{Linearised, reduced};
 /// What rounding leaves of zero, as a share of the largest eigenvalue of a block.
 const NOTHING: f64 = 1e-12;
 
-/// What it leaves of a double zero: ±√ε.
+/// Splitting of a double zero: ±√ε.
 const STILL: f64 = 1e-7;
 
 /// Eigenvalues whose imaginary part is below this share are real.

@@ -1,4 +1,4 @@
-//! Names and units of what is told of small vibrations.
+//! Names and units of the results about small vibrations.
 
 use super::vibrations::Vibrations;
 use crate::assemble::{OutputInfo, System};
@@ -7,7 +7,7 @@ use crate::grammar::quantity::Dimension;
 /// The name of the largest growth of any mode among the outputs.
 const GROWTH: &str = "growth";
 
-/// What is told of a mode without states.
+/// Results about a mode without states.
 const QUANTITIES: &[(&str, &str)] = &[("frequency", "Hz"), ("damping", "")];
 
 /// Adds the outputs of a mechanism's vibrations after the model's.

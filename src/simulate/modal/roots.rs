@@ -1,4 +1,4 @@
-//! Modes of mechanisms with states: vibrations and lags, how they are followed over the box, and what is told of them.
+//! Modes of mechanisms with states: vibrations and lags, how they are followed over the box, and their results.
 //!
 //! A pair σ ± iω is a vibration of frequency |λ| and damping ratio −σ/|λ|, a real eigenvalue a lag of time constant −1/λ; the growth is Re λ. What is a
 //! vibration with the nominal parameters stays one where it becomes two real eigenvalues, √(λ₁λ₂) and −(λ₁ + λ₂)/(2√(λ₁λ₂)), and two lags that
@@ -45,7 +45,7 @@ struct Match {
 }
 
 impl Kind {
-    /// Names and units of what is told of a mode.
+    /// Names and units of a mode's results.
     pub fn quantities(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Vibration => &[("frequency", "Hz"), ("damping", ""), ("growth", "1/s")],
@@ -61,7 +61,7 @@ impl Root {
         Self { kind, of: vec![eigenvalue] }
     }
 
-    /// In the order of the quantities. NaN is a time constant of what does not change, and the damping of what does not vibrate.
+    /// In the order of the quantities. NaN: the time constant of a constant, and the damping without a vibration.
     pub fn told(&self) -> Vec<f64> {
         let growth = self.growth();
         match (self.kind, self.of.as_slice()) {
@@ -183,7 +183,7 @@ fn matches(known: &[Root], found: &[Eigenvalue]) -> Vec<Match> {
     matches
 }
 
-/// The largest real part of what is not zero; zero where all is.
+/// The largest real part of the nonzero roots; zero where all are zero.
 pub fn growth(found: &[Eigenvalue]) -> f64 {
     let moving = found.iter().filter(|own| own.value != Complex::new(0.0, 0.0)).map(|own| own.value.re);
     moving.reduce(f64::max).unwrap_or(0.0)

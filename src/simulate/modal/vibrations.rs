@@ -98,7 +98,7 @@ impl Vibrations {
         }
     }
 
-    /// Names and units of what is told of each mode; `None` without states.
+    /// Names and units of each mode's results; `None` without states.
     pub fn quantities(&self) -> Option<Vec<&'static [(&'static str, &'static str)]>> {
         let kinds = self.kinds();
         (!self.states.is_empty()).then(|| kinds[..self.number].iter().map(|kind| kind.quantities()).collect())

@@ -1,4 +1,4 @@
-//! What of the start the given values and the constraints leave open.
+//! Parts of the start that the given values and the constraints leave open.
 
 use rustc_hash::FxHashMap;
 use symdiff::Expr;
@@ -11,7 +11,7 @@ use crate::compile::{Layout, OpenStart, StartProgram, time_derivative};
 /// Distances from rest below this, in their scales, are round-off.
 const AT_REST: f64 = 1e-12;
 
-/// Distances from rest above this, in their scales, show that several of them share what is left open.
+/// Distances from rest above this, in their scales, show that several of them share the open part.
 const APART: f64 = 1e-6;
 
 /// For which samples a start is looked for.
@@ -23,7 +23,7 @@ pub enum Samples {
     All,
 }
 
-/// What is open and is not at rest in every one of the samples, of a start that was assembled without looking for rest.
+/// Open coordinates that are not at rest in every sample, of a start assembled without a search for rest.
 pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], samples: Samples) -> OpenStart {
     if system.start.nearest.is_none() {
         return OpenStart::default();
@@ -33,7 +33,7 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], sample
             .iter()
             .any(|(distance, value)| !(value / distance.scale).abs().le(&AT_REST))
     };
-    // With constraints, other parameters move what is at rest in the nominal start.
+    // With constraints, other parameters move coordinates that are at rest in the nominal start.
     let follows = samples == Samples::All && !system.parameters.is_empty() && !system.lambda.is_empty();
     let mut rows = None;
     let mut is_free = |given: &[Option<Expr>], constraints: usize, conditions: usize| {
@@ -55,7 +55,7 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], sample
     }
 }
 
-/// Names of coordinates that share what is left open, so that the start is a choice among many.
+/// Names of coordinates that share the open part, so that the start is a choice among many.
 pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]) -> Vec<String> {
     let mut shared = Vec::new();
     for (kind, is_open) in [(Kind::Position, start.open.positions), (Kind::Velocity, start.open.velocities)] {
@@ -79,7 +79,7 @@ fn known_as(name: &str, kind: Kind) -> String {
     }
 }
 
-/// Those of some distances that what is known at the start does not determine.
+/// Distances that the known values at the start do not determine.
 fn open_of<'s>(
     system: &'s System,
     start: &StartProgram,
@@ -161,7 +161,7 @@ fn distances<'s>(system: &'s System, layout: &Layout, state: &[f64], kind: Kind)
     open.into_iter().zip(numbers).collect()
 }
 
-/// The values of symbols at a state; what it does not know is zero.
+/// Values of symbols at a state; unknown ones are zero.
 fn values_at(system: &System, layout: &Layout, state: &[f64]) -> impl Fn(Expr) -> f64 + use<> {
     let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
     let mut set = |symbols: &[Expr], registers: std::ops::Range<usize>| {

@@ -8,7 +8,7 @@ pub(super) const SETTLED: f64 = 1e-14;
 /// Corrections below this that no longer shrink are round-off.
 const STALLED: f64 = 1e-8;
 
-/// What is known of each lane's corrections.
+/// Record of each lane's corrections.
 #[derive(Debug)]
 pub(super) struct Settling {
     pending: Vec<bool>,

@@ -155,7 +155,7 @@ impl Equilibrium {
         Err(balance.why(&self.scale, &self.states))
     }
 
-    /// The largest change of a step from these positions, per scale; of states relative to what they are.
+    /// The largest change of a step from these positions, per scale; of states relative to their values.
     fn size(&self, step: &Step, before: &[f64]) -> f64 {
         let mut sizes: Vec<f64> = step.all.iter().map(|change| change.abs()).collect();
         for &State { place, .. } in &self.states {

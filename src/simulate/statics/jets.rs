@@ -9,7 +9,7 @@ use super::scaled::Scaled;
 use crate::assemble::ConstraintId;
 use crate::compile::Tapes;
 
-/// Pivots of the equations below this share of the largest are zero: what is indifferent has no jet of its own.
+/// Pivots of the equations below this share of the largest are zero: an indifferent coordinate has no jet of its own.
 const SINGULAR: f64 = 1e-10;
 
 impl Equilibrium {

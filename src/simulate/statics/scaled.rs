@@ -1,4 +1,4 @@
-//! A matrix with rows and columns of the size one: rates of states are of any size, and so is what they depend on.
+//! A matrix with rows and columns of the size one: rates of states are of any size, and so are their arguments.
 
 use nalgebra::DMatrix;
 

@@ -19,7 +19,7 @@ pub fn matrix_entries(program: &Program, tile: &Tile, lane: usize) -> Vec<(usize
     without_links(entries, program.residual.len())
 }
 
-/// The derivatives by the unknowns, of which there are `size`: those by values of links replaced by what they stand for.
+/// The derivatives by the unknowns, of which there are `size`: those by values of links replaced by their expressions.
 fn without_links(entries: Vec<(usize, usize, f64)>, size: usize) -> Vec<(usize, usize, f64)> {
     if entries.last().is_none_or(|&(row, ..)| row < size) {
         return entries;

@@ -11,7 +11,7 @@ use crate::simulate::simulator::Simulator;
 /// A step is divided where a function may change by more than this, as a share of its own size.
 pub(in crate::simulate) const TOO_FAST: f64 = 1.0;
 
-/// What it may change by within a part of a divided step.
+/// Largest change within a part of a divided step.
 pub(in crate::simulate) const RESOLVED: f64 = 0.5;
 
 /// Jumps are this many steps apart.
@@ -340,7 +340,7 @@ fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64
         if width <= 2.0 * (most - least) {
             break;
         }
-        // The piece that may go furthest beyond what is known to be reached.
+        // The piece that may go furthest beyond the values known to be reached.
         let place = if upper - most > least + lower { highest } else { lowest };
         let (a, b, _) = pieces.swap_remove(place);
         let middle = 0.5 * (a + b);

@@ -17,7 +17,7 @@ use super::simulator::Simulator;
 use crate::model::Analysis;
 use crate::numerics::Sample;
 
-/// What was found of a sample.
+/// Result of a sample.
 #[derive(Debug, Default)]
 pub struct Visit {
     /// The outputs, row by row, as far as it came.

@@ -14,13 +14,13 @@ const SETTLED: [f64; 2] = [1e-6, 3e-3];
 const SECANTS: usize = 40;
 const CLOSE: f64 = 1e-7;
 
-/// What is left may be negative by rounding.
+/// The remaining margin may be negative by rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Combinations of grades that are tried.
 const MOST: usize = 4000;
 
-/// What was chosen.
+/// The choice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     pub multiples: Vec<f64>,

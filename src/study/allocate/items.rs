@@ -72,7 +72,7 @@ impl Item {
         let whole = self.above.max(self.below);
         let tolerance = whole * multiple;
         let digit = 10_f64.powi(symdiff::math::log10(tolerance).floor() as i32 + 1 - DIGITS);
-        // What has few digits already stays, but for rounding.
+        // A number of few digits is unchanged, but for rounding.
         ((tolerance / digit * (1.0 + 1e-12)).floor() * digit / whole).min(multiple)
     }
 }

@@ -22,7 +22,7 @@ use surface::Surface;
 use wide::{Wide, largest_error, of, run_simulations, surrogate};
 use worst::{Slack, Worst};
 
-/// Studies that confirm, at most, and what they may leave of a nominal margin before another round looks for more.
+/// Studies that confirm, at most, and the share of a nominal margin they may leave before another round looks for more.
 const ROUNDS: usize = 4;
 const UNUSED: f64 = 5e-3;
 
@@ -39,7 +39,7 @@ const TRADED: usize = 6;
 /// How to allocate.
 #[derive(Clone, Copy, Debug)]
 pub struct AllocateOptions {
-    /// The share of what is made that fulfils all requirements; every case where absent.
+    /// The share of the production that fulfils all requirements; every case where absent.
     pub share: Option<f64>,
     /// How many times the model's tolerances are looked at, at most.
     pub widest: f64,
@@ -202,7 +202,7 @@ impl Allocator<'_> {
         Ok(summary)
     }
 
-    /// Whether a study confirms what the surrogate said, and what it leaves unused; by what it differs, the next round knows better.
+    /// Whether a study confirms the surrogate, and the unused margin; the difference corrects the next round.
     fn compare(
         &self,
         summary: &Summary,

@@ -8,7 +8,7 @@ use crate::numerics::statistics::{
 use crate::numerics::{Linear, Power};
 use crate::study::statistics::Laws;
 
-/// Points of each replicate. What they leave open is found by the study that confirms.
+/// Points of each replicate. The confirming study finds the rest.
 const POINTS: usize = 1 << 9;
 
 /// Where less than this may fail, points are drawn about the places that fail first: so many of them, looked for from so many samples of

@@ -15,7 +15,7 @@ pub struct Surface<'k> {
     pub count: usize,
     /// Nominal margins, in their units.
     pub nominal: Vec<f64>,
-    /// What is taken off each margin, in its unit: what the surrogate leaves open.
+    /// Correction subtracted from each margin, in its unit: the surrogate's uncertainty.
     pub reserves: Vec<f64>,
 }
 
@@ -50,7 +50,7 @@ impl<'k> Surface<'k> {
         self.kept.values(samples)
     }
 
-    /// What is left of the margins of samples, in multiples of the nominal ones, requirement by requirement.
+    /// Remaining margins of samples, in multiples of the nominal ones, requirement by requirement.
     pub fn slacks(&self, samples: &[Vec<f64>]) -> Vec<f64> {
         let mut slacks = self.raw(samples);
         for (requirement, own) in slacks.chunks_exact_mut(samples.len().max(1)).enumerate() {

@@ -5,22 +5,22 @@ use crate::numerics::{ExtremeSearch, Extremes, Linear, Power};
 
 /// What requirements leave of tolerances.
 pub trait Slack {
-    /// What is left of each requirement's margin with these multiples of the tolerances.
+    /// Remaining margin of each requirement with these multiples of the tolerances.
     fn left(&mut self, multiples: &[f64]) -> Vec<f64>;
 
     /// Whether something that is known already tells that too little is left.
     fn is_known_to_fail(&self, multiples: &[f64]) -> bool;
 
-    /// What is left, linearised in a power of the multiples.
+    /// Remaining margin, linearised in a power of the multiples.
     fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear>;
 
     /// In which power.
     fn power(&self) -> Power;
 
-    /// Derivatives of what is left of a requirement's margin with respect to the multiples, where that is least.
+    /// Derivatives of a requirement's remaining margin with respect to the multiples, where it is least.
     fn slopes_at_least(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64>;
 
-    /// What is taken off each margin, in its unit.
+    /// Correction subtracted from each margin, in its unit.
     fn reserves(&mut self) -> &mut [f64];
 
     /// Lets another share fail, where one may.

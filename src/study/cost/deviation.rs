@@ -1,4 +1,4 @@
-//! How far bounds and courses lie off what is known.
+//! Deviation of bounds and profiles from the reference.
 //!
 //! Each output has its scale: the widest that its known band gets, or, without a band, how far its course reaches. What
 //! deviates is divided by it.

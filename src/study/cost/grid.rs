@@ -13,7 +13,7 @@ const TOLERANCES: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 /// Levels of extrapolation that samples of bounds are tried with.
 pub(super) const LEVELS: Integrator = Integrator::Extrapolated { levels: 3 };
 
-/// Orders of bounds whose samples are integrated in place of plain steps: what is more accurate is worth higher ones.
+/// Orders of bounds whose samples are integrated in place of plain steps: more accurate samples are worth higher ones.
 const COUNTS: [usize; 4] = [5, 8, 12, 16];
 
 /// Of which all samples lie in the true range: what a reference is checked by.
@@ -24,7 +24,7 @@ pub(super) fn smoothest(composable: bool) -> CostMethod {
     CostMethod::Bounds(Curve { method: Method::Chebyshev, place: usize::from(!composable) })
 }
 
-/// What is run once, or a few times for the clock's sake.
+/// A setting that runs once, or a few times for the clock's sake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Setting {
     pub(super) method: CostMethod,

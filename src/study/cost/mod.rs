@@ -1,6 +1,6 @@
 //! What accuracy costs in time: a work-precision study of one model.
 //!
-//! `grid` says what is tried; `plan` which reference can be had, and `reference` computes it with its own error; every
+//! `grid` lists the settings; `plan` which reference can be had, and `reference` computes it with its own error; every
 //! setting is run as `batch::run` runs a model, against the clock (`timing`), and `deviation` says how far its bounds are off.
 //! `integrators` does the same with other schemes on the nominal trajectory.
 
@@ -35,7 +35,7 @@ pub struct CostOptions<'a> {
     pub threads: Option<usize>,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
-    /// Asked now and then whether to end; what was measured by then is kept.
+    /// Asked now and then whether to end; measurements made by then are kept.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -86,7 +86,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         Err(CostError::TooCostly { seconds }) if !(options.interrupted)() => {
             return Ok(without_reference(model, composable, options, seconds.max(begun.elapsed().as_secs_f64())));
         }
-        // What was cut short at the end of the budget.
+        // Settings cut short at the end of the budget.
         Err(CostError::Reference(_)) if !(options.interrupted)() && over() => {
             return Ok(without_reference(model, composable, options, begun.elapsed().as_secs_f64()));
         }
@@ -253,7 +253,7 @@ fn point(
     }
 }
 
-/// Says what is below the reference's own error, which stands for it then, and what is on the front.
+/// Marks settings below the reference's own error, which replaces theirs, and settings on the front.
 fn mark(points: &mut [CostPoint], own: f64) {
     for point in points.iter_mut() {
         point.limited = point.deviation.largest() < own;

@@ -36,7 +36,7 @@ const TRIAL: f64 = 0.05;
 const SHARE: f64 = 0.35;
 const SCAN_SHARE: f64 = 0.25;
 
-/// What is run for the reference: with three step sizes, each twice the one before.
+/// Runs for the reference: with three step sizes, each twice the one before.
 pub(super) struct Plan {
     pub(super) method: CostMethod,
     pub(super) order: usize,
@@ -82,7 +82,7 @@ impl Plan {
             return Err(CostError::TooMany { parameters: k, simulations: simulations(highest) });
         }
 
-        // Seconds on the clock are a constant, in which the model is compiled, and a rate times what is simulated: by the method, and beside
+        // Seconds on the clock are a constant, in which the model is compiled, and a rate times the simulations: by the method, and beside
         // it, which takes as many simulations at every order.
         let trials = [setting(2, 0.5), setting(2, 1.0)];
         let [coarse, fine] = [spent(model, &trials[0], options)?, spent(model, &trials[1], options)?];

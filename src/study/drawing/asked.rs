@@ -108,7 +108,7 @@ impl Asked {
     }
 }
 
-/// Values of what was asked.
+/// Values of the requested quantities.
 pub(in crate::study) struct Values(pub Vec<f64>);
 
 impl Values {

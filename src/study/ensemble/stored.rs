@@ -1,6 +1,7 @@
 //! Simulations of an ensemble that are stored: read where they are there, simulated or deferred where they are not.
 
 use std::ops::Range as Rows;
+use std::sync::atomic::Ordering;
 
 use super::Motions;
 use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan_shard};
@@ -38,7 +39,7 @@ pub(in crate::study) fn samples_of_part(lines: usize, rows: usize) -> usize {
 }
 
 impl Stored<'_> {
-    /// Simulates what is missing of these parts' samples, to the end, or defers all of it.
+    /// Simulates the missing samples of these parts, to the end, or defers all of them.
     pub fn prepare(
         &self,
         motions: &Motions,
@@ -126,7 +127,11 @@ impl Stored<'_> {
             let name = self.name(&task)?;
             let part = self.store.part(&name).map_err(of_store)?;
             match part {
-                Some(part) if !deferred => take(task, part)?,
+                Some(part) if !deferred => {
+                    // As over as those that are simulated here.
+                    motions.over.fetch_add(task.samples.len(), Ordering::Relaxed);
+                    take(task, part)?;
+                }
                 Some(_) => {}
                 None if simulates => {
                     simulate_part(motions, self.store, &name, &task)?;

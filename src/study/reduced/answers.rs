@@ -69,7 +69,7 @@ impl Parameters<'_> {
 }
 
 impl Found {
-    /// What is left of a study that did not end: every requirement is undecided.
+    /// Result of a study that did not end: every requirement is undecided.
     pub fn nothing(description: &Description) -> Self {
         let undecided = |own: &Requirement| RequirementSummary {
             name: own.name.clone(),

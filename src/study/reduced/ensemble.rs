@@ -48,7 +48,7 @@ impl Store {
 
     /// Keeps what samples were reduced to, channel by channel, sample by sample.
     pub fn keep(&self, steps: Steps, samples: &[Sample], values: &[f64]) {
-        // What is kept is whole, whoever panicked.
+        // Stored values are whole, whoever panicked.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         for (place, sample) in samples.iter().enumerate() {
             if kept.len() * (self.plan.channels.len() + sample.len()) < MOST_KEPT {
@@ -82,12 +82,12 @@ pub struct ReducedEnsemble<'a> {
 }
 
 impl<'a> ReducedEnsemble<'a> {
-    /// Of motions that keep in the store what they are reduced to.
+    /// For motions whose reductions are in the store.
     pub fn new(motions: &'a dyn Ensemble, store: &'a Store, schedule: &Schedule) -> Self {
         Self { motions, store, steps: steps_of(schedule), scales: vec![1.0; store.plan.expanded] }
     }
 
-    /// What is accumulated.
+    /// Accumulated reductions.
     pub fn plan(&self) -> &Plan {
         &self.store.plan
     }

@@ -1,14 +1,14 @@
-//! What was found of reduced outputs and requirements.
+//! Results of reduced outputs and requirements.
 
 use super::kept::KeptReduced;
 use crate::results::{MethodSummary, ReducedSummary, RequirementSummary};
 
-/// What was found of reduced outputs and requirements.
+/// Results of reduced outputs and requirements.
 #[derive(Default)]
 pub struct Found {
     pub reduced: Vec<ReducedSummary>,
     pub requirements: Vec<RequirementSummary>,
-    /// What it took besides the samples of the outputs.
+    /// Cost besides the samples of the outputs.
     pub summary: Option<MethodSummary>,
     /// Where surrogates are kept.
     pub kept: Option<KeptReduced>,

@@ -10,7 +10,7 @@ use crate::methods::Method;
 use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 
 impl Study<'_> {
-    /// What is kept of the bounds of reduced outputs and margins, with the errors of their values.
+    /// Surrogates kept of reduced outputs and margins, with the errors of their values.
     pub(super) fn kept_reduced(
         &self,
         results: &mut Results,

@@ -1,6 +1,6 @@
-//! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
+//! Reduced outputs and requirements: bounds of one number a motion, and verdicts.
 //!
-//! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
+//! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities and the values that follow; `ensemble` is
 //! what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it); `answers` puts those of
 //! subsystems together; `keeping`, `kept` and `margins` evaluate them after the run; `refine` runs a model until all are decided.
 
@@ -44,7 +44,7 @@ use plan::Plan;
 /// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
 const MUCH: f64 = 4.0;
 
-/// What the methods found of each value, with what is common to all.
+/// Results of the methods for each value, with the parts common to all.
 struct Values<'a> {
     results: &'a Results,
     /// Whether something makes all bounds unreliable.
@@ -57,7 +57,7 @@ struct Values<'a> {
 }
 
 impl Study<'_> {
-    /// Plans what is accumulated during the motions, by the nominal one.
+    /// Plans the reductions during the motions, by the nominal one.
     ///
     /// # Errors
     /// Where that cannot be assembled.
@@ -73,7 +73,7 @@ impl Study<'_> {
         let Divided { schedule, .. } = self.divided(schedule.clone());
         let progress = Progress::new(usize::MAX, self.progress);
         let motions = self.motions(&schedule, tolerance, &progress);
-        // A deviation from what is nominal is rounding in the nominal motion: opposite corners show its course.
+        // A deviation from the nominal motion is rounding in the nominal motion: opposite corners show its course.
         let corner = |xi: f64| self.domain.sample(&vec![xi; self.domain.dimension()]);
         let mut samples = vec![self.domain.nominal.clone()];
         if self.domain.dimension() > 0 {
@@ -185,7 +185,7 @@ impl Study<'_> {
         if request.is_empty() {
             return Ok(results);
         }
-        // The kinks of what is one number a motion have no polynomial about the middle.
+        // A reduced output with kinks has no polynomial about the middle.
         request.omit(Method::Taylor);
         if request.methods().iter().all(|(method, _)| !method.about().is_sampled) {
             request.ask(Method::Chebyshev, &super::single::problem(self.description, &self.simulator));

@@ -15,7 +15,7 @@ const MOST_WINDOWS: usize = 8;
 /// A dip between two humps cuts the time where it is deeper than this share of the range.
 const DEEP: f64 = 0.02;
 
-/// What is accumulated, and what follows from it.
+/// Accumulated quantities, and the values that follow.
 #[derive(Debug)]
 pub struct Plan {
     /// Those that the surrogate expands, then those that are only looked up.
@@ -131,7 +131,7 @@ impl Plan {
         }
     }
 
-    /// When a requirement is nearest to failing in a motion; `None` of what has no time.
+    /// When a requirement is nearest to failing in a motion; `None` without a time.
     pub fn when(&self, (number, own): (usize, &Requirement), channels: &[f64]) -> Option<f64> {
         let (from, to) = own.times?;
         if from == to {

@@ -139,7 +139,7 @@ impl Study<'_> {
         [direct, halved]: [&ReducedEnsemble; 2],
     ) -> Result<Option<NearestCase>, SimulationError> {
         let margin = |all: &[f64]| direct.plan().margin(number, |place| all[place]);
-        // What has no value fails more than what has one.
+        // A missing value fails more than any value.
         let key = |value: f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
         let of_sample = |(sample, all): &(Sample, Vec<f64>)| (sample.clone(), margin(all));
         let best = values.samples.iter().map(of_sample).min_by(|a, b| key(a.1).total_cmp(&key(b.1)));

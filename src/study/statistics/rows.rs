@@ -1,4 +1,4 @@
-//! One row after the other: samples of the surrogate, and what they say of each output.
+//! One row after the other: samples of the surrogate, and their statistics of each output.
 
 use rayon::prelude::*;
 

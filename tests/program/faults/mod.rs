@@ -9,6 +9,7 @@ mod names;
 mod numbers;
 mod panics;
 mod processors;
+mod replaced;
 mod sizes;
 mod terminal;
 mod uncertainty;

@@ -1,5 +1,5 @@
-//! What each function means for [`Interval`]s. Functions of `libm` are within a unit in the last place, as measured, and are
-//! taken to be within four.
+//! What each function means for [`Interval`]s. Functions of `libm` are within a unit in the last place, as measured,
+//! and are taken to be within four.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,9 +1,9 @@
 //! Intervals that enclose: every operation's result contains the exact result for all members of its operands.
 //!
-//! IEEE operations are correct to half a unit in the last place, so that the neighbours of a computed number enclose the
-//! exact one; no rounding mode is switched. What has no bound (a quotient by an interval with zero in it, the root of a
-//! negative number) is [`Interval::ENTIRE`]: nothing is known, and nothing wrong is said. Sine and cosine are summed here
-//! from their series, because the errors of a library's are measured rather than proven.
+//! IEEE operations are correct to half a unit in the last place, so that the neighbours of a computed number enclose
+//! the exact one; no rounding mode is switched. A result without a bound (a quotient by an interval with zero in it,
+//! the root of a negative number) is [`Interval::ENTIRE`]: nothing is known, and nothing wrong is said. Sine and
+//! cosine are summed here from their series, because the errors of a library's are measured rather than proven.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -20,7 +20,7 @@ const LARGE: f64 = 1e5;
 /// π/2 = the sum of three, the last between its neighbours (see [`sincos`](crate::eval::sincos)).
 const QUADRANTS: [u64; 3] = [0x3FF9_21FB_5440_0000, 0x3DD0_B461_1A60_0000, 0x3BA3_198A_2E03_7073];
 
-/// Terms of the series for |x| < 0.8; what is left out is below 0.8²¹/21! < 2e-22.
+/// Terms of the series for |x| < 0.8; the remainder is below 0.8²¹/21! < 2e-22.
 const TERMS: i32 = 10;
 const SERIES_TAIL: f64 = 2e-22;
 
@@ -112,7 +112,7 @@ impl Interval {
 fn sin_cos_of(x: f64) -> (Interval, Interval) {
     let n = (x * std::f64::consts::FRAC_2_PI).round();
     let [first, second, third] = QUADRANTS.map(f64::from_bits);
-    // Exact, as there: n times the first 33 bits, what is left of x, and n times the next 33 bits.
+    // Exact, as there: n times the first 33 bits, the remainder of x, and n times the next 33 bits.
     let (left, second) = (x - n * first, n * second);
     let third = if n == 0.0 { Interval::point(0.0) } else { Interval::outward(third, third) };
     let rest = Interval::point(left) - Interval::point(second) - Interval::point(n) * third;
@@ -268,7 +268,8 @@ mod tests {
 
     #[test]
     fn multiples_of_the_right_angle() {
-        // sin(355) = -3.0144353359488449214...e-5, to 18 digits; cos of the f64 nearest to π/2 is 6.123233995736766e-17.
+        // sin(355) = -3.0144353359488449214...e-5, to 18 digits; cos of the f64 nearest to π/2 is
+        // 6.123233995736766e-17.
         let (sine, _) = Interval::point(355.0).sin_cos();
         assert!(sine.contains(-3.014_435_335_948_845e-5) && sine.upper() - sine.lower() < 1e-15);
         let (_, cosine) = Interval::point(std::f64::consts::FRAC_PI_2).sin_cos();

@@ -1,7 +1,8 @@
-//! Functions of real numbers with the same bits on every processor and system: those that formulas and tapes compute with.
+//! Functions of real numbers with the same bits on every processor and system: those that formulas and tapes compute
+//! with.
 //!
-//! The standard library's come from the system, which picks other code, with other last digits, where the processor can fuse a
-//! multiplication with an addition.
+//! The standard library's come from the system, which picks other code, with other last digits, where the processor
+//! can fuse a multiplication with an addition.
 
 use super::sincos;
 

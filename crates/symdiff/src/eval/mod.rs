@@ -1,5 +1,5 @@
-//! Evaluation of tapes: over samples ([`tile`]), polynomials ([`jet`]) and their enclosures ([`taylor_model`]); and of expressions
-//! over intervals (`ranges`).
+//! Evaluation of tapes: over samples ([`tile`]), polynomials ([`jet`]) and their enclosures ([`taylor_model`]); and of
+//! expressions over intervals (`ranges`).
 
 mod enclosed;
 pub(crate) mod functions;

@@ -4,8 +4,8 @@
 //! Waite), and both kernels of fdlibm are evaluated; the quadrant then chooses and signs them by bit operations. Above
 //! it, and where the argument is not finite, `libm` does the work: a mechanism that turned so often is rare.
 //!
-//! No fused multiply-add anywhere: every platform performs the same IEEE operations and gives the same bits.
-//! Largest error seen: 0.77 units in the last place (213 000 arguments against 200 bits, near multiples of π/2 included).
+//! No fused multiply-add anywhere: every platform performs the same IEEE operations and gives the same bits. Largest
+//! error seen: 0.77 units in the last place (213 000 arguments against 200 bits, near multiples of π/2 included).
 
 use std::array;
 
@@ -62,7 +62,7 @@ fn reduced(x: f64) -> (f64, f64) {
     let n = rounded - ROUNDER;
     // Exact: both are multiples of 2⁻⁵³ (or n = 0) and their difference is below 1.
     let first = x - n * QUADRANT_1;
-    // The second part may be larger or smaller than what is left, hence Knuth's sum: second + lost is exact.
+    // The second part may be larger or smaller than the remainder, hence Knuth's sum: second + lost is exact.
     let part = n * QUADRANT_2;
     let second = first - part;
     let share = second - first;

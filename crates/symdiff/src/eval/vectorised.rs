@@ -1,9 +1,9 @@
 //! One source, compiled for every instruction set and chosen at run time.
 
-/// Work worth compiling for wide vectors. Mark `run` `#[inline(always)]`: that is how it gets into functions that may use
-/// them. Rust contracts and reorders nothing, so the results are the same to the bit.
+/// Work worth compiling for wide vectors. Mark `run` `#[inline(always)]`: that is how it gets into functions that may
+/// use them. Rust contracts and reorders nothing, so the results are the same to the bit.
 pub trait Vectorise {
-    /// What it gives.
+    /// Result.
     type Output;
     /// Does it.
     fn run(self) -> Self::Output;

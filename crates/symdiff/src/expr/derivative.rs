@@ -53,9 +53,9 @@ impl SparseMatrix {
 }
 
 impl Graph {
-    /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken; jumps (of `sign`,
-    /// `floor`) have no derivative;
-    /// a guarded value is taken to be continuous where its condition changes sign.
+    /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken; jumps (of
+    /// `sign`, `floor`) have no derivative; a guarded value is taken to be continuous where its condition changes
+    /// sign.
     pub fn derivative(&mut self, of: Expr, by: Expr) -> Expr {
         let mut visits = std::mem::take(&mut self.visits);
         let derivative = self.derivative_along(of, by, &mut visits);
@@ -84,7 +84,7 @@ impl Graph {
         matrix
     }
 
-    /// What depends on `by` has its derivative noted, so that only what is above those already noted is looked at.
+    /// Records the derivatives of nodes that depend on `by`; only nodes above those already recorded are visited.
     fn derivative_along(&mut self, of: Expr, by: Expr, visits: &mut Visits) -> Expr {
         let zero = self.constant(0.0);
         let one = self.constant(1.0);
@@ -100,7 +100,7 @@ impl Graph {
         self.derivatives.get(&(of, by)).copied().unwrap_or(zero)
     }
 
-    /// All that `of` needs and that may depend on `by`, children first, but for what is below nodes with a known derivative.
+    /// Nodes below `of` that may depend on `by`, children first, without those below nodes with a known derivative.
     fn not_yet_derived<'v>(&self, of: Expr, by: Expr, visits: &'v mut Visits) -> &'v [Expr] {
         visits.begin(self.len());
         visits.stack.push(of);
@@ -230,7 +230,7 @@ impl Graph {
 mod tests {
     use super::*;
 
-    /// Derivatives of what stands on other derivatives cost what is new, however deep they stand.
+    /// A derivative built on other derivatives costs only its new nodes, at any depth.
     #[test]
     fn only_what_is_new_is_looked_at() {
         let mut g = Graph::new();

@@ -19,7 +19,7 @@ use super::visits::Visits;
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
-    /// All nodes by what they are: their handles alone, so that the table is small.
+    /// All nodes by content; the table stores handles only, so that it is small.
     known: HashTable<Expr>,
     names: Vec<String>,
     symbols: FxHashMap<String, Expr>,
@@ -45,7 +45,8 @@ impl Graph {
         self.nodes.is_empty()
     }
 
-    /// From now on the graph is full where it has more nodes; it goes on growing, but who fills it may look and give up.
+    /// From now on the graph is full where it has more nodes; it goes on growing, but who fills it may look and give
+    /// up.
     pub fn limit(&mut self, most: Option<usize>) {
         self.most = most;
     }

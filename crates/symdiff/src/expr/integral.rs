@@ -114,8 +114,8 @@ impl Graph {
         Some(self.mul(factor, area))
     }
 
-    /// Whether nothing but sums, products, quotients and powers makes an expression of t: what has jumps or corners may have a
-    /// derivative like a polynomial's between them.
+    /// Whether nothing but sums, products, quotients and powers makes an expression of t: a function with jumps or
+    /// corners may have a derivative like a polynomial's between them.
     fn is_algebraic(&self, of: Expr, by: Expr) -> bool {
         self.moving(of, by).into_iter().all(|expr| {
             matches!(

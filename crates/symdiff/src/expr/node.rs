@@ -67,7 +67,7 @@ pub enum Binary {
     Min,
     /// The larger of both.
     Max,
-    /// b where a is positive (or NaN), 0 elsewhere. What is needed for such b alone is not computed where no sample
+    /// b where a is positive (or NaN), 0 elsewhere. Nodes that only such b need are not computed where no sample
     /// of a tile has a positive a.
     Select,
     /// b where a ≤ 0, 0 elsewhere: together with [`Select`](Self::Select) one of both, always.

@@ -1,4 +1,4 @@
-//! Passes over whole expressions: what they reach, substitution, evaluation.
+//! Passes over whole expressions: reachable nodes, substitution, evaluation.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -10,7 +10,7 @@ use crate::eval::functions;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice {
     pub condition: Expr,
-    /// Both summands, and what they guard: wanted where the condition is positive, and elsewhere.
+    /// Both summands, and the nodes they guard: used where the condition is positive, and elsewhere.
     pub halves: [(Expr, Expr); 2],
 }
 
@@ -60,8 +60,8 @@ impl Graph {
         found
     }
 
-    /// Whether an expression changes with a symbol other than by jumps: what stands in `sign`, `floor` or in a condition alone
-    /// makes it jump, and is constant between two jumps.
+    /// Whether an expression changes with a symbol other than by jumps: what stands in `sign`, `floor` or in a
+    /// condition alone makes it jump, and is constant between two jumps.
     pub fn changes_steadily(&self, of: Expr, with: &[Expr]) -> bool {
         let mut steadily = FxHashSet::default();
         for expr in self.reachable(&[of]) {
@@ -84,7 +84,7 @@ impl Graph {
         self.rebuild(roots, |expr, _, _| replacements.get(&expr).copied())
     }
 
-    /// `roots` anew, with those nodes replaced for which there is something else, by the images of what is below them.
+    /// Rebuilds `roots` with nodes replaced, given the images of the nodes below them.
     fn rebuild(
         &mut self,
         roots: &[Expr],

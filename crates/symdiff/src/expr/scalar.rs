@@ -108,7 +108,7 @@ impl<'g> Scalar<'g> {
         scalars.iter().map(|scalar| scalar.expr).collect()
     }
 
-    /// What it belongs to.
+    /// Graph of the scalar.
     pub fn builder(self) -> &'g Builder {
         self.builder
     }

@@ -1,11 +1,11 @@
 //! Natural cubic splines: a table's values as a function with two continuous derivatives.
 //!
-//! Between neighbouring knots the function is a cubic; its second derivative is zero at the ends, and beyond them it goes on
-//! along its tangents, so that it has two continuous derivatives everywhere (de Boor, *A Practical Guide to Splines*, ch. 4).
-//! A periodic one repeats itself instead, with two continuous derivatives where it begins anew.
+//! Between neighbouring knots the function is a cubic; its second derivative is zero at the ends, and beyond them it
+//! goes on along its tangents, so that it has two continuous derivatives everywhere (de Boor, *A Practical Guide to
+//! Splines*, ch. 4). A periodic one repeats itself instead, with two continuous derivatives where it begins anew.
 //!
-//! A table is kept for the life of the process, once whatever the number of graphs that use it: an expression refers to it as to
-//! any other function, and is copied, compared and hashed like one.
+//! A table is kept for the life of the process, once whatever the number of graphs that use it: an expression refers
+//! to it as to any other function, and is copied, compared and hashed like one.
 
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
@@ -25,7 +25,7 @@ struct Pieces {
     knots: Vec<f64>,
     /// Of powers of x − knot; the knot is the one before, but for the first piece.
     cubics: Vec<[f64; 4]>,
-    /// Whether what is between the first and the last knot goes on beyond them.
+    /// Whether the spline repeats beyond its first and last knots.
     periodic: bool,
 }
 
@@ -142,7 +142,7 @@ impl Spline {
         let (first, last) = self.range();
         let whole = || self.enclose_pieces(order, Interval::new(first, last));
         let shift = self.shift(x.lower());
-        // The shift is rounded; and what is moved out of the period by that is near its end.
+        // The shift is rounded; a value that this moves out of the period is near its end.
         let slack = 4.0 * f64::EPSILON * x.magnitude().max(shift.abs());
         let (lower, upper) = (x.lower() - shift - slack, x.upper() - shift + slack);
         if upper - lower >= last - first {
@@ -186,7 +186,8 @@ impl Spline {
 }
 
 impl Pieces {
-    /// The second derivatives m solve hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (slopeᵢ − slopeᵢ₋₁), m = 0 at the ends.
+    /// The second derivatives m solve hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (slopeᵢ − slopeᵢ₋₁), m = 0 at the
+    /// ends.
     fn natural(points: &[(f64, f64)]) -> Self {
         let n = points.len();
         let widths: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
@@ -205,8 +206,8 @@ impl Pieces {
         Self::with_second(points, &second, false)
     }
 
-    /// As natural ones, but m₀ = mₙ₋₁, and what holds at inner knots holds there: the matrix is cyclic. With m₀ known the others
-    /// solve a tridiagonal system, of which m₀ is a factor on the right side; the row of knot 0 gives it.
+    /// As natural ones, but m₀ = mₙ₋₁, and what holds at inner knots holds there: the matrix is cyclic. With m₀ known
+    /// the others solve a tridiagonal system, of which m₀ is a factor on the right side; the row of knot 0 gives it.
     fn periodic(points: &[(f64, f64)]) -> Self {
         let n = points.len();
         let widths: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();

@@ -84,7 +84,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Of an angle; of bare numbers, what is meant is an angle of so many degrees.
+    /// An angle; a bare number is an angle in degrees.
     fn degrees(&mut self, x: usize, span: Range<usize>) -> Result<usize, SyntaxError> {
         let within = |place: &Range<usize>| span.start <= place.start && place.end <= span.end;
         let bare = |(term, place): &(Term, Range<usize>)| {

@@ -29,7 +29,7 @@ pub type Lookup<'l> = dyn Fn(&str) -> Option<Index> + 'l;
 /// The text with the values of what stands in braces.
 ///
 /// # Errors
-/// A brace that does not close, and what is no whole number in braces.
+/// An unclosed brace, or braces around something that is not a whole number.
 pub fn fill(text: &str, lookup: &Lookup) -> Result<String, SyntaxError> {
     let mut filled = String::with_capacity(text.len());
     let mut place = 0;
@@ -52,7 +52,7 @@ pub fn fill(text: &str, lookup: &Lookup) -> Result<String, SyntaxError> {
 /// The ends of a range of whole numbers: `1..6`, `0..N - 1`.
 ///
 /// # Errors
-/// What is no range, and a range without a number in it.
+/// Not a range, or an empty range.
 pub fn range(text: &str, lookup: &Lookup) -> Result<RangeInclusive<i64>, SyntaxError> {
     let Some(dots) = text.find("..") else {
         return Err(error("a range belongs here", 0..text.len(), "e.g. `1..6`, both ends included"));
@@ -69,7 +69,7 @@ pub fn range(text: &str, lookup: &Lookup) -> Result<RangeInclusive<i64>, SyntaxE
 /// The value of a sum of products of whole numbers.
 ///
 /// # Errors
-/// What is none.
+/// Not an index.
 pub fn whole(text: &str, lookup: &Lookup) -> Result<i64, SyntaxError> {
     let mut reader = Whole { text, position: 0, lookup, depth: 0 };
     let value = reader.sum()?;

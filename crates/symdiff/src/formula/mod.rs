@@ -14,7 +14,8 @@
 //! name       = letter { letter | digit | "_" } { "." name }
 //! ```
 //!
-//! In a repeated formula, and where the caller knows indices, names may have whole numbers in braces: `leg_{i - 1}.force`.
+//! In a repeated formula, and where the caller knows indices, names may have whole numbers in braces: `leg_{i -
+//! 1}.force`.
 //!
 //! `pi` is the number; every other name, `t` included, is for the caller to resolve, and so are units.
 
@@ -112,7 +113,7 @@ pub const FUNCTIONS: [NamedFunction; 23] = [
 pub struct NamedFunction {
     /// Its name.
     pub name: &'static str,
-    /// What it computes.
+    /// Expression of the formula.
     pub function: Function,
     /// Its arguments.
     pub arguments: &'static str,
@@ -133,7 +134,8 @@ impl NamedFunction {
         Self { name, function, arguments, domain, value }
     }
 
-    /// Whether nothing else may have the name. Of `floor`, `round` and the like, only a call is one: models have a floor, too.
+    /// Whether nothing else may have the name. Of `floor`, `round` and the like, only a call is one: models have a
+    /// floor, too.
     pub fn is_reserved(&self) -> bool {
         !matches!(self.function, Function::Composed(_) | Function::Unary(Unary::Floor))
     }
@@ -188,11 +190,11 @@ pub struct Formula {
     terms: Vec<(Term, Range<usize>)>,
 }
 
-/// What is wrong with a formula, and where.
+/// An error in a formula, with its span.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct SyntaxError {
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// Bytes of the text that are wrong; empty at its end.
     pub span: Range<usize>,

@@ -11,7 +11,7 @@ pub struct Vocabulary<'v> {
     pub tables: &'v [(&'v str, Spline)],
     /// Reads the unit that stands behind a number; without it, numbers have no units.
     pub unit: Option<&'v ReadUnit<'v>>,
-    /// Other meanings of names; without it, each is what it is.
+    /// Other meanings of names; without it, every name stands for itself.
     pub names: Option<&'v dyn Names>,
 }
 

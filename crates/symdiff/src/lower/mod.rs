@@ -1,7 +1,7 @@
 //! Lowering: expressions → tapes, split by *when values can change*.
 //!
-//! Inputs carry a stage: 0 changes least often, `shared` (the last) most often. A node's stage is the highest of what it
-//! depends on. The caller asks for kernels, each with outputs; whatever a kernel needs of a lower stage is computed by
+//! Inputs carry a stage: 0 changes least often, `shared` (the last) most often. A node's stage is the highest of its
+//! operands. The caller asks for kernels, each with outputs; whatever a kernel needs of a lower stage is computed by
 //! that stage's own tape and kept in a slot of its own, so that nothing is evaluated more often than it can change.
 
 mod node_table;
@@ -129,8 +129,8 @@ impl Lowering<'_> {
         })
     }
 
-    /// A register in which a kernel's output outlives it: its own where it has one that the kernel does not replace, else a
-    /// new one.
+    /// A register in which a kernel's output outlives it: its own where it has one that the kernel does not replace,
+    /// else a new one.
     fn keep(&mut self, expr: Expr, replaced: &FxHashSet<u32>) -> u32 {
         match self.register_of.get(expr) {
             Some(register) if !replaced.contains(&register) => register,
@@ -141,7 +141,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The nodes that one tape has to compute for `wanted`, operands first (depth first, so that what is used together
+    /// The nodes that one tape has to compute for `wanted`, operands first (depth first, so that values used together
     /// stands together). What belongs to a lower stage is noted in `pinned`, constants get their registers.
     fn body(&mut self, stage: usize, wanted: &[Expr], pinned: &mut [FxHashSet<Expr>]) -> Vec<Expr> {
         let mut order = Vec::new();
@@ -184,7 +184,8 @@ impl Lowering<'_> {
         order
     }
 
-    /// One tape: fused, in regions, grouped, with registers. `wanted` are the nodes that are used outside, some under a guard only.
+    /// One tape: fused, in regions, grouped, with registers. `wanted` are the nodes that are used outside, some under
+    /// a guard only.
     fn emit(
         &self,
         body: &[Expr],
@@ -259,8 +260,9 @@ impl Lowering<'_> {
         pending
     }
 
-    /// The operation of a node; `None` where another's writes its value too, or none has to. `product` gives the factors of what may
-    /// become part of a sum, which is then `absorbed`; `circular` has the sine and cosine of each argument.
+    /// The operation of a node; `None` where another's writes its value too, or none has to. `product` gives the
+    /// factors of what may become part of a sum, which is then `absorbed`; `circular` has the sine and cosine of each
+    /// argument.
     fn instruction(
         &self,
         expr: Expr,

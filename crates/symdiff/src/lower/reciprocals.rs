@@ -1,8 +1,9 @@
-//! Divisions → products with reciprocals, where a reciprocal serves several of them or is computed less often than they are.
+//! Divisions → products with reciprocals, where a reciprocal serves several of them or is computed less often than
+//! they are.
 //!
-//! A division takes many times as long as a product. x/y is x·(1/y) where y changes less often than x, so that 1/y is found at y's
-//! stage (for a number, when the tape is made), and where something else is divided by y too. That rounds twice where a division
-//! rounds once.
+//! A division takes many times as long as a product. x/y is x·(1/y) where y changes less often than x, so that 1/y is
+//! found at y's stage (for a number, when the tape is made), and where something else is divided by y too. That rounds
+//! twice where a division rounds once.
 
 use rustc_hash::FxHashMap;
 
@@ -65,7 +66,7 @@ mod tests {
         for (before, after) in g.evaluate(&roots, value).into_iter().zip(g.evaluate(&rewritten, value)) {
             assert!((before - after).abs() <= 2.0 * f64::EPSILON * before.abs(), "{before} {after}");
         }
-        // What is divided alone stays as it is.
+        // A single division is unchanged.
         assert_eq!(rewritten[4], alone);
     }
 }

@@ -1,7 +1,7 @@
-//! Regions: what is needed only under a condition, found in a tape's nodes and brought together.
+//! Regions: nodes of a tape that are used only under a condition, grouped together.
 //!
-//! A node belongs to the innermost region that all its uses have in common. The value of a `Select` (`SelectElse`) node is used
-//! in a region of that condition, everything else where the node that uses it stands.
+//! A node belongs to the innermost region that all its uses have in common. The value of a `Select` (`SelectElse`)
+//! node is used in a region of that condition, everything else where the node that uses it stands.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -188,8 +188,8 @@ impl Regions {
     }
 }
 
-/// An order of `count` things, none before what it needs, that stays within a region as long as there is something to do in
-/// it; otherwise as they stand. `block_of` tells each one's region, `needs` what it needs.
+/// An order of `count` nodes, operands first, that stays within a region as long as a node of it can be
+/// computed; otherwise in the given order. `block_of` gives the region of a node, `needs` its operands.
 pub(crate) fn order(
     regions: &Regions,
     count: usize,

@@ -8,8 +8,8 @@ use super::tape::{Item, Op, Operands, Tape};
 use crate::expr::Expr;
 
 /// Registers by linear scan: a scratch register is free again after its value's last use. A target is written at once
-/// unless this tape still reads what stands there; then it is copied at the end. `register_of` tells where values stand that are
-/// there before or stay; scratch registers begin at `first`.
+/// unless this tape still reads what stands there; then it is copied at the end. `register_of` tells where values
+/// stand that are there before or stay; scratch registers begin at `first`.
 pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &NodeTable, first: u32) -> Tape {
     let nodes = register_of.nodes();
     let Uses { last_use, mut read_registers, computed } = Uses::of(steps, register_of);
@@ -95,7 +95,7 @@ impl Registers<'_> {
 
     /// The register of a value.
     fn of(&self, expr: Expr) -> u32 {
-        self.find(expr).expect("what is read is a symbol, a constant, kept, or computed before")
+        self.find(expr).expect("an operand is a symbol, a constant, stored, or computed before")
     }
 
     /// The register for a value, a free one where it has none yet.
@@ -161,8 +161,8 @@ impl Uses {
     }
 }
 
-/// Copies from register to register as if all happened at once: what another copy overwrites is put aside first, in a `fresh`
-/// register.
+/// Copies from register to register as if all happened at once: what another copy overwrites is put aside first, in a
+/// `fresh` register.
 fn copy_at_once(copies: Vec<(u32, u32)>, mut fresh: impl FnMut() -> u32, items: &mut Vec<Item>) {
     let overwritten: FxHashSet<u32> = copies.iter().map(|&(_, register)| register).collect();
     let copy = |from: u32, to: u32| Item::Do(Op::Copy, Operands { a: from, b: from, c: from, d: to });
@@ -178,7 +178,8 @@ fn copy_at_once(copies: Vec<(u32, u32)>, mut fresh: impl FnMut() -> u32, items: 
     items.extend(last);
 }
 
-/// Values that take one register after the other: what holds elsewhere, and then the choice that a region makes in its place.
+/// Values that take one register after the other: what holds elsewhere, and then the choice that a region makes in its
+/// place.
 #[derive(Debug, Default)]
 struct Shared {
     next: FxHashMap<Expr, Expr>,

@@ -98,8 +98,8 @@ struct Grouping {
 }
 
 impl Grouping {
-    /// Within stretches of [`WINDOW`] instructions, brings equal operations together: of those that are ready, always all of
-    /// the operation that has most.
+    /// Within stretches of [`WINDOW`] instructions, brings equal operations together: of those that are ready, always
+    /// all of the operation that has most.
     fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
         let mut grouped = Vec::with_capacity(pending.len());
         for window in pending.chunks(WINDOW) {

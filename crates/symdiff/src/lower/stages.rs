@@ -1,5 +1,5 @@
 //! When values can change: inputs carry a stage, 0 the one that changes least often, and a node's stage is the highest
-//! of what it depends on.
+//! of its operands.
 
 use rustc_hash::FxHashMap;
 
@@ -44,7 +44,7 @@ impl Stages {
         }
     }
 
-    /// The highest stage among the inputs below a node that has been taken in; `None` for what is constant.
+    /// The highest stage among the inputs below a node that has been taken in; `None` for a constant.
     pub fn of(&self, expr: Expr) -> Option<usize> {
         self.of[expr.index()]
     }

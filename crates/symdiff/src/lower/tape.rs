@@ -1,8 +1,8 @@
 //! Tapes: programs of three-address instructions over registers, in one line but for regions that may be skipped.
 //!
-//! What stands in a region only matters where a condition is positive (or only where it is not). A region is skipped where no
-//! sample of the memory wants it. That changes no result: what is read outside a region is chosen, sample by sample, by
-//! [`Op::Select`] and its kin, which take nothing of a region from a sample that does not want it.
+//! What stands in a region only matters where a condition is positive (or only where it is not). A region is skipped
+//! where no sample of the memory wants it. That changes no result: a value read outside a region is chosen, sample by
+//! sample, by [`Op::Select`] and its kin, which take nothing of a region from a sample that does not want it.
 
 use crate::expr::{Binary, Expr, Unary};
 
@@ -28,7 +28,7 @@ pub enum Op {
 }
 
 impl Op {
-    /// Registers that an instruction of this operation names: d, then what it reads (and, for `SinCos`, also writes).
+    /// Registers that an instruction of this operation names: d, then its operands (and, for `SinCos`, also writes).
     pub(crate) const fn arity(self) -> usize {
         match self {
             Self::Copy | Self::Unary(_) => 2,

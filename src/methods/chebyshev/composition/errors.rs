@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::{Found, Row};
-use crate::methods::chebyshev::range_search::{RangeSearch, extent};
+use crate::methods::chebyshev::range_search::{RangeSearch, block, extent};
 use crate::methods::expansion::Moves;
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surrogate_error, truncation};
@@ -157,15 +157,13 @@ impl Row<'_> {
 
     /// For each way of moving, how far it moves every output at the places of its extremes.
     fn moved_at_extremes(&self, found: &[Extent], ways: &[Moves]) -> Vec<Vec<f64>> {
-        let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
         let all: Vec<Moves> = [Moves::default()].into_iter().chain(ways.iter().cloned()).collect();
-        let values = self.evaluate_moved(&places, &all);
-        let at = |output: usize, way: usize, end: usize| {
-            values[(output * all.len() + way) * places.len() + 2 * output + end]
-        };
+        let outputs: Vec<usize> = (0..found.len()).collect();
+        let ends = self.at_own_ends(&outputs, found, &all);
+        let at = |output: usize, way: usize, end: usize| ends[output * all.len() + way][end];
         let of_output =
             |way: usize, output: usize| largest([0, 1].map(|end| at(output, way, end) - at(output, 0, end)));
-        (1..all.len()).map(|way| (0..found.len()).map(|output| of_output(way, output)).collect()).collect()
+        (1..all.len()).map(|way| outputs.iter().map(|&output| of_output(way, output)).collect()).collect()
     }
 
     /// Ranges of some outputs with the motion moved, near those that are known of all.
@@ -175,14 +173,18 @@ impl Row<'_> {
         (outputs, known): (&[usize], &[Extent]),
         way: &Moves,
     ) -> Vec<Extent> {
-        if outputs.is_empty() {
-            return Vec::new();
-        }
-        let ways = [way.clone()];
-        let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
-            let values = self.evaluate_moved(points, &ways);
-            outputs.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
-        };
+        let by_block = outputs.chunk_by(|a, b| block(*a) == block(*b));
+        by_block.flat_map(|outputs| self.block_near(range_search, (outputs, known), way)).collect()
+    }
+
+    /// The same of outputs that are searched together.
+    fn block_near(
+        &self,
+        range_search: &RangeSearch,
+        (outputs, known): (&[usize], &[Extent]),
+        way: &Moves,
+    ) -> Vec<Extent> {
+        let evaluate = |points: &[Vec<f64>]| self.evaluate_some(outputs, points, std::slice::from_ref(way));
         let near = outputs.iter().map(|&output| &known[output]);
         let Some(search) = range_search.climbs() else {
             return extremes_near(&near.cloned().collect::<Vec<_>>(), evaluate);

@@ -1,9 +1,15 @@
 //! Outputs at points of the box: the coordinates' polynomials, closed.
 
+use rustc_hash::FxHashMap;
+
 use super::Row;
 use crate::methods::expansion::{Expansion, Moves};
 use crate::methods::kept::KeptRow;
 use crate::numerics::{Extent, Range, SparseWork, largest, surrogate_error, truncation};
+
+/// Values of all outputs that are held at once, and points that are taken together at least.
+const AT_ONCE: usize = 1 << 20;
+const LEAST_AT_ONCE: usize = 16;
 
 impl Row<'_> {
     /// Values of the polynomials through outputs' own samples, output by output.
@@ -88,6 +94,55 @@ impl Row<'_> {
     /// Every output with the motion moved in some ways, output by output, way by way, point by point.
     pub(super) fn evaluate_moved(&self, points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
         self.expansion().evaluate_moved(points, ways)
+    }
+
+    /// Some outputs with the motion moved in some ways, output by output, way by way, point by point. All outputs follow together from a
+    /// motion, a few points at a time: memory grows with what is asked for, not with all outputs times all points.
+    pub fn evaluate_some(&self, outputs: &[usize], points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
+        let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
+        let (count, ways_count) = (points.len(), ways.len());
+        let mut found = vec![0.0; outputs.len() * ways_count * count];
+        for (part, some) in points.chunks(together).enumerate() {
+            let values = self.evaluate_moved(some, ways);
+            for (place, output) in outputs.iter().enumerate() {
+                for way in 0..ways_count {
+                    let into = &mut found[(place * ways_count + way) * count + part * together..][..some.len()];
+                    into.copy_from_slice(&values[(output * ways_count + way) * some.len()..][..some.len()]);
+                }
+            }
+        }
+        found
+    }
+
+    /// Some outputs at the two ends of their own ranges, with the motion moved in some ways: output by output, way by way. Where the ends of
+    /// several are the same, as at corners, the motion there is closed once.
+    pub(super) fn at_own_ends(&self, outputs: &[usize], found: &[Extent], ways: &[Moves]) -> Vec<[f64; 2]> {
+        let mut known: FxHashMap<Vec<u64>, usize> = FxHashMap::default();
+        let (mut points, mut wanted): (Vec<Vec<f64>>, Vec<Vec<(usize, usize)>>) = (Vec::new(), Vec::new());
+        for (place, extent) in found.iter().enumerate() {
+            for (end, at) in extent.places.iter().enumerate() {
+                let number = *known.entry(at.iter().map(|xi| xi.to_bits()).collect()).or_insert_with(|| {
+                    points.push(at.clone());
+                    wanted.push(Vec::new());
+                    points.len() - 1
+                });
+                wanted[number].push((place, end));
+            }
+        }
+        let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
+        let mut ends = vec![[0.0; 2]; outputs.len() * ways.len()];
+        for (points, wanted) in points.chunks(together).zip(wanted.chunks(together)) {
+            let values = self.evaluate_moved(points, ways);
+            for (point, wanted) in wanted.iter().enumerate() {
+                for &(place, end) in wanted {
+                    for way in 0..ways.len() {
+                        ends[place * ways.len() + way][end] =
+                            values[(outputs[place] * ways.len() + way) * points.len() + point];
+                    }
+                }
+            }
+        }
+        ends
     }
 
     /// The polynomials' values: 2n lines of points.

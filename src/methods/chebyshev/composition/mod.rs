@@ -14,8 +14,9 @@ use rayon::prelude::*;
 use phases::{as_times, phases, with_turns};
 pub(super) use phases::{courses, turning};
 
-use super::range_search::{Evaluate, Functions, Previous, RangeSearch};
+use super::range_search::{Evaluate, Functions, Previous, RangeSearch, block};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
+use crate::methods::expansion::Moves;
 use crate::numerics::{
     Course, Extent, ParameterBox, Phase, Range, Surrogate, SurrogateWork, corners, largest, limits, surrogate_error,
 };
@@ -220,10 +221,8 @@ impl<'r> Row<'r> {
         let degrees = self.degrees();
         let mut extents = vec![Extent::unknown(self.domain.dimension()); outputs];
         let places = if range_search.climbs().is_some() { self.seeds() } else { Vec::new() };
-        let by_closure = |wanted: &[usize], points: &[Vec<f64>]| {
-            let values = self.evaluate(points);
-            wanted.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
-        };
+        let by_closure =
+            |wanted: &[usize], points: &[Vec<f64>]| self.evaluate_some(wanted, points, &[Moves::default()]);
         let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
         let of_polynomials = |outputs: &[usize], previous: &mut Previous| {
             let functions = self.functions(outputs.to_vec(), None, (&rounding, &places), &by_coefficients);
@@ -290,16 +289,11 @@ impl<'r> Row<'r> {
 
     /// How far outputs, as they follow from the coordinates, are from the ends of these ranges where those are attained.
     fn apart_at_ends(&self, outputs: &[usize], found: &[Extent]) -> Vec<f64> {
-        if outputs.is_empty() {
-            return Vec::new();
-        }
-        let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
-        let values = self.evaluate(&places);
-        let of_output = |(place, (&output, found)): (usize, (&usize, &Extent))| {
-            let values = &values[output * places.len() + 2 * place..][..2];
-            largest([values[0] - found.range.lower, values[1] - found.range.upper])
+        let ends = self.at_own_ends(outputs, found, &[Moves::default()]);
+        let apart = |([least, most], found): (&[f64; 2], &Extent)| {
+            largest([least - found.range.lower, most - found.range.upper])
         };
-        outputs.iter().zip(found).enumerate().map(of_output).collect()
+        ends.iter().zip(found).map(apart).collect()
     }
 
     /// Highest degree along each axis, or what stands for it where a coordinate turns more often.
@@ -313,7 +307,7 @@ impl<'r> Row<'r> {
         &'f self,
         outputs: Vec<usize>,
         composed: Option<&'f [u8]>,
-        (rounding, places): (&'f [f64], &'f [Vec<f64>]),
+        (rounding, places): (&'f [f64], &'f [Vec<Vec<f64>>]),
         evaluate: &'f Evaluate<'f>,
     ) -> Functions<'f> {
         let degrees = composed.unwrap_or(self.surrogate.basis().orders());
@@ -348,30 +342,36 @@ impl<'r> Row<'r> {
         compared.iter().zip(values).any(differs)
     }
 
-    /// The samples with the least and the largest values of each output, some apart from each other, and the best corners.
-    fn seeds(&self) -> Vec<Vec<f64>> {
-        let samples = self.surrogate.samples();
-        let mut seeds: Vec<Vec<f64>> = Vec::new();
-        for output in 0..self.ensemble.outputs() {
-            let values = self.own_samples(output);
-            for sign in [-1.0, 1.0] {
-                let mut order: Vec<usize> = (0..values.len()).collect();
-                order.sort_by(|&a, &b| (sign * values[b]).total_cmp(&(sign * values[a])));
-                let mut chosen: Vec<usize> = Vec::new();
-                for sample in order {
-                    let apart = |&other: &usize| {
-                        samples[other].iter().zip(&samples[sample]).any(|(a, b)| (a - b).abs() > APART)
-                    };
-                    if chosen.len() < SEEDS && chosen.iter().all(apart) {
-                        chosen.push(sample);
-                    }
-                }
-                seeds.extend(chosen.into_iter().map(|sample| samples[sample].clone()));
-            }
-        }
+    /// Where outputs are known to be large or small, block by block of those that are searched together: the samples with the least and the
+    /// largest values of each output, some apart from each other, and the best corners.
+    fn seeds(&self) -> Vec<Vec<Vec<f64>>> {
+        let every: Vec<usize> = (0..self.ensemble.outputs()).collect();
         // In every row: the row before knows the corner that was best there, and where the best changes to another, no sample may be near it.
-        seeds.extend(self.best_corners());
-        seeds
+        let corners = self.best_corners();
+        let of_block = |outputs: &[usize]| -> Vec<Vec<f64>> {
+            let samples = outputs.iter().flat_map(|&output| self.best_samples(output));
+            samples.chain(outputs.iter().flat_map(|&output| corners[2 * output..][..2].to_vec())).collect()
+        };
+        every.chunk_by(|a, b| block(*a) == block(*b)).map(of_block).collect()
+    }
+
+    /// The samples with the least and the largest values of an output, some apart from each other.
+    fn best_samples(&self, output: usize) -> Vec<Vec<f64>> {
+        let (samples, values) = (self.surrogate.samples(), self.own_samples(output));
+        let best = |sign: f64| {
+            let mut order: Vec<usize> = (0..values.len()).collect();
+            order.sort_by(|&a, &b| (sign * values[b]).total_cmp(&(sign * values[a])));
+            let mut chosen: Vec<usize> = Vec::new();
+            for sample in order {
+                let apart =
+                    |&other: &usize| samples[other].iter().zip(&samples[sample]).any(|(a, b)| (a - b).abs() > APART);
+                if chosen.len() < SEEDS && chosen.iter().all(apart) {
+                    chosen.push(sample);
+                }
+            }
+            chosen
+        };
+        [-1.0, 1.0].into_iter().flat_map(best).map(|sample| samples[sample].clone()).collect()
     }
 
     /// For each output the corners of the box at which it is least and largest.

@@ -1,4 +1,4 @@
-//! One number of a motion: what is accumulated of outputs from step to step, between steps too.
+//! One number of a motion: outputs accumulated from step to step, between steps too.
 //!
 //! Between steps an output is the cubic through the values at four of them (`piece`), one order more than the scheme has. Where the
 //! values jump it does not rise above them.
@@ -10,7 +10,7 @@ use piece::Piece;
 use serde::{Deserialize, Serialize};
 use zone::Zone;
 
-/// What is accumulated of an output.
+/// Quantity accumulated of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Accumulation {
     /// The greatest value.
@@ -43,7 +43,7 @@ pub enum Accumulation {
 pub struct Channel {
     /// Number of the output.
     pub output: usize,
-    /// What of it.
+    /// Kind of reduction.
     pub accumulation: Accumulation,
     /// From when, s.
     pub from: f64,
@@ -55,7 +55,7 @@ pub struct Channel {
 #[derive(Clone, Debug)]
 struct State {
     value: f64,
-    /// Of what has a place: where the greatest value was, s, and that value.
+    /// Of an extreme: time of the greatest value, s, and that value.
     time: f64,
     height: f64,
     zone: Zone,
@@ -116,7 +116,7 @@ impl<'s> Reduction<'s> {
         }
     }
 
-    /// After the last step: the values, channel by channel, lane by lane; NaN of lanes that stopped. What is at one time only is
+    /// After the last step: the values, channel by channel, lane by lane; NaN of lanes that stopped. A value at one time only is
     /// constant.
     pub fn finish(&mut self) -> Vec<f64> {
         if let ([time], [values]) = (&self.times[..], &self.values[..]) {
@@ -142,7 +142,7 @@ impl<'s> Reduction<'s> {
         self.states.iter().enumerate().map(value).collect()
     }
 
-    /// Takes in what is between two of the steps.
+    /// Accumulates the interval between two steps.
     fn accumulate(&mut self, place: usize) {
         let piece = |output: usize, lane: usize| {
             let mut points = [(0.0, 0.0); 4];
@@ -217,7 +217,7 @@ fn take(state: &mut State, piece: &Piece, channel: &Channel) {
         }
         Accumulation::AtEnd | Accumulation::Zone { .. } => (),
     }
-    // `climb` notes the height in the value of what is a height.
+    // `climb` stores the height as the value of a height.
     if matches!(channel.accumulation, Accumulation::Greatest | Accumulation::Least) {
         state.value = state.height;
     }

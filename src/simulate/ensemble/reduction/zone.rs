@@ -33,7 +33,7 @@ impl Zone {
             return if hull.is_empty() { f64::NAN } else { 0.0 };
         }
         let narrowest = narrowest(&hull);
-        // What is straight but for rounding is straight.
+        // A line straight to rounding is straight.
         let size = hull.iter().flatten().fold(0.0, |size: f64, number| size.max(number.abs()));
         if narrowest <= ROUNDING * size { 0.0 } else { narrowest }
     }

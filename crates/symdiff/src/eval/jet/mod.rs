@@ -1,10 +1,10 @@
 //! Jets: polynomials of several variables, cut off after a total degree, as numbers to calculate with.
 //!
-//! A jet a(ξ) = Σ aᵣ ξ^r is the slice of its coefficients in the order of [`Monomials`]; `a[0]` is its value at ξ = 0 and is
-//! computed by the same scalar functions as anywhere else, to the bit. Functions follow from their differential
-//! equations. Let E = Σ ξᵢ ∂/∂ξᵢ, which multiplies the coefficient of a monomial of degree d by d. Then h = f(a) has
-//! E h = f'(a) E a: one sum over products for each coefficient, as in univariate automatic differentiation with the degree
-//! in place of the index. Each function's equation stands beside its code.
+//! A jet a(ξ) = Σ aᵣ ξ^r is the slice of its coefficients in the order of [`Monomials`]; `a[0]` is its value at ξ = 0
+//! and is computed by the same scalar functions as anywhere else, to the bit. Functions follow from their differential
+//! equations. Let E = Σ ξᵢ ∂/∂ξᵢ, which multiplies the coefficient of a monomial of degree d by d. Then h = f(a) has E
+//! h = f'(a) E a: one sum over products for each coefficient, as in univariate automatic differentiation with the
+//! degree in place of the index. Each function's equation stands beside its code.
 //!
 //! Where a function has a kink the branch is that of the constant term, and at the kink itself the mean of both sides,
 //! as in [`Graph::derivative`](crate::Graph::derivative). Where it has a singularity (√0, log 0, asin 1, …) the

@@ -1,14 +1,15 @@
-//! Taylor models: polynomials of ξ ∈ [−1, 1]^k with a bound on what they miss.
+//! Taylor models: polynomials of ξ ∈ [−1, 1]^k with a bound on their remainder.
 //!
 //! A model is a slice: the coefficients of a jet, and behind them a radius e ≥ 0. It encloses a function f where
 //! |f(ξ) − Σ aᵣ ξ^r| ≤ e for every ξ of the box. Polynomials are computed by the jets' arithmetic, and the radius is
-//! proven afterwards from the equation that defines the result: a quotient h = a/b by the size of a − h b, a root by a − h², sine and cosine by
-//! their differential equation. So rounding, cut-off terms and the operands' radii are bounded in one way, and a jet that were computed wrongly would
-//! only make its radius large. A radius that is infinite, or NaN, says that nothing is known.
+//! proven afterwards from the equation that defines the result: a quotient h = a/b by the size of a − h b, a root by a
+//! − h², sine and cosine by their differential equation. So rounding, cut-off terms and the operands' radii are
+//! bounded in one way, and a jet that were computed wrongly would only make its radius large. A radius that is
+//! infinite, or NaN, says that nothing is known.
 //!
-//! Sums of magnitudes are rounded to nearest and enlarged by [`up`]. A coefficient of a product of monomials' coefficients sums at most
-//! (D+1)^k terms, D its degree, and D+1 ≤ (d+1)(d'+1) for the degrees d, d' of its factors; hence the weights (d+1)^k
-//! by which norms bound the rounding errors of all coefficients at once.
+//! Sums of magnitudes are rounded to nearest and enlarged by [`up`]. A coefficient of a product of monomials'
+//! coefficients sums at most (D+1)^k terms, D its degree, and D+1 ≤ (d+1)(d'+1) for the degrees d, d' of its factors;
+//! hence the weights (d+1)^k by which norms bound the rounding errors of all coefficients at once.
 
 mod memory;
 
@@ -25,8 +26,8 @@ pub const MAX_ORDER: usize = 24;
 /// Half a unit in the last place, and what second-order terms add to it.
 const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
 
-/// A sum or product of non-negative numbers, made from up to a thousand rounded operations, rounded up. (The constant stands for
-/// underflow.)
+/// A sum or product of non-negative numbers, made from up to a thousand rounded operations, rounded up. (The constant
+/// stands for underflow.)
 #[inline]
 pub fn up(x: f64) -> f64 {
     x * (1.0 + 1e-12) + 1e-290
@@ -347,7 +348,7 @@ impl ModelSpace {
     }
 }
 
-/// Whether a node's function has an enclosure; what has none is unknown everywhere.
+/// Whether a node's function has an enclosure; without one its value is unknown everywhere.
 pub fn encloses(node: Node) -> bool {
     match node {
         Node::Constant(_) | Node::Symbol(_) => true,

@@ -1,7 +1,8 @@
 //! The evaluator: a tape over a tile of samples, structure of arrays.
 //!
-//! One dispatch serves all instructions of a run and all lanes of the tile. Every lane sees the same IEEE operations in the same order
-//! whatever the width and the instruction set: Rust contracts nothing, and sine and cosine are our own.
+//! One dispatch serves all instructions of a run and all lanes of the tile. Every lane sees the same IEEE operations
+//! in the same order whatever the width and the instruction set: Rust contracts nothing, and sine and cosine are our
+//! own.
 
 use crate::eval::functions;
 use crate::eval::sincos;
@@ -92,8 +93,8 @@ impl Tile {
     fn run_with(&mut self, tape: &Tape, set: InstructionSet) {
         assert!(tape.registers() <= self.registers, "the tape belongs to a larger memory");
         let memory = self.lines.as_mut_ptr().cast::<f64>();
-        // The memory has `registers · width` values and the tape's registers are below `self.registers`: just asserted, and `Tape::registers`
-        // is computed from the instructions. `Interpretation` relies on it.
+        // The memory has `registers · width` values and the tape's registers are below `self.registers`: just
+        // asserted, and `Tape::registers` is computed from the instructions. `Interpretation` relies on it.
         match self.width {
             1 => set.run(Interpretation::<1, 1> { tape, memory }),
             4 => set.run(Interpretation::<4, 4> { tape, memory }),

@@ -1,4 +1,4 @@
-//! Antiderivatives of what is another formula beyond some time.
+//! Antiderivatives of functions defined piecewise in time.
 
 use rustc_hash::FxHashMap;
 
@@ -70,7 +70,8 @@ impl Graph {
         }
     }
 
-    /// Whether an expression of conditions is 0 or 1 whichever of them hold; `None` where it is of anything else, or of many.
+    /// Whether an expression of conditions is 0 or 1 whichever of them hold; `None` where it is of anything else, or
+    /// of many.
     fn is_truth(&self, of: Expr) -> Option<bool> {
         let mut conditions = Vec::new();
         let mut pending = vec![of];
@@ -135,8 +136,8 @@ impl Graph {
         Some(self.div(whole, slope))
     }
 
-    /// What `max(u, a)`, `min(u, b)` or both of them in either order keep within limits, and the limits: below, above. Of two
-    /// limits both have to be numbers, the lower one first.
+    /// What `max(u, a)`, `min(u, b)` or both of them in either order keep within limits, and the limits: below, above.
+    /// Of two limits both have to be numbers, the lower one first.
     fn limited_line(&self, of: Expr, by: Expr) -> Option<(Expr, [Option<Expr>; 2])> {
         let parts = |expr: Expr| match self.node(expr) {
             Node::Binary(function @ (Binary::Max | Binary::Min), a, b) => {

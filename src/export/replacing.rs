@@ -1,0 +1,281 @@
+//! Replacement of files as one: at any instant a folder has older files or newer ones, never some of each.
+//!
+//! What is new is complete in a folder of its own before anything changes, and this folder then takes the name [`JOURNAL`]: from here on
+//! the replacement is decided. Older files are set aside in the journal, what says that they are complete first; then the new ones take
+//! their names, in their order. Whoever finds a journal does what is left of it ([`finish`]). Where an older file cannot be set aside, all
+//! go back.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Component, Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use tempfile::TempDir;
+
+use super::error::ExportError;
+use super::owned::{SCENES, SUMMARY, read};
+
+/// A replacement that was decided, in the folder whose files are replaced.
+const JOURNAL: &str = ".mbint-replacing";
+
+/// In the journal: the new files under their names, the older ones under numbers, and what is to be done.
+const NEW: &str = "new";
+const OLD: &str = "old";
+const PLAN: &str = "plan.json";
+
+/// Paths within the folder.
+#[derive(Default, Serialize, Deserialize)]
+struct Plan {
+    /// Of the new files, in the order in which they appear.
+    new: Vec<String>,
+    /// Of files that go.
+    gone: Vec<String>,
+}
+
+/// New files that are not yet under their names.
+pub(super) struct Replacement {
+    folder: TempDir,
+    plan: Plan,
+}
+
+impl Replacement {
+    /// None so far, in a folder that is empty and on the destination's disk.
+    pub fn in_folder(folder: TempDir) -> io::Result<Self> {
+        [NEW, OLD].iter().try_for_each(|name| fs::create_dir(folder.path().join(name)))?;
+        Ok(Self { folder, plan: Plan::default() })
+    }
+
+    /// Writes a file to the disk.
+    pub fn add(&mut self, name: &str, contents: &[u8]) -> io::Result<()> {
+        self.write(&Path::new(NEW).join(name), contents)?;
+        self.plan.new.push(name.to_owned());
+        Ok(())
+    }
+
+    pub fn names(&self) -> &[String] {
+        &self.plan.new
+    }
+
+    /// These files go.
+    pub fn without(&mut self, gone: Vec<String>) {
+        self.plan.gone = gone;
+    }
+
+    /// Decides the replacement in a folder.
+    ///
+    /// # Errors
+    /// Where a folder stands where a file shall, or the disk is full. Nothing has changed then.
+    pub fn begin(self, dir: &Path) -> Result<(), ExportError> {
+        for path in self.plan.new.iter().map(|name| dir.join(name)) {
+            if path.symlink_metadata().is_ok_and(|there| there.is_dir()) {
+                return Err(ExportError::Write { path, source: ErrorKind::IsADirectory.into() });
+            }
+        }
+        let failed = |source| ExportError::Folder { path: dir.to_owned(), source };
+        self.write(Path::new(PLAN), &serde_json::to_vec(&self.plan)?).map_err(failed)?;
+        for name in [NEW, OLD, "."] {
+            sync(&self.folder.path().join(name));
+        }
+        fs::rename(self.folder.path(), dir.join(JOURNAL)).map_err(failed)?;
+        // It has another name now, and stays.
+        let _ = self.folder.keep();
+        sync(dir);
+        Ok(())
+    }
+
+    fn write(&self, path: &Path, contents: &[u8]) -> io::Result<()> {
+        let mut file = File::create_new(self.folder.path().join(path))?;
+        file.write_all(contents)?;
+        file.sync_all()
+    }
+}
+
+/// A file that changes its name; where it is not there, it has changed it already, or there was none.
+#[derive(Debug)]
+struct Step {
+    from: PathBuf,
+    to: PathBuf,
+}
+
+impl Step {
+    fn run(&self) -> Result<(), ExportError> {
+        match fs::rename(&self.from, &self.to) {
+            Err(source) if self.from.symlink_metadata().is_ok() => {
+                Err(ExportError::Write { path: self.from.clone(), source })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn back(&self) {
+        // What is there again is newer.
+        if !self.from.exists() {
+            let _ = fs::rename(&self.to, &self.from);
+        }
+    }
+}
+
+/// What is left to do in a folder: older files that are set aside, and new ones that take their names.
+fn steps(dir: &Path, plan: &Plan) -> [Vec<Step>; 2] {
+    let journal = dir.join(JOURNAL);
+    let new = |name: &str| Step { from: journal.join(NEW).join(name), to: dir.join(name) };
+    // One that has its name already is not an older file of that name.
+    let waiting: Vec<(usize, &String)> =
+        plan.new.iter().enumerate().filter(|(_, name)| new(name).from.exists()).collect();
+    let gone = (plan.new.len()..).zip(&plan.gone);
+    let mut older: Vec<(usize, &String)> = waiting.iter().rev().copied().chain(gone).collect();
+    older.sort_by_key(|(_, name)| ![SUMMARY, SCENES].contains(&name.as_str()));
+    let aside = |&(number, name): &(usize, &String)| Step {
+        from: dir.join(name),
+        to: journal.join(OLD).join(number.to_string()),
+    };
+    [older.iter().map(aside).collect(), waiting.iter().map(|(_, name)| new(name)).collect()]
+}
+
+/// Whether a path stays in the folder: a file of its own, or of a scene.
+fn is_within(path: &str) -> bool {
+    let parts: Vec<Component> = Path::new(path).components().collect();
+    (1..=2).contains(&parts.len()) && parts.iter().all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// Does what is left of a replacement that was decided, if there is one.
+///
+/// # Errors
+/// Where an older file cannot be set aside: all are then as they were. Where a new one cannot take its name, the rest is left to who
+/// comes next.
+pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
+    let journal = dir.join(JOURNAL);
+    let plan = match read(&journal.join(PLAN)) {
+        Ok(plan) => plan,
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            // What is left of one that was done.
+            let _ = fs::remove_dir_all(journal);
+            return Ok(());
+        }
+        Err(source) => return Err(ExportError::Read { path: journal.join(PLAN), source }),
+    };
+    let mut plan: Plan = serde_json::from_slice(&plan)?;
+    plan.new.retain(|name| is_within(name));
+    plan.gone.retain(|name| is_within(name));
+    let [aside, place] = steps(dir, &plan);
+    for (done, step) in aside.iter().enumerate() {
+        if let Err(error) = step.run() {
+            aside[..done].iter().rev().for_each(Step::back);
+            remove(&journal);
+            return Err(error);
+        }
+    }
+    place.iter().try_for_each(Step::run)?;
+    sync(dir);
+    // A scene of which nothing is left.
+    for folder in plan.gone.iter().filter_map(|name| Path::new(name).parent()).filter(|path| *path != Path::new("")) {
+        let _ = fs::remove_dir(dir.join(folder));
+    }
+    remove(&journal);
+    Ok(())
+}
+
+/// Removes a journal; what of it cannot be removed is in nobody's way.
+fn remove(journal: &Path) {
+    // Without its plan it is none.
+    let _ = fs::remove_file(journal.join(PLAN));
+    let _ = fs::remove_dir_all(journal);
+}
+
+/// Writes a folder to the disk, where the system does that.
+fn sync(folder: &Path) {
+    let _ = File::open(folder).map(|folder| folder.sync_all());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder with older files, whose replacement is decided.
+    fn decided() -> TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        fs::create_dir(dir.path().join("scene")).unwrap();
+        for name in ["a.csv", "b.svg", "gone.svg", "scene/a.csv", SUMMARY, SCENES] {
+            fs::write(dir.path().join(name), "old").unwrap();
+        }
+        let mut new = Replacement::in_folder(tempfile::tempdir_in(dir.path()).unwrap()).unwrap();
+        for name in ["a.csv", "b.svg", "c.svg", SUMMARY] {
+            new.add(name, b"new").unwrap();
+        }
+        new.without(["gone.svg", "scene/a.csv", SCENES].map(str::to_owned).to_vec());
+        new.begin(dir.path()).unwrap();
+        dir
+    }
+
+    /// Names of older and of newer files.
+    fn found(dir: &Path) -> [Vec<String>; 2] {
+        let names = ["a.csv", "b.svg", "c.svg", "gone.svg", "scene/a.csv", SCENES, SUMMARY];
+        ["old", "new"].map(|text| {
+            let has = |name: &&str| fs::read_to_string(dir.join(name)).is_ok_and(|found| found == text);
+            names.into_iter().filter(has).map(str::to_owned).collect()
+        })
+    }
+
+    #[test]
+    fn wherever_it_ends_nothing_is_mixed_and_the_rest_is_done() {
+        let plan: Plan = {
+            let dir = decided();
+            serde_json::from_slice(&fs::read(dir.path().join(JOURNAL).join(PLAN)).unwrap()).unwrap()
+        };
+        let mut ends = 0;
+        for end in 0.. {
+            let dir = decided();
+            let all: Vec<Step> = steps(dir.path(), &plan).into_iter().flatten().collect();
+            if end > all.len() {
+                break;
+            }
+            all[..end].iter().for_each(|step| step.run().unwrap());
+            let [old, new] = found(dir.path());
+            assert!(old.is_empty() || new.is_empty(), "{end}: {old:?}, {new:?}");
+            // What says that all are there says it only then.
+            let says = |names: &[String]| names.iter().any(|name| name == SUMMARY);
+            assert!((!says(&old) || old.len() == 6) && (!says(&new) || new.len() == 4), "{end}: {old:?}, {new:?}");
+            // Killed once more, while it removes the journal.
+            finish(dir.path()).unwrap();
+            fs::create_dir_all(dir.path().join(JOURNAL).join(OLD)).unwrap();
+            finish(dir.path()).unwrap();
+            assert_eq!(found(dir.path()), [vec![], ["a.csv", "b.svg", "c.svg", SUMMARY].map(str::to_owned).to_vec()]);
+            let mut left: Vec<_> = fs::read_dir(dir.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+            left.sort();
+            assert_eq!(left, ["a.csv", "b.svg", "c.svg", SUMMARY]);
+            ends += 1;
+        }
+        assert_eq!(ends, 12);
+    }
+
+    #[test]
+    fn where_a_file_cannot_be_set_aside_all_go_back() {
+        let dir = decided();
+        // Two are aside when the third cannot be.
+        let plan: Plan = serde_json::from_slice(&fs::read(dir.path().join(JOURNAL).join(PLAN)).unwrap()).unwrap();
+        let [aside, _] = steps(dir.path(), &plan);
+        fs::create_dir(&aside[2].to).unwrap();
+        let error = finish(dir.path()).unwrap_err();
+        assert!(matches!(&error, ExportError::Write { path, .. } if *path == aside[2].from), "{error}");
+        assert_eq!(found(dir.path())[0].len(), 6);
+        assert!(!dir.path().join(JOURNAL).exists());
+        finish(dir.path()).unwrap();
+        assert_eq!(found(dir.path())[1], [""; 0]);
+    }
+
+    #[test]
+    fn a_plan_moves_nothing_elsewhere() {
+        let dir = tempfile::tempdir().unwrap();
+        let out = dir.path().join("out");
+        fs::create_dir_all(out.join(JOURNAL).join(OLD)).unwrap();
+        fs::write(dir.path().join("mine.txt"), "mine").unwrap();
+        let path = dir.path().join("mine.txt");
+        let plan = Plan {
+            new: vec!["../mine.txt".to_owned()],
+            gone: vec!["../mine.txt".to_owned(), path.display().to_string()],
+        };
+        fs::write(out.join(JOURNAL).join(PLAN), serde_json::to_vec(&plan).unwrap()).unwrap();
+        finish(&out).unwrap();
+        assert!(path.exists() && !out.join(JOURNAL).exists());
+    }
+}
