@@ -1,6 +1,6 @@
 //! `x3.svg` beside the scenes' folders: an output's bounds in every scene that has it.
 
-use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
+use super::courses::{Across, Course, CourseBand, Shown, TIME, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
 use super::figure::prefix::BaseUnit;
@@ -54,7 +54,7 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
         .collect();
     let unit = found.first().map_or(BaseUnit::from(""), |(_, _, output, _)| BaseUnit::of(output));
     let noise = found.iter().map(|(_, scene, output, _)| noise(scene.bounds, output)).fold(0.0, f64::max);
-    let across = Across { name: "t", unit: BaseUnit::from("s") };
+    let across = Across { name: TIME, unit: BaseUnit::from("s") };
     courses_svg(caption, &Shown { name, unit, across, noise, courses: &courses, limits: &[] })
 }
 
