@@ -34,4 +34,10 @@ if [ "${1:-}" = pictures ]; then
     exit 0
 fi
 "$MBINT" run tests/browser/hostile.yaml --quiet --output "$REPORTS/hostile"
+# Every shipped model and every example of the book, with few simulations.
+cp -r models docs/examples "$REPORTS/"
+for model in "$REPORTS"/{models,examples}/*.yaml; do
+    node tests/browser/shorter.mjs "$model"
+    "$MBINT" run "$model" --yes --quiet --output "$REPORTS/all/$(basename "$model" .yaml)" 2>/dev/null || [[ $? == [34] ]]
+done
 node --test --test-reporter=spec tests/browser/

@@ -11,7 +11,7 @@ use super::{Failure, Status, load, structure, tree};
 use crate::model::{self, Description};
 use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
-use crate::study::{self, RunError};
+use crate::study::{self, Ready, RunError};
 use crate::syntax::Diagnostics;
 
 /// More names than this are counted, the first few of them named.
@@ -77,9 +77,6 @@ struct Counts {
     model: String,
     /// As in a run's summary.
     formulation: String,
-    /// Whether a run may find the other formulation shorter: large models are not compiled here.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    formulation_is_open: bool,
     coordinates: usize,
     constraints: usize,
     degrees_of_freedom: usize,
@@ -104,6 +101,9 @@ struct Counts {
     /// Parts that no output depends on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     not_simulated: Vec<String>,
+    /// What a run asks before it begins.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    asks: Option<String>,
     /// Of the model with all its parts.
     #[serde(flatten)]
     structure: Structure,
@@ -184,29 +184,21 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 impl Counts {
     /// Sizes of the simulated parts; names of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
+        let Ready { sizes, formulation, is_whole, left_out, price } = study::ready(model)?;
         let (Assembled { system, mobility, undetermined, shared, .. }, structure) = study::structure(model)?;
+        let [coordinates, constraints, degrees_of_freedom] = sizes;
         let whole = Whole {
             coordinates: system.coordinates_of_motion().count(),
             constraints: system.constraints.len(),
             degrees_of_freedom: mobility.degrees_of_freedom,
         };
-        let reduction = study::reduction(model);
-        let is_whole = |part: &Description| {
-            let counts = |model: &Description| [model.bodies.len(), model.joints.len(), model.effects.len()];
-            counts(part) == counts(model)
-        };
-        let (simulated, formulation) = match &reduction.subsystems[..] {
-            [only] if is_whole(&only.description) => (whole, system.formulation.name().to_owned()),
-            _ => Whole::of_parts(&study::assemble_parts(model)?),
-        };
-        let is_less = simulated.coordinates != whole.coordinates || simulated.constraints != whole.constraints;
+        let is_less = !is_whole && (coordinates != whole.coordinates || constraints != whole.constraints);
         Ok(Self {
             model: model.name.clone(),
             formulation,
-            formulation_is_open: study::formulation_is_open(model),
-            coordinates: simulated.coordinates,
-            constraints: simulated.constraints,
-            degrees_of_freedom: simulated.degrees_of_freedom,
+            coordinates,
+            constraints,
+            degrees_of_freedom,
             whole: is_less.then_some(whole),
             uncertain_parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             assemblies: study::assemblies(model),
@@ -217,25 +209,10 @@ impl Counts {
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
             spatial_because: model.space.because().map(str::to_owned),
             analysis: model.analysis.in_words(),
-            not_simulated: reduction.left_out,
+            not_simulated: left_out,
+            asks: price.map(|price| price.to_string()),
             structure,
         })
-    }
-}
-
-impl Whole {
-    /// Sums over the parts that are simulated, and their formulation.
-    fn of_parts(parts: &[Assembled]) -> (Self, String) {
-        let sum = |of: fn(&Assembled) -> usize| parts.iter().map(of).sum();
-        let numbers = Self {
-            coordinates: sum(|part| part.system.coordinates_of_motion().count()),
-            constraints: sum(|part| part.system.constraints.len()),
-            degrees_of_freedom: sum(|part| part.mobility.degrees_of_freedom),
-        };
-        let mut names: Vec<&str> = parts.iter().map(|part| part.system.formulation.name()).collect();
-        names.sort_unstable();
-        names.dedup();
-        (numbers, names.join(" and "))
     }
 }
 
@@ -266,10 +243,8 @@ impl Counts {
             let constraints = count(whole.constraints, "constraint", "constraints");
             format!("; the whole model has {} and {constraints}", count(whole.coordinates, "coordinate", "coordinates"))
         });
-        let open =
-            if self.formulation_is_open { "; a run takes the shorter formulation, which may be the other" } else { "" };
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}{whole}{open}\n{}",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}{whole}\n{}",
             self.model,
             coordinates(self.coordinates, &self.formulation),
             count(self.constraints, "constraint", "constraints"),
@@ -277,6 +252,7 @@ impl Counts {
             count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
             self.spatial_because.as_ref().map_or_else(String::new, |why| format!("  in space: {why}\n"))
                 + &self.analysis.map_or_else(String::new, |analysis| format!("  {analysis}\n"))
+                + &self.asks.as_ref().map_or_else(String::new, |asks| format!("  a run asks first: {asks}\n"))
                 + &super::assemblies::lines(&self.assemblies)
                 + &structure::lines(&self.structure),
         )
@@ -293,7 +269,6 @@ mod tests {
         let mut counts = Counts {
             model: "slider_crank".into(),
             formulation: "absolute".into(),
-            formulation_is_open: false,
             coordinates: 7,
             constraints: 6,
             degrees_of_freedom: 1,
@@ -308,6 +283,7 @@ mod tests {
             spatial_because: None,
             analysis: None,
             not_simulated: vec![],
+            asks: None,
             structure: Structure {
                 mobility: MobilityCount {
                     spatial: false,

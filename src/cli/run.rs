@@ -9,7 +9,6 @@ use super::overview::overview;
 use super::request::{Job, Request};
 use super::scenes::Scenes;
 use super::{Failure, Status, interrupt, load};
-use crate::assemble;
 use crate::export::{file_stem, prepare_folder};
 use crate::methods::Certified;
 use crate::model::shown;
@@ -54,7 +53,7 @@ pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told)
                 Kind::Scenes(_) => Failure::Wrong(format!("{}: {}: {error}", shown(path), job.model.name)),
             };
             // A panic is reported by the run.
-            if let Ok(built) = study::caught("the model", || assemble::build(&job.model)) {
+            if let Ok(built) = study::caught("the model", || study::built(&job.model)) {
                 built.map_err(wrong)?;
             }
         }

@@ -101,7 +101,7 @@ pub fn contributions_svg(
     }
     let panels = vec![panel.data()];
     let (model, output, unit) = (caption.model.to_owned(), name.to_owned(), "%".to_owned());
-    let data = FigureData { model, output, unit, time: data::times(times), panels, series };
+    let data = FigureData { model, output, unit, across: None, time: data::times(times), panels, series };
     let title = format!("{}: tolerances that matter for {}", shortened(caption.model, 60), shortened(name, 60));
     let figure = document(SIZE, &format!("{}: tolerances that matter for {name}", caption.model))
         .add(metadata(&data)?)

@@ -7,7 +7,7 @@ use svg::Document;
 
 use super::figure::Caption;
 use super::figure::axis::Axis;
-use super::figure::data::{FigureData, SeriesData, extremes, times};
+use super::figure::data::{AcrossData, FigureData, SeriesData, extremes, times};
 use super::figure::document::{document, finished, heading, metadata, shortened};
 use super::figure::legend::{Entry, Legend, Sign};
 use super::figure::panel::{Named, Panel, Style, label_width};
@@ -52,6 +52,9 @@ pub(super) struct CourseBand<'a> {
     pub band: &'a Band,
     pub style: Style,
 }
+
+/// Name of the time, over which courses are unless they are over a parameter.
+pub(super) const TIME: &str = "t";
 
 /// What a figure's courses are over: the time, or a parameter.
 #[derive(Clone, Copy)]
@@ -197,7 +200,7 @@ impl<'a> Figure<'a> {
 
     /// Scales and series, for what shows the figure.
     fn data(&self, value: &Panel, below: Option<&Panel>) -> FigureData {
-        let Shown { name, courses, .. } = *self.shown;
+        let Shown { name, courses, across, .. } = *self.shown;
         let shared = courses.first().map_or(&[][..], |course| course.times);
         let mut series = Vec::new();
         for (place, course) in courses.iter().enumerate() {
@@ -238,6 +241,8 @@ impl<'a> Figure<'a> {
             model: self.caption.model.to_owned(),
             output: name.to_owned(),
             unit: self.value.unit.text.clone(),
+            across: (across.name != TIME)
+                .then(|| AcrossData { name: across.name.to_owned(), unit: across.unit.text.to_owned() }),
             time: times(shared),
             panels: [Some(value), below].into_iter().flatten().map(Panel::data).collect(),
             series,

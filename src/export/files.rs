@@ -53,16 +53,17 @@ pub fn write_results(
         let name = format!("{}.csv", bounds.analysis.name());
         files.add(&name, &configuration_csv(&bounds.outputs)?)?;
     }
+    let mut figures = Vec::with_capacity(bounds.outputs.len());
     if !bounds.responses.is_empty() {
         files.add("response.csv", &response_csv(&bounds.times, &bounds.responses)?)?;
         let plots =
             response_svgs(Caption { model: &summary.model, prefix: "figure" }, &bounds.times, &bounds.responses)?;
         let stems = unique_stems(plots.iter().map(|(name, _)| name.as_str()));
-        for (stem, (_, svg)) in stems.iter().zip(&plots) {
-            files.add(&format!("response.{stem}.svg"), svg.as_bytes())?;
+        for (stem, (_, svg)) in stems.into_iter().zip(plots) {
+            files.add(&response_svg(&stem), svg.as_bytes())?;
+            figures.push(PageFigure { output: stem, plots: vec![svg] });
         }
     }
-    let mut figures = Vec::with_capacity(bounds.outputs.len());
     let plotted = if is_alone { &[][..] } else { &bounds.outputs };
     let names = unique_stems(plotted.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
@@ -106,6 +107,16 @@ pub fn write_results(
     files.add(SUMMARY, &json)?;
     files.replace_older(Vec::new())?;
     files.put_in_place()
+}
+
+/// File of a response's plot.
+pub(super) fn response_svg(stem: &str) -> String {
+    format!("response.{stem}.svg")
+}
+
+/// Stem of a file's name, where it is that of a response's plot.
+pub(super) fn stem_of_response(file: &str) -> Option<&str> {
+    file.strip_prefix("response.")?.strip_suffix(".svg")
 }
 
 /// The summary as it is written.

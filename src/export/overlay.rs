@@ -1,6 +1,6 @@
 //! `x3.svg` beside the scenes' folders: an output's bounds in every scene that has it.
 
-use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
+use super::courses::{Across, Course, CourseBand, Shown, TIME, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
 use super::figure::style::{Color, Hue, PALETTE};
@@ -55,7 +55,7 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
     let unit =
         found.first().map_or(ShownUnit::from(""), |(_, _, output, _)| ShownUnit::of(&output.display, &output.unit));
     let noise = found.iter().map(|(_, scene, output, _)| noise(scene.bounds, output)).fold(0.0, f64::max);
-    let across = Across { name: "t", unit: ShownUnit::from("s") };
+    let across = Across { name: TIME, unit: ShownUnit::from("s") };
     courses_svg(caption, &Shown { name, unit, across, noise, courses: &courses, limits: &[] })
 }
 

@@ -1,6 +1,6 @@
 //! `x3.svg`: an output's bounds over time, and their distance from the nominal course.
 
-use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
+use super::courses::{Across, Course, CourseBand, Shown, TIME, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
 use super::figure::style::{Color, Hue};
@@ -92,7 +92,7 @@ pub(super) fn course<'a>(times: &'a [f64], output: &'a OutputBounds) -> Course<'
 
 /// Courses of an output over time.
 pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [Course<'a>]) -> Shown<'a> {
-    let across = Across { name: "t", unit: ShownUnit::from("s") };
+    let across = Across { name: TIME, unit: ShownUnit::from("s") };
     Shown {
         name: &output.name,
         unit: ShownUnit::of(&output.display, &output.unit),

@@ -137,10 +137,17 @@ pub(super) fn place(table: &impl SymbolTable, name: &str) -> Option<PointRef> {
     if let Some(body) = table.body(name) {
         return Some(PointRef { body, point: None });
     }
-    let (body, point) = name.rsplit_once('.')?;
-    let body = table.body(body)?;
-    let point = table.points(body).position(|known| known == point)?;
+    let (body, point) = point_of_body(table, name)?;
     Some(PointRef { body, point: Some(point) })
+}
+
+/// A point of a body, by both names: of a link that is welded to another, points have the link's name in theirs.
+fn point_of_body(table: &impl SymbolTable, name: &str) -> Option<(usize, usize)> {
+    name.rmatch_indices('.').find_map(|(dot, _)| {
+        let body = table.body(&name[..dot])?;
+        let point = table.points(body).position(|known| known == &name[dot + 1..])?;
+        Some((body, point))
+    })
 }
 
 /// `s2.deviation`: how far a parameter is from the value that it follows. `body.arm.mass`: a number of a robot's file.
@@ -169,7 +176,7 @@ fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
         };
     }
     let rest = name.strip_prefix("link.").unwrap_or(name);
-    let placed = |(link, member)| Some((table.link(link)?, member));
+    let placed = |(owner, member)| Some((place(table, owner)?, member));
     let (place, member) = rest.rsplit_once('.').and_then(placed).or_else(|| rest.split_once('.').and_then(placed))?;
     let Some(point) = place.point else {
         // A body of that name: the usual way.

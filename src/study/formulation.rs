@@ -284,11 +284,6 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
     of_system(because(assemble::in_absolute_coordinates(description)?, why))
 }
 
-/// Whether [`assembled`] leaves it to [`compiled`] to find the shorter formulation.
-pub(super) fn is_open(description: &Description) -> bool {
-    description.simulation.formulation == Formulation::Auto && description.bodies.len() > FEW_BODIES
-}
-
 /// What a model asks for; where that takes too many operations, the other formulation. Where joint coordinates take more than
 /// `most`, they are not tried.
 fn within_budget<T>(

@@ -34,6 +34,7 @@ mod memory;
 mod motion;
 mod outcome;
 mod price;
+mod ready;
 mod reduced;
 mod sample;
 mod shard;
@@ -51,9 +52,9 @@ use crate::assemble::BuildError;
 use crate::compile::Scheme;
 use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
-use crate::reduce::{Choices, Reduction};
+use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
-use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::simulate::{SimulationError, Simulator};
 use crate::store::PartStore;
 
 use subsystems::Prepared;
@@ -70,6 +71,7 @@ pub use kept::{Evaluator, Kept};
 pub use memory::Memory;
 pub use motion::{MotionOptions, motion};
 pub use price::Price;
+pub use ready::{Ready, built, ready};
 pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
 pub use structure::structure;
@@ -191,24 +193,6 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
-}
-
-/// Simulated parts of a model, assembled: one for each subsystem, as a run has them.
-///
-/// # Errors
-/// As for [`run`].
-pub fn assemble_parts(description: &Description) -> Result<Vec<Assembled>, RunError> {
-    subsystems::assembled(&reduced::expanded(description))
-}
-
-/// Simulated parts of a model.
-pub fn reduction(description: &Description) -> Reduction {
-    Reduction::of(&reduced::expanded(description), Choices::default())
-}
-
-/// Whether only a run finds out in which coordinates it is shorter: large models are not compiled to be checked.
-pub fn formulation_is_open(description: &Description) -> bool {
-    formulation::is_open(description)
 }
 
 /// The model's scheme.

@@ -11,14 +11,23 @@ use crate::elements::effects::Scope;
 use crate::grammar::{PointRef, Reference, TimeOrder};
 use crate::model::{Description, Effect, Output, StartValue};
 use crate::numerics::Sample;
+use crate::reduce::Reduction;
 use crate::results::{KindCount, MassRange, MobilityCount, Structure};
 use crate::simulate::Assembled;
 
-/// Assembles a whole model, with the parts that no output depends on, and nothing merged, and counts its parts.
+/// Assembles a whole model, with the parts that no output depends on, and nothing merged, and counts its parts. Where
+/// parts that no output depends on have no start, without them.
 ///
 /// # Errors
 /// Where the mechanism cannot be built or assembled.
 pub fn structure(description: &Description) -> Result<(Assembled, Structure), RunError> {
+    match of_model(description) {
+        Err(RunError::Simulation(_)) => of_model(&Reduction::joined(description).description),
+        found => found,
+    }
+}
+
+fn of_model(description: &Description) -> Result<(Assembled, Structure), RunError> {
     let inventory = Inventory::of(description)?;
     let mut outputs = description.outputs.clone();
     let own = outputs.len();

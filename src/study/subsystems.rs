@@ -7,12 +7,10 @@
 use symdiff::Formula;
 
 use super::assemblies;
-use super::ensemble::Stored;
 use super::internal::caught;
 use super::kept::Kept;
-use super::memory::Memory;
 use super::outcome::Ran;
-use super::price::Price;
+use super::ready::{Studied, studied};
 use super::reduced::{Parameters, together};
 use super::single::Study;
 use super::{Options, RunError, analysis, feasible, formulation};
@@ -23,7 +21,7 @@ use crate::reduce::{Choices, Reduction, Subsystem, narrow, required};
 use crate::results::{
     Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
 };
-use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::simulate::{SimulationError, Simulator};
 
 /// A subsystem, compiled.
 pub struct Prepared {
@@ -74,16 +72,6 @@ pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Re
     Ok((reduction, prepared))
 }
 
-/// Reduces a model to its simulated part, and assembles that.
-///
-/// # Errors
-/// As for [`prepare`].
-pub(super) fn assembled(description: &Description) -> Result<Vec<Assembled>, RunError> {
-    let assembled = |subsystem: Subsystem| formulation::assembled(&subsystem.description);
-    let subsystems = Reduction::of(description, Choices::default()).subsystems.into_iter();
-    subsystems.map(|subsystem| as_far_as_joints_go(description, subsystem, assembled)).collect()
-}
-
 /// Makes something of a subsystem. Joint coordinates that the model asks for may not exist in every one: then it has absolute ones.
 fn as_far_as_joints_go<T>(
     description: &Description,
@@ -119,43 +107,22 @@ pub(super) fn run(
     options: &Options,
     keep: bool,
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
-    (options.stage)("compiling");
-    let (reduction, mut prepared) = prepare(description, choices(description, options))?;
-    share_budget(&mut prepared);
-    let count = prepared.len();
-    let report = |place: usize| move |fraction: f64| (options.progress)((place as f64 + fraction) / count as f64);
-    let reports: Vec<_> = (0..count).map(report).collect();
-    let mut subsystems = Vec::with_capacity(count);
-    let mut studies = Vec::with_capacity(count);
-    for (Prepared { subsystem, simulator }, progress) in prepared.into_iter().zip(&reports) {
-        subsystems.push(subsystem);
-        studies.push((simulator, progress));
-    }
-    // All that can be refused is, before the first is run.
-    let studies = subsystems.iter().zip(studies).enumerate().map(|(number, (subsystem, (simulator, progress)))| {
-        let mut study = Study::new(&subsystem.description, simulator, options)?;
-        study.progress = progress;
-        study.stored =
-            options.store.map(|store| Stored { store, subsystem: number, assembles_first: options.skip_infeasible });
-        if keep {
-            study.keep_surrogate()?;
-        }
-        Ok(study)
-    });
-    let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
-    let price = Price::of(&studies);
-    if !options.costly && price.is_costly(description.bounds.budget.simulations) {
-        return Err(RunError::Costly(price));
-    }
-    if let Some(lacking) = Memory::lacking(&studies) {
-        return Err(RunError::Memory(lacking));
-    }
+    studied(description, options, keep, |found| run_all(description, options, keep, found))
+}
+
+fn run_all(
+    description: &Description,
+    options: &Options,
+    keep: bool,
+    &Studied { left_out, subsystems, studies, .. }: &Studied,
+) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+    let count = studies.len();
     if options.store.is_some() {
         (options.disk)(studies.iter().map(Study::stored_bytes).sum());
     }
     let (mut ran, mut kept) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let (mut lost, mut deferred) = (0, false);
-    for (subsystem, study) in subsystems.iter().zip(&studies) {
+    for (subsystem, study) in subsystems.iter().zip(studies) {
         let found = caught("the run", || -> Result<_, RunError> {
             if options.skip_infeasible {
                 let (bounds, summary) = feasible::run(study)?;
@@ -189,13 +156,13 @@ pub(super) fn run(
     }
     let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep);
     let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
-    let (mut bounds, mut summary) = Whole::of(description, reduction.left_out).merge(ran);
+    let (mut bounds, mut summary) = Whole::of(description, left_out.to_vec()).merge(ran);
     analysis::arrange(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))
 }
 
 /// The budget is divided evenly among the subsystems with uncertain parameters.
-fn share_budget(prepared: &mut [Prepared]) {
+pub(super) fn share_budget(prepared: &mut [Prepared]) {
     let uncertain = prepared.iter().filter(|prepared| !prepared.subsystem.parameters.is_empty()).count().max(1);
     for prepared in prepared {
         let budget = &mut prepared.subsystem.description.bounds.budget;

@@ -1,6 +1,7 @@
-// Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door and hostile.yaml.
+// Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door and hostile.yaml, and `all` of every other
+// model and example.
 import assert from 'node:assert/strict';
-import { readFileSync, statSync } from 'node:fs';
+import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { columns, launch, open } from './browser.mjs';
@@ -34,6 +35,68 @@ test('reports are small, open from the disk, ask for nothing and say nothing wro
     assert.deepEqual(wrong, [], name);
     await context.close();
   }
+});
+
+/** Faults of a report in which nothing was touched: an empty view, figures without courses, numbers that are none. */
+const empty = (page) => page.evaluate(() => {
+  const wrong = [];
+  for (const [number, scene] of mbint.scenes.entries()) {
+    mbint.show(number);
+    const { view, plots } = mbint.current();
+    const article = document.querySelector(`.scene[data-scene="${number}"]`);
+    const note = (what) => wrong.push(`${scene.name}: ${what}`);
+    if (!scene.motion) note('no motion');
+    view?.draw();
+    const canvas = article.querySelector('canvas');
+    const gl = canvas?.getContext('webgl2');
+    if (!gl || canvas.width * canvas.height === 0) note('no view');
+    else {
+      const pixels = new Uint32Array(canvas.width * canvas.height);
+      gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(pixels.buffer));
+      if (new Set(pixels).size < 2) note('an empty view');
+    }
+    const figures = [...article.querySelectorAll('figure')];
+    if (figures.length !== scene.outputs.length) note(`${figures.length} figures of ${scene.outputs.length}`);
+    for (const figure of figures) {
+      const drawn = [...figure.querySelectorAll('.data path, .data polyline, .data line')].some((part) => part.getTotalLength() > 0);
+      if (!drawn) note(`an empty plot of ${figure.textContent.slice(0, 40)}`);
+    }
+    if (plots.length < figures.length) note('a figure without its cursor');
+    const texts = [...article.querySelectorAll('.readout, .player, .options, .note')].map((part) => part.textContent);
+    if (texts.some((text) => /NaN|Infinity|undefined/.test(text))) note(`a number that is none: ${texts.find((text) => /NaN|Infinity|undefined/.test(text))}`);
+    if ([...article.querySelectorAll('.overlay *')].some((part) => [...part.attributes].some(({ value }) => value.includes('NaN')))) note('a cursor that is nowhere');
+    if (figures.length === 0 && !article.querySelector('table')) note('no result');
+  }
+  return wrong;
+});
+
+test('every shipped model and every example has a view and plots, and says nothing wrong', async () => {
+  const names = readdirSync(join(reports, 'all'));
+  assert.ok(names.length > 55, String(names.length));
+  const faults = [];
+  for (const name of names) {
+    const { page, wrong, context } = await open(browser, join(reports, 'all', name, 'report.html'));
+    await frames(page, 2);
+    faults.push(...[...wrong, ...(await empty(page))].map((fault) => `${name}: ${fault}`));
+    // What is wrong when it plays, or a key is pressed.
+    await page.keyboard.press('Space');
+    await page.keyboard.press('End');
+    await frames(page, 2);
+    faults.push(...wrong.map((fault) => `${name}: ${fault}`));
+    await context.close();
+  }
+  assert.deepEqual([...new Set(faults)], []);
+});
+
+test('a response has its own cursor, over frequencies', async () => {
+  const { page, wrong, context } = await open(browser, join(reports, 'all', 'modes', 'report.html'));
+  const svg = page.locator('figure:not(.hidden) .plot svg').first();
+  const box = await svg.boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.3 * box.height);
+  assert.match(await page.locator('figure:not(.hidden) .readout .at').first().textContent(), /^frequency = \d.* Hz$/);
+  assert.equal(await page.locator('#play').count(), 0);
+  assert.deepEqual(wrong, []);
+  await context.close();
 });
 
 test('the picture changes while it plays, and stands still when paused', async () => {

@@ -19,12 +19,24 @@ pub struct FigureData {
     pub output: String,
     /// Of the upper panel.
     pub unit: String,
-    /// Times of the rows, s.
+    /// What the rows are over, where that is not the time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub across: Option<AcrossData>,
+    /// Times of the rows, s, or values of what they are over.
     pub time: Vec<f64>,
     /// From top to bottom.
     pub panels: Vec<PanelData>,
     /// In the order in which they are drawn.
     pub series: Vec<SeriesData>,
+}
+
+/// What a figure's rows are over.
+#[derive(Clone, Debug, Serialize)]
+pub struct AcrossData {
+    /// Its name.
+    pub name: String,
+    /// In which its values are.
+    pub unit: String,
 }
 
 /// A panel's scales.

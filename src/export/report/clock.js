@@ -2,10 +2,11 @@
 // The time that the mechanism and all plots show.
 
 export class Clock {
-  /** @param {number} duration */
-  constructor(duration) {
+  /** @param {number} duration @param {number} [first] */
+  constructor(duration, first = 0) {
     this.duration = duration;
-    this.time = 0;
+    this.first = first;
+    this.time = first;
     this.playing = false;
     this.speed = 1;
     /** @type {(() => void)[]} */
@@ -24,7 +25,7 @@ export class Clock {
 
   /** @param {number} time */
   seek(time) {
-    this.time = Math.max(0, Math.min(this.duration, time));
+    this.time = Math.max(this.first, Math.min(this.duration, time));
     this.changed();
   }
 
@@ -45,8 +46,8 @@ export class Clock {
   }
 
   play() {
-    if (this.playing) return;
-    if (this.time >= this.duration) this.time = 0;
+    if (this.playing || this.duration <= this.first) return;
+    if (this.time >= this.duration) this.time = this.first;
     this.playing = true;
     this.last = 0;
     this.changed();

@@ -39,7 +39,7 @@ export function player(clock) {
     play.setAttribute('aria-label', clock.playing ? 'Pause (space)' : 'Play (space)');
     scrub.value = String(clock.time);
     scrub.setAttribute('aria-valuetext', `${digits(clock.time)} s`);
-    time.textContent = `${clock.time.toFixed(Math.max(0, 3 - Math.floor(Math.log10(clock.duration))))} s`;
+    time.textContent = `${clock.time.toFixed(Math.max(0, Math.min(20, 3 - Math.floor(Math.log10(clock.duration)))))} s`;
   };
   clock.listen(update);
   update();

@@ -9,6 +9,7 @@ use super::page::{PageFigure, PageScene, page};
 use super::tables::{list, text};
 use crate::export::earlier::scene_folders;
 use crate::export::error::ExportError;
+use crate::export::files::stem_of_response;
 use crate::export::folder::{AtomicFiles, settle};
 use crate::export::owned::{PAGE, SCENES, SUMMARY, read};
 use crate::export::stems::unique_stems;
@@ -63,11 +64,15 @@ pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, Export
     let motion = read_json(&dir.join(MOTION)).unwrap_or(Value::Null);
     let names = list(&summary, "outputs").iter().map(|output| text(output, "name"));
     let svg = |name: String| String::from_utf8(read(&dir.join(name)).ok()?).ok();
-    let figures = names.clone().zip(unique_stems(names)).map(|(output, stem)| {
-        let plots = [format!("{stem}.svg"), format!("{stem}.contributions.svg")];
-        PageFigure { output: output.to_owned(), plots: plots.into_iter().filter_map(svg).collect() }
-    });
-    let figures = figures.collect();
+    let files = list(&summary, "files").iter().filter_map(Value::as_str);
+    let responses = files.filter_map(|file| Some((stem_of_response(file)?, vec![file.to_owned()])));
+    let outputs = names.clone().zip(unique_stems(names));
+    let outputs = outputs.map(|(output, stem)| (output, vec![format!("{stem}.svg"), format!("{stem}.contributions.svg")]));
+    let figure = |(output, files): (&str, Vec<String>)| {
+        PageFigure { output: output.to_owned(), plots: files.into_iter().filter_map(svg).collect() }
+    };
+    // Of one configuration, outputs have no plots.
+    let figures = responses.chain(outputs).map(figure).filter(|figure| !figure.plots.is_empty()).collect();
     Ok(PageScene { name: text(&summary, "model").to_owned(), figures, motion, summary })
 }
 

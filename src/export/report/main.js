@@ -23,13 +23,16 @@ function stageOf(article, movie, clock) {
   const picture = element('div', { class: 'picture' });
   still?.after(stage);
   let view = null;
+  // One configuration does not play.
+  const players = clock.duration > 0 ? [player(clock)] : [];
   if (gl) {
     view = new View(picture, movie, clock, gl, canvas);
     still?.classList.add('replaced');
     const note = `${movie.times.length} of ${movie.rows} computed instants; straight lines between them are off by ${length(movie.between)} at most.`;
-    stage.append(picture, player(clock), options(view), element('small', { class: 'note' }, [note]));
+    const notes = clock.duration > 0 ? [element('small', { class: 'note' }, [note])] : [];
+    stage.append(picture, ...players, options(view), ...notes);
   } else {
-    stage.append(player(clock), element('small', { class: 'note' }, ['This browser shows no WebGL: the mechanism is drawn at its start only.']));
+    stage.append(...players, element('small', { class: 'note' }, ['This browser shows no WebGL: the mechanism is drawn at its start only.']));
   }
   return { view, stage };
 }
@@ -59,7 +62,7 @@ function start(number) {
   const movie = scene.motion ? new Movie(scene.motion) : null;
   const { view, stage } = movie ? stageOf(article, movie, clock) : { view: null, stage: null };
   outputSwitch(article, scene.outputs);
-  const plots = bringToLife(article, clock, new Window(scene.duration));
+  const plots = bringToLife(article, clock, new Window(0, scene.duration));
   return { clock, view, movie, plots, stage };
 }
 

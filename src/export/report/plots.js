@@ -1,28 +1,30 @@
 // @ts-check
+import { Clock } from './clock.js';
 import { digits, element } from './data.js';
 // The figures of a run, brought to life by the scales and the data that they carry: a cursor at the time, values under the pointer, zoom in time, series on and off.
+// Figures over something else than the time, as frequencies, have a cursor of their own.
 
-/** @typedef {import('./clock.js').Clock} Clock */
 /** @typedef {{min: number, max: number, from_px: number, to_px: number}} Scale */
 /** @typedef {{id: string, group?: string, label: string, kind: string, panel: string, time?: number[], lower: (number | null)[], upper: (number | null)[]}} Series */
-/** @typedef {{output: string, unit: string, time: number[], panels: {id: string, unit?: string, x: Scale, y: Scale}[], series: Series[]}} FigureData */
+/** @typedef {{output: string, unit: string, across?: {name: string, unit: string}, time: number[], panels: {id: string, unit?: string, x: Scale, y: Scale}[], series: Series[]}} FigureData */
 
 const SVG = 'http://www.w3.org/2000/svg';
 
 /** The part of the run that all plots show. */
 export class Window {
-  /** @param {number} duration */
-  constructor(duration) {
-    this.duration = duration;
-    this.from = 0;
-    this.to = duration;
+  /** @param {number} first @param {number} last */
+  constructor(first, last) {
+    this.first = first;
+    this.last = last;
+    this.from = first;
+    this.to = last;
     /** @type {(() => void)[]} */
     this.listeners = [];
   }
 
   /** @param {number} from @param {number} to */
   show(from, to) {
-    [this.from, this.to] = [Math.max(0, from), Math.min(this.duration, to)];
+    [this.from, this.to] = [Math.max(this.first, from), Math.min(this.last, to)];
     this.listeners.forEach((listener) => listener());
   }
 }
@@ -67,7 +69,7 @@ export class Plot {
     svg.addEventListener('pointerleave', () => this.leave());
     svg.addEventListener('pointerdown', (event) => this.press(event));
     svg.addEventListener('pointerup', (event) => this.release(event));
-    svg.addEventListener('dblclick', () => shown.show(0, shown.duration));
+    svg.addEventListener('dblclick', () => shown.show(shown.first, shown.last));
     clock.listen(() => this.update());
     shown.listeners.push(() => this.zoom());
     this.update();
@@ -165,7 +167,8 @@ export class Plot {
       this.cursors[number].setAttribute('visibility', inside ? 'visible' : 'hidden');
     });
     const told = this.hovered === null ? time : this.hovered;
-    if (this.time) this.time.textContent = `t = ${digits(told)} s`;
+    const { name, unit } = this.data.across || { name: 't', unit: 's' };
+    if (this.time) this.time.textContent = `${name} = ${digits(told)} ${unit}`;
     this.entries?.forEach(({ series, value }) => (value.textContent = this.valueOf(series, told)));
   }
 
@@ -198,8 +201,8 @@ export class Plot {
 
   /** Shows a part of the run: the courses are stretched, and have times of their own below. */
   zoom() {
-    const { from, to, duration } = this.shown;
-    const whole = from <= 0 && to >= duration;
+    const { from, to, first, last } = this.shown;
+    const whole = from <= first && to >= last;
     this.svg.classList.toggle('zoomed', !whole);
     this.svg.querySelectorAll('[data-panel]').forEach((group) => {
       const panel = this.data.panels.find(({ id }) => id === group.getAttribute('data-panel'));
@@ -228,10 +231,21 @@ export class Plot {
 export function bringToLife(holder, clock, shown) {
   /** @type {Plot[]} */
   const plots = [];
+  /** Of what is not over the time, by its scale. @type {Map<string, [Clock, Window]>} */
+  const others = new Map();
+  /** @param {FigureData} data @returns {[Clock, Window]} */
+  const runOf = (data) => {
+    if (!data.across) return [clock, shown];
+    const { min, max } = data.panels[0].x;
+    const scale = `${data.across.name} ${min} ${max}`;
+    const known = others.get(scale) || [new Clock(max, min), new Window(min, max)];
+    others.set(scale, known);
+    return known;
+  };
   holder.querySelectorAll('.plot svg').forEach((svg) => {
     const text = svg.querySelector('metadata')?.textContent;
     const data = text ? JSON.parse(text) : null;
-    if (data && data.panels && data.time) plots.push(new Plot(/** @type {SVGSVGElement} */ (svg), data, clock, shown));
+    if (data && data.panels && data.time) plots.push(new Plot(/** @type {SVGSVGElement} */ (svg), data, ...runOf(data)));
   });
   return plots;
 }

@@ -291,6 +291,10 @@ fn longest_of(matrix: &DMatrix<f64>) -> f64 {
 
 /// K⁻¹ f, and whether there is one. Forces below `nothing` push nothing where nothing is stiff.
 fn newton(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool) {
+    // Constraints may allow no motion.
+    if forces.is_empty() {
+        return (Vec::new(), true);
+    }
     let is_symmetric = (small - small.transpose()).iter().all(|part| part.abs() <= NOTHING * longest_of(small));
     if !is_symmetric && let Some(found) = small.clone().full_piv_lu().solve(&DVector::from_column_slice(forces)) {
         return (found.iter().copied().collect(), true);
@@ -332,6 +336,9 @@ fn shortest(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bo
 
 /// K⁻¹ f with every eigenvalue positive.
 fn downhill(small: &DMatrix<f64>, forces: &[f64]) -> Vec<f64> {
+    if forces.is_empty() {
+        return Vec::new();
+    }
     let eigen = SymmetricEigen::new((small + small.transpose()) * 0.5);
     let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let size = forces.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
