@@ -173,6 +173,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
         self.applied.add_to_coordinate(self.m.modes[&(self.effect, place)], force);
     }
 
+    fn begins_within(&mut self, room: Scalar<'g>) {
+        self.applied.room = Some(room);
+    }
+
     fn sensor(&mut self, measure: Sensor, value: Scalar<'g>) {
         self.applied.sensor(measure, value);
     }

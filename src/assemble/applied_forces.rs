@@ -53,7 +53,9 @@ pub struct AppliedForces<'g> {
     touched: BTreeSet<Target>,
     /// Sensor values recorded since then.
     measured: Vec<(Sensor, Scalar<'g>)>,
-    /// Condition under which forces are added now, if any.
+    /// How much room the effect has at the start.
+    pub room: Option<Scalar<'g>>,
+    /// The condition of what is added now, if it has one.
     guard: Option<Guard<'g>>,
     /// What acts under conditions.
     guarded: Vec<Guarded<'g>>,
@@ -71,6 +73,7 @@ impl<'g> AppliedForces<'g> {
             sampled: Vec::new(),
             touched: BTreeSet::new(),
             measured: Vec::new(),
+            room: None,
             guard: None,
             guarded: Vec::new(),
         }
@@ -80,6 +83,7 @@ impl<'g> AppliedForces<'g> {
     pub fn begin(&mut self) {
         self.touched.clear();
         self.measured.clear();
+        self.room = None;
         self.guard = None;
     }
 

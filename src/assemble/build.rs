@@ -222,7 +222,8 @@ fn apply_effects<'g>(
             applied.sampled.len() == sampled && graph.exprs_after(nodes).all(|expr| encloses(graph.node(expr)));
         let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);
         let length = measured.map(|&(_, length)| length.expr());
-        effects.push(EffectInfo { name, kind, forces, expressions: graph.len() - nodes, enclosed, length });
+        let room = applied.room.map(Scalar::expr);
+        effects.push(EffectInfo { name, kind, forces, expressions: graph.len() - nodes, enclosed, length, room });
     }
     Ok((applied, effects))
 }

@@ -36,7 +36,7 @@ impl Mechanism<'_, '_> {
         let nodes = self
             .superelements
             .iter()
-            .flat_map(|(_, inertia)| (1..inertia.nodes.len()).map(|node| inertia.matrices.offset(node)));
+            .flat_map(|of| (1..of.inertia.nodes.len()).map(|node| of.inertia.matrices.offset(node)));
         lengths.extend(nodes.flatten().map(|length| self.g.number(length)));
         for formula in description.initial.iter().chain(&description.guess).filter_map(length_at_start) {
             lengths.push(self.formula(formula, Context::Parameters)?);

@@ -84,7 +84,7 @@ impl Mechanism<'_, '_> {
         let reduced = self
             .superelements
             .iter()
-            .map(|(_, inertia)| Ok(inertia.matrices.total_mass() * self.formula(inertia.factor, Context::Parameters)?));
+            .map(|of| Ok(of.carried.mass * self.formula(of.inertia.factor, Context::Parameters)?));
         let masses: Result<Vec<_>, BuildError> = bodies.chain(beams).chain(reduced).collect();
         let mass = self.g.sum(masses?);
         let [nominal] = self.nominal([mass]);

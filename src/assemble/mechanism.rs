@@ -6,11 +6,12 @@ use symdiff::{Builder, Expr, Scalar};
 
 use super::names::Names;
 use super::reaction::Reaction;
+use super::superelements::Superelement;
 use super::system::UncertainParameter;
 use super::tree::Tree;
 use crate::elements::joints::ToothForce;
 use crate::grammar::{Coordinate, JointCoordinate, OnJoint, PointRef, Sensor, TimeOrder};
-use crate::model::{Joint, LineMass, ReducedInertia};
+use crate::model::{Joint, LineMass};
 use crate::multibody::{ANGLE, Body, DEGREES_OF_FREEDOM, EULER, Frame, MaterialPoint, Pair, Quaternion, Vector};
 
 /// A coordinate's place in its body's list.
@@ -97,8 +98,8 @@ pub struct Mechanism<'g, 'd> {
     pub joints: &'d [Joint],
     /// The mass of beams between their nodes.
     pub line_masses: Vec<LineMass<'d>>,
-    /// Flexible bodies by their matrices: the effect's place among all, and its inertia.
-    pub superelements: Vec<(usize, ReducedInertia<'d>)>,
+    /// Flexible bodies by their matrices.
+    pub superelements: Vec<Superelement<'d>>,
     /// t, s.
     pub time: Scalar<'g>,
     /// The parameters that are symbols.

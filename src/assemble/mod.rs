@@ -45,6 +45,7 @@ mod recursion;
 mod start;
 mod start_conditions;
 mod states;
+mod superelement_inertia;
 mod superelements;
 mod symbols;
 mod system;

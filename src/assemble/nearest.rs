@@ -1,4 +1,4 @@
-//! Reference of the start where the model leaves it open: the coordinates of the inboard joints, at zero.
+//! What the start is nearest to where the model leaves it open: the coordinates of the inboard joints, at zero, or where `guess` has them or their bodies.
 //!
 //! These are the inboard joints of joint coordinates, so that the start does not depend on the formulation, nor on the
 //! outputs. A root stays near the place where assembly begins to look, and so does a body behind a joint whose
@@ -6,11 +6,12 @@
 
 use symdiff::Scalar;
 
+use super::at_guess::AtGuess;
 use super::mechanism::{Mechanism, Owner};
 use super::system::{Distance, Start};
 use super::tree::Tree;
 use crate::grammar::{Coordinate, JointCoordinate, OnJoint, TimeOrder};
-use crate::model::Description;
+use crate::model::{Description, StartValue};
 use crate::multibody::{BuildError, Context};
 
 impl<'g> Mechanism<'g, '_> {
@@ -27,7 +28,6 @@ impl<'g> Mechanism<'g, '_> {
     ) -> Result<Vec<Distance>, BuildError> {
         let tree =
             Tree::spanning(description, |mobilizer| mobilizer.has_one_axis() && self.is_time_independent(mobilizer));
-        let guessed = self.guessed_of_joints(description)?;
         let mut distances = Vec::new();
         let mut add = |owner: Owner, name: String, value: Scalar<'g>, place: Option<usize>| {
             let is_open = |kept: &[Option<_>]| place.is_none_or(|place| kept[place].is_none());
@@ -62,8 +62,8 @@ impl<'g> Mechanism<'g, '_> {
                 add(owner, format!("{name}.{}", owner.suffix()), sign * p[component] - guess, None);
             }
         }
-        for joint in tree.order.iter().filter(|&&body| !tree.merges(body)).filter_map(|&body| tree.inboard[body]) {
-            let joint = joint.joint;
+        let carried = tree.order.iter().filter(|&&body| !tree.merges(body));
+        for (body, joint) in carried.filter_map(|&body| Some((body, tree.inboard[body]?.joint))) {
             let Some(mobilizer) = self.joints[joint].kind.mobilizer() else { continue };
             for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
                 // A screw's displacement follows from its angle.
@@ -72,8 +72,9 @@ impl<'g> Mechanism<'g, '_> {
                     continue;
                 }
                 let place = self.joint_coordinates.get(&(joint, coordinate)).copied();
-                let mut value = self.measured_coordinate(OnJoint { joint, coordinate })?;
-                if let Some(guess) = place.and_then(|place| guessed[place]) {
+                let on = OnJoint { joint, coordinate };
+                let mut value = self.measured_coordinate(on)?;
+                if let Some(guess) = self.guessed(description, start, (body, on), value)? {
                     value -= guess;
                 }
                 let owner = Owner::Joint(joint, coordinate);
@@ -81,6 +82,38 @@ impl<'g> Mechanism<'g, '_> {
             }
         }
         Ok(distances)
+    }
+
+    /// Where `guess` has the coordinate of the inboard joint of a body: it names the joint's, or the body where joints place it.
+    fn guessed(
+        &self,
+        description: &Description,
+        start: &Start,
+        (body, on): (usize, OnJoint),
+        value: Scalar<'g>,
+    ) -> Result<Option<Scalar<'g>>, BuildError> {
+        let of_joint = description.guess.iter().find_map(|guess| match guess {
+            StartValue::Joint { joint, coordinate, order: TimeOrder::Position, value } => {
+                (OnJoint { joint: *joint, coordinate: *coordinate } == on).then_some(value)
+            }
+            _ => None,
+        });
+        if let Some(formula) = of_joint {
+            return self.formula(formula, Context::Parameters).map(Some);
+        }
+        let names_body = description.guess.iter().any(|guess| match guess {
+            StartValue::Coordinate { body: of, order: TimeOrder::Position, .. }
+            | StartValue::Orientation { body: of, .. } => *of == body,
+            _ => false,
+        });
+        if !names_body {
+            return Ok(None);
+        }
+        let there = {
+            let graph = self.g.graph();
+            AtGuess::of(self, &graph, &start.guess).values(&graph, &[value.expr()])[0]
+        };
+        Ok(Some(self.g.number(there)))
     }
 
     /// Whether all distances are coordinates of the mechanism: those of the inboard joints alone.

@@ -285,7 +285,7 @@ fn links<'g>(m: &Mechanism<'g, '_>, known: &[Option<Scalar<'g>>]) -> Result<Vec<
         links[between[0].body].push(link);
         links[between[1].body].push(link.reversed(between[0].body));
     }
-    for (_, ReducedInertia { nodes, matrices, .. }) in &m.superelements {
+    for ReducedInertia { nodes, matrices, .. } in m.superelements.iter().map(|of| &of.inertia) {
         for node in 1..nodes.len() {
             let [x, y, _] = matrices.offset(node);
             let [here, there] = [nodes[0], nodes[node]].map(|point| local(m, point));

@@ -192,7 +192,7 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
             let across = Pose::at(length * Vector3::x(), UnitQuaternion::identity());
             self.link(*between, LinkKind::Axis(across));
         }
-        for (_, ReducedInertia { nodes, matrices, .. }) in &m.superelements {
+        for ReducedInertia { nodes, matrices, .. } in m.superelements.iter().map(|of| &of.inertia) {
             for node in 1..nodes.len() {
                 let across = Vector3::from(matrices.offset(node));
                 let across = Pose::at(across, UnitQuaternion::identity());

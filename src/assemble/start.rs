@@ -60,13 +60,6 @@ impl<'g> Mechanism<'g, '_> {
         })
     }
 
-    /// Positions that `guess` names as a joint's. Those of bodies only tell where to look.
-    pub fn guessed_of_joints(&self, description: &Description) -> Result<Vec<Option<Scalar<'g>>>, BuildError> {
-        let of_joint = |value: &&StartValue| matches!(value, StartValue::Joint { .. });
-        let guess: Vec<StartValue> = description.guess.iter().filter(of_joint).cloned().collect();
-        self.values_at_start(description, &guess, Named::Guessed, TimeOrder::Position)
-    }
-
     /// Where the joints put the coordinates.
     fn placed(&self, description: &Description, known: &[Option<Scalar<'g>>]) -> Result<Vec<f64>, BuildError> {
         let standing: Vec<_> = description.bodies.iter().map(|body| body.standing).collect();

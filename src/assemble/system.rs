@@ -109,6 +109,8 @@ pub struct EffectInfo {
     pub enclosed: bool,
     /// The distance of two points along which it acts, where it does.
     pub length: Option<Expr>,
+    /// How much room it has, m: none at a start outside of what it is in.
+    pub room: Option<Expr>,
 }
 
 /// Something that the model says and no equation holds.

@@ -20,6 +20,8 @@ impl<S: SymbolTable> Reader<'_, S> {
                 (formula, dimension)
             }
         };
+        self.refuse_like_names(node);
+        self.warn_of_fraction(node);
         self.require(node, &formula, |_| true, "");
         Some((formula, dimension))
     }

@@ -7,6 +7,7 @@ use schemars::{Schema, SchemaGenerator};
 use serde::Serialize;
 use symdiff::Formula;
 
+use super::image::{Image, KeyImage};
 use super::reader::{Fields, Reader};
 use super::requirement::{Quantity, Requirement};
 use super::symbols::{Reference, SymbolTable};
@@ -29,6 +30,11 @@ pub trait Group: Sized {
     /// The place of the unit that holds for the keys after these; `None` where these do not decide it.
     fn units(_read: Option<&Self>) -> Option<usize> {
         None
+    }
+
+    /// What the keys' values are to an instance that is mirrored or turned.
+    fn images() -> Vec<KeyImage> {
+        Vec::new()
     }
 
     /// Every formula within.
@@ -96,6 +102,9 @@ pub trait Checked: Sized {
 
 /// What can stand behind a key: a formula, a point, a mapping.
 pub trait Value: Sized {
+    /// What it is to a mirror.
+    const IMAGE: Image = Image::Same;
+
     /// Reads it; `at` is the key's place. `None` where an error was reported.
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, quantity: &Quantity) -> Option<Self>;
 

@@ -1,5 +1,7 @@
 //! Numbers and formulas behind keys: parsed, their names resolved, their dimensions and values checked.
 
+use std::cell::RefCell;
+
 use symdiff::formula::{Names, Vocabulary};
 use symdiff::{Builder, Formula, Spline, Unary};
 
@@ -7,12 +9,12 @@ use super::dimension::{self, Kind};
 use super::names::{self, Context, NameError};
 use super::own_names::OwnNames;
 use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use super::reader::Reader;
 use super::requirement::{Quantity, Requirement};
 use super::symbols::{ReactionComponent, Symbol, SymbolTable};
 use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
-use super::unknown;
+use super::{unit_names, unknown};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -68,7 +70,10 @@ impl<S: SymbolTable> Reader<'_, S> {
             }
             // What goes on behind the unit makes a formula of it.
             match Unit::leading(unit, |name| self.is_name(name, own_names.as_ref())) {
-                Ok((found, length)) if length == unit.len() => return Some(Written::Quantity { value, unit: found }),
+                Ok((found, length)) if length == unit.len() => {
+                    self.like_names = self.like_names(value, unit, own_names.as_ref());
+                    return Some(Written::Quantity { value, unit: found });
+                }
                 Ok(_) => {}
                 Err(error) => {
                     let part = start + error.span.start..start + error.span.end;
@@ -90,9 +95,15 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
         let tables: Vec<_> = self.tables.iter().map(|table| (table.name.as_str(), table.spline)).collect();
         let own_names = OwnNames::of(scalar, self.variable);
-        let unit = |value: f64, text: &str| Unit::behind(value, text, |name| self.is_name(name, own_names.as_ref()));
+        let like_names = RefCell::new(Vec::new());
+        let unit = |value: f64, text: &str| {
+            let found = Unit::behind(value, text, |name| self.is_name(name, own_names.as_ref()))?;
+            like_names.borrow_mut().extend(self.like_names(value, &text[..found.length], own_names.as_ref()));
+            Ok(found)
+        };
         let names = own_names.as_ref().map(|names| names as &dyn Names);
         let parsed = Formula::parse_with(text, &Vocabulary { tables: &tables, unit: Some(&unit), names });
+        self.like_names = like_names.into_inner();
         match parsed {
             Ok(formula) if formula.terms().len() > MAX_TERMS => {
                 let message = format!("the formula has more than {MAX_TERMS} operations");
@@ -105,7 +116,9 @@ impl<S: SymbolTable> Reader<'_, S> {
             }),
             Err(error) => {
                 let span = part.start + error.span.start..part.start + error.span.end;
-                self.error(scalar.place(&node.span, span), error.message, error.help);
+                let fraction = text.trim_start().starts_with('(').then(|| unit_names::of_fraction(text)).flatten();
+                let help = fraction.map(|fraction| fraction.help_in_parentheses()).or(error.help);
+                self.error(scalar.place(&node.span, span), error.message, help);
                 None
             }
         }
@@ -240,10 +253,11 @@ impl<S: SymbolTable> Reader<'_, S> {
             Written::Quantity { value, unit } => {
                 if !unit.dimension.fits(wanted) {
                     let message = format!("{} stands where {wanted} belongs", unit.dimension);
-                    let help = self.unit_like_a_name(node);
+                    let help = self.other_reading(node);
                     self.error(node.span.clone(), message, help);
                     return None;
                 }
+                self.refuse_ambiguous(node);
                 self.suspect_quantity(unit.to_si(value), wanted);
                 Formula::number(unit.to_si(value))
             }
@@ -251,8 +265,12 @@ impl<S: SymbolTable> Reader<'_, S> {
                 if !self.check_names(node, &formula, 0, context) {
                     return None;
                 }
-                if let Some(found) = self.kind(node, &formula, 0).dimension() {
-                    self.check_fits(&node.span, found, wanted);
+                let found = self.kind(node, &formula, 0).dimension();
+                if let Some(found) = found.filter(|found| !found.fits(wanted)) {
+                    let help = self.other_reading(node);
+                    self.error(node.span.clone(), format!("{found} stands where {wanted} belongs"), help);
+                } else {
+                    self.refuse_ambiguous(node);
                 }
                 self.suspect_formula(node, &formula, wanted);
                 formula
@@ -269,26 +287,6 @@ impl<S: SymbolTable> Reader<'_, S> {
             self.require(node, &formula, holds, message);
         }
         Some(formula)
-    }
-
-    /// Reports where the second of two keys is not larger than the first.
-    pub fn ordered(&mut self, fields: &Fields, (low, first): (&str, &Formula), (high, second): (&str, &Formula)) {
-        for corner in 0..self.corners.len() {
-            let values = self.evaluate(first, corner).zip(self.evaluate(second, corner));
-            if let Some((first, second)) = values.filter(|(first, second)| first >= second) {
-                let label = &self.corners[corner].label;
-                let message = format!("`{high}` ({second}) must be larger than `{low}` ({first}){label}");
-                self.error(fields.key_span(high), message, None);
-                return;
-            }
-        }
-    }
-
-    /// Reports two keys of which only one may be there, at the first.
-    pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
-        if fields.get(first).is_some() && fields.get(second).is_some() {
-            self.error(fields.key_span(first), format!("`{first}` and `{second}` exclude each other"), None);
-        }
     }
 
     /// Like [`Self::formula`], with a requirement on its values: `must be positive`.

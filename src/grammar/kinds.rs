@@ -5,12 +5,13 @@ use std::ops::Deref;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::Formula;
 
-use super::element::{FromNumber, Group, Key, Value, number_as_json};
+use super::element::{FromNumber, Key, Value, number_as_json};
+use super::image::Image;
 use super::plane;
 use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use super::reader::Reader;
 use super::requirement::Quantity;
-use super::symbols::{JointCoordinate, OnJoint, PointRef, Reference, Rotating, SymbolTable};
+use super::symbols::{JointCoordinate, PointRef, Reference, Rotating, SymbolTable};
 use super::values;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{self, Node};
@@ -52,6 +53,8 @@ macro_rules! of_variable {
         }
 
         impl Value for $name {
+            const IMAGE: Image = Image::Unknown;
+
             fn read<S: SymbolTable>(
                 reader: &mut Reader<'_, S>,
                 node: &Node,
@@ -83,6 +86,8 @@ of_variable! {
 }
 
 impl<T: Value> Value for Option<T> {
+    const IMAGE: Image = T::IMAGE;
+
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, quantity: &Quantity) -> Option<Self> {
         T::read(reader, node, at, quantity).map(Some)
     }
@@ -110,7 +115,7 @@ impl<T: Value> Value for Option<T> {
 
 /// Vectors that are read in different ways.
 macro_rules! vector {
-    ($($(#[$doc:meta])* $name:ident, schema $schema:ty, leaves $leaves:path, read $read:expr;)*) => {$(
+    ($($(#[$doc:meta])* $name:ident, image $image:ident, schema $schema:ty, leaves $leaves:path, read $read:expr;)*) => {$(
         $(#[$doc])*
         #[derive(Clone, Debug)]
         pub struct $name(pub [Formula; 3]);
@@ -130,6 +135,8 @@ macro_rules! vector {
         }
 
         impl Value for $name {
+            const IMAGE: Image = Image::$image;
+
             fn read<S: SymbolTable>(
                 reader: &mut Reader<'_, S>,
                 node: &Node,
@@ -161,16 +168,16 @@ macro_rules! vector {
 
 vector! {
     /// Components along x and y, and in space along z.
-    Components, schema values::Components, leaves plane::points_out,
+    Components, image Polar, schema values::Components, leaves plane::points_out,
     read |reader, node, quantity| reader.components(node, quantity.context, quantity.dimension());
     /// A direction along which something moves, of any length but zero.
-    Direction, schema values::Direction, leaves plane::points_out,
+    Direction, image Polar, schema values::Direction, leaves plane::points_out,
     read |reader, node, _| reader.direction(node);
     /// An axis about which something turns, of any length but zero.
-    Axis, schema values::Direction, leaves plane::rotates_out,
+    Axis, image Polar, schema values::Direction, leaves plane::rotates_out,
     read |reader, node, _| reader.rotation_axis(node);
     /// A number for each axis of a frame, or one for all.
-    PerAxis, schema values::PerAxis, leaves nothing_leaves,
+    PerAxis, image Same, schema values::PerAxis, leaves nothing_leaves,
     read |reader, node, quantity| match node.value {
         yaml::Value::Sequence(_) => reader.three(node, quantity.context, quantity.dimension()),
         _ => reader.quantity(node, quantity).map(|all| [all.clone(), all.clone(), all]),
@@ -207,6 +214,8 @@ impl Direction {
 
 /// One in the first point's frame, one in the second's.
 impl Value for [Direction; 2] {
+    const IMAGE: Image = Image::Polars;
+
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _at: Span, _quantity: &Quantity) -> Option<Self> {
         let [first, second] = reader.two(node, "a list of two directions")?.map(|node| reader.direction(node));
         Some([Direction(first?), Direction(second?)])
@@ -262,7 +271,7 @@ macro_rules! reference {
     )*};
 }
 
-fn name() -> Schema {
+pub(super) fn name() -> Schema {
     json_schema!({ "type": "string" })
 }
 
@@ -300,100 +309,4 @@ reference! {
             Rotating::Body(body) => Reference::Body(body),
             Rotating::Joint(joint) => Reference::Joint(joint),
         }));
-}
-
-/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an
-/// angle.
-impl Group for OnJoint {
-    fn key_names() -> Vec<&'static str> {
-        vec!["on", "coordinate"]
-    }
-
-    fn keys(_: &mut SchemaGenerator) -> Vec<Key> {
-        let key = |name, doc, required, words, schema| Key {
-            name,
-            doc,
-            unit: "",
-            required,
-            default: None,
-            default_in_words: words,
-            schema,
-            requirement: None,
-            keys: Vec::new(),
-        };
-        let words = json_schema!({
-            "oneOf": [
-                { "description": "About the joint's axis.", "type": "string", "const": "angle" },
-                { "description": "Along it.", "type": "string", "const": "displacement" }
-            ]
-        });
-        let usual = Some("the displacement of a prismatic joint, the angle of others");
-        vec![
-            key("on", "A revolute, prismatic, cylindrical or screw joint.", true, None, name()),
-            key("coordinate", "Which of the joint's.", false, usual, words),
-        ]
-    }
-
-    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
-        reader.on_joint(fields)
-    }
-
-    fn units(read: Option<&Self>) -> Option<usize> {
-        Some(read.map_or(JointCoordinate::Angle, |on| on.coordinate).unit_choice())
-    }
-
-    fn formulas<'a>(&'a self, _: &mut Vec<&'a Formula>) {}
-
-    fn references<'a>(&'a mut self, found: &mut Vec<Reference<'a>>) {
-        found.push(Reference::Joint(&mut self.joint));
-    }
-
-    fn leaves_plane(_: &Node) -> Option<&'static str> {
-        None
-    }
-}
-
-/// Where `on` is there.
-impl Group for Option<OnJoint> {
-    fn key_names() -> Vec<&'static str> {
-        OnJoint::key_names()
-    }
-
-    fn keys(generator: &mut SchemaGenerator) -> Vec<Key> {
-        OnJoint::keys(generator).into_iter().map(|key| Key { required: false, ..key }).collect()
-    }
-
-    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
-        if fields.get("on").is_some() {
-            return reader.on_joint(fields).map(Some);
-        }
-        if fields.get("coordinate").is_some() {
-            reader.error(fields.key_span("coordinate"), "`coordinate` goes with `on`, a joint", None);
-        }
-        Some(None)
-    }
-
-    fn units(read: Option<&Self>) -> Option<usize> {
-        read?.as_ref().map(|on| on.coordinate.unit_choice())
-    }
-
-    fn formulas<'a>(&'a self, _: &mut Vec<&'a Formula>) {}
-
-    fn references<'a>(&'a mut self, found: &mut Vec<Reference<'a>>) {
-        found.extend(self.as_mut().map(|on| Reference::Joint(&mut on.joint)));
-    }
-
-    fn leaves_plane(_: &Node) -> Option<&'static str> {
-        None
-    }
-}
-
-impl JointCoordinate {
-    /// The place of its units in those of a key: `m or rad`.
-    pub fn unit_choice(self) -> usize {
-        match self {
-            Self::Displacement => 0,
-            Self::Angle => 1,
-        }
-    }
 }

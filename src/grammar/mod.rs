@@ -10,11 +10,14 @@ pub(crate) mod display_unit;
 mod element;
 pub(crate) mod formulas;
 mod friction;
+mod image;
 mod kinds;
 pub(crate) mod mapping;
 pub(crate) mod motions;
 pub(crate) mod names;
+mod on_joint;
 mod own_names;
+mod pairs;
 mod places;
 pub(crate) mod plane;
 pub(crate) mod quantity;
@@ -40,6 +43,7 @@ pub use element::{
     one_of, ordered, short_or_full,
 };
 pub use friction::{FrictionMode, MeshKind};
+pub use image::{Image, KeyImage};
 pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, OfPlace, PerAxis, RotatingJoint, SlidingJoint};
 pub use names::Context;
 pub use reader::{Fields, Lengths, Reader};

@@ -175,6 +175,11 @@ impl Dimension {
         }
     }
 
+    /// Whether what it measures has a name.
+    pub fn is_named(self) -> bool {
+        self.named().is_some()
+    }
+
     /// The SI unit as one writes it; empty for pure numbers.
     pub fn unit(self) -> String {
         if let Some((unit, _)) = self.named() {

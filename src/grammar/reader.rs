@@ -15,6 +15,7 @@ use super::mapping::Grammar;
 use super::names;
 use super::quantity::Dimension;
 use super::symbols::{Sensor, SymbolTable};
+use super::unit_names::LikeName;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -55,6 +56,8 @@ pub struct Reader<'d, S> {
     pub idle: HashSet<String>,
     /// Parameters whose interval has no width.
     pub certain: HashSet<String>,
+    /// Words of units that the model has as names, of what was read last.
+    pub(crate) like_names: Vec<LikeName>,
     /// Lengths of which some may be in another unit.
     pub lengths: Lengths,
     /// Functions that the file gives by their values.

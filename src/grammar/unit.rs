@@ -355,7 +355,7 @@ fn in_words(name: &str) -> Option<&'static str> {
     known(&name).or_else(|| known(name.strip_suffix('s')?))
 }
 
-fn is_part_of_name(c: char) -> bool {
+pub(super) fn is_part_of_name(c: char) -> bool {
     c.is_alphanumeric() && c != '²' && c != '³' || c == '_' || c == '°'
 }
 

@@ -6,6 +6,7 @@ use super::description::Joint;
 use super::names::Reader;
 use crate::elements::JointKind;
 use crate::elements::joints::Equation;
+use crate::grammar::JointCoordinate;
 use crate::syntax::yaml::{Entry, Value};
 
 /// Notes the names of the joints, so that outputs can refer to them.
@@ -31,5 +32,23 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
                 None => reader.unread_joints.push(entry.key.clone()),
             }
         }
+    }
+    check_drives(reader, entries);
+}
+
+/// Reports coordinates whose motion is prescribed twice: the second could only say the same, or contradict.
+fn check_drives(reader: &mut Reader, entries: &[Entry]) {
+    for second in 0..entries.len() {
+        let joints = &reader.model.joints;
+        let Some(on) = joints[second].kind.driven() else { continue };
+        let Some(first) = joints[..second].iter().position(|joint| joint.kind.driven() == Some(on)) else { continue };
+        let (joint, first) = (&joints[on.joint].name, &joints[first].name);
+        let coordinate = match on.coordinate {
+            JointCoordinate::Angle => "angle",
+            JointCoordinate::Displacement => "displacement",
+        };
+        let message = format!("the {coordinate} of `{joint}` is prescribed by `{first}` already");
+        let help = "leave one of them out, or drive another coordinate".to_owned();
+        reader.error(entries[second].key_span.clone(), message, help);
     }
 }

@@ -235,6 +235,7 @@ fn blank<'d>(origin: &Origin, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
         used_by_parameters: Vec::new(),
         idle: HashSet::new(),
         certain: HashSet::new(),
+        like_names: Vec::new(),
         lengths: Lengths::default(),
         tables: Vec::new(),
         files: origin.files.clone(),

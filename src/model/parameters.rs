@@ -117,6 +117,10 @@ fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Dra
     }
     let unit = spec.unit.as_ref().and_then(|node| unit(reader, node));
     let value = spec.value.as_ref().and_then(|node| reader.written(node));
+    if let Some(node) = spec.value.as_ref().filter(|_| value.is_some()) {
+        reader.refuse_odd_units(node);
+        reader.warn_of_fraction(node);
+    }
     spec.check_units(reader);
     let mut uses = Vec::new();
     if let (Some(Written::Formula(formula)), Some(node)) = (&value, &spec.value)

@@ -247,6 +247,7 @@ pub(super) fn formula_of_outputs(reader: &mut Reader, node: &Node) -> Option<Sou
 fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Option<Source> {
     let scalar = reader.scalar(node, "a formula")?;
     let parsed = reader.parse(node, scalar, range.clone())?;
+    reader.refuse_like_names(node);
     let outputs = &reader.model.outputs;
     let formula = parsed
         .with_names(|name| outputs.iter().find(|output| output.name == name).map(|output| output.formula.clone()));

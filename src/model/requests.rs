@@ -218,6 +218,7 @@ fn output(reader: &mut Reader, entry: &Entry, all: &[Entry]) -> Option<Output> {
             (formula, unit, dimension)
         }
     };
+    reader.refuse_like_names(node);
     if formula.names().next().is_none() {
         reader.error(node.span.clone(), "constant output: it refers to no variable", None);
     }

@@ -150,6 +150,12 @@ impl Kept {
         asked.outputs.iter().for_each(|&output| named.extend(&couplings.outputs[output]));
         chosen(&joints).into_iter().for_each(|joint| named.extend(&couplings.joints[joint]));
         chosen(&effects).into_iter().for_each(|effect| named.extend(&couplings.effects[effect]));
+        // Where an instance stands that says nothing of where its body begins.
+        let is_named = |body: usize| {
+            d.initial.iter().any(|value| matches!(value.clone().reference(), Reference::Body(of) if *of == body))
+        };
+        let standing = chosen(&bodies).into_iter().filter(|&body| !is_named(body));
+        named.parts.extend(standing.filter_map(|body| Some(Part::Body(d.bodies[body].standing?.ground))));
         // Bodies that are merged with the ground and have something attached, with the joints towards the ground.
         while let Some(part) = named.parts.pop() {
             let joint = match part {

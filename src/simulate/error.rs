@@ -52,6 +52,16 @@ pub enum SimulationError {
         /// Its name.
         joint: String,
     },
+    /// Something begins outside of what it is in.
+    #[error(
+        "`{effect}` starts with the centre of its journal {distance:.3e} m outside of the bearing: give its bodies a start or a `guess` inside"
+    )]
+    StartsOutside {
+        /// Its name.
+        effect: String,
+        /// How far, m.
+        distance: f64,
+    },
     /// The equations of motion cannot be solved at the start.
     #[error("the equations of motion are singular at the start: {}{}", equations.join(", "), not_placed(massless.as_deref()))]
     Singular {

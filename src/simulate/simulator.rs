@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Tile, WIDTHS};
 
-use super::diagnostics::{not_finite, over_constrained, undetermined_outputs};
+use super::diagnostics::{not_finite, outside, over_constrained, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_equilibrium, no_factors, not_driven};
 use super::features::Features;
 use super::further::further_outputs;
@@ -129,6 +129,9 @@ impl Assembled {
                 nominal = assembly.tile().values()[..layout.registers()].to_vec();
                 start = nearest;
             }
+        }
+        if let Some((effect, distance)) = outside(&system, &layout, &nominal) {
+            return Err(SimulationError::StartsOutside { effect, distance });
         }
         let shared = shared_coordinates(&system, &start, &nominal);
         let vibrations = matches!(system.analysis, Analysis::Modes(_))

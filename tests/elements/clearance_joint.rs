@@ -2,6 +2,7 @@
 
 use mbint::inner::model::Description;
 use mbint::inner::results::Method;
+use mbint::inner::study::{self, Options};
 
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{Vary, band, curve, distance, largest, nominal, output, read, row, run};
@@ -50,7 +51,7 @@ fn loose(friction: &str) -> Description {
       between: [slider, rod.C]
       clearance: c
       radius: 5 mm
-      impact: {{ stiffness: 1e9, restitution: 0.5, impact_velocity: 0.05 }}
+      impact: {{ stiffness: 1e9, restitution: 0.5, impact_velocity: 0.05, law: hunt_crossley }}
 {friction}"
     );
     let start = "initial:
@@ -115,4 +116,25 @@ fn the_clearance_may_be_uncertain() {
 #[test]
 fn an_elastic_bearing_stores_what_it_takes() {
     assert_balance(&pair("", "  e: { clearance_joint: { between: [a.P, b.P], clearance: 0.01, radius: 0.5, impact: { stiffness: 20 } } }", APART), "0");
+}
+
+/// A journal whose centre is beyond the bearing's surface is no joint.
+#[test]
+fn a_journal_outside_of_its_bearing_is_refused() {
+    let begins = |x: &str| {
+        let description = read(&format!(
+            "
+bodies: {{ rod: {{ mass: 1, inertia: 0.1, points: {{ A: [35 mm, 0] }} }} }}
+effects:
+  pin: {{ clearance_joint: {{ between: [ground, rod.A], clearance: 0.1 mm, radius: 5 mm, impact: {{ stiffness: 1e9 }} }} }}
+initial: {{ rod.x: {x}, rod.y: 0, rod.angle: 0 }}
+outputs: {{ x: rod.x }}
+simulation: {{ duration: 1e-3, step: 1e-4 }}
+"
+        ));
+        study::run(&description, Options::default())
+    };
+    assert!(begins("-35.05 mm").is_ok(), "the journal is in its bearing");
+    let message = begins("0").expect_err("it is outside").to_string();
+    assert!(message.contains("`pin`") && message.contains("2.990e-2 m outside"), "{message}");
 }

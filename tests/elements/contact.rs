@@ -60,10 +60,10 @@ fn an_impact_leaves_what_its_dissipation_says() {
         ("{ stiffness: 1e6 }", 1e-9),
         ("{ stiffness: 1e6, dissipation: 0.5 }", 1.0),
         ("{ stiffness: 1e5, dissipation: 5 }", 10.0),
-        ("{ stiffness: 1e6, restitution: 0.8, impact_velocity: 2 }", 1.5 * 0.2),
+        ("{ stiffness: 1e6, restitution: 0.8, impact_velocity: 2, law: hunt_crossley }", 1.5 * 0.2),
         ("{ stiffness: 1e6, restitution: 0.8, impact_velocity: 2, law: lankarani_nikravesh }", 0.75 * 0.36),
-        ("{ stiffness: 1e8, exponent: 2, restitution: 0.5, impact_velocity: 2 }", 1.5 * 0.5),
-        ("{ stiffness: 1e4, exponent: 1, restitution: 0.9, impact_velocity: 2 }", 1.5 * 0.1),
+        ("{ stiffness: 1e8, exponent: 2, restitution: 0.5, impact_velocity: 2, law: hunt_crossley }", 1.5 * 0.5),
+        ("{ stiffness: 1e4, exponent: 1, restitution: 0.9, impact_velocity: 2, law: hunt_crossley }", 1.5 * 0.1),
     ] {
         let description = read(&format!(
             "
@@ -81,6 +81,27 @@ simulation: {{ duration: 0.2, step: 1e-4, output_step: 0.01 }}
         });
         println!("{impact}: {expected:.5}, off by {errors:?}");
         assert!(errors[2] < 1e-3 && errors[2] < 0.5 * errors[0], "{impact}: {errors:?}");
+    }
+}
+
+/// Where no law of the literature is named, an impact at that speed leaves the restitution itself, whatever the exponent.
+#[test]
+fn an_impact_leaves_its_restitution() {
+    for (restitution, keys) in [(1.0, ""), (0.9, ""), (0.8, ", exponent: 1"), (0.5, ", exponent: 2"), (0.15, "")] {
+        let description = read(&format!(
+            "
+parameters: {{ e: {restitution} }}
+bodies: {{ ball: {{ mass: 1, coordinates: [y] }} }}
+effects:
+  floor:
+    contact: {{ between: [ground, ball], plane: y, impact: {{ stiffness: 1e6, restitution: e, impact_velocity: 2{keys} }} }}
+initial: {{ ball.y: 0.01, ball.vy: -2 }}
+outputs: {{ speed: ball.vy }}
+simulation: {{ duration: 0.2, step: 2e-5, output_step: 0.01 }}
+"
+        ));
+        let left = curve(&nominal(&description), "speed").last().unwrap() / 2.0;
+        assert!((left - restitution).abs() < 1e-3, "{restitution}: {left}");
     }
 }
 

@@ -13,7 +13,7 @@ bodies: { rod: { mass: 1, inertia: 0.02, points: { pin: [0, 0.3] } } }
 joints: { hinge: { revolute: [ground, rod.pin] } }
 effects:
   weight: { gravity: { acceleration: [0, -9.81] } }
-  block: { stop: { on: hinge, lower: 0, impact: { stiffness: 1e5, restitution: 0.9, impact_velocity: 4 } } }
+  block: { stop: { on: hinge, lower: 0, impact: { stiffness: 1e5, restitution: 0.9, impact_velocity: 4, law: hunt_crossley } } }
 initial: { rod.angle: 1.2, rod.angular_velocity: 0 }
 outputs: { angle: rod.angle, speed: rod.angular_velocity, torque: block.torque, energy: energy }
 simulation: { duration: 1.2, step: 5e-5, output_step: 1e-4 }

@@ -189,3 +189,108 @@ fn the_strip_of_the_page_moves_like_a_beam() {
         assert!(distance(beam, found) < share * size, "{name}: {} of {size}", distance(beam, found));
     }
 }
+
+/// A free rod flies and spins in space: the centre moves steadily, and it turns about itself as one that does not fly.
+#[test]
+fn a_flying_body_deforms_as_one_that_spins_in_place() {
+    let soft = Beam { length: 0.8, axial: 2e4, bending: [6.0, 9.0], torsional: 4.5, mass: 1.2, turning: 1e-3 };
+    let matrices = between_ends(&soft, 4);
+    let spins = |velocity: [f64; 3]| {
+        let [x, y, z] = velocity;
+        nominal(&read(&format!(
+            "
+space: spatial
+bodies: {{ a: {{ mass: 0, inertia: 0 }}, b: {{ mass: 0, inertia: 0 }} }}
+effects: {{ rod: {{ superelement: {{ nodes: [a, b], matrices: {matrices} }} }} }}
+initial: {{ a.x: 0, a.y: 0, a.z: 0, a.vx: {x}, a.vy: {y}, a.vz: {z}, a.orientation: {{ rpy: [0.3, -0.2, 0.5] }}, a.omega: [2, 5, -3] }}
+outputs: {{ x: a.x - {x}*t, y: a.y - {y}*t, z: a.z - {z}*t, far: b.x - {x}*t, p1: a.p1, p3: b.p3, spin: b.omega.y }}
+simulation: {{ duration: 0.3, step: 2e-4, output_step: 0.03 }}
+"
+        )))
+    };
+    let (in_place, flying) = (spins([0.0; 3]), spins([20.0, -15.0, 8.0]));
+    for name in ["x", "y", "z", "far", "p1", "p3", "spin"] {
+        let [rests, flies] = [&in_place, &flying].map(|bounds| curve(bounds, name));
+        assert!(largest(rests.iter().map(|value| value - rests[0])) > 0.01, "{name} moves");
+        assert!(distance(rests, flies) < 1e-7, "{name}: {}", distance(rests, flies));
+    }
+}
+
+/// ½ ρA ω² (l² − x²) pulls at x of a rod that spins about its middle, by which each half is longer by ρA ω² l³/3EA.
+#[test]
+fn a_spinning_rod_stretches_by_the_textbook() {
+    let rod = Beam { length: 0.8, axial: 3e4, bending: [4e3, 4e3], torsional: 10.0, mass: 1.2, turning: 1e-3 };
+    let matrices = between_ends(&rod, 0);
+    let omega = 20.0;
+    let half = 0.4 * omega;
+    let bounds = nominal(&read(&format!(
+        "
+bodies: {{ a: {{ mass: 0, inertia: 0 }}, b: {{ mass: 0, inertia: 0 }} }}
+effects: {{ rod: {{ superelement: {{ nodes: [a, b], matrices: {matrices}, damping: 1e-3 }} }} }}
+initial: {{ a.x: 0, a.y: 0, a.angle: 0, a.vx: 30, a.vy: -{half}, a.angular_velocity: {omega} }}
+outputs: {{ longer: sqrt((b.x - a.x)^2 + (b.y - a.y)^2) - 0.8, turned: a.angle - {omega}*t }}
+simulation: {{ duration: 0.2, step: 2e-4, output_step: 0.01 }}
+"
+    )));
+    let exact = 2.0 * rod.mass * omega * omega * 0.4_f64.powi(3) / (3.0 * rod.axial);
+    let longer = curve(&bounds, "longer").last().copied().unwrap_or_default();
+    // As it gets longer it turns slower, and pulls itself further by as much.
+    assert!((longer - exact).abs() < 3.0 * exact / 0.8 * exact + 1e-3 * exact, "{longer} {exact}");
+}
+
+/// The coupler of a slow slider crank bends under the acceleration across it, which is linear along it: at the middle by
+/// 5 μ (a_A + a_B)/2 l⁴/384 EI of a beam on two pins.
+#[test]
+fn a_coupler_bends_under_its_own_inertia() {
+    let coupler = Beam { length: 0.5, axial: 1e6, bending: [1500.0, 1500.0], torsional: 10.0, mass: 1.0, turning: 1e-4 };
+    let (radius, speed) = (0.1, 10.0);
+    let crank = |bodies: &str, effects: &str, [start, middle, end]: [&str; 3]| {
+        nominal(&read(&format!(
+            "
+bodies:
+  crank: {{ mass: 1, inertia: 0.01, points: {{ A: [{radius}, 0] }} }}
+  slider: {{ mass: 0.5, inertia: 0.01 }}
+{bodies}
+joints:
+  shaft: {{ revolute: [ground, crank] }}
+  big: {{ revolute: [crank.A, {start}] }}
+  small: {{ revolute: [{end}, slider] }}
+  guide: {{ prismatic: {{ between: [ground, slider], axis: x }} }}
+  drive: {{ motor: {{ on: shaft, position: {speed}*t }} }}
+{effects}
+guess: {{ slider.x: 0.6, {end}.x: 0.6, {middle}.x: 0.35, {start}.x: 0.1 }}
+outputs:
+  bent: (({end}.x - {start}.x)*({middle}.y - {start}.y) - ({end}.y - {start}.y)*({middle}.x - {start}.x))/0.5
+simulation: {{ duration: 0.7, step: 1e-3, output_step: 0.02 }}
+"
+        )))
+    };
+    let elements = 20;
+    let nodes = [[0.0; 3], [0.25, 0.0, 0.0], [0.5, 0.0, 0.0]];
+    let matrices = coupler.of_elements(elements).reduced(&[0, elements / 2, elements], 2).yaml(&nodes, 2);
+    let found = crank(
+        "  a: { mass: 0, inertia: 0 }\n  m: { mass: 0, inertia: 0 }\n  b: { mass: 0, inertia: 0 }",
+        &format!("effects: {{ rod: {{ superelement: {{ nodes: [a, m, b], damping: 2e-4, matrices: {matrices} }} }} }}"),
+        ["a", "m", "b"],
+    );
+    let keys = "length: 0.5, mass_per_length: 1, axial_stiffness: 1e6, bending_stiffness: 1500, damping: 2e-4";
+    let rod = format!("  rod: {{ beam: {{ {keys}, elements: 8 }} }}");
+    let by_beam = crank(&rod, "", ["rod.start", "rod.node4", "rod.end"]);
+    let closed = |time: f64| {
+        let (l, at) = (0.5_f64, radius * (speed * time).sin() / 0.5);
+        let rod = -at.asin();
+        // The pin at the crank has −r ω² (cos, sin), the slider moves along x alone: across the rod by sin and cos of its angle.
+        let rate = -radius * speed * (speed * time).cos() / (l * rod.cos());
+        let gain = (radius * speed * speed * (speed * time).sin() + l * rate * rate * rod.sin()) / (l * rod.cos());
+        let across = -radius * speed * speed * (-(speed * time).cos() * rod.sin() + (speed * time).sin() * rod.cos());
+        let mean = across + 0.5 * l * gain;
+        -5.0 * coupler.mass * mean * l.powi(4) / (384.0 * coupler.bending[1])
+    };
+    let (found, beam) = (curve(&found, "bent"), curve(&by_beam, "bent"));
+    let exact: Vec<f64> = (0..found.len()).map(|row| closed(0.02 * row as f64)).collect();
+    let size = largest(exact.iter().copied());
+    // The first rows have what starting from the straight rod sets in motion.
+    let (found, beam, exact) = (&found[3..], &beam[3..], &exact[3..]);
+    assert!(distance(found, exact) < 0.01 * size, "{found:?} {exact:?}");
+    assert!(distance(found, beam) < 0.01 * size, "{found:?} {beam:?}");
+}

@@ -140,7 +140,7 @@ effects:
   weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
   floor:
     contact:
-      {{ between: [ground, ball], plane: y, radius: 0.1, impact: {{ stiffness: 1e5, exponent: 1.3, restitution: 0.8, impact_velocity: 3 }},
+      {{ between: [ground, ball], plane: y, radius: 0.1, impact: {{ stiffness: 1e5, exponent: 1.3, restitution: 0.8, impact_velocity: 3, law: hunt_crossley }},
         friction: {{ coefficient: 0.3, breakaway: 1.2, stribeck_velocity: 0.1 }} }}
   meeting: {{ contact: {{ between: [other, ball], circle: 0.1, radius: 0.1, impact: {{ stiffness: 1e5 }} }} }}
   ends: {{ stop: {{ on: rail, lower: 0.1, upper: 3, impact: {{ stiffness: 1e5, dissipation: 0.2 }} }} }}

@@ -4,7 +4,7 @@
 use mbint::inner::study::{self, Options};
 
 use crate::common::dormand_prince::dormand_prince;
-use crate::common::{Vary, curve, distance, distance_from, nominal, order, read};
+use crate::common::{Vary, curve, distance, distance_from, largest, nominal, order, read};
 
 /// Two bars that hang from the ground, 0.7 m and 0.5 m long, described by `formulation`, with this start.
 fn two_bars(formulation: &str, initial: &str) -> String {
@@ -313,6 +313,41 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01, formulation: {form
         for (guess, exact) in [(70.0, branch), (-70.0, -branch)] {
             let found = angle(formulation, guess);
             assert!((found - exact).abs() < 1e-9, "{formulation}, {guess}°: {found} for {exact}");
+        }
+    }
+}
+
+/// A guess of what joints leave free is where it starts, named by the joint or by the body, in every formulation.
+#[test]
+fn a_guess_places_what_nothing_else_places() {
+    let start = |formulation: &str, guess: &str| {
+        let bounds = nominal(&read(&format!(
+            "
+bodies:
+  rod: {{ mass: 1, inertia: 0.1, points: {{ A: [-0.5, 0], B: [0.5, 0] }} }}
+  cart: {{ mass: 2, inertia: 0.1 }}
+  bob: {{ mass: 1, inertia: 0.1, points: {{ A: [-0.5, 0] }} }}
+joints:
+  rail: {{ prismatic: {{ between: [ground, cart], axis: x }} }}
+  hinge: {{ revolute: [cart, rod.A] }}
+  wrist: {{ revolute: [rod.B, bob.A] }}
+guess: {{ {guess} }}
+outputs: {{ cart: cart.x, rod: rod.angle, bob: bob.angle }}
+simulation: {{ duration: 0.01, step: 1e-3, formulation: {formulation} }}
+"
+        )));
+        ["cart", "rod", "bob"].map(|name| curve(&bounds, name)[0])
+    };
+    for formulation in ["absolute", "joint", "auto"] {
+        for (guess, exact) in [
+            ("rod.angle: 60 deg", [0.0, 60.0, 60.0]),
+            ("hinge.angle: 60 deg", [0.0, 60.0, 60.0]),
+            ("cart.x: 0.3, hinge.angle: 20 deg, bob.angle: -30 deg", [0.3, 20.0, -30.0]),
+        ] {
+            let found = start(formulation, guess);
+            let exact = [exact[0], f64::to_radians(exact[1]), f64::to_radians(exact[2])];
+            let off = largest(found.iter().zip(exact).map(|(found, exact)| found - exact));
+            assert!(off < 1e-9, "{formulation}, {guess}: {found:?} for {exact:?}");
         }
     }
 }

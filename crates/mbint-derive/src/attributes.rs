@@ -73,6 +73,10 @@ pub struct Key {
     /// The name of a `grammar::Context`.
     pub context: &'static str,
     pub requirement: Option<TokenStream>,
+    /// The `grammar::Image` that is not the type's.
+    pub image: Option<Expr>,
+    /// Whether components are along the ground's axes.
+    pub in_ground: bool,
 }
 
 impl Key {
@@ -90,6 +94,8 @@ impl Key {
             above: None,
             context: "Effect",
             requirement: None,
+            image: None,
+            in_ground: false,
         };
         for attribute in &field.attrs {
             if attribute.path().is_ident("group") {
@@ -117,6 +123,8 @@ impl Key {
             "dimension" => self.dimension = Some(meta.value()?.parse()?),
             "otherwise" => self.otherwise = Some(meta.value()?.parse()?),
             "above" => self.above = Some(meta.value()?.parse()?),
+            "image" => self.image = Some(meta.value()?.parse()?),
+            "in_ground" => self.in_ground = true,
             "constant" => self.context = "Constant",
             "time" => self.context = "Time",
             "command" => self.context = "Command",

@@ -33,7 +33,7 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
     let read = read(&about, &parts);
     let (derived, parts): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|part| part.key.is_derived);
     let derived = derived.iter().map(|part| &part.field.ident);
-    let (names, keys) = (key_names(&parts), keys(&parts));
+    let (names, keys, images) = (key_names(&parts), keys(&parts), images(&parts));
     let (formulas, references) = (visit(&parts, "formulas"), visit(&parts, "references"));
     let leaves = leaves_plane(&parts);
     let role = match (&about.keyword, &about.what) {
@@ -56,6 +56,12 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
                 let mut keys = Vec::new();
                 #keys
                 keys
+            }
+
+            fn images() -> Vec<crate::grammar::KeyImage> {
+                let mut images = Vec::new();
+                #images
+                images
             }
 
             fn read<S: crate::grammar::SymbolTable>(
@@ -124,6 +130,34 @@ fn keys(parts: &[Part]) -> TokenStream {
                 schema: <#ty as crate::grammar::Value>::schema(generator),
                 requirement: #requirement,
                 keys: <#ty as crate::grammar::Value>::keys(),
+            });
+        }
+    });
+    each.collect()
+}
+
+/// What each key is to an instance that is mirrored or turned.
+fn images(parts: &[Part]) -> TokenStream {
+    let each = parts.iter().map(|part| {
+        let (name, ty, key) = (part.name(), &part.field.ty, &part.key);
+        if key.is_group {
+            return quote!(images.extend(<#ty as crate::grammar::Group>::images()););
+        }
+        let image = match &key.image {
+            Some(image) => quote!(crate::grammar::Image::#image),
+            None => quote!(<#ty as crate::grammar::Value>::IMAGE),
+        };
+        let default = match &key.absent {
+            Absent::Default(value) => quote!(<#ty as crate::grammar::Value>::to_json(&#value)),
+            _ => quote!(None),
+        };
+        let in_ground = key.in_ground;
+        quote! {
+            images.push(crate::grammar::KeyImage {
+                name: #name,
+                image: #image,
+                in_ground: #in_ground,
+                default: #default,
             });
         }
     });
@@ -327,6 +361,9 @@ fn mapping(ident: &syn::Ident, about: &Struct, what: &LitStr) -> TokenStream {
         #schema
 
         impl crate::grammar::Value for #ident {
+            const IMAGE: crate::grammar::Image =
+                crate::grammar::Image::Keys(<Self as crate::grammar::Group>::images);
+
             fn read<S: crate::grammar::SymbolTable>(
                 reader: &mut crate::grammar::Reader<'_, S>,
                 node: &crate::grammar::Node,

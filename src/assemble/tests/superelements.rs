@@ -109,3 +109,23 @@ fn inertia_agrees_with_lagrange() {
         }
     }
 }
+
+/// Inertial forces are the same from a frame that moves steadily.
+#[test]
+fn inertia_knows_no_steady_motion() {
+    for is_spatial in [false, true] {
+        let system = between_frames(is_spatial, "1e-18").build();
+        let mut state = state_of(&system, is_spatial, 3);
+        let at_rest = state.values(&system.graph, &system.inertia);
+        let of_body = if is_spatial { spatial::SIZE } else { 3 };
+        for body in 0..3 {
+            for (axis, speed) in [(0, 40.0), (1, -30.0), (2, 20.0)].into_iter().take(if is_spatial { 3 } else { 2 }) {
+                *state.0.get_mut(&system.v[of_body * body + axis]).unwrap() += speed;
+            }
+        }
+        let moving = state.values(&system.graph, &system.inertia);
+        let size = at_rest.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let off = at_rest.iter().zip(&moving).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        assert!(size > 1.0 && off < 1e-11 * size, "{off} of {size}");
+    }
+}

@@ -42,6 +42,7 @@ pub struct Backlash {
     pub ratio: Formula,
     /// Angle of the second where that of the first is zero.
     #[quantity(unit = "rad", constant, default = 0)]
+    #[key(image = Turning)]
     pub offset: Formula,
     /// Angle by which the second can turn while the first is held.
     #[quantity(unit = "rad", constant, nonnegative)]

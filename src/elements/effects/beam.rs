@@ -61,6 +61,7 @@ pub struct Beam {
     pub bending_stiffness_y: Option<Formula>,
     /// GJ: the beam bends and twists in space.
     #[quantity(unit = "N*m^2")]
+    #[key(image = Unknown)]
     pub torsional_stiffness: Option<Formula>,
     /// GA of shear, with the section's shear coefficient in it; by default the beam does not shear.
     #[quantity(unit = "N", positive)]

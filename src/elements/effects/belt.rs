@@ -55,6 +55,7 @@ pub struct Belt {
     run: Run,
     /// Angle of the second where that of the first is zero.
     #[quantity(unit = "rad", constant, default = 0)]
+    #[key(image = Turning)]
     offset: Formula,
     /// Of each strand: tension by stretch.
     #[quantity(unit = "N/m", constant, positive)]

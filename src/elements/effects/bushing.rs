@@ -23,7 +23,7 @@ use symdiff::{Formula, Scalar};
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
+use crate::grammar::{Image, Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Matrix, Vector};
 use crate::syntax::yaml;
 
@@ -172,6 +172,8 @@ fn in_ground<'g>(axes: [Vector<'g>; 3], a: Vector<'g>) -> Vector<'g> {
 pub struct SixBySix(pub Box<[[Formula; 6]; 6]>);
 
 impl Value for SixBySix {
+    const IMAGE: Image = Image::SixRows;
+
     fn read<S: SymbolTable>(
         reader: &mut Reader<'_, S>,
         node: &Node,

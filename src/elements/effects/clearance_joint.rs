@@ -63,7 +63,10 @@ impl ForceElement for ClearanceJoint {
         let pair = forces.pair(self.between);
         let centre = pair.second.point.position;
         let law = Law { impact, friction, along: None };
-        law.act(forces, &pair, shape.touch(&pair, centre, radius, axis)).measured(forces);
+        let felt = law.act(forces, &pair, shape.touch(&pair, centre, radius, axis));
+        felt.measured(forces);
+        // Beyond, the middle of the journal is outside of the bearing.
+        forces.begins_within(felt.gap + radius.max(clearance));
         Ok(())
     }
 }

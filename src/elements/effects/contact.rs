@@ -80,6 +80,7 @@ pub struct Contact {
     pub capsule: Option<Points>,
     /// Instead of `plane`: lengths of a block along the axes of the first point's frame, about that point.
     #[quantity(unit = "m", constant)]
+    #[key(image = Same)]
     pub block: Option<Components>,
     /// Instead of `plane`: in space, points whose convex hull it is, in the first point's frame.
     #[quantity(unit = "m", constant)]
@@ -98,6 +99,7 @@ pub struct Contact {
     pub cylinder: Option<Points>,
     /// In space: lengths of a box on the second body along the axes of the second point's frame, about that point; its surface is the `radius` outside.
     #[quantity(unit = "m", constant, otherwise = "no box")]
+    #[key(image = Same)]
     pub r#box: Option<Components>,
     /// In space: points whose convex hull is on the second body, in the second point's frame; its surface is the `radius` outside.
     #[quantity(unit = "m", constant, otherwise = "no polyhedron")]

@@ -6,7 +6,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar, math};
 
 use super::Forces;
-use crate::grammar::{Node, Quantity, Reader, Span, SymbolTable, Value, values};
+use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Vector};
 use crate::syntax::yaml;
 
@@ -23,6 +23,8 @@ impl Deref for Points {
 }
 
 impl Value for Points {
+    const IMAGE: Image = Image::Polars;
+
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _: Span, quantity: &Quantity) -> Option<Self> {
         let items = items(reader, node)?;
         let points: Vec<_> =
@@ -131,6 +133,8 @@ impl Course {
 }
 
 impl Value for Course {
+    const IMAGE: Image = Image::Polars;
+
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _: Span, quantity: &Quantity) -> Option<Self> {
         let stop = |reader: &mut Reader<'_, S>, item: &Node| {
             let yaml::Value::Mapping(_) = &item.value else {

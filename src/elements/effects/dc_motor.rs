@@ -38,6 +38,7 @@ pub struct DcMotor {
     on: OnJoint,
     /// V, a number or a formula of t, positions, velocities and states.
     #[quantity(unit = "1")]
+    #[key(image = Turning)]
     voltage: Formula,
     /// Largest voltage, V.
     #[quantity(unit = "1", constant, positive, otherwise = "none")]
@@ -56,6 +57,7 @@ pub struct DcMotor {
     ratio: Formula,
     /// The current at the start, A.
     #[quantity(unit = "1", constant, default = 0)]
+    #[key(image = Turning)]
     initial: Formula,
 }
 

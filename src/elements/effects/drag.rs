@@ -47,6 +47,7 @@ pub struct Drag {
     linear: Formula,
     /// Velocity of the fluid in the ground's frame.
     #[quantity(unit = "m/s", default = 0)]
+    #[key(in_ground)]
     wind: Components,
 }
 

@@ -28,6 +28,7 @@ pub struct Force {
     pub on: PointRef,
     /// The force; may depend on t, positions and velocities.
     #[quantity(unit = "N")]
+    #[key(in_ground)]
     pub value: Components,
     /// Whose axes the components are along.
     #[key(default = Frame::Ground)]

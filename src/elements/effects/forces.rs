@@ -84,6 +84,8 @@ pub trait Forces<'g> {
     fn mode(&self, place: usize) -> [Scalar<'g>; 2];
     /// A force on a modal coordinate of the effect, by its place among them.
     fn modal_force(&mut self, place: usize, force: Scalar<'g>);
+    /// How much room there is where the effect begins: a start without any is refused, m.
+    fn begins_within(&mut self, room: Scalar<'g>);
     /// Something that the effect measures, for outputs.
     fn sensor(&mut self, measure: Sensor, value: Scalar<'g>);
 }

@@ -32,9 +32,7 @@ pub struct Gravity {
 impl ForceElement for Gravity {
     const SENSORS: &'static [TypedSensor] = &[];
 
-    fn scope(&self) -> Scope {
-        Scope::EveryBody
-    }
+    const SCOPE: Scope = Scope::EveryBody;
 
     fn direction(&self) -> Option<&[Formula; 3]> {
         Some(&self.acceleration)

@@ -15,7 +15,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::Builder;
 
 use crate::grammar::reader::Fields;
-use crate::grammar::{Node, Quantity, Reader, Span, SymbolTable, Value};
+use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value};
 use crate::multibody::Vector;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml;
@@ -48,41 +48,22 @@ impl Matrices {
         OF_NODE * self.nodes.len() + self.modes
     }
 
-    /// Its mass, kg.
-    pub fn total_mass(&self) -> f64 {
-        let along = self.translation(0);
-        along.dot(&(&self.mass * &along))
-    }
-
     /// A unit displacement of the whole body along an axis.
-    fn translation(&self, axis: usize) -> DVector<f64> {
+    pub fn translation(&self, axis: usize) -> DVector<f64> {
         let of_axis = |row: usize| row < OF_NODE * self.nodes.len() && row % OF_NODE == axis;
         DVector::from_fn(self.size(), |row, _| f64::from(u8::from(of_axis(row))))
     }
 
-    /// A unit rotation of the whole body about an axis of its frame.
-    fn rotation(&self, axis: usize) -> DVector<f64> {
+    /// A unit rotation of the whole body about an axis through its first node.
+    pub fn rotation(&self, axis: usize) -> DVector<f64> {
         let mut all = DVector::zeros(self.size());
         let (next, after) = ((axis + 1) % 3, (axis + 2) % 3);
-        for (node, position) in self.nodes.iter().enumerate() {
-            let first = OF_NODE * node;
+        for node in 0..self.nodes.len() {
+            let (first, position) = (OF_NODE * node, self.offset(node));
             (all[first + next], all[first + after]) = (-position[after], position[next]);
             all[first + 3 + axis] = 1.0;
         }
         all
-    }
-
-    /// ∂S/∂u of a row: S, kg m, is the mass times the centre of mass, u the coordinate.
-    pub fn first_moment(&self, row: usize) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.mass.row(row).transpose().dot(&self.translation(axis)))
-    }
-
-    /// S of the undeformed body about its first node, kg m: the momentum of a unit rotation about axis e is e × S.
-    pub fn undeformed_moment(&self) -> [f64; 3] {
-        let momentum = |turn: usize, along: usize| self.translation(along).dot(&(&self.mass * self.rotation(turn)));
-        let about_origin = [momentum(2, 1), -momentum(2, 0), -momentum(0, 1)];
-        let total = self.total_mass();
-        std::array::from_fn(|axis| about_origin[axis] - total * self.nodes[0][axis])
     }
 
     /// From the first node to another of the undeformed body, m.
@@ -144,10 +125,13 @@ impl Matrices {
             return Some(("mass", "the mass matrix is not positive definite".to_owned(), help));
         };
         let axes: &[usize] = if is_spatial { &[0, 1, 2] } else { &[0, 1] };
-        let total = self.total_mass();
-        for &axis in axes {
+        let along = |axis: usize| {
             let along = self.translation(axis);
-            let found = along.dot(&(&self.mass * &along));
+            along.dot(&(&self.mass * &along))
+        };
+        let total = along(0);
+        for &axis in axes {
+            let found = along(axis);
             if (found - total).abs() > ROUNDING * total {
                 let name = ["x", "y", "z"][axis];
                 let message = format!("the body's mass is {total:.6} kg along x, but {found:.6} kg along {name}");
@@ -252,6 +236,8 @@ fn diagonal(matrix: &DMatrix<f64>, i: usize, j: usize) -> f64 {
 }
 
 impl Value for Matrices {
+    const IMAGE: Image = Image::Unknown;
+
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, _: &Quantity) -> Option<Self> {
         let keys = || vec!["nodes", "modes", "mass", "stiffness"];
         if node.scalar().is_none() {

@@ -6,6 +6,7 @@
 mod along_hull;
 mod arc;
 mod beside;
+mod carried;
 mod course;
 mod cylinder;
 mod cylinder_touches;
@@ -31,6 +32,7 @@ mod touch;
 use schemars::JsonSchema;
 use symdiff::Formula;
 
+pub use self::carried::Carried;
 pub use self::dry_friction::{DryFriction, Friction, FrictionAlong};
 pub use self::forces::Forces;
 pub use self::impact::Impact;
@@ -110,10 +112,8 @@ pub trait ForceElement: Element {
         Vec::new()
     }
 
-    /// Bodies and joints it acts on.
-    fn scope(&self) -> Scope {
-        Scope::Named
-    }
+    /// What it acts on.
+    const SCOPE: Scope = Scope::Named;
 
     /// The mass between two points that it adds to the mechanism.
     fn inertia(&self) -> Option<LineMass<'_>> {
@@ -158,6 +158,8 @@ pub struct StateVariable<'a> {
 pub enum Scope {
     /// The bodies and joints that it names.
     Named,
+    /// The bodies that it names, on ground across the model's z, or with a `wheel` in the plane across its y.
+    LevelGround,
     /// Every body, without connecting them.
     EveryBody,
 }

@@ -46,9 +46,11 @@ pub struct Pid {
     on: OnJoint,
     /// What the coordinate should be; may depend on t, states, positions and velocities.
     #[quantity(unit = "m or rad")]
+    #[key(image = Turning)]
     target: Formula,
     /// How fast the target changes, where it depends on more than t.
     #[quantity(unit = "m/s or rad/s", otherwise = "the target's derivative by t")]
+    #[key(image = Turning)]
     target_rate: Option<Formula>,
     /// Force by error.
     #[quantity(unit = "N/m or N*m/rad", positive)]
@@ -70,6 +72,7 @@ pub struct Pid {
     tracking: Option<Formula>,
     /// The integral's part of the force at the start.
     #[quantity(unit = "N or N*m", constant, default = 0)]
+    #[key(image = Turning)]
     initial: Formula,
 }
 

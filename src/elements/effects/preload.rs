@@ -32,6 +32,7 @@ pub struct Preload {
     pub on: Option<OnJoint>,
     /// The force or torque; may depend on t and the motion.
     #[quantity(unit = "N or N*m")]
+    #[key(image = Effort)]
     pub value: Formula,
 }
 

@@ -130,6 +130,14 @@ macro_rules! effects {
                 }
             }
 
+            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such kind.
+            pub(crate) fn images(keyword: &str) -> Option<Vec<$crate::grammar::KeyImage>> {
+                match keyword {
+                    $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as $crate::grammar::Group>::images()),)*
+                    _ => None,
+                }
+            }
+
             /// Adds its forces to a mechanism.
             ///
             /// # Errors
@@ -143,7 +151,15 @@ macro_rules! effects {
             /// Bodies and joints it acts on.
             pub fn scope(&self) -> Scope {
                 match self {
-                    $(Self::$name(effect) => ForceElement::scope(effect),)*
+                    $(Self::$name(_) => <$name as ForceElement>::SCOPE,)*
+                }
+            }
+
+            /// What a kind of effect acts on; `None` where there is no such kind.
+            pub(crate) fn scope_of(keyword: &str) -> Option<Scope> {
+                match keyword {
+                    $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as ForceElement>::SCOPE),)*
+                    _ => None,
                 }
             }
 

@@ -34,9 +34,11 @@ pub struct Servo {
     on: OnJoint,
     /// What the coordinate should be; may depend on t, states, positions and velocities.
     #[quantity(unit = "m or rad")]
+    #[key(image = Turning)]
     target: Formula,
     /// How fast the target changes, where it depends on more than t.
     #[quantity(unit = "m/s or rad/s", otherwise = "the target's derivative by t")]
+    #[key(image = Turning)]
     target_rate: Option<Formula>,
     /// Force by error.
     #[quantity(unit = "N/m or N*m/rad")]

@@ -42,6 +42,7 @@ pub struct SpringDamper {
     pub between: [PointRef; 2],
     /// Direction in the ground's frame.
     #[key(otherwise = "the line between the points")]
+    #[key(in_ground)]
     pub along: Option<Direction>,
     /// Tension by stretch.
     #[quantity(unit = "N/m", default = 0)]

@@ -31,9 +31,11 @@ pub struct Stop {
     pub on: OnJoint,
     /// Smallest value of the coordinate.
     #[quantity(unit = "m or rad", constant)]
+    #[key(image = End("upper"))]
     pub lower: Option<Formula>,
     /// Largest value of the coordinate.
     #[quantity(unit = "m or rad", constant, above = lower)]
+    #[key(image = End("lower"))]
     pub upper: Option<Formula>,
     /// How it pushes back.
     pub impact: Impact,

@@ -8,7 +8,7 @@
 //! u = (d_2, ρ_2, …, d_n, ρ_n, q),     V = ½ s uᵀ K u          J
 //! f = s K (u + τ u̇):   −R f_i at node i, R f_i at the same place on the first body, −R (m + ½ ρ × m + ¼ ρ (ρ · m)) between both,
 //!                      −f_q on the modes
-//! T = ½ vᵀ M v,   v = (Rᵀ ṙ_1, Rᵀ ω_1, …, Rᵀ ṙ_n, Rᵀ ω_n, q̇)          J, see `assemble::superelements`
+//! T = ½ ∫ |Rᵀ ṙ_1 + Rᵀ ω_1 × (x + N u) + N u̇|² dm          J, N the displacement by u: see `assemble::superelement_inertia`
 //! ```
 //!
 //! Deformation is small against the first node, its motion is not; rigid motions strain nothing. The matrices are constant, so
@@ -28,7 +28,7 @@ use crate::multibody::{BuildError, Pair, RelativeDisplacement, Vector};
 #[element(
     keyword = "superelement",
     what = "a superelement",
-    equation = "V = ½ s uᵀ K u, T = ½ m vᵀ M v; u the nodes' displacements and rotations against the first one, and the modes",
+    equation = "V = ½ s uᵀ K u, T = ½ ∫ |v_1 + ω_1 × (x + N u) + N u̇|² dm; u the nodes' displacements and rotations against the first one, and the modes",
     equation = "with damping τ: forces of u plus τ times its rate",
     source = "Craig & Bampton, AIAA J. 6 (1968) 1313; Géradin & Cardona, Flexible Multibody Dynamics (2001), ch. 10",
     example = "{ nodes: [arm.tip, cart], damping: 1e-3, matrices: { nodes: [[0, 0], [0.6, 0]], mass: [[1.4], [0, 1.56], [0, 0.132, 0.0144], [0.7, 0, 0, 1.4], [0, 0.54, 0.078, 0, 1.56], [0, -0.078, -0.0108, 0, -0.132, 0.0144]], stiffness: [[1e5], [0, 1000], [0, 300, 120], [-1e5, 0, 0, 1e5], [0, -1000, -300, 0, 1000], [0, 300, 60, 0, -300, 120]] } }",

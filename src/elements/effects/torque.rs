@@ -15,9 +15,7 @@ use symdiff::Formula;
 use super::force::Frame;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
-use crate::grammar::{
-    BodyRef, Checked, Fields, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values,
-};
+use crate::grammar::{BodyRef, Checked, Fields, Image, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values};
 use crate::multibody::BuildError;
 use crate::syntax::yaml;
 
@@ -39,6 +37,7 @@ pub struct Torque {
     pub from: Option<BodyRef>,
     /// The torque, one number about z; may depend on t, positions and velocities.
     #[quantity(unit = "N*m")]
+    #[key(in_ground)]
     pub value: AboutAxes,
     /// Whose axes the components are along.
     #[key(default = Frame::Ground)]
@@ -132,6 +131,8 @@ impl Value for TorqueOn {
 pub struct AboutAxes(pub [Formula; 3]);
 
 impl Value for AboutAxes {
+    const IMAGE: Image = Image::Axial;
+
     fn read<S: SymbolTable>(
         reader: &mut Reader<'_, S>,
         node: &Node,

@@ -40,9 +40,11 @@ pub struct TorsionalSpringDamper {
     pub damping: Formula,
     /// Twist without torque.
     #[quantity(unit = "rad", default = 0)]
+    #[key(image = Turning)]
     pub free_angle: Formula,
     /// Further torque against the twist; may depend on the spring's own `NAME.angle` and `NAME.rate`.
     #[quantity(unit = "N*m")]
+    #[key(image = Turning)]
     pub torque: Option<Formula>,
 }
 

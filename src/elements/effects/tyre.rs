@@ -19,7 +19,7 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use super::saturation::saturated;
-use super::{ForceElement, Forces, TypedSensor};
+use super::{ForceElement, Forces, Scope, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
@@ -54,6 +54,7 @@ pub struct Tyre {
     pub on: PointRef,
     /// Angle of the wheel against the point's x axis, about the ground's normal.
     #[quantity(unit = "rad", default = 0)]
+    #[key(image = Axial)]
     pub steer: Formula,
     /// Force across the ground; may depend on t, positions, velocities and states.
     #[quantity(unit = "N", positive)]
@@ -101,6 +102,7 @@ struct Rolling<'g> {
 impl ForceElement for Tyre {
     const GLYPH: Glyph = Glyph::Force;
     const RESISTS: bool = true;
+    const SCOPE: Scope = Scope::LevelGround;
     const SENSORS: &'static [TypedSensor] = &[(SLIP_ANGLE, Dimension::ANGLE), (Sensor::FORCE, Dimension::FORCE)];
 
     fn sensors(&self) -> Vec<TypedSensor> {

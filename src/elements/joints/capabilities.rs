@@ -101,9 +101,14 @@ pub trait Joint: Debug {
         Ok(None)
     }
 
-    /// Whether it prescribes a motion, whatever its formulas.
+    /// The coordinate of which it prescribes the motion, whatever its formulas.
+    fn driven(&self) -> Option<OnJoint> {
+        None
+    }
+
+    /// Whether it prescribes a motion.
     fn drives(&self) -> bool {
-        false
+        self.driven().is_some()
     }
 
     /// Its constraints; `own` is its own index.

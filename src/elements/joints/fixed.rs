@@ -35,6 +35,7 @@ pub struct Fixed {
     pub between: [PointRef; 2],
     /// Angle of the second body against the first.
     #[quantity(unit = "rad", default = 0, constant)]
+    #[key(image = Turning)]
     pub angle: Formula,
 }
 

@@ -40,6 +40,7 @@ pub struct Gear {
     ratio: Formula,
     /// Angle of the second where that of the first is zero.
     #[quantity(unit = "rad", default = 0, constant)]
+    #[key(image = Turning)]
     offset: Formula,
     /// How teeth touch.
     #[group]

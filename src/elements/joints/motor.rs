@@ -49,15 +49,19 @@ pub struct Motor {
     on: OnJoint,
     /// The coordinate over time: a formula of t, twice differentiable.
     #[quantity(unit = "m or rad", time)]
+    #[key(image = Turning)]
     position: Option<Formula>,
     /// From the beginning, also as a formula of t, positions and states, or, with a `profile`, from rest within the `duration`.
     #[quantity(unit = "m/s or rad/s", command)]
+    #[key(image = Turning)]
     speed: Option<Formula>,
     /// Where a move from rest to rest ends.
     #[quantity(unit = "m or rad", constant)]
+    #[key(image = Turning)]
     to: Option<Formula>,
     /// Where the motion begins.
     #[quantity(unit = "m or rad", default = 0, constant)]
+    #[key(image = Turning)]
     from: Formula,
     /// How the coordinate (of a move) or the speed (of a run-up) gets from the one to the other.
     profile: Option<Profile>,
@@ -101,8 +105,8 @@ impl Joint for Motor {
         vec![self.on]
     }
 
-    fn drives(&self) -> bool {
-        true
+    fn driven(&self) -> Option<OnJoint> {
+        Some(self.on)
     }
 
     fn glyph(&self) -> Glyph {

@@ -46,6 +46,7 @@ pub struct Planetary {
     ratio: Formula,
     /// Angle of the sun where those of ring and carrier are zero.
     #[quantity(unit = "rad", default = 0, constant)]
+    #[key(image = Turning)]
     offset: Formula,
 }
 

@@ -38,6 +38,7 @@ pub struct Prismatic {
     pub axis: Direction,
     /// Angle of the second body against the first.
     #[quantity(unit = "rad", default = 0, constant)]
+    #[key(image = Turning)]
     pub angle: Formula,
 }
 

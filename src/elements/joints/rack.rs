@@ -38,6 +38,7 @@ pub struct Rack {
     rack: SlidingJoint,
     /// Displacement a radian; negative where the rack goes against the angle.
     #[quantity(unit = "m", nonzero, constant)]
+    #[key(image = Turning)]
     radius: Formula,
     /// Displacement where the angle is zero.
     #[quantity(unit = "m", default = 0, constant)]

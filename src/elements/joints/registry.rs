@@ -75,7 +75,15 @@ macro_rules! joints {
                 }
             }
 
-            /// Keys of a joint that leave the plane, by the text alone.
+            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such kind.
+            pub(crate) fn images(keyword: &str) -> Option<Vec<$crate::grammar::KeyImage>> {
+                match keyword {
+                    $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as $crate::grammar::Group>::images()),)*
+                    _ => None,
+                }
+            }
+
+            /// What of a joint leaves the plane, by the text alone.
             pub(crate) fn leaves_plane(keyword: &str, mapping: &$crate::grammar::Node) -> Option<&'static str> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD if <$name as JointElement>::SPATIAL => Some("kind"),

@@ -35,12 +35,14 @@ pub struct Rolling {
     /// A point of the rail, then the wheel's centre; each `body.point` or `body`.
     between: [PointRef; 2],
     /// Direction of the rail in the first body's frame; the wheel is on its left.
+    #[key(image = Axial)]
     axis: Direction,
     /// Radius of the wheel.
     #[quantity(unit = "m", positive, constant)]
     radius: Formula,
     /// How far along the rail the wheel is where its angle is the rail's. It gets there by turning clockwise.
     #[quantity(unit = "m", default = 0, constant)]
+    #[key(image = Turning)]
     offset: Formula,
 }
 

@@ -39,6 +39,7 @@ pub struct Screw {
     pub axis: Axis,
     /// Advance of the second point in a turn; positive for a right-handed thread.
     #[quantity(unit = "m", nonzero, constant)]
+    #[key(image = Turning)]
     pub pitch: Formula,
 }
 

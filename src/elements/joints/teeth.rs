@@ -50,6 +50,7 @@ pub struct Flanks {
     pub pressure_angle: Option<Formula>,
     /// Of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a right-handed gear.
     #[quantity(unit = "rad", default = 0, constant, requires = BELOW_RIGHT)]
+    #[key(image = Turning)]
     pub helix_angle: Formula,
     /// Where the middle of the teeth is along the first joint's axis, from that joint's point; of parallel axes.
     #[quantity(unit = "m", default = 0, constant)]

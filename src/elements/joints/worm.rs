@@ -51,6 +51,7 @@ pub struct Worm {
     ratio: Formula,
     /// Of the thread against the plane across the worm's axis; positive for a right-handed worm.
     #[quantity(unit = "rad", constant, requires = LEAD)]
+    #[key(image = Turning)]
     lead_angle: Formula,
     /// Of the flanks across the thread.
     #[quantity(unit = "rad", constant, requires = PRESSURE)]
@@ -58,6 +59,7 @@ pub struct Worm {
     pressure_angle: Option<Formula>,
     /// Angle of the wheel where that of the worm is zero.
     #[quantity(unit = "rad", default = 0, constant)]
+    #[key(image = Turning)]
     offset: Formula,
 }
 

@@ -67,9 +67,11 @@ pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, Export
     let files = list(&summary, "files").iter().filter_map(Value::as_str);
     let responses = files.filter_map(|file| Some((stem_of_response(file)?, vec![file.to_owned()])));
     let outputs = names.clone().zip(unique_stems(names));
-    let outputs = outputs.map(|(output, stem)| (output, vec![format!("{stem}.svg"), format!("{stem}.contributions.svg")]));
-    let figure = |(output, files): (&str, Vec<String>)| {
-        PageFigure { output: output.to_owned(), plots: files.into_iter().filter_map(svg).collect() }
+    let outputs =
+        outputs.map(|(output, stem)| (output, vec![format!("{stem}.svg"), format!("{stem}.contributions.svg")]));
+    let figure = |(output, files): (&str, Vec<String>)| PageFigure {
+        output: output.to_owned(),
+        plots: files.into_iter().filter_map(svg).collect(),
     };
     // Of one configuration, outputs have no plots.
     let figures = responses.chain(outputs).map(figure).filter(|figure| !figure.plots.is_empty()).collect();

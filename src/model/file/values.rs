@@ -150,6 +150,8 @@ schema_only! {
 
     #[schemars(rename_all = "snake_case", inline)]
     pub enum RestitutionLawName {
+        /// An impact at that speed leaves the restitution
+        Exact,
         /// 3 (1 - e)/(2 v)
         HuntCrossley,
         /// 3 (1 - e^2)/(4 v)

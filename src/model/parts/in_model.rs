@@ -6,6 +6,8 @@ use std::sync::Arc;
 use super::placement::{AXES, GROUND, scalar};
 use super::turned::{euler, quaternion, text, turn};
 use super::{Writer, mirror, patterns};
+use crate::elements::effects::{self, EffectKind};
+use crate::grammar::SymbolTable as _;
 use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
@@ -21,10 +23,6 @@ pub(super) struct Places {
     pub(super) starts: [(&'static str, Range<usize>); 2],
 }
 
-/// Effects with vectors along the axes of the ground.
-const DIRECTED: [(&str, &str); 4] =
-    [("spring_damper", "along"), ("force", "value"), ("drag", "wind"), ("torque", "value")];
-
 impl Writer<'_, '_> {
     /// Makes images of bodies, joints and effects, and turns directions of the ground.
     pub(super) fn image(&mut self, places: &Places, scope: &Arc<Scope>) {
@@ -39,6 +37,7 @@ impl Writer<'_, '_> {
             if frame.mirrors.axes().next().is_some() {
                 self.image_of_kind(&mut effect, frame.mirrors, is_turning);
             }
+            self.check_level(&effect, frame);
             if frame.is_turned() {
                 turn_directions(&mut effect, frame, scope);
             }
@@ -64,15 +63,42 @@ impl Writer<'_, '_> {
         self.put("bodies", &places.bodies, bodies);
     }
 
+    /// Reports what acts on level ground in an instance of which the ground is not level.
+    fn check_level(&mut self, effect: &Entry, frame: Frame) {
+        let Value::Mapping(kinds) = &effect.value.value else { return };
+        let Some(kind) =
+            kinds.first().filter(|kind| EffectKind::scope_of(&kind.key) == Some(effects::Scope::LevelGround))
+        else {
+            return;
+        };
+        let up = if self.reader.model.is_spatial() { 2 } else { 1 };
+        let is_upright = match (frame.turned, up) {
+            (Turned::Not, _) | (Turned::ByAngle, 2) => !frame.mirrors.axes().any(|axis| axis == up),
+            _ => false,
+        };
+        // Without a wheel the plane is the ground.
+        if is_upright || (up == 1 && kind.value.get("wheel").is_none()) {
+            return;
+        }
+        let message = format!("`{}` is on level ground, but in this instance the ground is not level", kind.key);
+        let help = "turn the instance about the ground's normal alone, or write the effect in the model".to_owned();
+        self.reader.error(kind.key_span.clone(), message, help);
+    }
+
     /// Whether an effect or a drive is on joints that turn; nothing where it is on nothing.
     fn is_on_turning(&mut self, entry: &Entry, scope: &Scope) -> Option<bool> {
         let Value::Mapping(kinds) = &entry.value.value else { return None };
         let on = kinds.first()?.value.get("on")?.scalar()?;
+        match kinds.first()?.value.get("coordinate").and_then(Node::scalar).map(|word| word.text.as_str()) {
+            Some("angle") => return Some(true),
+            Some("displacement") => return Some(false),
+            _ => {}
+        }
         let Some(wanted) = on.text.trim().strip_prefix("all ").map(str::trim) else {
             return Some(self.turning.get(on.name().as_ref()) == Some(&true));
         };
         if !patterns::is_pattern(wanted) {
-            return Some(wanted == REVOLUTE);
+            return Some(TURNING.contains(&wanted));
         }
         let matches =
             |name: &str| name.strip_prefix(scope.prefix()).is_some_and(|name| patterns::matches(wanted, name));
@@ -161,16 +187,18 @@ fn held_in_model(
     Some(wanted)
 }
 
-/// The kind of joints that turn, with an angle that a mirror counts the other way.
-pub(super) const REVOLUTE: &str = "revolute";
+/// Kinds of joints of which drives take the angle, unless they say `coordinate`; a mirror counts it the other way.
+pub(super) const TURNING: [&str; 3] = ["revolute", "cylindrical", "screw"];
 
 /// Turns the directions of the ground that an effect has.
 fn turn_directions(effect: &mut Entry, frame: Frame, scope: &Arc<Scope>) {
     let Value::Mapping(kinds) = &mut effect.value.value else { return };
     let [kind] = kinds.as_mut_slice() else { return };
     let in_body = kind.value.get("frame").and_then(Node::scalar).is_some_and(|frame| frame.text == "body");
+    let images = mirror::images(&kind.key);
     let Value::Mapping(keys) = &mut kind.value.value else { return };
-    for key in keys.iter_mut().filter(|key| !in_body && DIRECTED.contains(&(kind.key.as_str(), key.key.as_str()))) {
+    let is_directed = |key: &str| images.iter().any(|known| known.in_ground && known.name == key);
+    for key in keys.iter_mut().filter(|key| !in_body && is_directed(&key.key)) {
         mirror::written_out(&mut key.value);
         turn(&mut key.value, frame, scope);
     }

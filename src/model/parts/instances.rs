@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::Writer;
-use super::in_model::{Places, REVOLUTE};
+use super::in_model::{Places, TURNING};
 use super::parameters::{is_shared, scope_of_shared};
 use super::placement::{GROUND, Placement};
+use crate::elements::effects::{self, EffectKind};
 use crate::model::description::{Instance, InstanceKind};
 use crate::model::file;
 use crate::syntax::scope::Scope;
@@ -43,6 +44,7 @@ impl Writer<'_, '_> {
         names.sort_unstable();
         for name in names {
             self.share(&name);
+            self.check_scopes(&name);
         }
         let Some(node) = root.get("instances") else { return };
         let entries = self.reader.entries(node, "instances");
@@ -51,6 +53,21 @@ impl Writer<'_, '_> {
             self.instance("", instance, &mut Vec::new());
         }
         self.check_names(&instances);
+    }
+
+    /// Reports effects that would act on bodies outside of the instances, once for each of them.
+    fn check_scopes(&mut self, name: &str) {
+        let Some(definition) = self.definitions.get(name).cloned() else { return };
+        let Some(Value::Mapping(effects)) = definition.value.get("effects").map(|node| &node.value) else { return };
+        for effect in effects {
+            let Value::Mapping(kinds) = &effect.value.value else { continue };
+            let is_world = |kind: &&Entry| EffectKind::scope_of(&kind.key) == Some(effects::Scope::EveryBody);
+            let Some(kind) = kinds.iter().find(is_world) else { continue };
+            let message =
+                format!("`{}` acts on every body of the model, and so does not belong to an assembly", kind.key);
+            let help = format!("write `{}` among the `effects` of the model: it acts on all instances", effect.key);
+            self.reader.error(kind.key_span.clone(), message, help);
+        }
     }
 
     /// The parameters that are one for all instances.
@@ -193,7 +210,8 @@ impl Writer<'_, '_> {
             self.parts.grounds.insert(prefix.to_owned(), scope.frame().unwrap_or_default().mirrors);
         }
         self.bodies.extend(bodies.iter().map(|body| scope.full(&body.key)));
-        let turns = |joint: &Entry| (scope.full(&joint.key), joint.value.get(REVOLUTE).is_some());
+        let turns =
+            |joint: &Entry| (scope.full(&joint.key), TURNING.iter().any(|kind| joint.value.get(kind).is_some()));
         self.turning.extend(joints.iter().map(turns));
         let all = [bodies, joints, effects, states, initial, guess];
         let [bodies, joints, effects, _, initial, guess] = std::array::from_fn(|index| {

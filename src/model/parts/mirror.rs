@@ -5,93 +5,17 @@
 //! so their angles count the other way, in the plane and in space.
 
 use super::Writer;
+use crate::elements::effects::EffectKind;
+use crate::elements::joints::JointKind;
+use crate::grammar::{Image, KeyImage};
 use crate::syntax::mirrors::Mirrors;
-use crate::syntax::suggest::clip;
+use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// What a value is to a mirror.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Image {
-    /// A vector, or an axis by its letter.
-    Polar,
-    /// A vector of a torque; one number is about z.
-    Axial,
-    /// A list of polar vectors.
-    Polars,
-    /// A mapping with a polar vector `direction`.
-    Directed,
-    /// A number that counts the other way where the joint of `on` turns, or there is none.
-    Turning,
-    /// The name of its key changes place with the other's, and it counts the other way.
-    End,
+/// What the keys of a joint or an effect are to an instance; of an unknown kind nothing, which its reader reports.
+pub(super) fn images(keyword: &str) -> Vec<KeyImage> {
+    EffectKind::images(keyword).or_else(|| JointKind::images(keyword)).unwrap_or_default()
 }
-
-use Image::{Axial, Directed, End, Polar, Polars, Turning};
-
-/// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 41] = [
-    ("revolute", &[("axis", Polar)]),
-    ("prismatic", &[("axis", Polar), ("angle", Turning)]),
-    ("spherical", &[]),
-    ("distance", &[]),
-    ("fixed", &[("angle", Turning)]),
-    ("point_on_line", &[("axis", Polar)]),
-    ("point_on_plane", &[("normal", Polar)]),
-    ("planar", &[("normal", Polar)]),
-    ("pin_in_slot", &[("axis", Polar)]),
-    ("universal", &[("axes", Polars)]),
-    ("motor", &[("position", Turning), ("speed", Turning), ("to", Turning), ("from", Turning)]),
-    ("gear", &[("offset", Turning), ("helix_angle", Turning)]),
-    ("rack", &[("radius", Turning), ("helix_angle", Turning)]),
-    ("planetary", &[("offset", Turning)]),
-    ("worm", &[("lead_angle", Turning), ("offset", Turning)]),
-    // The wheel changes the side of a rail that keeps its direction.
-    ("rolling", &[("axis", Axial), ("offset", Turning)]),
-    ("rolling_on_plane", &[("normal", Polar), ("axle", Polar)]),
-    ("tooth_friction", &[]),
-    ("spring_damper", &[("along", Polar)]),
-    ("cable", &[]),
-    ("drag", &[("wind", Polar)]),
-    ("force", &[("value", Polar)]),
-    ("joint_friction", &[]),
-    ("stop", &[("lower", End), ("upper", End)]),
-    ("servo", &[("target", Turning), ("target_rate", Turning)]),
-    ("torsional_spring_damper", &[("free_angle", Turning), ("torque", Turning)]),
-    ("clearance_joint", &[("axis", Polar)]),
-    ("torque", &[("value", Axial)]),
-    ("bushing", &[]),
-    ("gravity", &[]),
-    ("preload", &[]),
-    ("filter", &[]),
-    ("delay", &[]),
-    ("sampled", &[]),
-    ("rate_limit", &[]),
-    ("pid", &[("target", Turning), ("target_rate", Turning), ("initial", Turning)]),
-    ("dc_motor", &[("voltage", Turning), ("initial", Turning)]),
-    ("hydraulic_cylinder", &[]),
-    ("gas_spring", &[]),
-    ("tyre", &[("steer", Axial)]),
-    (
-        "contact",
-        &[
-            ("plane", Polar),
-            ("axis", Polar),
-            ("path", Polars),
-            ("polygon", Polars),
-            ("capsule", Polars),
-            ("hull", Polars),
-            ("corners", Polars),
-            ("line", Polars),
-            ("cylinder", Polars),
-            ("polyhedron", Polars),
-            ("friction_along", Directed),
-        ],
-    ),
-];
-
-/// Keys of which nobody says what their images are.
-const REFUSED: [(&str, &str); 4] =
-    [("contact", "height"), ("bushing", "stiffness_matrix"), ("bushing", "damping_matrix"), ("preload", "on")];
 
 /// The image of a point, or of an arc to one, which turns the other way.
 fn point_or_arc(item: &mut Node, axis: usize) {
@@ -110,12 +34,7 @@ impl Writer<'_, '_> {
     pub(super) fn image_of_kind(&mut self, entry: &mut Entry, mirrors: Mirrors, is_turning: Option<bool>) {
         let Value::Mapping(kinds) = &mut entry.value.value else { return };
         let [kind] = kinds.as_mut_slice() else { return };
-        let Some((_, images)) = KINDS.iter().find(|(keyword, _)| *keyword == kind.key) else {
-            let message = format!("`{}` cannot be mirrored", clip(&kind.key));
-            let help = "write the mirrored assembly out, or give the parts that differ to the model".to_owned();
-            self.reader.error(kind.key_span.clone(), message, help);
-            return;
-        };
+        let images = images(&kind.key);
         if let Value::Sequence(_) = kind.value.value {
             // The short form, of which the axis may need to be said.
             let between =
@@ -123,30 +42,26 @@ impl Writer<'_, '_> {
             kind.value.value = Value::Mapping(vec![between]);
         }
         let Value::Mapping(keys) = &mut kind.value.value else { return };
-        for (_, key) in REFUSED.iter().filter(|(keyword, _)| *keyword == kind.key) {
-            if let Some(found) = keys.iter().find(|known| known.key == *key) {
-                let message = format!("`{key}` of a `{}` cannot be mirrored", kind.key);
-                self.reader.error(found.key_span.clone(), message, None);
+        for found in keys.iter() {
+            if images.iter().any(|known| known.name == found.key && matches!(known.image, Image::Unknown)) {
+                let message = format!("`{}` of a `{}` cannot be mirrored", found.key, kind.key);
+                let help = "write the mirrored assembly out, or give the parts that differ to the model".to_owned();
+                self.reader.error(found.key_span.clone(), message, help);
             }
         }
-        let is_of_joint = kind.key == "torque" && is_turning == Some(true);
-        let is_directed = matches!(kind.key.as_str(), "revolute" | "clearance_joint");
-        let place = kind.key_span.clone();
+        for known in &images {
+            // Directions that are not written are reflected, too.
+            let Some(default @ (serde_json::Value::String(_) | serde_json::Value::Array(_))) = &known.default else {
+                continue;
+            };
+            if let Some(value) =
+                written(default, &kind.key_span).filter(|_| !keys.iter().any(|key| key.key == known.name))
+            {
+                keys.push(Entry { key: known.name.to_owned(), key_span: kind.key_span.clone(), value });
+            }
+        }
         for axis in mirrors.axes() {
-            for key in keys.iter_mut() {
-                let Some((_, image)) = images.iter().find(|(known, _)| *known == key.key) else { continue };
-                match image {
-                    Axial if is_of_joint => negate(&mut key.value),
-                    Turning | End if is_turning == Some(false) => {}
-                    image => image_of_key(key, *image, axis),
-                }
-            }
-            // An axis along z that is not written is reflected, too.
-            if is_directed && axis == 2 && !keys.iter().any(|key| key.key == "axis") {
-                let number = |text| Node { span: place.clone(), value: Value::Scalar(Scalar::plain(text, None)) };
-                let value = Node { span: place.clone(), value: Value::Sequence(["0", "0", "-1"].map(number).into()) };
-                keys.push(Entry { key: "axis".to_owned(), key_span: place.clone(), value });
-            }
+            image_of_keys(keys, &images, axis, is_turning);
         }
     }
 
@@ -183,42 +98,71 @@ fn image_of_part(key: &mut Entry, axis: usize) {
 
 /// Whether the image of an effect is another where it is on a joint that turns.
 pub(super) fn tells_turns(effect: &Entry) -> bool {
-    has_image(effect, &[Turning, End])
+    has_image(effect, |image| matches!(image, Image::Turning | Image::Effort | Image::End(_)))
 }
 
 /// Whether what an effect measures along a joint that turns counts the other way in a mirror.
 pub(super) fn measures_turns(effect: &Entry) -> bool {
-    has_image(effect, &[Turning])
+    has_image(effect, |image| matches!(image, Image::Turning))
 }
 
-fn has_image(effect: &Entry, wanted: &[Image]) -> bool {
+fn has_image(effect: &Entry, wanted: impl Fn(Image) -> bool) -> bool {
     let Value::Mapping(kinds) = &effect.value.value else { return false };
-    let images = KINDS.iter().find(|(keyword, _)| kinds.first().is_some_and(|kind| kind.key == *keyword));
-    images.is_some_and(|(_, images)| images.iter().any(|(_, image)| wanted.contains(image)))
+    kinds.first().is_some_and(|kind| images(&kind.key).into_iter().any(|known| wanted(known.image)))
 }
 
-/// The image of what stands behind a key.
-fn image_of_key(key: &mut Entry, image: Image, axis: usize) {
-    match image {
-        Polar => polar(&mut key.value, axis),
-        Axial => axial(&mut key.value, axis),
-        Polars => {
-            if let Value::Sequence(items) = &mut key.value.value {
-                items.iter_mut().for_each(|item| point_or_arc(item, axis));
+/// The images of what stands behind keys.
+fn image_of_keys(keys: &mut [Entry], images: &[KeyImage], axis: usize, is_turning: Option<bool>) {
+    for key in keys {
+        let Some(known) = images.iter().find(|known| known.name == key.key) else { continue };
+        match known.image {
+            Image::Same | Image::Unknown => {}
+            Image::Polar => polar(&mut key.value, axis),
+            Image::Axial if is_turning == Some(true) => negate(&mut key.value),
+            Image::Axial => axial(&mut key.value, axis),
+            Image::Polars => {
+                if let Value::Sequence(items) = &mut key.value.value {
+                    items.iter_mut().for_each(|item| point_or_arc(item, axis));
+                }
             }
-        }
-        Directed => {
-            if let Value::Mapping(keys) = &mut key.value.value {
-                let directions = keys.iter_mut().filter(|key| key.key == "direction");
-                directions.for_each(|key| polar(&mut key.value, axis));
+            Image::Turning | Image::End(_) if is_turning == Some(false) => {}
+            Image::Effort if is_turning != Some(true) => {}
+            Image::Turning | Image::Effort => negate(&mut key.value),
+            Image::End(other) => {
+                negate(&mut key.value);
+                key.key = other.to_owned();
             }
-        }
-        Turning => negate(&mut key.value),
-        End => {
-            negate(&mut key.value);
-            key.key = if key.key == "lower" { "upper" } else { "lower" }.to_owned();
+            Image::SixRows => six_rows(&mut key.value, axis),
+            Image::Keys(within) => {
+                if let Value::Mapping(keys) = &mut key.value.value {
+                    image_of_keys(keys, &within(), axis, is_turning);
+                }
+            }
         }
     }
+}
+
+/// Forces and displacements are polar, torques and rotations axial.
+fn six_rows(node: &mut Node, axis: usize) {
+    let counts_back = |place: usize| (place % 3 == axis) == (place < 3);
+    let Value::Sequence(rows) = &mut node.value else { return };
+    for (row, entries) in rows.iter_mut().enumerate() {
+        let Value::Sequence(entries) = &mut entries.value else { continue };
+        let changed = entries.iter_mut().enumerate().filter(|(column, _)| counts_back(row) != counts_back(*column));
+        changed.for_each(|(_, entry)| negate(entry));
+    }
+}
+
+/// A default as it would be written.
+fn written(value: &serde_json::Value, at: &Span) -> Option<Node> {
+    let value = match value {
+        serde_json::Value::Array(items) => {
+            Value::Sequence(items.iter().map(|item| written(item, at)).collect::<Option<_>>()?)
+        }
+        serde_json::Value::String(text) => Value::Scalar(Scalar::plain(text, None)),
+        number => Value::Scalar(Scalar::plain(&number.to_string(), None)),
+    };
+    Some(Node { span: at.clone(), value })
 }
 
 /// Whether a coordinate of a body, or its rate, changes sign.

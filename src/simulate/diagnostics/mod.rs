@@ -3,12 +3,14 @@
 
 mod cannot_close;
 mod not_finite;
+mod outside;
 mod over_constrained;
 mod singular;
 mod undetermined;
 
 pub use cannot_close::OpenConstraint;
 pub use not_finite::{not_finite, written};
+pub use outside::outside;
 pub use over_constrained::over_constrained;
 pub use singular::{SingularPass, SingularWatch};
 pub use undetermined::undetermined_outputs;

@@ -106,7 +106,7 @@ effects:
   weight: {{ gravity: {{ acceleration: [0, -{G}] }} }}
   floor:
     contact:
-      {{ between: [ground, ball], plane: y, impact: {{ stiffness: {stiffness:e}, restitution: e, impact_velocity: sqrt(2*{G}) }} }}
+      {{ between: [ground, ball], plane: y, impact: {{ stiffness: {stiffness:e}, restitution: e, impact_velocity: sqrt(2*{G}), law: hunt_crossley }} }}
 initial: {{ ball.y: 1, ball.vy: 0 }}
 outputs: {{ y: ball.y, energy: energy }}
 simulation: {{ {run} }}

@@ -1,0 +1,28 @@
+//! Two keys of which the second is larger, or only one may be there.
+
+use symdiff::Formula;
+
+use super::reader::{Fields, Reader};
+use super::symbols::SymbolTable;
+
+impl<S: SymbolTable> Reader<'_, S> {
+    /// Reports where the second of two keys is not larger than the first.
+    pub fn ordered(&mut self, fields: &Fields, (low, first): (&str, &Formula), (high, second): (&str, &Formula)) {
+        for corner in 0..self.corners.len() {
+            let values = self.evaluate(first, corner).zip(self.evaluate(second, corner));
+            if let Some((first, second)) = values.filter(|(first, second)| first >= second) {
+                let label = &self.corners[corner].label;
+                let message = format!("`{high}` ({second}) must be larger than `{low}` ({first}){label}");
+                self.error(fields.key_span(high), message, None);
+                return;
+            }
+        }
+    }
+
+    /// Reports two keys of which only one may be there, at the first.
+    pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
+        if fields.get(first).is_some() && fields.get(second).is_some() {
+            self.error(fields.key_span(first), format!("`{first}` and `{second}` exclude each other"), None);
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! Every element of the registries in an assembly: twins that are turned, mirrored, or carried along steadily move as the original does.
+
+use mbint::inner::elements::JointKind;
+use mbint::inner::model::{Description, EffectKind, load_str};
+use mbint::inner::results::Bounds;
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+
+use crate::common::{curve, nominal};
+
+/// What the examples name: of effects as in `explain --effects`, of joints as in their own test. Bodies that only turn are left out in space.
+struct Mechanism {
+    ground: &'static str,
+    bodies: &'static [&'static str],
+    turning: &'static [&'static str],
+    points: fn(&str) -> &'static str,
+    joints: &'static str,
+    of_plane: &'static str,
+    starts: &'static str,
+    section: &'static str,
+}
+
+const OF_EFFECTS: Mechanism = Mechanism {
+    ground: "",
+    bodies: &["arm", "cart", "ball"],
+    turning: &["pinion", "wheel", "spur", "rim"],
+    points: |body| match body {
+        "arm" => "pin: [-0.2, 0], tip: [0.2, 0], socket: [0.3, 2]",
+        "cart" => "hook: [0.1, 0.1]",
+        _ => "",
+    },
+    joints: "hinge: { revolute: [ground, arm.pin] }, rail: { prismatic: { between: [ground, cart], axis: x } }",
+    of_plane: ", mesh: { gear: { between: [spur, rim], ratio: -0.5 } }",
+    starts: "hinge.angle: 0, hinge.angular_velocity: 0.4, rail.displacement: 1, rail.velocity: -0.3",
+    section: "effects",
+};
+
+const OF_JOINTS: Mechanism = Mechanism {
+    ground: "beside: [0.05, 0.05]",
+    bodies: &[
+        "arm", "bead", "bob", "cart", "disc", "crank", "follower", "foot", "fork", "frame", "gear", "lever", "link", "nut", "puck",
+        "rod", "shaft", "slider", "spindle",
+    ],
+    turning: &["wheel", "pinion"],
+    points: |body| match body {
+        "arm" => "P: [0.2, 0]",
+        "crank" => "A: [-0.1, 0], P: [0.1, 0]",
+        "foot" => "P: [0, -0.1]",
+        "fork" => "A: [-0.1, 0]",
+        "link" => "S: [0.1, 0]",
+        "rod" => "A: [-0.2, 0]",
+        "shaft" => "P: [0.1, 0]",
+        _ => "",
+    },
+    joints: "axle: { revolute: [ground, gear] }, guide: { prismatic: { between: [ground, cart], axis: x } }, \
+             pivot: { revolute: [ground, lever] }, thread: { revolute: THREAD }",
+    of_plane: "",
+    starts: "",
+    section: "joints",
+};
+
+impl Mechanism {
+    /// The assembly `all` with an element, in the plane or in space.
+    fn assembly(&self, spatial: bool, keyword: &str, example: &str) -> String {
+        let mut bodies = format!("      ground: {{ points: {{ {} }} }}\n", self.ground);
+        for (place, body) in self.bodies.iter().enumerate() {
+            let inertia = if spatial { "[0.02, 0.03, 0.04]" } else { "0.03" };
+            bodies += &format!(
+                "      {body}: {{ mass: {}, inertia: {inertia}, points: {{ {} }} }}\n",
+                1.0 + 0.1 * place as f64,
+                (self.points)(body)
+            );
+        }
+        let turning = if spatial { &[] } else { self.turning };
+        for body in turning {
+            bodies += &format!("      {body}: {{ inertia: 0.01, coordinates: [angle] }}\n");
+        }
+        let it = format!("it: {{ {keyword}: {example} }}");
+        let mut effects = String::new();
+        for (place, body) in self.bodies.iter().enumerate() {
+            let push = 1.0 + 0.3 * place as f64;
+            effects += &format!("push_{body}: {{ force: {{ on: {body}, value: [{push}, -0.7] }} }}, turn_{body}: {{ torque: {{ on: {body}, value: 0.02 }} }}, ");
+        }
+        for body in turning {
+            effects += &format!("turn_{body}: {{ torque: {{ on: {body}, value: 0.02 }} }}, ");
+        }
+        let thread = if spatial { "{ between: [ground.beside, spindle], axis: x }" } else { "[ground.beside, spindle]" };
+        let mut joints = self.joints.replace("THREAD", thread) + if spatial { "" } else { self.of_plane };
+        match self.section {
+            "joints" => joints += &format!(", {it}"),
+            _ => effects += &it,
+        }
+        let starts = if self.starts.is_empty() {
+            let place = if spatial { ["0.5, bob.z: 0", "0"] } else { ["0.5", "0.03"] };
+            format!("initial: {{ }}\n    guess: {{ bob.y: 0, bob.x: {}, follower.x: 0, follower.y: {} }}", place[0], place[1])
+        } else {
+            let free = if spatial {
+                "ball.z: 0, ball.vz: 0.1, ball.omega: [0.1, 0.2, 0.3]"
+            } else {
+                "ball.angle: 0.1, ball.angular_velocity: 0.3"
+            };
+            format!("initial: {{ {}, ball.x: 0.5, ball.y: 2, ball.vx: 0.2, ball.vy: -0.1, {free} }}", self.starts)
+        };
+        format!("assemblies:\n  all:\n    bodies:\n{bodies}    joints: {{ {joints} }}\n    effects: {{ {effects} }}\n    {starts}\n")
+    }
+
+    /// The model with these instances, of which all bodies are observed.
+    fn model(&self, spatial: bool, (keyword, example): (&str, &str), twins: &[Twin]) -> Result<Description, String> {
+        let mut instances = String::new();
+        let mut outputs = String::new();
+        for (place, twin) in twins.iter().enumerate() {
+            instances += &format!("  i{place}: {{ of: all{} }}\n", twin.keys(spatial));
+            for body in self.bodies {
+                let letters: &[&str] = if spatial { &["x", "y", "z", "omega.x", "omega.y", "omega.z"] } else { &["x", "y", "angle"] };
+                for letter in letters {
+                    outputs += &format!("  i{place}.{body}.{letter}: i{place}.{body}.{letter}\n");
+                }
+            }
+            if !spatial {
+                for body in self.turning {
+                    outputs += &format!("  i{place}.{body}.angle: i{place}.{body}.angle\n");
+                }
+            }
+        }
+        let space = if spatial { "spatial" } else { "planar" };
+        let text = format!(
+            "space: {space}\n{}instances:\n{instances}outputs:\n{outputs}simulation: {{ duration: 0.04, step: 1e-3, output_step: 0.01 }}\n",
+            self.assembly(spatial, keyword, example)
+        );
+        load_str("twins", &text, &[]).map_err(|wrong| wrong.render(false))
+    }
+}
+
+/// An instance somewhere else.
+#[derive(Clone, Copy)]
+struct Twin {
+    moved: [f64; 3],
+    axis: [f64; 3],
+    degrees: f64,
+    mirror: Option<usize>,
+}
+
+const ORIGINAL: Twin = Twin { moved: [0.0; 3], axis: [0.0, 0.0, 1.0], degrees: 0.0, mirror: None };
+
+impl Twin {
+    fn keys(&self, spatial: bool) -> String {
+        let [x, y, z] = self.moved;
+        let [a, b, c] = self.axis;
+        let mirror = self.mirror.map_or(String::new(), |axis| format!(", mirror: {}", ["x", "y", "z"][axis]));
+        let at = match spatial {
+            _ if self.degrees == 0.0 => String::new(),
+            false => format!(", at: {{ position: [{x}, {y}], angle: {} deg }}", self.degrees),
+            true => format!(
+                ", at: {{ position: [{x}, {y}, {z}], rotation: {{ axis: [{a}, {b}, {c}], angle: {} deg }} }}",
+                self.degrees
+            ),
+        };
+        at + &mirror
+    }
+
+    /// R D
+    fn image(&self) -> Matrix3<f64> {
+        let turn = Rotation3::from_axis_angle(&Unit::new_normalize(Vector3::from(self.axis)), self.degrees.to_radians());
+        let signs = Vector3::from_fn(|axis, _| if self.mirror == Some(axis) { -1.0 } else { 1.0 });
+        turn.matrix() * Matrix3::from_diagonal(&signs)
+    }
+}
+
+const IN_PLANE: [Twin; 4] = [
+    ORIGINAL,
+    Twin { moved: [3.0, -2.0, 0.0], degrees: 40.0, ..ORIGINAL },
+    Twin { moved: [1.0, 5.0, 0.0], degrees: -70.0, mirror: Some(0), ..ORIGINAL },
+    Twin { moved: [-4.0, 1.0, 0.0], degrees: 25.0, mirror: Some(1), ..ORIGINAL },
+];
+
+const IN_SPACE: [Twin; 5] = [
+    ORIGINAL,
+    Twin { moved: [3.0, -2.0, 1.0], axis: [1.0, 2.0, -1.0], degrees: 50.0, mirror: None },
+    Twin { moved: [1.0, 5.0, 0.5], axis: [0.3, -1.0, 0.4], degrees: -70.0, mirror: Some(0) },
+    Twin { moved: [-4.0, 1.0, 2.0], axis: [-1.0, 0.2, 0.6], degrees: 25.0, mirror: Some(1) },
+    Twin { moved: [-1.0, 3.0, -2.0], axis: [0.5, 0.5, 1.0], degrees: 110.0, mirror: Some(2) },
+];
+
+/// Compares an instance with the first one, row by row.
+fn compare(mechanism: &Mechanism, spatial: bool, bounds: &Bounds, place: usize, twin: &Twin, what: &str) {
+    let image = twin.image();
+    let sign = image.determinant().signum();
+    let rows = bounds.times.len();
+    let value = |instance: usize, body: &str, letter: &str, row: usize| curve(bounds, &format!("i{instance}.{body}.{letter}"))[row];
+    let close = |found: f64, wanted: f64, of: &str| {
+        assert!((found - wanted).abs() < 1e-7 * (1.0 + wanted.abs()), "{what}: {of} of twin {place} is {found}, not {wanted}");
+    };
+    for row in 0..rows {
+        for body in mechanism.bodies {
+            let vector = |instance: usize, letters: [&str; 3]| {
+                Vector3::from_iterator(letters.map(|letter| if letter.is_empty() { 0.0 } else { value(instance, body, letter, row) }))
+            };
+            let letters = ["x", "y", if spatial { "z" } else { "" }];
+            let wanted = image * vector(0, letters) + Vector3::from(twin.moved);
+            (0..if spatial { 3 } else { 2 }).for_each(|axis| close(vector(place, letters)[axis], wanted[axis], body));
+            if spatial {
+                let letters = ["omega.x", "omega.y", "omega.z"];
+                let wanted = sign * (image * vector(0, letters));
+                (0..3).for_each(|axis| close(vector(place, letters)[axis], wanted[axis], body));
+            }
+        }
+        for body in mechanism.bodies.iter().chain(mechanism.turning).filter(|_| !spatial) {
+            let wanted = sign * value(0, body, "angle", row) + twin.degrees.to_radians();
+            close(value(place, body, "angle", row), wanted, body);
+        }
+    }
+}
+
+/// Twins of the examples; the number that were compared in the plane, in space, and mirrored.
+fn twins(mechanism: &Mechanism, examples: &[(&str, &str)], refused: &[(&str, &str)]) -> [usize; 3] {
+    let mut compared = [0; 3];
+    for &example in examples {
+        let before = compared;
+        for (spatial, twins) in [(false, &IN_PLANE[..]), (true, &IN_SPACE)] {
+            if mechanism.model(spatial, example, &[ORIGINAL]).is_err() {
+                continue;
+            }
+            let what = format!("{} {}", example.0, if spatial { "in space" } else { "in the plane" });
+            let mut chosen = twins.to_vec();
+            let why = refused.iter().filter(|(keyword, _)| *keyword == example.0);
+            for (_, words) in why {
+                let (kept, out): (Vec<_>, Vec<_>) = chosen
+                    .into_iter()
+                    .partition(|twin| mechanism.model(spatial, example, &[ORIGINAL, *twin]).is_ok());
+                for twin in out {
+                    let message = mechanism.model(spatial, example, &[twin]).err().unwrap_or_default();
+                    assert!(message.contains(words), "{what}: {message}");
+                }
+                chosen = kept;
+            }
+            let description = mechanism.model(spatial, example, &chosen).unwrap_or_else(|wrong| panic!("{what}: {wrong}"));
+            let bounds = nominal(&description);
+            for (place, twin) in chosen.iter().enumerate().skip(1) {
+                compare(mechanism, spatial, &bounds, place, twin, &what);
+                compared[2] += usize::from(twin.mirror.is_some());
+            }
+            compared[usize::from(spatial)] += 1;
+        }
+        assert!(compared != before || refused.contains(&(example.0, "every body")), "{} is in no mechanism", example.0);
+    }
+    compared
+}
+
+#[test]
+fn twins_of_every_effect_move_alike() {
+    let docs = EffectKind::docs();
+    let examples: Vec<_> = docs.iter().map(|docs| (docs.keyword, docs.example)).collect();
+    let refused = [("gravity", "every body"), ("superelement", "`matrices`"), ("tyre", "level ground")];
+    let [plane, space, mirrored] = twins(&OF_EFFECTS, &examples, &refused);
+    assert!(plane >= 30 && space >= 15 && mirrored >= 90, "{plane} {space} {mirrored}");
+}
+
+#[test]
+fn twins_of_every_joint_move_alike() {
+    let docs = JointKind::docs();
+    let examples: Vec<_> = docs.iter().map(|docs| (docs.element.keyword, docs.element.example)).collect();
+    let [plane, space, mirrored] = twins(&OF_JOINTS, &examples, &[("cam", "`lift`")]);
+    assert!(plane >= 12 && space >= 15 && mirrored >= 60, "{plane} {space} {mirrored}");
+}
