@@ -104,7 +104,9 @@ fn a_periodic_table_drives_for_ever() {
 #[test]
 fn units_stand_in_formulas() {
     let value = |formula: &str| {
-        let text = pushed("F").replace("F: 3 N }", &format!("F: 3 N, p: \"{formula}\" }}"));
+        // A mass called `m` would make `N*m` ambiguous.
+        let text = pushed("F").replace("m: 2 kg", "M: 2 kg").replace("mass: m", "mass: M");
+        let text = text.replace("F: 3 N }", &format!("F: 3 N, p: \"{formula}\" }}"));
         let model = model::load_str("x.yaml", &text, &[]).unwrap_or_else(|errors| panic!("{formula}: {errors}"));
         let outputs = text.replace("f: \"F\"", "f: p");
         let bounds = nominal(&read(&outputs));
@@ -120,7 +122,7 @@ fn units_stand_in_formulas() {
         ("10 N / F", 10.0 / 3.0),
         ("F*L/(2 N*m)", 3.0),
         ("deg(asin(0.5 + 0*d/d))", 30.0),
-        ("if(L > 1500 mm and m < 3 kg, 7, 8)", 7.0),
+        ("if(L > 1500 mm and M < 3 kg, 7, 8)", 7.0),
         ("1 km/h * 3.6", 1.0),
     ] {
         let found = value(formula);

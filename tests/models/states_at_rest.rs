@@ -88,8 +88,8 @@ fn a_drive_rests_where_the_arm_sags() {
 #[test]
 fn a_motion_that_starts_at_an_equilibrium_stays_there() {
     let digital = "integral: { sampled: { input: integral + 10 ms*(target - elbow.angle), period: 10 ms } }
-  command: { sampled: { input: 20 N*m*(target - elbow.angle) + 8 N*m/s*integral, period: 10 ms } }
-  drive: { torque: { on: elbow, value: command - 2 N*m*s*elbow.angular_velocity } }";
+  command: { sampled: { input: 20 J*(target - elbow.angle) + 8 W*integral, period: 10 ms } }
+  drive: { torque: { on: elbow, value: command - 2 J*s*elbow.angular_velocity } }";
     for simulation in
         ["step: 1e-3", "tolerance: 1e-6", "scheme: explicit, tolerance: 1e-8", "step: 2e-3, extrapolation: 3"]
     {

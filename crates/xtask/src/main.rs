@@ -4,6 +4,8 @@
 //! - `fast`: format, tidy, lints and one test of each kind (about a minute after a build);
 //! - `gate`: all of `.ci/run`.
 
+#![forbid(unsafe_code)]
+
 mod tidy;
 
 use std::path::Path;
