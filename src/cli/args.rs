@@ -51,15 +51,15 @@ pub(super) enum Command {
     Show(ShowArgs),
     /// Compare error and computing time of methods, orders and step sizes.
     Cost(CostArgs),
-    /// Record bounds as small text files beside the models, or compare with what is recorded.
+    /// Record bounds as small text files beside the models, or compare with the record.
     Snapshot(SnapshotArgs),
-    /// Explain what a model is compiled to and what is left out, or list what the language offers.
+    /// Explain the compiled and omitted parts of a model, or list what the language offers.
     Explain(ExplainArgs),
     /// Simulate at chosen points: outputs over time, for other programs.
     Sample(SampleArgs),
     /// Cut what models ask for into shards, for many machines.
     Plan(PlanArgs),
-    /// Simulate a shard of a plan; what is there already is skipped.
+    /// Simulate a shard of a plan; existing parts are skipped.
     Shard(ShardArgs),
     /// Print which shards of a plan are missing.
     Status(StatusArgs),
@@ -106,7 +106,7 @@ pub(super) struct RunArgs {
     #[arg(short, long)]
     pub yes: bool,
 
-    /// Write no report.html, nor what it shows moving.
+    /// Write no report.html and no motion.json.
     #[arg(long)]
     pub no_report: bool,
 
@@ -182,7 +182,7 @@ pub(super) struct SnapshotArgs {
     #[arg(required = true, value_name = "MODEL")]
     pub models: Vec<PathBuf>,
 
-    /// Compare with what is recorded, and write nothing; the exit status is 4 if a bound has moved.
+    /// Compare with the record, and write nothing; the exit status is 4 if a bound has moved.
     #[arg(long)]
     pub check: bool,
 
@@ -211,7 +211,7 @@ pub(super) struct SnapshotArgs {
 
 const SNAPSHOT_HELP: &str = "\
 Writes NAME.snap for each model, and NAME.SCENE.snap for each scene: the bounds of every output
-at ten times, with their errors. A bound has moved if it is further from what is recorded than
+at ten times, with their errors. A bound has moved if it is further from the record than
 both stated errors together, or if its error has more than doubled.";
 
 #[derive(Debug, Args)]

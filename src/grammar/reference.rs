@@ -202,7 +202,7 @@ fn joint_outputs() -> Vec<OutputDocs> {
         reaction(&format!("torque.{axis}"), &torque, &meaning)
     }));
     let (axial, radial) = (
-        "reaction force on the second body along the joint's own axis, for a motor, gear or rack along that of what it drives",
+        "reaction force on the second body along the joint's own axis, for a motor, gear or rack along that of the driven joint",
         "reaction force on the second body across that axis: the magnitude, or where the axis is one of the plane the \
          component along the axis turned by +90°",
     );

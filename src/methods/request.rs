@@ -207,7 +207,7 @@ pub(crate) mod keys {
     }
 
     grammar! {
-        /// Where the search for bounds within the tolerance ends at the latest; what it has come to is kept.
+        /// Where the search for bounds within the tolerance ends at the latest; its result by then is kept.
         Budget is "`budget`" {
             /// Simulations; by default 3000.
             solves: Option<u32>,

@@ -17,7 +17,7 @@ pub(in crate::cli) struct AllocateArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Meet all requirements for this share of what is made, as `99.73%`, instead of in every case.
+    /// Meet all requirements for this share of the production, as `99.73%`, instead of in every case.
     #[arg(long = "yield", value_name = "SHARE", value_parser = share)]
     pub share: Option<f64>,
 

@@ -109,7 +109,7 @@ pub(in crate::cli) struct SubmitArgs {
 const SUBMIT_HELP: &str = "\
 Writes the scripts of this round into the study's folder and submits them: a job array of the shards that
 are missing, and a job that merges and submits the next round where there is one. The folder, the models
-and this program must be seen by all nodes. After a failure, submit again: what is there is skipped.";
+and this program must be seen by all nodes. After a failure, submit again: existing parts are skipped.";
 
 fn not_negative(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|error| format!("{error}"))?;

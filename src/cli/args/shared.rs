@@ -44,7 +44,7 @@ pub(in crate::cli) struct OneRunArgs {
     pub quiet: bool,
 }
 
-/// What is asked of a model.
+/// Questions to a model.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct AskedArgs {
     /// Methods to run: chebyshev, taylor, scan, certified [default: the model's].

@@ -22,7 +22,7 @@ pub(in crate::cli) struct SweepArgs {
     #[arg(short, long, value_name = "NAME=FROM..TO:VALUES", required = true)]
     pub set: Vec<String>,
 
-    /// Set the parameters of this YAML file, as `mbint allocate` writes it; what is swept or set goes before.
+    /// Set the parameters of this YAML file, as `mbint allocate` writes it; swept and set values go before.
     #[arg(long, value_name = "FILE")]
     pub with: Vec<PathBuf>,
 

@@ -31,7 +31,7 @@ const SHARE: Requirement =
 
 const LOSS: Sensor = Sensor::of_force("loss");
 
-/// Friction between the teeth of a gear, rack, planetary set or worm gear, proportional to what they transmit.
+/// Friction between the teeth of a gear, rack, planetary set or worm gear, proportional to the transmitted force.
 #[derive(Clone, Debug, Element)]
 #[element(
     keyword = "tooth_friction",

@@ -67,7 +67,7 @@ pub(crate) mod keys {
             order: Option<PerParameter>,
             /// Nodes, more than the degree; by default one more.
             nodes: Option<PerParameter>,
-            /// What is expanded; by default the coordinates, or the output where a `range` is asked for.
+            /// Expanded quantities; by default the coordinates, or the output where a `range` is asked for.
             expand: Option<Expand>,
             /// How the range of an output's polynomial is found; by default tight. Coordinates need none.
             range: Option<Range>,
@@ -103,7 +103,7 @@ pub enum Degree {
 pub struct Chebyshev {
     /// Degree in each parameter.
     pub degree: Degree,
-    /// What is expanded.
+    /// Expanded quantities.
     pub expand: Expand,
     /// How the ranges of the outputs' polynomials are found, where those are expanded.
     pub range: RangeKind,

@@ -81,7 +81,7 @@ fn of_model(root: &mut Map<String, Value>) {
 /// The ground has points and nothing else.
 fn with_ground(bodies: &mut Value) {
     let points = json!({
-        "description": "What does not move.",
+        "description": "The body that does not move.",
         "type": ["object", "null"],
         "properties": { "points": { "$ref": "#/$defs/Body/properties/points" } },
         "additionalProperties": false

@@ -8,7 +8,7 @@ use crate::elements::JointKind;
 use crate::elements::effects::{EffectKind, Impact, State};
 
 grammar! {
-    /// A mechanism, its uncertain parameters, and what is asked of it.
+    /// A mechanism, its uncertain parameters, and the questions to it.
     File is "a model" {
         /// Short name; by default the file's.
         model: Option<String>,
@@ -44,17 +44,17 @@ grammar! {
         effects: Option<IndexMap<String, EffectKind>>,
         /// Numbers that change as formulas say, beside the motion: integrals, currents, what a controller remembers.
         states: Option<IndexMap<String, State>>,
-        /// What is done with the mechanism; by default its `motion`.
+        /// Analysis of the mechanism; by default its `motion`.
         analysis: Option<AnalysisName>,
-        /// What is asked of `analysis: modes`.
+        /// Questions of `analysis: modes`.
         modes: Option<Modes>,
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others. Or `equilibrium`.
         initial: Option<InitialFile>,
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
         guess: Option<IndexMap<String, StartFile>>,
-        /// What is observed: names with formulas, e.g. `x3: slider.x`, or what of a motion is one number, e.g. `stroke: { range: slider.x }`.
+        /// Outputs: names with formulas, e.g. `x3: slider.x`, or reduced to one number a motion, e.g. `stroke: { range: slider.x }`.
         outputs: Option<IndexMap<String, OutputFile>>,
-        /// What is required of outputs: names with comparisons, e.g. `clears: x3 >= 0.4 m`.
+        /// Requirements on outputs: names with comparisons, e.g. `clears: x3 >= 0.4 m`.
         requirements: Option<IndexMap<String, RequirementFile>>,
         /// How long, and in which steps; `analysis: statics` needs none.
         simulation: Option<Simulation>,
@@ -64,21 +64,21 @@ grammar! {
         statistics: Option<Statistics>,
         /// Makes stops of the limits of the robot's joints; by default they do nothing.
         limits: Option<Limits>,
-        /// What is not in: effects, joints and outputs by name, or `all` effects. A scene can put them in.
+        /// Omitted parts: effects, joints and outputs by name, or `all` effects. A scene can put them in.
         without: Option<Without>,
         /// Named variants of this model; `mbint run` runs each of them instead of it.
         scenes: Option<IndexMap<String, Scene>>,
     }
 
-    /// A variant of the model: what is not said here is as the model says it.
+    /// A variant of the model: keys not given here are those of the model.
     Scene is "a scene" {
         /// One line for people.
         description: Option<String>,
         /// A scene whose changes come first.
         extends: Option<String>,
-        /// What is not in: effects, joints and outputs by name, or `all` effects.
+        /// Omitted parts: effects, joints and outputs by name, or `all` effects.
         without: Option<Without>,
-        /// What is in although the model, the scene that is extended or this one's `without` leaves it out.
+        /// Parts that are in although the model, the extended scene or this one's `without` omits them.
         with: Option<Vec<String>>,
         /// New values of the model's parameters, in the model's units.
         parameters: Option<IndexMap<String, ParameterFile>>,
@@ -130,7 +130,7 @@ grammar! {
         extrapolation: Option<u32>,
     }
 
-    /// What is asked of `analysis: modes`.
+    /// Questions of `analysis: modes`.
     Modes is "`modes`" {
         /// Where; by default at the `start`.
         at: Option<LinearisedAtName>,
@@ -178,7 +178,7 @@ grammar! {
         distribution: Option<LawFile>,
         /// What its tolerance costs, for `mbint allocate`.
         cost: Option<CostFile>,
-        /// What it is, for people.
+        /// Description for people.
         description: Option<String>,
     }
 

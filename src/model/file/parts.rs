@@ -13,7 +13,7 @@ grammar! {
     Assembly is "an assembly" {
         /// One line for people.
         description: Option<String>,
-        /// Its parameters with the values of instances that say nothing else. Each instance has its own: what is uncertain deviates in each for itself.
+        /// Its parameters with the default values of instances. Each instance has its own: uncertain values deviate in each by themselves.
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Parameters that are one for all instances, as are their deviations; or `all`.
         shared: Option<SharedFile>,

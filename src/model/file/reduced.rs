@@ -32,7 +32,7 @@ schema_only! {
 grammar! {
     /// A formula, of every time, and how it is shown.
     OutputFormula is "an output" {
-        /// What is observed.
+        /// The reduced formula.
         formula: Number,
         /// In which unit plots, reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
         unit: Option<UnitName>,

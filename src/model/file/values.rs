@@ -42,7 +42,7 @@ schema_only! {
         Auto,
         /// HHT-I3.
         Hht,
-        /// Dormand and Prince's method of order 8, for what is not stiff.
+        /// Dormand and Prince's method of order 8, for non-stiff models.
         Explicit,
     }
 
