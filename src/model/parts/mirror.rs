@@ -160,7 +160,7 @@ fn written(value: &serde_json::Value, at: &Span) -> Option<Node> {
             Value::Sequence(items.iter().map(|item| written(item, at)).collect::<Option<_>>()?)
         }
         serde_json::Value::String(text) => Value::Scalar(Scalar::plain(text, None)),
-        number => Value::Scalar(Scalar::plain(&number.to_string(), None)),
+        number => Value::Scalar(Scalar::plain(number.to_string(), None)),
     };
     Some(Node { span: at.clone(), value })
 }
