@@ -78,8 +78,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
 
     fn angle(&self, of: Rotating, order: TimeOrder) -> Scalar<'g> {
         match (of, order) {
-            (Rotating::Body(body), TimeOrder::Position) => self.m.bodies[body].position[ANGLE],
-            (Rotating::Body(body), _) => self.m.bodies[body].velocity[ANGLE],
+            (Rotating::Body { body, ground }, TimeOrder::Position) => {
+                self.m.bodies[body].position[ANGLE] - self.m.bodies[ground].position[ANGLE]
+            }
+            (Rotating::Body { body, .. }, _) => self.m.bodies[body].velocity[ANGLE],
             (Rotating::Joint(joint), _) => self.coordinate(OnJoint::angle(joint), order),
         }
     }

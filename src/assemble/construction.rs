@@ -7,7 +7,7 @@ use symdiff::{Builder, Formula};
 use super::coordinates;
 use super::mechanism::{Mechanism, Owner, dof};
 use super::names::Names;
-use super::superelements::superelements;
+use super::superelement::superelements;
 use super::system::UncertainParameter;
 use super::tree::Tree;
 use crate::elements::joints::Mobilizer;

@@ -6,7 +6,7 @@ use symdiff::{Builder, Expr, Scalar};
 
 use super::names::Names;
 use super::reaction::Reaction;
-use super::superelements::Superelement;
+use super::superelement::Superelement;
 use super::system::UncertainParameter;
 use super::tree::Tree;
 use crate::elements::joints::ToothForce;

@@ -24,7 +24,8 @@ use symdiff::Scalar;
 
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
-use super::superelements::{ByRow, Deformation, Superelement};
+use super::superelement::Superelement;
+use super::superelement_motion::{ByRow, Deformation};
 use crate::elements::effects::matrices::{Matrices, OF_NODE};
 use crate::model::ReducedInertia;
 use crate::multibody::{BuildError, Context, DEGREES_OF_FREEDOM, EULER, Matrix, RotationCoordinates, Vector};

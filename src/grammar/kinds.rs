@@ -11,7 +11,8 @@ use super::plane;
 use super::quantity::Dimension;
 use super::reader::Reader;
 use super::requirement::Quantity;
-use super::symbols::{JointCoordinate, PointRef, Reference, Rotating, SymbolTable};
+use super::rotating::Rotating;
+use super::symbols::{JointCoordinate, PointRef, Reference, SymbolTable};
 use super::values;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{self, Node};
@@ -305,8 +306,10 @@ reference! {
     [BodyRef; 2], two_names(), |reader, node| reader.between_bodies(node).map(|bodies| bodies.map(BodyRef)),
         |bodies, found| found.extend(bodies.iter_mut().map(|body| Reference::Body(&mut body.0)));
     [Rotating; 2], two_names(), |reader, node| reader.two_rotating(node),
-        |pair, found| found.extend(pair.iter_mut().map(|rotating| match rotating {
-            Rotating::Body(body) => Reference::Body(body),
-            Rotating::Joint(joint) => Reference::Joint(joint),
-        }));
+        |pair, found| for rotating in pair {
+            match rotating {
+                Rotating::Body { body, ground } => found.extend([Reference::Body(body), Reference::Body(ground)]),
+                Rotating::Joint(joint) => found.push(Reference::Joint(joint)),
+            }
+        };
 }

@@ -25,6 +25,7 @@ mod range;
 pub(crate) mod reader;
 pub mod reference;
 mod requirement;
+mod rotating;
 mod standing;
 mod suspicious;
 mod symbols;
@@ -48,4 +49,5 @@ pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, OfPlace, PerAxis,
 pub use names::Context;
 pub use reader::{Fields, Lengths, Reader};
 pub use requirement::{Quantity, Requirement};
+pub use rotating::Rotating;
 pub use symbols::*;

@@ -36,3 +36,22 @@ impl Names for OwnNames<'_> {
         if is_own { name.to_owned() } else { self.scope.full(name) }
     }
 }
+
+/// A word of a unit that the model has as a name, too.
+#[derive(Clone, Debug)]
+pub(crate) struct LikeName {
+    pub(super) word: String,
+    /// With spaces, so that the word is the model's.
+    pub(super) spaced: String,
+    /// With a number of its own, so that it is the unit.
+    pub(super) as_unit: String,
+    pub(super) dimension: Dimension,
+    /// Of all of the unit.
+    pub(super) whole: Dimension,
+}
+
+impl LikeName {
+    pub(super) fn help(&self) -> String {
+        format!("`{}` is read as a unit here; write `{}` with spaces for the model's own", self.word, self.spaced)
+    }
+}

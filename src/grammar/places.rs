@@ -2,7 +2,9 @@
 
 use super::names;
 use super::reader::{Fields, Reader};
-use super::symbols::{JointCoordinate, OnJoint, PointRef, Rotating, SymbolTable};
+use super::rotating::Rotating;
+use super::symbols::{JointCoordinate, OnJoint, PointRef, SymbolTable};
+use crate::syntax::frame::Turned;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Node, Value};
 
@@ -206,6 +208,13 @@ impl<S: SymbolTable> Reader<'_, S> {
         Some(OnJoint { joint, coordinate })
     }
 
+    /// The ground that a name is written in: the model's, or that of a turned instance.
+    fn ground_of(&self, node: &Node) -> usize {
+        let scope = node.scalar().and_then(|scalar| scalar.scope.as_deref());
+        let turned = scope.filter(|scope| scope.frame().is_some_and(|frame| frame.turned == Turned::ByAngle));
+        turned.and_then(|scope| self.model.body(&scope.full("ground"))).unwrap_or(0)
+    }
+
     /// Two bodies by their angles, or two joints by theirs.
     pub fn two_rotating(&mut self, node: &Node) -> Option<[Rotating; 2]> {
         let pair = self.two(node, "a list of two bodies or joints")?;
@@ -219,7 +228,8 @@ impl<S: SymbolTable> Reader<'_, S> {
                     self.error(node.span.clone(), message, help.to_owned());
                 }
             }
-            return Some(bodies.map(Rotating::Body));
+            let ground = self.ground_of(pair[0]);
+            return Some(bodies.map(|body| Rotating::Body { body, ground }));
         }
         let [first, second] = pair.map(|node| self.joint_ref(node, JointCoordinate::Angle));
         let (first, second) = (first?, second?);

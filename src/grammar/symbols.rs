@@ -280,15 +280,6 @@ pub enum JointCoordinate {
     Displacement,
 }
 
-/// Something with an angle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rotating {
-    /// The angle of a body about z.
-    Body(usize),
-    /// The angle of a joint.
-    Joint(usize),
-}
-
 /// A joint's coordinate that an effect acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OnJoint {

@@ -1,33 +1,13 @@
 //! Units that are called like a name of the model, and units behind fractions.
 
 use super::names::{self, Context};
-use super::own_names::OwnNames;
-use super::quantity::Dimension;
+use super::own_names::{LikeName, OwnNames};
 use super::reader::Reader;
 use super::symbols::SymbolTable;
 use super::unit::{Unit, is_part_of_name};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
-
-/// A word of a unit that the model has as a name, too.
-#[derive(Clone, Debug)]
-pub(crate) struct LikeName {
-    word: String,
-    /// With spaces, so that the word is the model's.
-    spaced: String,
-    /// With a number of its own, so that it is the unit.
-    as_unit: String,
-    dimension: Dimension,
-    /// Of all of the unit.
-    whole: Dimension,
-}
-
-impl LikeName {
-    fn help(&self) -> String {
-        format!("`{}` is read as a unit here; write `{}` with spaces for the model's own", self.word, self.spaced)
-    }
-}
 
 impl<S: SymbolTable> Reader<'_, S> {
     /// Words of the unit behind a number that the model has as names.

@@ -129,6 +129,9 @@ fn of_band(pieces: &[Piece], output: usize, place: usize, rows: usize) -> Band {
         all.error.total.push(error);
         let unresolved = |band: &Option<Band>| band.as_ref().is_none_or(|band| band.error.unresolved[row]);
         all.error.unresolved.push(reach().any(unresolved));
+        // Where no piece is worse than coarse.
+        let coarse = |band: &Option<Band>| band.as_ref().is_some_and(|band| band.error.coarse[row]);
+        all.error.coarse.push(reach().any(coarse) && reach().all(|band| coarse(band) || !unresolved(band)));
     }
     all.error.surrogate = largest(known().map(|band| band.error.surrogate));
     all.error.time = largest(known().map(|band| band.error.time));
@@ -152,6 +155,7 @@ impl OutputBounds {
             error: BandError {
                 total: padded(&band.error.total, rows, f64::NAN),
                 unresolved: padded(&band.error.unresolved, rows, true),
+                coarse: padded(&band.error.coarse, rows, false),
                 ..band.error.clone()
             },
         };

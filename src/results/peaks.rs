@@ -61,8 +61,6 @@ impl Peak {
         let known = (0..values.len()).filter(|&row| values[row].is_finite());
         let row = known.max_by(|&a, &b| values[a].total_cmp(&values[b]).then(b.cmp(&a)))?;
         let value = values[row];
-        // NaN is passed on, not over.
-        let worse = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
         let highest = (0..values.len()).map(|row| values[row] + errors[row] + between(values, row));
         let surely = (0..values.len()).map(|row| values[row] - errors[row]);
         let [highest, surely] = [highest.fold(value, worse), surely.fold(f64::NEG_INFINITY, worse)];
@@ -77,9 +75,22 @@ fn between(values: &[f64], row: usize) -> f64 {
         // Two rows show no curvature: all that lies between them may be as much again.
         return values.first().zip(values.last()).map_or(0.0, |(first, last)| (first - last).abs());
     }
+    let second = |at: usize| values[at - 1] - 2.0 * values[at] + values[at + 1];
     let places = row.saturating_sub(1).clamp(1, last - 1)..=(row + 1).clamp(1, last - 1);
-    let bent = places.map(|at| (values[at - 1] - 2.0 * values[at] + values[at + 1]).abs());
-    BETWEEN * bent.fold(0.0, |a: f64, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
+    let bent = places.map(|at| second(at).abs()).fold(0.0, worse);
+    // The first and the last row have none: theirs goes on from the next two as a line does.
+    let at_end = match row {
+        _ if last < 3 => 0.0,
+        0 | 1 => 2.0 * second(1) - second(2),
+        _ if row + 1 >= last => 2.0 * second(last - 1) - second(last - 2),
+        _ => 0.0,
+    };
+    BETWEEN * worse(bent, at_end.abs())
+}
+
+/// The larger one; NaN is passed on, not over.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use symdiff::{Formula, Input, lower};
 use super::comparison::instructions;
 use super::explicit;
 use super::formulation::{as_chosen, compiled};
-use super::subsystems::{Prepared, prepare};
+use super::prepared::{Prepared, prepare};
 use crate::compile::Tapes;
 use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};

@@ -2,7 +2,7 @@
 
 use super::decisions::{decisions, uncertain};
 use super::effect_costs::effect_costs;
-use super::subsystems::{Prepared, prepare};
+use super::prepared::{Prepared, prepare};
 use super::{RunError, reduced};
 use crate::compile::{Program, Tapes};
 use crate::model::Description;

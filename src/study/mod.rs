@@ -33,6 +33,7 @@ mod loop_cuts;
 mod memory;
 mod motion;
 mod outcome;
+mod prepared;
 mod price;
 mod ready;
 mod reduced;
@@ -57,7 +58,7 @@ use crate::results::{Bounds, Summary};
 use crate::simulate::{SimulationError, Simulator};
 use crate::store::PartStore;
 
-use subsystems::Prepared;
+use prepared::Prepared;
 
 pub use allocate::{AllocateError, AllocateOptions, allocate};
 pub use assemblies::of as assemblies;

@@ -2,9 +2,9 @@
 
 use super::ensemble::Stored;
 use super::memory::Memory;
+use super::prepared::{Prepared, choices, prepare, share_budget};
 use super::price::Price;
 use super::single::Study;
-use super::subsystems::{Prepared, choices, prepare, share_budget};
 use super::{Options, RunError, reduced};
 use crate::assemble;
 use crate::model::Description;

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
+use super::prepared::{Prepared, choices, prepare};
 use super::single::{Study, simulation_error};
-use super::subsystems::{Prepared, choices, prepare};
 use super::{Options, RunError, reduced};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::{Description, Stepping};

@@ -1,8 +1,8 @@
 //! The simulations of a shard.
 
 use super::ensemble::{Progress, simulate_part};
+use super::prepared::{Prepared, choices, prepare};
 use super::single::Study;
-use super::subsystems::{Prepared, choices, prepare};
 use super::{Options, RunError, reduced};
 use crate::model::Description;
 use crate::simulate::SimulationError;

@@ -13,10 +13,10 @@ assemblies:
     bodies: { foot: { mass: 1e3, inertia: 1e3 }, ball: { mass: 1, inertia: 0.004 } }
     joints: { base: { fixed: [ground, foot] } }
     effects:
-      weight: { gravity: { acceleration: [0, -9.81] } }
       slope: { contact: { between: [foot, ball], plane: [1, 2], radius: 0.1, impact: { stiffness: 1e5 }, friction: { coefficient: 0.3 } } }
       step: { contact: { between: [foot, ball], path: [[0.3, 0], [0.6, 0.1], [1, 0]], rounding: 0.02, radius: 0.1, impact: { stiffness: 1e5 } } }
     initial: { ball.x: -0.2, ball.y: 0.4, ball.angle: 0, ball.vx: 0.3, ball.vy: 0, ball.angular_velocity: 0 }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
 instances:
   left: { of: ramp, at: { position: [1, 0] } }
   right: { of: ramp, at: { position: [-1, 0] }, mirror: x }

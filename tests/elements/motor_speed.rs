@@ -191,13 +191,16 @@ fn a_motor_gives_the_power_for_a_ramp() {
     assert_balance(&spatial_pair(joints, lever, ""), "drive.torque*j.angular_velocity");
 }
 
-/// Two motors on one joint: where both follow one state one of them is redundant, and they share the torque; where each follows its own, nothing can
+/// Two motors on joints with one axis: where both follow one state one of them is redundant, and they share the torque; where each follows its own, nothing can
 /// fulfil both, though they begin alike; nor can a motor's position and a state's speed.
 #[test]
 fn two_motors_agree_or_contradict() {
     let text = |other: &str| {
         pendulum("step: 2e-3, extrapolation: 4")
-            .replace("speed: command } }", &format!("speed: command }} }}\n  other: {{ motor: {{ on: hinge, {other} }} }}"))
+            .replace(
+                "speed: command } }",
+                &format!("speed: command }} }}\n  twin: {{ revolute: [ground, bar.A] }}\n  other: {{ motor: {{ on: twin, {other} }} }}"),
+            )
             .replace("states: {", "states: { second: { rate: (3 rad/s - second)/lag, initial: 0 rad/s }, ")
             .replace("torque: drive.torque", "torque: drive.torque + other.torque, second: second")
     };

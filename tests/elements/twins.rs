@@ -90,7 +90,7 @@ impl Mechanism {
             _ => effects += &it,
         }
         let starts = if self.starts.is_empty() {
-            let place = if spatial { ["0.5, bob.z: 0", "0"] } else { ["0.5", "0.03"] };
+            let place = if spatial { ["0.5, bob.z: 0", "0, follower.z: 0"] } else { ["0.5", "0.03"] };
             format!("initial: {{ }}\n    guess: {{ bob.y: 0, bob.x: {}, follower.x: 0, follower.y: {} }}", place[0], place[1])
         } else {
             let free = if spatial {

@@ -27,12 +27,12 @@ fn is_expectation(line: &str) -> bool {
     line.is_some_and(|line| ["error: ", "warning: ", "help: "].iter().any(|start| line.starts_with(start)))
 }
 
-/// As comments of the file's language.
+/// As comments of the file's language; in those of XML no two hyphens stand together.
 fn commented(path: &Path, lines: Vec<String>) -> Vec<String> {
     if path.extension().is_some_and(|extension| extension == "yaml") {
         return lines;
     }
-    lines.iter().map(|line| format!("<!-- {} -->", line.trim_start_matches("# "))).collect()
+    lines.iter().map(|line| format!("<!-- {} -->", line.trim_start_matches("# ").replace("--", "- -"))).collect()
 }
 
 /// `` `gravity`, … and `belt` ``.

@@ -61,7 +61,7 @@ fn what_takes_nothing_has_its_potential() {
         transition: formula("0.01"),
     };
     let backlash = Backlash {
-        between: [Rotating::Body(m.body_index("a")), Rotating::Body(m.body_index("b"))],
+        between: [Rotating::of_body(m.body_index("a")), Rotating::of_body(m.body_index("b"))],
         ratio: formula("-1.7"),
         offset: formula("0.1"),
         backlash: formula("0.02"),

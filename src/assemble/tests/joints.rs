@@ -29,7 +29,7 @@ fn kinds(m: &Model) -> Vec<JointKind> {
         JointKind::Fixed(Fixed { between, angle: formula("0.3") }),
         JointKind::PinInSlot(PinInSlot { between, axis: Direction(pair("1", "2")) }),
         JointKind::Distance(Distance { between, length: formula("d") }),
-        JointKind::Gear(Gear::of([Rotating::Body(1), Rotating::Body(2)], -2.0, 0.1)),
+        JointKind::Gear(Gear::of([Rotating::of_body(1), Rotating::of_body(2)], -2.0, 0.1)),
     ]
 }
 

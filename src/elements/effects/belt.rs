@@ -106,7 +106,7 @@ impl ForceElement for Belt {
     fn coordinates(&self) -> Vec<OnJoint> {
         let joint = |rotating: &Rotating| match rotating {
             Rotating::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
-            Rotating::Body(_) => None,
+            Rotating::Body { .. } => None,
         };
         self.between.iter().filter_map(joint).collect()
     }

@@ -99,7 +99,7 @@ impl<'g> dyn Forces<'g> + '_ {
     /// A torque about z: on a body from the ground, or on a joint's second body from its first, N m.
     pub fn torque_about(&mut self, on: Rotating, torque: Scalar<'g>) -> Result<(), BuildError> {
         match on {
-            Rotating::Body(body) => {
+            Rotating::Body { body, .. } => {
                 let zero = self.graph().number(0.0);
                 self.torque(0, body, [zero, zero, torque].into());
                 Ok(())
@@ -111,7 +111,7 @@ impl<'g> dyn Forces<'g> + '_ {
     /// The rate of a toothed member, rad/s or m/s.
     pub fn member_rate(&self, member: Member) -> Result<Scalar<'g>, BuildError> {
         match member {
-            Member::Body(body) => Ok(self.angle(Rotating::Body(body), TimeOrder::Velocity)),
+            Member::Body(body) => Ok(self.angle(Rotating::of_body(body), TimeOrder::Velocity)),
             Member::Joint(on) => self.rate(on),
         }
     }
@@ -119,7 +119,7 @@ impl<'g> dyn Forces<'g> + '_ {
     /// A torque or force on a toothed member, N m or N.
     pub fn member_effort(&mut self, member: Member, effort: Scalar<'g>) -> Result<(), BuildError> {
         match member {
-            Member::Body(body) => self.torque_about(Rotating::Body(body), effort),
+            Member::Body(body) => self.torque_about(Rotating::of_body(body), effort),
             Member::Joint(on) => self.effort(on, effort),
         }
     }

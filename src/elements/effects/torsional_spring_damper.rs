@@ -67,7 +67,7 @@ impl ForceElement for TorsionalSpringDamper {
         let bodies = self.between.map(|bodies| bodies.map(|body| body.0));
         let [angle, rate] = match (bodies, self.on) {
             (Some([first, second]), None) => [TimeOrder::Position, TimeOrder::Velocity]
-                .map(|order| forces.angle(Rotating::Body(second), order) - forces.angle(Rotating::Body(first), order)),
+                .map(|order| forces.angle(Rotating::of_body(second), order) - forces.angle(Rotating::of_body(first), order)),
             (_, Some(joint)) => forces.coordinate_and_rate(OnJoint::angle(joint.0)),
             (None, None) => return Ok(()),
         };

@@ -71,7 +71,7 @@ impl Checked for Gear {
     }
 
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        if self.flanks.pressure_angle.is_some() && self.between.iter().any(|of| matches!(of, Rotating::Body(_))) {
+        if self.flanks.pressure_angle.is_some() && self.between.iter().any(|of| matches!(of, Rotating::Body { .. })) {
             let help = "name the revolute joints that hold the gears instead of the bodies".to_owned();
             reader.error(fields.key_span("pressure_angle"), "the force of teeth acts between two bearings", help);
         }
@@ -91,7 +91,7 @@ impl JointElement for Gear {
 fn of_joint(angle: Rotating) -> Option<OnJoint> {
     match angle {
         Rotating::Joint(joint) => Some(OnJoint { joint, coordinate: JointCoordinate::Angle }),
-        Rotating::Body(_) => None,
+        Rotating::Body { .. } => None,
     }
 }
 
@@ -108,7 +108,7 @@ impl Joint for Gear {
         for angle in self.between {
             match angle {
                 Rotating::Joint(joint) => toothed.joints.push(joint),
-                Rotating::Body(body) => toothed.bodies.push(body),
+                Rotating::Body { body, .. } => toothed.bodies.push(body),
             }
         }
         toothed
@@ -135,7 +135,7 @@ impl Joint for Gear {
 
     fn meshing<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Result<Option<Meshing<'g>>, BuildError> {
         let [first, second] = self.between.map(|angle| match angle {
-            Rotating::Body(body) => Member::Body(body),
+            Rotating::Body { body, .. } => Member::Body(body),
             Rotating::Joint(joint) => Member::Joint(OnJoint::angle(joint)),
         });
         let (ratio, one) = (k.number(&self.ratio)?, k.graph().number(1.0));
@@ -149,7 +149,7 @@ impl Joint for Gear {
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {
         let (ratio, offset) = (k.number(&self.ratio)?, k.number(&self.offset)?);
         let [first, second] = self.between.map(|angle| match angle {
-            Rotating::Body(body) => k.angle(body),
+            Rotating::Body { body, ground } => k.angle(body) - k.angle(ground),
             Rotating::Joint(joint) => k.coordinate(OnJoint { joint, coordinate: JointCoordinate::Angle }),
         });
         let value = second - ratio * first - offset;

@@ -49,7 +49,7 @@ impl Writer<'_, '_> {
                 self.reader.error(found.key_span.clone(), message, help);
             }
         }
-        for known in &images {
+        for known in images.iter().filter(|known| !matches!(known.image, Image::Same | Image::Unknown)) {
             // Directions that are not written are reflected, too.
             let Some(default @ (serde_json::Value::String(_) | serde_json::Value::Array(_))) = &known.default else {
                 continue;

@@ -11,28 +11,11 @@ use symdiff::Scalar;
 
 use super::applied_forces::AppliedForces;
 use super::mechanism::{Mechanism, Owner};
+use super::superelement::Superelement;
 use super::system::{ConditionOf, ConstraintInfo, ResidualUnit, StartCondition};
-use crate::elements::effects::Carried;
 use crate::elements::effects::matrices::Matrices;
 use crate::model::{Description, Effect, PointRef, ReducedInertia};
 use crate::multibody::{Body, BuildError, Context, Matrix, Pair, RelativeDisplacement, Vector};
-
-/// A flexible body by its matrices.
-pub struct Superelement<'d> {
-    /// The effect's place among all.
-    pub effect: usize,
-    /// Its nodes and matrices.
-    pub inertia: ReducedInertia<'d>,
-    /// As its first node carries it.
-    pub carried: Carried,
-}
-
-/// Those of a description.
-pub fn superelements(description: &Description) -> Vec<Superelement<'_>> {
-    let effects = description.effects.iter().enumerate();
-    let found = effects.filter_map(|(effect, kind)| Some((effect, kind.kind.reduced_inertia()?)));
-    found.map(|(effect, inertia)| Superelement { effect, inertia, carried: Carried::of(inertia.matrices) }).collect()
-}
 
 /// A row of M by what stands there of u.
 pub type ByRow<'g> = Vec<(usize, Scalar<'g>)>;

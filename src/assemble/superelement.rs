@@ -1,0 +1,21 @@
+//! Flexible bodies by their matrices, as the effects of a description give them.
+
+use crate::elements::effects::Carried;
+use crate::model::{Description, ReducedInertia};
+
+/// A flexible body by its matrices.
+pub struct Superelement<'d> {
+    /// The effect's place among all.
+    pub effect: usize,
+    /// Its nodes and matrices.
+    pub inertia: ReducedInertia<'d>,
+    /// As its first node carries it.
+    pub carried: Carried,
+}
+
+/// Those of a description.
+pub fn superelements(description: &Description) -> Vec<Superelement<'_>> {
+    let effects = description.effects.iter().enumerate();
+    let found = effects.filter_map(|(effect, kind)| Some((effect, kind.kind.reduced_inertia()?)));
+    found.map(|(effect, inertia)| Superelement { effect, inertia, carried: Carried::of(inertia.matrices) }).collect()
+}
