@@ -123,7 +123,7 @@ impl Mechanism {
         }
         let space = if spatial { "spatial" } else { "planar" };
         let text = format!(
-            "space: {space}\n{}instances:\n{instances}outputs:\n{outputs}simulation: {{ duration: 0.04, step: 1e-3, output_step: 0.01 }}\n",
+            "space: {space}\n{}instances:\n{instances}outputs:\n{outputs}simulation: {{ duration: 0.04, step: 1e-3, extrapolation: 4, output_step: 0.01 }}\n",
             self.assembly(spatial, keyword, example)
         );
         load_str("twins", &text, &[]).map_err(|wrong| wrong.render(false))

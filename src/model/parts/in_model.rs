@@ -7,12 +7,12 @@ use super::placement::{AXES, GROUND, scalar};
 use super::turned::{euler, quaternion, text, turn};
 use super::{Writer, mirror, patterns};
 use crate::elements::effects::{self, EffectKind};
-use crate::grammar::SymbolTable as _;
+use crate::grammar::{Image, SymbolTable as _};
 use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
-use crate::syntax::yaml::{Entry, Node, Value};
+use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Where the entries of an instance are in the sections of the model.
 #[derive(Default)]
@@ -39,7 +39,7 @@ impl Writer<'_, '_> {
             }
             self.check_level(&effect, frame);
             if frame.is_turned() {
-                turn_directions(&mut effect, frame, scope);
+                turn_directions(&mut effect, frame, scope, is_turning == Some(true));
             }
             images.push(effect);
         }
@@ -190,16 +190,29 @@ fn held_in_model(
 /// Kinds of joints of which drives take the angle, unless they say `coordinate`; a mirror counts it the other way.
 pub(super) const TURNING: [&str; 3] = ["revolute", "cylindrical", "screw"];
 
-/// Turns the directions of the ground that an effect has.
-fn turn_directions(effect: &mut Entry, frame: Frame, scope: &Arc<Scope>) {
+/// Turns the directions of the ground that an effect has. One number about z is one about an axis of any direction in a frame that is
+/// turned in space, but for one about a joint's axis.
+fn turn_directions(effect: &mut Entry, frame: Frame, scope: &Arc<Scope>, is_on_turning: bool) {
     let Value::Mapping(kinds) = &mut effect.value.value else { return };
     let [kind] = kinds.as_mut_slice() else { return };
     let in_body = kind.value.get("frame").and_then(Node::scalar).is_some_and(|frame| frame.text == "body");
     let images = mirror::images(&kind.key);
     let Value::Mapping(keys) = &mut kind.value.value else { return };
-    let is_directed = |key: &str| images.iter().any(|known| known.in_ground && known.name == key);
-    for key in keys.iter_mut().filter(|key| !in_body && is_directed(&key.key)) {
+    let directed = |key: &str| images.iter().find(|known| known.in_ground && known.name == key);
+    for key in keys.iter_mut().filter(|_| !in_body) {
+        let Some(known) = directed(&key.key) else { continue };
         mirror::written_out(&mut key.value);
+        if matches!(known.image, Image::Axial) && frame.turned == Turned::InSpace && !is_on_turning {
+            about_axes(&mut key.value);
+        }
         turn(&mut key.value, frame, scope);
     }
+}
+
+/// One number about z as a list.
+fn about_axes(node: &mut Node) {
+    let Value::Scalar(number) = &node.value else { return };
+    let zero = || Node { span: node.span.clone(), value: Value::Scalar(Scalar::plain("0", None)) };
+    let about_z = Node { span: node.span.clone(), value: Value::Scalar(number.clone()) };
+    node.value = Value::Sequence(vec![zero(), zero(), about_z]);
 }
