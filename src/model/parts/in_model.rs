@@ -7,7 +7,8 @@ use super::placement::{AXES, GROUND, scalar};
 use super::turned::{euler, quaternion, text, turn};
 use super::{Writer, mirror, patterns};
 use crate::elements::effects::{self, EffectKind};
-use crate::grammar::{Image, SymbolTable as _};
+use crate::grammar::Image;
+use crate::model::names::Reader;
 use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
@@ -21,6 +22,27 @@ pub(super) struct Places {
     pub(super) joints: Range<usize>,
     pub(super) effects: Range<usize>,
     pub(super) starts: [(&'static str, Range<usize>); 2],
+}
+
+/// An effect on level ground in an instance that is turned or mirrored.
+#[derive(Clone)]
+pub(super) struct Inclined {
+    at: Span,
+    name: String,
+    /// Whether the ground is level there, in the plane and in space.
+    is_level: [bool; 2],
+}
+
+impl Inclined {
+    /// Reports it where the ground is not level.
+    pub(super) fn check(&self, reader: &mut Reader) {
+        if self.is_level[usize::from(reader.model.space.spatial)] {
+            return;
+        }
+        let message = format!("{} is on level ground, but in this instance the ground is not level", self.name);
+        let help = "turn the instance about the ground's normal alone, or write the effect in the model".to_owned();
+        reader.error(self.at.clone(), message, help);
+    }
 }
 
 impl Writer<'_, '_> {
@@ -63,26 +85,17 @@ impl Writer<'_, '_> {
         self.put("bodies", &places.bodies, bodies);
     }
 
-    /// Reports what acts on level ground in an instance of which the ground is not level.
+    /// Notes what acts on level ground in an instance of which the ground is not level. With a wheel in the plane that is across y.
     fn check_level(&mut self, effect: &Entry, frame: Frame) {
         let Value::Mapping(kinds) = &effect.value.value else { return };
-        let Some(kind) =
-            kinds.first().filter(|kind| EffectKind::scope_of(&kind.key) == Some(effects::Scope::LevelGround))
-        else {
-            return;
-        };
-        let up = if self.reader.model.is_spatial() { 2 } else { 1 };
-        let is_upright = match (frame.turned, up) {
-            (Turned::Not, _) | (Turned::ByAngle, 2) => !frame.mirrors.axes().any(|axis| axis == up),
-            _ => false,
-        };
-        // Without a wheel the plane is the ground.
-        if is_upright || (up == 1 && kind.value.get("wheel").is_none()) {
-            return;
-        }
-        let message = format!("`{}` is on level ground, but in this instance the ground is not level", kind.key);
-        let help = "turn the instance about the ground's normal alone, or write the effect in the model".to_owned();
-        self.reader.error(kind.key_span.clone(), message, help);
+        let on_level_ground = |kind: &&Entry| EffectKind::scope_of(&kind.key) == Some(effects::Scope::LevelGround);
+        let Some(kind) = kinds.first().filter(on_level_ground) else { return };
+        let is_level = |up: usize| !frame.is_turned() && !frame.mirrors.axes().any(|axis| axis == up);
+        // A turn about z leaves the ground across z as it is.
+        let in_space = is_level(2) || (frame.turned == Turned::ByAngle && !frame.mirrors.axes().any(|axis| axis == 2));
+        let in_plane = is_level(1) || kind.value.get("wheel").is_none();
+        let name = format!("`{}`", kind.key);
+        self.parts.inclined.push(Inclined { at: kind.key_span.clone(), name, is_level: [in_plane, in_space] });
     }
 
     /// Whether an effect or a drive is on joints that turn; nothing where it is on nothing.

@@ -49,6 +49,8 @@ pub struct Parts {
     grounds: HashMap<String, Mirrors>,
     /// Effects of instances on joints that turn.
     turning_effects: BTreeSet<String>,
+    /// Effects on level ground of instances that are turned.
+    inclined: Vec<in_model::Inclined>,
 }
 
 /// A tree that is written out.
@@ -207,6 +209,7 @@ impl Parts {
     /// Says of the bodies, which are declared, how their instances stand, and of effects which are on joints that turn.
     pub fn stand(&self, reader: &mut Reader) {
         reader.model.turning_effects.clone_from(&self.turning_effects);
+        self.inclined.iter().for_each(|inclined| inclined.check(reader));
         if self.grounds.is_empty() {
             return;
         }
