@@ -308,6 +308,7 @@ reference! {
     [Rotating; 2], two_names(), |reader, node| reader.two_rotating(node),
         |pair, found| for rotating in pair {
             match rotating {
+                Rotating::Body { body, ground: 0 } => found.push(Reference::Body(body)),
                 Rotating::Body { body, ground } => found.extend([Reference::Body(body), Reference::Body(ground)]),
                 Rotating::Joint(joint) => found.push(Reference::Joint(joint)),
             }
