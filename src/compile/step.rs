@@ -213,7 +213,7 @@ fn mass_blocks(system: &System) -> Vec<usize> {
     blocks
 }
 
-/// Values of the matrix's entries at each pivot sample.
+/// Values of the matrix's entries at each pivot sample, of which the first is the nominal start.
 fn sample_numbers(
     graph: &Graph,
     matrix: &SparseMatrix,
@@ -222,8 +222,16 @@ fn sample_numbers(
 ) -> Vec<Numbers> {
     let register_of = registers(inputs);
     let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
-    let values: Vec<Vec<f64>> =
+    let mut values: Vec<Vec<f64>> =
         samples.iter().map(|sample| graph.evaluate(&entries, |symbol| sample.values[register_of[&symbol]])).collect();
+    // Away from the start a force may have no number, as that of a gas whose volume is negative there.
+    let (nominal, others) = values.split_at_mut(1);
+    for sample in others {
+        let unknown = sample.iter().zip(&nominal[0]).any(|(value, nominal)| !value.is_finite() && nominal.is_finite());
+        if unknown {
+            sample.clone_from(&nominal[0]);
+        }
+    }
     (0..entries.len()).map(|entry| std::array::from_fn(|sample| values[sample][entry])).collect()
 }
 

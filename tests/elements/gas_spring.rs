@@ -96,3 +96,29 @@ simulation: { duration: 0.3, step: 1e-3, output_step: 0.02 }
     assert!(largest(angle.iter().zip(image).map(|(one, two)| one + two)) < 1e-10);
     assert!(largest(angle.iter().map(|angle| angle - 0.2)) > 0.05, "it moves");
 }
+
+/// Bodies whose coordinates start at zero in general position: there the gas has no volume, and a logarithm no value. Accelerations are
+/// those of the force at the start.
+#[test]
+fn a_start_beyond_which_forces_have_no_number_is_a_start() {
+    let area = std::f64::consts::FRAC_PI_4 * 0.015_f64.powi(2);
+    let wanted = [(30e5 - 101_325.0) * area / 25.0, -7.0 * 0.4_f64.ln() / 25.0];
+    let springs = [
+        "gas_spring: { between: [ground, b], diameter: 15 mm, length: 0.4, pressure: 30 bar, volume: 0.03 L, exponent: 1.25 }",
+        "force: { on: b, value: [0, -7 N*ln(b.y/(1 m))] }",
+    ];
+    for (spring, wanted) in springs.into_iter().zip(wanted) {
+        let bounds = nominal(&read(&format!(
+            "
+bodies: {{ b: {{ mass: 25, coordinates: [y] }} }}
+effects: {{ s: {{ {spring} }} }}
+initial: {{ b.y: 0.4, b.vy: 0 }}
+outputs: {{ v: b.vy }}
+simulation: {{ duration: 1e-3, step: 1e-4 }}
+"
+        )));
+        // Within a millisecond the force is nearly constant.
+        let rate = curve(&bounds, "v").last().unwrap() / 1e-3;
+        assert!((rate / wanted - 1.0).abs() < 1e-3, "{rate}, not {wanted}");
+    }
+}

@@ -68,10 +68,13 @@ fn errors_of_swinging(urdf: &Path, starts: &[&str], rows: &[Vec<f64>]) -> [f64; 
     let initial: String = initial.collect();
     [1e-3, 5e-4].map(|h| {
         let text = format!(
-            "urdf: '{}'\n{GRAVITY}initial:\n{initial}simulation: {{ duration: 1, step: {h}, output_step: 0.01 }}",
-            urdf.display()
+            "urdf: {}\n{GRAVITY}initial:\n{initial}simulation: {{ duration: 1, step: {h}, output_step: 0.01 }}",
+            urdf.file_name().unwrap().display()
         );
-        let description = model::load_str("swinging.yaml", &text, &[]).unwrap_or_else(|report| panic!("{report}"));
+        // A model names files of its own folder.
+        let name = urdf.with_file_name("swinging.yaml");
+        let description =
+            model::load_str(name.to_str().unwrap(), &text, &[]).unwrap_or_else(|report| panic!("{report}"));
         let bounds = nominal(&description);
         largest(starts.iter().enumerate().map(|(i, start)| {
             let exact: Vec<f64> = rows.iter().map(|row| row[i + 1]).collect();
