@@ -105,7 +105,7 @@ fn a_start_beyond_which_forces_have_no_number_is_a_start() {
     let wanted = [(30e5 - 101_325.0) * area / 25.0, -7.0 * 0.4_f64.ln() / 25.0];
     let springs = [
         "gas_spring: { between: [ground, b], diameter: 15 mm, length: 0.4, pressure: 30 bar, volume: 0.03 L, exponent: 1.25 }",
-        "force: { on: b, value: [0, -7 N*ln(b.y/(1 m))] }",
+        "force: { on: b, value: [0, -7 N*log(b.y/(1 m))] }",
     ];
     for (spring, wanted) in springs.into_iter().zip(wanted) {
         let bounds = nominal(&read(&format!(
