@@ -43,6 +43,29 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
     assert!(distance_from(&bounds.times, curve(&bounds, "x"), |t| 2.0 * t * t) < 1e-6);
 }
 
+/// The corner of the limit, half a per cent below it where the sum before it reaches it.
+#[test]
+fn the_corner_of_its_limit_is_round() {
+    let force = |proportional: f64| {
+        let bounds = nominal(&read(&format!(
+            "
+bodies: {{ cart: {{ mass: 1e9, inertia: 1 }} }}
+joints: {{ rail: {{ prismatic: {{ between: [ground, cart], axis: x }} }} }}
+effects: {{ drive: {{ servo: {{ on: rail, target: 1, proportional: {proportional}, limit: 10 }} }} }}
+initial: {{ cart.x: 0, cart.vx: 0 }}
+outputs: {{ force: drive.force }}
+simulation: {{ duration: 1e-3, step: 1e-3 }}
+"
+        )));
+        curve(&bounds, "force")[0]
+    };
+    // √(20² + 0.1²) = 20.00025 and √(18² + 0.1²) = 18.000278, √(2² + 0.1²) = 2.002498.
+    for (x, wanted) in [(10.0, 9.950_12), (8.0, 7.998_89)] {
+        let found = force(x);
+        assert!((found - wanted).abs() < 1e-5, "{x}: {found}, not {wanted}");
+    }
+}
+
 #[test]
 fn its_power_is_torque_times_rate() {
     assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { servo: { on: j, target: 0.5, proportional: 40, derivative: 1.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "(40*(0.5 - j.angle) - 1.2*j.angular_velocity)*j.angular_velocity");

@@ -40,7 +40,7 @@ pub struct DcMotor {
     #[quantity(unit = "1")]
     #[key(image = Turning)]
     voltage: Formula,
-    /// Largest voltage, V.
+    /// Largest voltage, V; the corner is round, as that of a servo.
     #[quantity(unit = "1", constant, positive, otherwise = "none")]
     limit: Option<Formula>,
     /// Resistance of the coils, Ω.

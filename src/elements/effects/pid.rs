@@ -64,7 +64,7 @@ pub struct Pid {
     /// Time constant by which the rate of error lags.
     #[quantity(unit = "s", constant, positive, otherwise = "no lag")]
     filter: Option<Formula>,
-    /// Largest force or torque.
+    /// Largest force or torque; the corner is round, and half a per cent below where the sum before it reaches the limit.
     #[quantity(unit = "N or N*m", constant, positive, otherwise = "none")]
     limit: Option<Formula>,
     /// Time in which the integral follows the limit.

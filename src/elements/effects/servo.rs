@@ -46,7 +46,7 @@ pub struct Servo {
     /// Force by rate of error.
     #[quantity(unit = "N*s/m or N*m*s/rad", default = 0)]
     derivative: Formula,
-    /// Largest force or torque.
+    /// Largest force or torque; the corner is round, and half a per cent below where the sum before it reaches the limit.
     #[quantity(unit = "N or N*m", constant, positive, otherwise = "none")]
     limit: Option<Formula>,
 }
