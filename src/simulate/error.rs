@@ -2,9 +2,10 @@
 
 use nalgebra::DMatrix;
 
+use super::residual_text::residual_text;
 use super::start::{ConstraintResidual, free_columns, jacobian_rows};
 use super::statics::NoEquilibrium;
-use crate::assemble::{ConditionOf, ConstraintInfo, CoordinateId, ResidualUnit, System};
+use crate::assemble::{ConditionOf, CoordinateId, System};
 use crate::compile::{ClosureRow, Equation, NoFactors, StartProgram};
 
 /// Parameters of a sample: name and value in SI units.
@@ -51,6 +52,18 @@ pub enum SimulationError {
     Contradiction {
         /// Its name.
         joint: String,
+    },
+    /// A redundant constraint is contradicted by the others, which it agreed with at the start.
+    #[error(
+        "joint `{joint}` contradicts the others, which it agrees with at the start: at t = {time} s {remain} remain: leave it out, or let it follow the same motion"
+    )]
+    Parted {
+        /// Its name.
+        joint: String,
+        /// End of the step, s.
+        time: f64,
+        /// Its residual, with its unit.
+        remain: String,
     },
     /// Something begins outside of what it is in.
     #[error(
@@ -354,46 +367,5 @@ impl SimulationError {
             *cause = why.map(String::into_boxed_str);
         }
         self
-    }
-}
-
-/// The size of a residual in engineering units: mm below a metre, degrees for angles.
-pub(super) fn residual_text(residual: f64, constraint: &ConstraintInfo, of_velocities: bool) -> String {
-    let size = residual.abs();
-    let (value, unit) = match constraint.unit {
-        ResidualUnit::Length if size < 1.0 => (1e3 * size, " mm"),
-        ResidualUnit::Length => (size, " m"),
-        ResidualUnit::Angle => (size.to_degrees(), "°"),
-        ResidualUnit::Number => (size, ""),
-    };
-    let value = if (1e-2..1e4).contains(&value) { significant(value, 3) } else { format!("{value:.1e}") };
-    format!("{value}{unit}{}", if of_velocities { "/s" } else { "" })
-}
-
-/// A positive number in so many significant digits, without trailing zeros.
-fn significant(value: f64, digits: i32) -> String {
-    let before_point = symdiff::math::log10(value).floor() as i32 + 1;
-    let decimals = (digits - before_point).max(0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn residuals_are_in_engineering_units() {
-        let text = |residual, unit, of_velocities| {
-            let constraint = ConstraintInfo { name: "C.x".into(), joint: "C".into(), unit };
-            residual_text(residual, &constraint, of_velocities)
-        };
-        assert_eq!(text(5.5e-2, ResidualUnit::Length, false), "55 mm");
-        assert_eq!(text(-0.123_456, ResidualUnit::Length, false), "123 mm");
-        assert_eq!(text(1.5, ResidualUnit::Length, true), "1.5 m/s");
-        assert_eq!(text(1.139e-6, ResidualUnit::Length, false), "1.1e-3 mm");
-        assert_eq!(text(1.0, ResidualUnit::Angle, false), "57.3°");
-        assert_eq!(text(0.25, ResidualUnit::Number, false), "0.25");
-        assert_eq!(text(f64::NAN, ResidualUnit::Length, false), "NaN m");
     }
 }

@@ -27,6 +27,7 @@ mod features;
 mod further;
 mod modal;
 mod modes;
+mod residual_text;
 mod sample_run;
 mod sampling;
 mod simulator;

@@ -103,6 +103,11 @@ impl<'s> SampleRun<'s> {
         self.levels().first().map(EnsembleRun::singular_passes).unwrap_or_default()
     }
 
+    /// See [`EnsembleRun::parted`].
+    pub fn parted(&self) -> Option<SimulationError> {
+        self.levels().first().and_then(EnsembleRun::parted)
+    }
+
     /// See [`EnsembleRun::open_constraint`].
     pub fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
         self.levels().iter().find_map(|run| run.open_constraint(stop, schedule))

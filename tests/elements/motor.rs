@@ -1,6 +1,7 @@
 //! Motors: prescribed motions against their formulas, and the torques that they take.
 
 use mbint::inner::results::Bounds;
+use mbint::inner::study::{self, Options};
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::{Findings, curve, distance, distance_from, nominal, read, row};
@@ -206,5 +207,46 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.1, formulation: {formulat
             let error = distance_from(&bounds.times, curve(&bounds, name), law);
             assert!(error < 1e-4, "{name}: {error:e}");
         }
+    }
+}
+
+/// Motors that begin alike and part: on two hinges with one axis, and on bodies that gears couple. They are beyond 1e-4 rad where
+/// 0.2 t³ is, after eight steps; where both say the same, one is redundant and nothing is wrong.
+#[test]
+fn motors_that_part_are_an_error_with_the_time() {
+    let hinges = |more: &str| {
+        format!(
+            "
+bodies: {{ bar: {{ mass: 2, inertia: 0.05, points: {{ A: [-0.3, 0] }} }} }}
+joints:
+  hinge: {{ revolute: [ground, bar.A] }}
+  twin: {{ revolute: [ground, bar.A] }}
+  one: {{ motor: {{ on: hinge, position: t*(1 rad/s) }} }}
+  two: {{ motor: {{ on: twin, position: t*(1 rad/s){more} }} }}
+outputs: {{ x: bar.angle }}
+simulation: {{ duration: 0.5, step: 1e-2 }}
+"
+        )
+    };
+    let gears = |more: &str| {
+        format!(
+            "
+bodies: {{ bar: {{ inertia: 0.05, coordinates: [angle] }}, rim: {{ inertia: 0.05, coordinates: [angle] }} }}
+joints:
+  mesh: {{ gear: {{ between: [bar, rim], ratio: -1 }} }}
+  one: {{ equation: \"bar.angle = t*(1 rad/s)\" }}
+  two: {{ equation: \"rim.angle = -(t*(1 rad/s){more})\" }}
+outputs: {{ x: bar.angle }}
+simulation: {{ duration: 0.5, step: 1e-2 }}
+"
+        )
+    };
+    for text in [hinges(" + 0.2*t^3*(1 rad/s^3)"), gears(" + 0.2*t^3*(1 rad/s^3)")] {
+        let message = study::run(&read(&text), Options::default()).expect_err("they part").to_string();
+        assert!(message.contains("joint `two` contradicts") && message.contains("t = 0.08 s"), "{message}");
+    }
+    for text in [hinges(""), gears("")] {
+        let bounds = nominal(&read(&text));
+        assert!(distance_from(&bounds.times, curve(&bounds, "x"), |t| t) < 1e-9);
     }
 }

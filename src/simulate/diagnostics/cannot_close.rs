@@ -2,7 +2,8 @@
 
 use crate::assemble::ConstraintId;
 use crate::compile::{ClosureRow, compile_start};
-use crate::simulate::error::{NamedValues, SimulationError, residual_text};
+use crate::simulate::error::{NamedValues, SimulationError};
+use crate::simulate::residual_text::residual_text;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
 

@@ -5,6 +5,7 @@ mod cannot_close;
 mod not_finite;
 mod outside;
 mod over_constrained;
+mod parted;
 mod singular;
 mod undetermined;
 
@@ -12,5 +13,6 @@ pub use cannot_close::OpenConstraint;
 pub use not_finite::{not_finite, written};
 pub use outside::outside;
 pub use over_constrained::over_constrained;
+pub use parted::PartingWatch;
 pub use singular::{SingularPass, SingularWatch};
 pub use undetermined::undetermined_outputs;

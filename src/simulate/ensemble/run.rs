@@ -10,7 +10,7 @@ use super::tiling::tiles;
 use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
-use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};
+use crate::simulate::diagnostics::{OpenConstraint, PartingWatch, SingularPass, SingularWatch, not_finite};
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::sampling::{Instants, Sampling};
@@ -51,6 +51,7 @@ struct TileRun<'s> {
     stopped: Option<(usize, Vec<f64>)>,
     /// Search for singular configurations of the first lane.
     watch: Option<SingularWatch<'s>>,
+    parting: Option<PartingWatch<'s>>,
     /// Where outputs are reduced to one number.
     reduction: Option<Reduction<'s>>,
 }
@@ -130,6 +131,7 @@ impl<'s> EnsembleRun<'s> {
                     features: None,
                     stopped: None,
                     watch: None,
+                    parting: None,
                     reduction: None,
                 })
             })
@@ -138,11 +140,12 @@ impl<'s> EnsembleRun<'s> {
         Ok(Self { simulator, tiles, samples: samples.len() })
     }
 
-    /// Also searches for singular configurations that the first sample passes.
+    /// Also searches for singular configurations that the first sample passes, and for constraints that open.
     #[must_use]
     pub fn watching(mut self) -> Self {
         if let Some(tile) = self.tiles.first_mut() {
             tile.watch = Some(SingularWatch::new(self.simulator, &tile.stepper));
+            tile.parting = PartingWatch::new(self.simulator, &tile.stepper);
         }
         self
     }
@@ -214,6 +217,11 @@ impl<'s> EnsembleRun<'s> {
     /// Singular configurations that the first sample has passed, if they are searched for.
     pub fn singular_passes(&self) -> Vec<SingularPass> {
         self.tiles.iter().filter_map(|tile| tile.watch.as_ref()).flat_map(SingularWatch::passes).collect()
+    }
+
+    /// The error of a redundant constraint that the first sample has left open, if they are searched for.
+    pub fn parted(&self) -> Option<SimulationError> {
+        self.tiles.iter().find_map(|tile| tile.parting.as_ref()?.error())
     }
 
     /// The constraint that cannot be closed where a sample stopped: the mechanism locks there. Known for the first sample of
@@ -298,6 +306,9 @@ impl TileRun<'_> {
                 }
                 if let Some(watch) = &mut self.watch {
                     watch.look(&self.stepper, end);
+                }
+                if let Some(parting) = &mut self.parting {
+                    parting.look(&self.stepper, end);
                 }
                 if let Some(switches) = &mut self.switches {
                     switches.end(&self.stepper, h);

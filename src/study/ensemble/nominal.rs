@@ -10,7 +10,7 @@ impl Motions<'_> {
     /// after an interruption.
     ///
     /// # Errors
-    /// Where it cannot be assembled.
+    /// Where it cannot be assembled, or constraints contradict one another on the way.
     pub fn nominal(&self) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
@@ -35,6 +35,9 @@ impl Motions<'_> {
                 }
             }
         });
-        Ok((bands.finish(1, simulated), run.singular_passes()))
+        match run.parted() {
+            Some(parted) => Err(parted),
+            None => Ok((bands.finish(1, simulated), run.singular_passes())),
+        }
     }
 }
