@@ -14,15 +14,18 @@ struct Kept {
     parameters: Vec<bool>,
 }
 
-/// Whether `initial` has the place of a body, and how it is turned.
-fn is_placed(d: &Description, body: usize) -> bool {
-    let given = |is_wanted: fn(&StartValue) -> bool| {
-        let of_body = d.initial.iter().filter(|value| is_wanted(value));
-        of_body.filter(|value| matches!((*value).clone().reference(), Reference::Body(of) if *of == body)).count()
-    };
-    let coordinates = given(|value| matches!(value, StartValue::Coordinate { order: TimeOrder::Position, .. }));
-    let orientations = given(|value| matches!(value, StartValue::Orientation { .. }));
-    coordinates == 3 && (!d.space.spatial || orientations == 1)
+/// Bodies of which `initial` has the place, and how they are turned.
+fn placed(d: &Description) -> Vec<bool> {
+    let mut coordinates = vec![0; d.bodies.len()];
+    let mut is_turned = vec![!d.space.spatial; d.bodies.len()];
+    for value in &d.initial {
+        match value {
+            StartValue::Coordinate { body, order: TimeOrder::Position, .. } => coordinates[*body] += 1,
+            StartValue::Orientation { body, .. } => is_turned[*body] = true,
+            _ => {}
+        }
+    }
+    coordinates.into_iter().zip(is_turned).map(|(count, is_turned)| count == 3 && is_turned).collect()
 }
 
 /// Questions to a subsystem; indices refer to the whole model.
@@ -163,7 +166,8 @@ impl Kept {
         chosen(&joints).into_iter().for_each(|joint| named.extend(&couplings.joints[joint]));
         chosen(&effects).into_iter().for_each(|effect| named.extend(&couplings.effects[effect]));
         // An instance's ground is where a body begins whose place or orientation is not given.
-        let standing = chosen(&bodies).into_iter().filter(|&body| !is_placed(d, body));
+        let placed = placed(d);
+        let standing = chosen(&bodies).into_iter().filter(|&body| !placed[body]);
         named.parts.extend(standing.filter_map(|body| Some(Part::Body(d.bodies[body].standing?.ground))));
         // Bodies that are merged with the ground and have something attached, with the joints towards the ground.
         while let Some(part) = named.parts.pop() {

@@ -27,6 +27,7 @@ mod features;
 mod further;
 mod modal;
 mod modes;
+mod motion_values;
 mod residual_text;
 mod sample_run;
 mod sampling;

@@ -90,10 +90,10 @@ impl Writer<'_, '_> {
         let Value::Mapping(kinds) = &effect.value.value else { return };
         let on_level_ground = |kind: &&Entry| EffectKind::scope_of(&kind.key) == Some(effects::Scope::LevelGround);
         let Some(kind) = kinds.first().filter(on_level_ground) else { return };
-        let is_level = |up: usize| !frame.is_turned() && !frame.mirrors.axes().any(|axis| axis == up);
+        let is_mirrored = |up: usize| frame.mirrors.axes().any(|axis| axis == up);
         // A turn about z leaves the ground across z as it is.
-        let in_space = is_level(2) || (frame.turned == Turned::ByAngle && !frame.mirrors.axes().any(|axis| axis == 2));
-        let in_plane = is_level(1) || kind.value.get("wheel").is_none();
+        let in_space = frame.turned != Turned::InSpace && !is_mirrored(2);
+        let in_plane = (!frame.is_turned() && !is_mirrored(1)) || kind.value.get("wheel").is_none();
         let name = format!("`{}`", kind.key);
         self.parts.inclined.push(Inclined { at: kind.key_span.clone(), name, is_level: [in_plane, in_space] });
     }

@@ -1,10 +1,10 @@
 //! Which term of the equations is no finite number at a state.
 
-use rustc_hash::FxHashMap;
 use symdiff::{Binary, Expr, Graph, Node, Unary};
 
 use crate::assemble::System;
 use crate::compile::Layout;
+use crate::simulate::motion_values::motion_values;
 
 /// Operations of a term that are written out; deeper ones are left out.
 const DEEPEST: usize = 4;
@@ -12,15 +12,7 @@ const DEEPEST: usize = 4;
 /// A term that is no finite number, and the equation that it is part of: `` `1/t` in the motion of rod.angle ``. `None` where all equations
 /// have finite values. `state` holds the values of the layout's registers.
 pub fn not_finite(system: &System, layout: &Layout, state: &[f64], time: f64) -> Option<String> {
-    let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
-    let mut set = |symbols: &[Expr], first: usize| {
-        values.extend(symbols.iter().zip(&state[first..]).map(|(&symbol, &value)| (symbol, value)));
-    };
-    let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
-    set(&parameters, layout.parameters.start);
-    set(&system.q, layout.q.start);
-    set(&system.v, layout.v.start);
-    values.insert(system.time, time);
+    let values = motion_values(system, layout, state, time);
     // Reactions and accelerations that follow from a term are not finite either; they say nothing of where it comes from.
     let value_of = |symbol: Expr| values.get(&symbol).copied().unwrap_or(0.0);
     let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());

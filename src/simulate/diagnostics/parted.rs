@@ -1,12 +1,11 @@
 //! Constraints that others imply at the start and contradict later: two motors that begin alike and then part. The motion follows
 //! the others, and the redundant constraint stays open.
 
-use rustc_hash::FxHashMap;
 use symdiff::Expr;
 
-use crate::assemble::{ConstraintId, ResidualUnit, System};
-use crate::compile::Layout;
+use crate::assemble::{ConstraintId, ResidualUnit};
 use crate::simulate::error::SimulationError;
+use crate::simulate::motion_values::motion_values;
 use crate::simulate::residual_text::residual_text;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
@@ -29,9 +28,10 @@ pub struct Parted {
 #[derive(Clone, Debug)]
 pub struct PartingWatch<'s> {
     simulator: &'s Simulator,
-    redundant: Vec<(ConstraintId, Expr)>,
-    /// Register of each symbol.
-    registers: FxHashMap<Expr, usize>,
+    /// The redundant constraints, and their residuals.
+    constraints: Vec<ConstraintId>,
+    residuals: Vec<Expr>,
+    /// The layout's registers.
     state: Vec<f64>,
     found: Option<Parted>,
 }
@@ -39,20 +39,17 @@ pub struct PartingWatch<'s> {
 impl<'s> PartingWatch<'s> {
     /// Nothing where no constraint is redundant, or none depends on the time: those that agree then stay in agreement.
     pub fn new(simulator: &'s Simulator, stepper: &Stepper) -> Option<Self> {
-        let system = &simulator.system;
-        let constraint = |id: &ConstraintId| Some((*id, *system.constraint.get(id.number())?));
-        let redundant: Vec<_> = simulator.mobility.redundant.iter().filter_map(constraint).collect();
-        if redundant.is_empty() {
+        let all = &simulator.system.constraint;
+        let of_positions = |id: &ConstraintId| Some((*id, *all.get(id.number())?));
+        let (constraints, residuals): (Vec<_>, Vec<_>) =
+            simulator.mobility.redundant.iter().filter_map(of_positions).unzip();
+        if constraints.is_empty() {
             return None;
         }
-        let (registers, state) = (registers(system, &simulator.program.layout), stepper.lane(0));
-        let at = |time: f64| {
-            let value = |symbol| if symbol == system.time { time } else { number(&registers, &state, symbol) };
-            system.graph.evaluate(&system.constraint, value)
-        };
-        let [first, others @ ..] = TIMES.map(at);
+        let state = stepper.lane(0);
+        let [first, others @ ..] = TIMES.map(|time| values(simulator, all, &state, time));
         let changes = others.iter().any(|values| values != &first);
-        changes.then_some(Self { simulator, redundant, registers, state, found: None })
+        changes.then_some(Self { simulator, constraints, residuals, state, found: None })
     }
 
     /// Examines the step that has just ended.
@@ -62,10 +59,8 @@ impl<'s> PartingWatch<'s> {
         }
         stepper.copy_lane(0, &mut self.state);
         let system = &self.simulator.system;
-        let exprs: Vec<Expr> = self.redundant.iter().map(|(_, expr)| *expr).collect();
-        let value = |symbol| if symbol == system.time { time } else { number(&self.registers, &self.state, symbol) };
-        let residuals = system.graph.evaluate(&exprs, value);
-        self.found = self.redundant.iter().zip(residuals).find_map(|(&(constraint, _), residual)| {
+        let residuals = values(self.simulator, &self.residuals, &self.state, time);
+        self.found = self.constraints.iter().zip(residuals).find_map(|(&constraint, residual)| {
             let size = if system[constraint].unit == ResidualUnit::Length { system.length } else { 1.0 };
             (residual.abs() > OPEN * size).then_some(Parted { constraint, time, residual })
         });
@@ -80,13 +75,8 @@ impl<'s> PartingWatch<'s> {
     }
 }
 
-/// Registers of the positions, velocities and parameters.
-fn registers(system: &System, layout: &Layout) -> FxHashMap<Expr, usize> {
-    let parameters = system.parameters.iter().map(|parameter| parameter.symbol).zip(layout.parameters.clone());
-    let positions = system.q.iter().copied().zip(layout.q.clone());
-    parameters.chain(positions).chain(system.v.iter().copied().zip(layout.v.clone())).collect()
-}
-
-fn number(registers: &FxHashMap<Expr, usize>, state: &[f64], symbol: Expr) -> f64 {
-    registers.get(&symbol).map_or(0.0, |&register| state[register])
+/// Values of expressions of positions, velocities and the time.
+fn values(simulator: &Simulator, exprs: &[Expr], state: &[f64], time: f64) -> Vec<f64> {
+    let values = motion_values(&simulator.system, &simulator.program.layout, state, time);
+    simulator.system.graph.evaluate(exprs, |symbol| values.get(&symbol).copied().unwrap_or(0.0))
 }

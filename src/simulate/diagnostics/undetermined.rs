@@ -10,6 +10,7 @@ use symdiff::Expr;
 
 use crate::assemble::{OutputId, System};
 use crate::compile::{Layout, StartProgram};
+use crate::simulate::motion_values::motion_values;
 use crate::simulate::start::{Mobility, jacobian_rows, move_apart, spread};
 
 /// A derivative along a null vector below this share of the whole gradient is zero.
@@ -56,10 +57,7 @@ fn null_vectors(system: &System, start: &StartProgram, state: &[f64], count: usi
 
 /// The state's positions, and velocities, accelerations and multipliers in general position.
 fn general_values(system: &System, layout: &Layout, state: &[f64]) -> FxHashMap<Expr, f64> {
-    let mut values = FxHashMap::default();
-    let parameters = system.parameters.iter().map(|parameter| parameter.symbol);
-    values.extend(parameters.zip(layout.parameters.clone().map(|register| state[register])));
-    values.extend(system.q.iter().copied().zip(layout.q.clone().map(|register| state[register])));
+    let mut values = motion_values(system, layout, state, 0.0);
     let free = [&system.v, &system.w, &system.lambda];
     let free = free.into_iter().flatten().copied().enumerate();
     values.extend(free.map(|(place, symbol)| (symbol, 1.0 + spread(3, place))));

@@ -1,12 +1,12 @@
 //! Rank of the constraints at the start: degrees of freedom, redundant constraints, singular starts.
 
-use rustc_hash::FxHashMap;
 use symdiff::{Expr, Tile, slopes};
 
 use super::general_position::{move_apart, pivot_samples};
 use super::rank::{dependent_of_sizes, row_size};
 use crate::assemble::{ConstraintId, System};
 use crate::compile::{StartProgram, Tapes};
+use crate::simulate::motion_values::motion_values;
 
 /// Rows of Φ_q that are independent of the others by less than this (scaled) count as dependent.
 pub const DEPENDENT: f64 = 1e-8;
@@ -55,14 +55,7 @@ pub fn contradiction(
     if suspects.is_empty() || !system.has_states() {
         return None;
     }
-    let layout = &start.layout;
-    let registers = [(&system.q, &layout.q), (&system.v, &layout.v)];
-    let mut values: FxHashMap<Expr, f64> =
-        system.parameters.iter().map(|parameter| (parameter.symbol, parameter.nominal)).collect();
-    for (symbols, registers) in registers {
-        values.extend(symbols.iter().copied().zip(registers.clone().map(|register| nominal[register])));
-    }
-    // The time is zero.
+    let values = motion_values(system, &start.layout, nominal, 0.0);
     let number = |expr: Expr| values.get(&expr).copied().unwrap_or(0.0);
     let derivatives = slopes(&system.graph, &system.velocity_constraint, &system.v, number);
     let mut rows = jacobian_rows(system, start, nominal);
