@@ -140,6 +140,17 @@ pub fn has_kink(graph: &Graph, expr: Expr) -> bool {
     })
 }
 
+/// Whether an expression jumps: a `floor`, an `atan2`, a `sign`, a condition.
+pub fn jumps(graph: &Graph, expr: Expr) -> bool {
+    graph.reachable(&[expr]).into_iter().any(|part| {
+        matches!(
+            graph.node(part),
+            Node::Unary(Unary::Floor | Unary::Sign, _)
+                | Node::Binary(Binary::Atan2 | Binary::Select | Binary::SelectElse, ..)
+        )
+    })
+}
+
 fn depends(graph: &Graph, expr: Expr, on: &[Expr]) -> bool {
     let symbols = graph.symbols_of(&[expr]);
     on.iter().any(|symbol| symbols.binary_search(symbol).is_ok())

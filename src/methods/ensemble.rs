@@ -170,6 +170,9 @@ pub trait Ensemble: Sync {
     /// Whether an output's formula has kinks.
     fn has_kink(&self, output: usize) -> bool;
 
+    /// Whether an output's formula jumps.
+    fn jumps(&self, output: usize) -> bool;
+
     /// From the least to the largest value of an output in a row that has been simulated so far, by whatever asked for it; empty where
     /// that is not noted.
     fn seen(&self, _row: usize, _output: usize) -> Range {

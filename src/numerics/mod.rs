@@ -11,6 +11,7 @@
 
 mod along;
 mod bernstein;
+mod brink;
 mod cheapest;
 mod chebyshev;
 mod course;
@@ -47,6 +48,7 @@ mod taylor;
 mod tensor;
 mod time_shift;
 
+pub use brink::to_brinks;
 pub use cheapest::{Linear, Power, cheapest};
 pub use course::{Course, Phase};
 pub use decay::truncation;

@@ -31,6 +31,7 @@ mod formulas;
 mod formulations;
 mod hard_cases;
 mod honesty;
+mod honesty_jumps;
 mod honesty_search;
 mod humanoid;
 mod indexing;

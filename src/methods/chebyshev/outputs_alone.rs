@@ -36,6 +36,10 @@ impl Ensemble for OutputsAlone<'_> {
         self.0.has_kink(output)
     }
 
+    fn jumps(&self, output: usize) -> bool {
+        self.0.jumps(output)
+    }
+
     fn seen(&self, row: usize, output: usize) -> Range {
         self.0.seen(row, output)
     }

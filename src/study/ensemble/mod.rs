@@ -16,7 +16,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
-use crate::compile::has_kink;
+use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, DenseMotions, Effort, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, StopCause, Until,
@@ -269,6 +269,11 @@ impl Ensemble for Motions<'_> {
     fn has_kink(&self, output: usize) -> bool {
         let system = &self.simulator.system;
         has_kink(&system.graph, system.outputs[output].expr)
+    }
+
+    fn jumps(&self, output: usize) -> bool {
+        let system = &self.simulator.system;
+        jumps(&system.graph, system.outputs[output].expr)
     }
 
     fn seen(&self, row: usize, output: usize) -> Range {

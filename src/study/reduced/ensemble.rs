@@ -154,6 +154,10 @@ impl Ensemble for ReducedEnsemble<'_> {
         false
     }
 
+    fn jumps(&self, _: usize) -> bool {
+        false
+    }
+
     fn seen(&self, row: usize, output: usize) -> Range {
         self.seen.range(row, output)
     }

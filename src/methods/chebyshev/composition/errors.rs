@@ -142,9 +142,14 @@ impl Row<'_> {
         for (ways, at_extremes) in ways.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
             let mut own = vec![0.0; found.len()];
             for (way, at_extremes) in ways.iter().zip(at_extremes) {
-                own.iter_mut().zip(at_extremes).for_each(|(own, &moved)| *own = largest([*own, moved]));
                 let moves_far = |&output: &usize| at_extremes[output] > FAR * found[output].range.width();
                 let far: Vec<usize> = (0..found.len()).filter(moves_far).collect();
+                for (output, (own, &moved)) in own.iter_mut().zip(at_extremes).enumerate() {
+                    // At a brink the least of moves leads to the other side.
+                    if !(moves_far(&output) && self.ensemble.jumps(output)) {
+                        *own = largest([*own, moved]);
+                    }
+                }
                 for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), way)) {
                     let (from, to) = (found[output].range, shifted.range);
                     own[output] = largest([from.lower - to.lower, from.upper - to.upper, own[output]]);
@@ -176,7 +181,12 @@ impl Row<'_> {
         way: &Moves,
     ) -> Vec<Extent> {
         let by_block = outputs.chunk_by(|a, b| block(*a) == block(*b));
-        by_block.flat_map(|outputs| self.block_near(range_search, (outputs, known), way)).collect()
+        let near = |outputs: &[usize]| {
+            let mut ranges = self.block_near(range_search, (outputs, known), way);
+            self.to_brinks(outputs, &mut ranges, way);
+            ranges
+        };
+        by_block.flat_map(near).collect()
     }
 
     /// The same of outputs that are searched together.

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::Row;
 use crate::methods::expansion::{Expansion, Moves};
 use crate::methods::kept::KeptRow;
-use crate::numerics::{Extent, Range, SparseWork, largest, surrogate_error, truncation};
+use crate::numerics::{Extent, Range, SparseWork, largest, surrogate_error, to_brinks, truncation};
 
 /// Values of all outputs that are held at once, and points that are taken together at least.
 const AT_ONCE: usize = 1 << 20;
@@ -164,6 +164,18 @@ impl Row<'_> {
             }
         }
         ends
+    }
+
+    /// Moves ends of the ranges of outputs that jump to the brinks, with the motion moved.
+    pub(super) fn to_brinks(&self, outputs: &[usize], found: &mut [Extent], way: &Moves) {
+        let jumping: Vec<usize> = (0..outputs.len()).filter(|&place| self.ensemble.jumps(outputs[place])).collect();
+        if jumping.is_empty() {
+            return;
+        }
+        let wanted: Vec<usize> = jumping.iter().map(|&place| outputs[place]).collect();
+        let mut extents: Vec<Extent> = jumping.iter().map(|&place| found[place].clone()).collect();
+        to_brinks(&mut extents, |points| self.evaluate_some(&wanted, points, std::slice::from_ref(way)));
+        jumping.into_iter().zip(extents).for_each(|(place, extent)| found[place] = extent);
     }
 
     /// The polynomials' values: 2n lines of points.

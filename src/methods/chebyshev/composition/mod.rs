@@ -243,9 +243,9 @@ impl<'r> Row<'r> {
         composed.sort_unstable();
         let composed_values = of(&composed, &values, all.len());
         let functions = self.functions(composed, Some(&degrees), (&rounding, &places), &by_closure);
-        for (&output, extent) in
-            functions.outputs.iter().zip(range_search.range(&functions, &composed_values, previous))
-        {
+        let mut ranges = range_search.range(&functions, &composed_values, previous);
+        self.to_brinks(&functions.outputs, &mut ranges, &Moves::default());
+        for (&output, extent) in functions.outputs.iter().zip(ranges) {
             if extent.range.width().is_finite() {
                 extents[output] = extent;
             } else {
@@ -273,7 +273,7 @@ impl<'r> Row<'r> {
             sorted.defects.push(defect);
             if self.disagrees(output, compared, at_nodes) {
                 sorted.lost.push(output);
-            } else if defect <= self.alike(output, rounding) {
+            } else if defect <= self.alike(output, rounding) && !self.ensemble.jumps(output) {
                 sorted.alike.push(output);
             } else {
                 sorted.composed.push(output);

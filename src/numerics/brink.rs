@@ -1,0 +1,151 @@
+//! Ends of ranges beside jumps. Where a function jumps, its range ends at the brink, and a search that fits peaks stops short of it.
+
+use super::extent::Extent;
+
+/// Distances from an end at which a jump is looked for: from 2 downwards, each a quarter of the one before.
+const DISTANCES: i32 = 26;
+/// A drop by this share of the range's width may be a jump.
+const DROP: f64 = 1e-3;
+/// After so many halvings two numbers in [−1, 1] have no other between them.
+const HALVINGS: usize = 64;
+
+/// Moves ends that stand short of a jump to its brink: along each axis, the first drop beside the end is halved until nothing lies between
+/// its two sides. `evaluate` gives all functions at some ξ, function by function.
+///
+/// Over several parameters the brink may rise along itself; an end that was moved may be off by as much again.
+pub fn to_brinks(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) {
+    let mut drops = drops(extents, &evaluate);
+    for _ in 0..HALVINGS {
+        drops.retain(|drop| !drop.is_halved());
+        if drops.is_empty() {
+            break;
+        }
+        let middles: Vec<Vec<f64>> = drops.iter().map(|drop| drop.point(drop.middle())).collect();
+        let values = evaluate(&middles);
+        for (place, drop) in drops.iter_mut().enumerate() {
+            drop.halve(values[drop.function * middles.len() + place]);
+            let value = &values[drop.function * middles.len() + place..][..1];
+            include(&mut extents[drop.function], &middles[place..=place], value);
+        }
+    }
+}
+
+/// Takes in values beside a brink. Over one parameter they end there.
+fn include(extent: &mut Extent, points: &[Vec<f64>], values: &[f64]) {
+    let gap = extent.gap;
+    extent.include(points, values);
+    if extent.places[0].len() == 1 {
+        extent.gap = gap;
+    }
+}
+
+/// Two places on a line along an axis through an end, between which a function drops.
+struct Drop {
+    function: usize,
+    sign: f64,
+    end: Vec<f64>,
+    axis: usize,
+    /// Where the line is on the high side and on the low side, with the values there.
+    high: (f64, f64),
+    low: (f64, f64),
+}
+
+impl Drop {
+    fn point(&self, xi: f64) -> Vec<f64> {
+        let mut point = self.end.clone();
+        point[self.axis] = xi;
+        point
+    }
+
+    fn middle(&self) -> f64 {
+        0.5 * (self.high.0 + self.low.0)
+    }
+
+    /// Whether no number lies between its sides.
+    fn is_halved(&self) -> bool {
+        let middle = self.middle();
+        middle == self.high.0 || middle == self.low.0
+    }
+
+    /// Takes in the value at the middle: it belongs to the side whose value it is nearer to.
+    fn halve(&mut self, value: f64) {
+        let middle = (self.middle(), value);
+        let is_low = (value - self.low.1).abs() < (value - self.high.1).abs();
+        *(if is_low { &mut self.low } else { &mut self.high }) = middle;
+    }
+}
+
+/// The first drop beside each end, along each axis, either way.
+fn drops(extents: &mut [Extent], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Drop> {
+    let mut drops = Vec::new();
+    let mut points = Vec::new();
+    // Number of the points along each line.
+    let mut lines = Vec::new();
+    for (function, extent) in extents.iter().enumerate().filter(|(_, extent)| extent.range.width() > 0.0) {
+        let ends = [(-1.0, extent.range.lower), (1.0, extent.range.upper)];
+        for (end, (sign, value)) in extent.places.iter().zip(ends) {
+            for axis in 0..end.len() {
+                for way in [-1.0, 1.0] {
+                    let from = end[axis];
+                    let distances = (0..DISTANCES).rev().map(|power| 2.0 * 0.25_f64.powi(power));
+                    let mut along: Vec<f64> = distances.map(|by| (from + way * by).clamp(-1.0, 1.0)).collect();
+                    along.dedup();
+                    along.retain(|&xi| xi != from);
+                    let side = (from, value);
+                    let drop = Drop { function, sign, end: end.clone(), axis, high: side, low: side };
+                    points.extend(along.iter().map(|&xi| drop.point(xi)));
+                    lines.push(along);
+                    drops.push(drop);
+                }
+            }
+        }
+    }
+    let values = evaluate(&points);
+    let mut first = 0;
+    let mut lines = lines.into_iter();
+    drops.retain_mut(|drop| {
+        let along = lines.next().unwrap_or_default();
+        let values = &values[drop.function * points.len() + first..][..along.len()];
+        let least = DROP * extents[drop.function].range.width();
+        include(&mut extents[drop.function], &points[first..][..along.len()], values);
+        first += along.len();
+        for (&xi, &value) in along.iter().zip(values) {
+            if drop.sign * (drop.high.1 - value) > least {
+                drop.low = (xi, value);
+                return true;
+            }
+            drop.high = (xi, value);
+        }
+        false
+    });
+    drops
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::extremes::extremes;
+    use super::*;
+
+    /// A sawtooth over two parameters ends at its teeth, where the search alone stops a millionth short.
+    #[test]
+    fn a_sawtooth_ends_at_its_teeth() {
+        let saw = |xi: &[f64]| (3.0 + 1.3 * xi[0] + 0.4 * xi[1]).rem_euclid(1.0);
+        let evaluate = |points: &[Vec<f64>]| points.iter().map(|xi| saw(xi)).collect::<Vec<f64>>();
+        let mut found = extremes(&[8, 8], &[0.0], evaluate);
+        to_brinks(&mut found, evaluate);
+        assert!(found[0].range.lower < 1e-15 && found[0].range.upper > 1.0 - 1e-15, "{found:?}");
+    }
+
+    /// A smooth function is left as it was, and so is one that is constant.
+    #[test]
+    fn a_smooth_function_is_left() {
+        let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
+            points.iter().map(|xi| (2.0 * xi[0]).sin()).chain(points.iter().map(|_| 3.0)).collect()
+        };
+        let found = extremes(&[16], &[0.0; 2], evaluate);
+        let mut moved = found.clone();
+        to_brinks(&mut moved, evaluate);
+        assert!((moved[0].range.upper - 1.0).abs() < 1e-12 && (moved[0].range.lower + 1.0).abs() < 1e-12);
+        assert_eq!(moved[1], found[1]);
+    }
+}
