@@ -44,6 +44,32 @@ fn a_cylinder_behind_its_valve_moves_as_scipy_says() {
     }
 }
 
+/// The valve passes zero, where both of its edges begin to pass oil at once. SciPy 1.17, `solve_ivp`, Radau: 0.926590599 m at 0.5 s.
+#[test]
+fn a_valve_passes_zero() {
+    let model = |simulation: &str| {
+        format!(
+            "
+bodies: {{ b: {{ mass: 50, coordinates: [x] }} }}
+effects:
+  c: {{ hydraulic_cylinder: {{ between: [ground, b], bore: 0.04, rod: 0.025, retracted: 0.5, stroke: 1, dead_volume: 1e-4, valve: 0.3*sin(8*t),
+    rated_flow: 20 L/min, rated_drop: 35 bar, supply: 100 bar, piston_pressure: 30 bar, rod_pressure: 45 bar, leakage: 1e-12 }} }}
+  l: {{ spring_damper: {{ between: [ground, b], along: x, damping: 2000, free_length: 0 }} }}
+initial: {{ b.x: 0.9, b.vx: 0 }}
+outputs: {{ x: b.x }}
+simulation: {{ duration: 0.5, output_step: 0.025, {simulation} }}
+"
+        )
+    };
+    for simulation in ["tolerance: 1e-4", "tolerance: 1e-6", "tolerance: 1e-4, scheme: explicit"] {
+        let bounds = run(&read(&model(simulation)));
+        let x = band(output(&bounds, "x"), Method::Chebyshev);
+        let last = bounds.times.len() - 1;
+        let (off, stated) = ((x.lower[last] - 0.926590599).abs(), x.error.total[last]);
+        assert!(off <= stated + 1e-9 && stated < 1e-5, "{simulation}: off by {off:e}, stated {stated:e}");
+    }
+}
+
 /// With its valve closed, oil is a spring: p = p₀ − E ln(V/V₀) in either chamber, whatever the motion is, and oscillations about the
 /// middle have ω² = E (A₁²/V₁ + A₂²/V₂)/m.
 #[test]

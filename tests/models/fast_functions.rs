@@ -51,6 +51,26 @@ fn a_burst_is_resolved() {
     assert!(off < 1e-4 * 0.04, "{off:e}");
 }
 
+/// A condition and its negative change at the same time, whatever the parameters are: that is one jump. Here the signs' sum is 10 to the jump, and −10 then.
+#[test]
+fn jumps_that_coincide_are_one() {
+    let text = pushed("5*sign(sin(2*t) + 1e-3 - 1e-3) - 5*sign(-sin(2*t))", 2.0);
+    let bounds = nominal(&read(&text));
+    let (jump, force) = (0.5 * std::f64::consts::PI, 10.0 / 48.0);
+    // About the equilibrium 10/48 m until sin(2t) changes its sign, about −10/48 m then.
+    let first = |t: f64| (force + (0.02 - force) * (4.0 * t).cos(), -4.0 * (0.02 - force) * (4.0 * t).sin());
+    let x = |t: f64| {
+        if t < jump {
+            return first(t).0;
+        }
+        let (at, speed) = first(jump);
+        let since = 4.0 * (t - jump);
+        -force + (at + force) * since.cos() + speed / 4.0 * since.sin()
+    };
+    let off = distance_from(&bounds.times, curve(&bounds, "x"), x);
+    assert!(off < 1e-4 * 0.6, "{off:e}");
+}
+
 /// Two square waves, of which some phases make jumps coincide: no step tells these apart, however short.
 #[test]
 fn jumps_that_may_coincide_are_no_reason_for_ever_shorter_steps() {

@@ -20,6 +20,9 @@ const APART: f64 = 4.0;
 /// Steps are not divided further than to this share of the duration for jumps that coincide for some parameters only.
 const COINCIDING: f64 = 1e-6;
 
+/// Steps are not divided further than to this share of the duration for jumps that coincide for all parameters: a condition and its negative.
+const ONE: f64 = 1e-9;
+
 /// Halvings of a step. A mechanism's constraints are divided by the square of the step, and so is their rounding.
 const MOST_HALVINGS: u32 = 24;
 const MOST_HALVINGS_WITH_CONSTRAINTS: u32 = 10;
@@ -205,7 +208,8 @@ impl TimeFunctions {
                 continue;
             }
             // Jumps that some parameters bring together make a pulse of no more than a step, which no one sees.
-            if !unknown && sure < 2 && h <= COINCIDING * self.duration {
+            let shortest = if sure < 2 { COINCIDING } else { ONE };
+            if !unknown && h <= shortest * self.duration {
                 continue;
             }
             seen += 1;
