@@ -179,6 +179,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
         self.applied.room = Some(room);
     }
 
+    fn overlaps_to(&mut self, gap: Scalar<'g>, deepest: Scalar<'g>) {
+        self.applied.overlap = Some((gap, deepest));
+    }
+
     fn sensor(&mut self, measure: Sensor, value: Scalar<'g>) {
         self.applied.sensor(measure, value);
     }

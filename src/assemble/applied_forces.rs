@@ -55,6 +55,8 @@ pub struct AppliedForces<'g> {
     measured: Vec<(Sensor, Scalar<'g>)>,
     /// How much room the effect has at the start.
     pub room: Option<Scalar<'g>>,
+    /// The gap of its surfaces, and how deep they may overlap.
+    pub overlap: Option<(Scalar<'g>, Scalar<'g>)>,
     /// The condition of what is added now, if it has one.
     guard: Option<Guard<'g>>,
     /// What acts under conditions.
@@ -74,6 +76,7 @@ impl<'g> AppliedForces<'g> {
             touched: BTreeSet::new(),
             measured: Vec::new(),
             room: None,
+            overlap: None,
             guard: None,
             guarded: Vec::new(),
         }
@@ -84,6 +87,7 @@ impl<'g> AppliedForces<'g> {
         self.touched.clear();
         self.measured.clear();
         self.room = None;
+        self.overlap = None;
         self.guard = None;
     }
 

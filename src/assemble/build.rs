@@ -13,7 +13,7 @@ use super::cuts::{cuts_of_several_axes, other_cuts};
 use super::links::links_of;
 use super::mechanism::Mechanism;
 use super::recursion;
-use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, System};
+use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, Overlap, System};
 use super::tree::Tree;
 use crate::grammar::Sensor;
 use crate::model::{Analysis, Description, Formulation, Joint};
@@ -223,7 +223,9 @@ fn apply_effects<'g>(
         let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);
         let length = measured.map(|&(_, length)| length.expr());
         let room = applied.room.map(Scalar::expr);
-        effects.push(EffectInfo { name, kind, forces, expressions: graph.len() - nodes, enclosed, length, room });
+        let overlap = applied.overlap.map(|(gap, deepest)| Overlap { gap: gap.expr(), deepest: deepest.expr() });
+        let expressions = graph.len() - nodes;
+        effects.push(EffectInfo { name, kind, forces, expressions, enclosed, length, room, overlap });
     }
     Ok((applied, effects))
 }

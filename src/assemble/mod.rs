@@ -62,6 +62,6 @@ pub use build::{
 pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inventory::Inventory;
 pub use system::{
-    ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, SampledState,
-    StartCondition, System, UncertainParameter,
+    ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,
+    SampledState, StartCondition, System, UncertainParameter,
 };

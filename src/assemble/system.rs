@@ -111,6 +111,17 @@ pub struct EffectInfo {
     pub length: Option<Expr>,
     /// How much room it has, m: none at a start outside of what it is in.
     pub room: Option<Expr>,
+    /// How deep its surfaces may overlap, where that has a limit.
+    pub overlap: Option<Overlap>,
+}
+
+/// Surfaces of which what lies within them has no nearest side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overlap {
+    /// m
+    pub gap: Expr,
+    /// m
+    pub deepest: Expr,
 }
 
 /// Something that the model says and no equation holds.

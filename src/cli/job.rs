@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::console::Console;
 use super::kept_run::{KeptRun, context, expected};
-use super::overview::{damped, excluded, unreliable};
+use super::overview::{damped, excluded, too_deep, unreliable};
 use super::progress::Progress;
 use super::request::{Job, Request, Settings};
 use super::resolution::{self, resolution};
@@ -156,6 +156,9 @@ pub(super) fn report(done: &Done, console: &Console) {
         console.warning(&format!(
             "{name}: the local errors of a sample's steps add up to {ratio:.3e} times the tolerance: what needs that sample is unreliable"
         ));
+    }
+    if let Some(found) = &done.summary.too_deep {
+        console.warning(&format!("{name}: {}", too_deep(found)));
     }
     if let Some(message) = damped(&done.summary) {
         console.warning(&format!("{name}: {message}"));

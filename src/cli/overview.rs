@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::console::{BOLD, coordinates, count, file_names};
+use super::structure::digits;
 use super::table::{Align, Table};
 use super::verdicts;
 use crate::export::rounded as rounded_number;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
+use crate::results::{
+    AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary, TooDeepSummary,
+};
 
 /// The largest width and error of each band.
 fn errors(errors: &[ErrorSummary]) -> String {
@@ -133,6 +136,23 @@ pub(super) fn unreliable(summary: &Summary) -> Option<String> {
 /// A time without the rounding error of a multiple of the output step.
 fn rounded(time: f64) -> f64 {
     (1e9 * time).round() / 1e9
+}
+
+/// Surfaces that a contact does not hold apart any more.
+pub(super) fn too_deep(found: &TooDeepSummary) -> String {
+    let TooDeepSummary { contact, time, depth, deepest } = found;
+    let (time, deepest) = (rounded(*time), digits(1e3 * deepest));
+    match depth {
+        Some(depth) => format!(
+            "the surfaces of `{contact}` overlap by {} mm at {time} s, where its `rounding` and radii allow {deepest} mm: rows from there on are \
+             unreliable; make the contact stiffer, or these larger",
+            digits(1e3 * depth)
+        ),
+        None => format!(
+            "the surfaces of `{contact}` pass through one another in the step to {time} s: rows from there on are unreliable; shorten the step, \
+             or let a `tolerance` choose it"
+        ),
+    }
 }
 
 /// The mode that the steps damp.
@@ -293,6 +313,7 @@ mod tests {
             singular_configurations: vec![],
             damped_mode: None,
             unmet_switch: None,
+            too_deep: None,
             beyond_tolerance: None,
             integration: None,
             alpha: -0.1,

@@ -83,7 +83,7 @@ fn gravity(acceleration: [f64; 3]) -> String {
 }
 
 /// Four significant digits, without zeros at the end.
-fn digits(value: f64) -> String {
+pub(super) fn digits(value: f64) -> String {
     significant(value, 4)
 }
 

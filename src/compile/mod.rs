@@ -45,5 +45,5 @@ pub use start::{compile_nearest_start, compile_start};
 pub use start_equations::Residual;
 pub use start_program::{SampledValue, StartProgram};
 pub use step::compile;
-pub use switches::{Switch, SwitchProgram, compile_switches, has_kink, jumps};
+pub use switches::{Switch, SwitchProgram, compile_overlaps, compile_switches, has_kink, jumps};
 pub use tapes::Tapes;

@@ -9,7 +9,7 @@ use symdiff::{Binary, Expr, Graph, Lowered, Node, Tape, Unary, lower};
 use super::equations::time_derivative;
 use super::layout::Layout;
 use super::tapes::Tapes;
-use crate::assemble::System;
+use crate::assemble::{Overlap, System};
 
 /// The switches of a system over the registers of [`Layout`]. A switch is where one of its values changes its sign.
 #[derive(Clone, Debug)]
@@ -47,14 +47,34 @@ impl SwitchProgram {
 
 /// The switches of a system's equations; `None` where there are none.
 pub fn compile_switches(system: &System) -> Option<SwitchProgram> {
-    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
-    let inputs = layout.inputs(system);
     let mut graph = system.graph.clone();
     let (values, jumps_with) = arguments(system, &mut graph);
+    compile_values(system, graph, &values, jumps_with)
+}
+
+/// Gaps of all surfaces that may not overlap too deeply, and then what is left of these overlaps, in the order of the effects; `None` where
+/// there are none.
+pub fn compile_overlaps(system: &System) -> Option<SwitchProgram> {
+    let overlaps: Vec<Overlap> = system.effects.iter().filter_map(|effect| effect.overlap).collect();
+    let mut graph = system.graph.clone();
+    let mut values: Vec<Expr> = overlaps.iter().map(|overlap| overlap.gap).collect();
+    values.extend(overlaps.iter().map(|overlap| graph.add(overlap.gap, overlap.deepest)));
+    let jumps_with = vec![Vec::new(); values.len()];
+    compile_values(system, graph, &values, jumps_with)
+}
+
+fn compile_values(
+    system: &System,
+    mut graph: Graph,
+    values: &[Expr],
+    jumps_with: Vec<Vec<usize>>,
+) -> Option<SwitchProgram> {
     if values.is_empty() {
         return None;
     }
-    let rates = time_derivative(system, &mut graph, &values);
+    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+    let inputs = layout.inputs(system);
+    let rates = time_derivative(system, &mut graph, values);
     let jumps: Vec<Expr> = system.w.iter().chain(&system.lambda).copied().collect();
     let has_rate: Vec<bool> = values.iter().map(|&value| !depends(&graph, value, &jumps)).collect();
     let known = rates.iter().zip(&has_rate).filter(|(_, known)| **known).map(|(&rate, _)| rate);

@@ -182,6 +182,7 @@ mod tests {
             singular_configurations: vec![],
             damped_mode: None,
             unmet_switch: None,
+            too_deep: None,
             beyond_tolerance: None,
             integration: None,
             alpha: -0.1,

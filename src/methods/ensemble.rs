@@ -102,6 +102,19 @@ impl std::ops::AddAssign for Effort {
     }
 }
 
+/// Surfaces that overlap more deeply than their contact can tell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TooDeep {
+    /// Name of the contact.
+    pub contact: String,
+    /// s
+    pub time: f64,
+    /// m; `None` where they pass through one another within a step.
+    pub depth: Option<f64>,
+    /// m
+    pub deepest: f64,
+}
+
 /// What came of samples that were simulated together.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Simulated {
@@ -111,6 +124,8 @@ pub struct Simulated {
     pub worst_ratio: Option<(Sample, f64)>,
     /// The first row before which such a sum is more than 1.
     pub beyond_tolerance_from: Option<usize>,
+    /// The first surfaces that a contact does not hold apart any more.
+    pub too_deep: Option<TooDeep>,
     /// The first sample that stopped, with its parameters.
     pub stop: Option<(Stop, Sample)>,
     /// Numbers of all samples that stopped.
@@ -131,6 +146,8 @@ impl Simulated {
         self.missing = self.missing.max(shard.missing);
         let beyond = self.beyond_tolerance_from.into_iter().chain(shard.beyond_tolerance_from);
         self.beyond_tolerance_from = beyond.min();
+        let deep = self.too_deep.take().into_iter().chain(shard.too_deep);
+        self.too_deep = deep.min_by(|a, b| a.time.total_cmp(&b.time));
         let ratios = self.worst_ratio.take().into_iter().chain(shard.worst_ratio);
         self.worst_ratio = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a });
     }

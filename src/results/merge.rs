@@ -60,6 +60,8 @@ impl Summary {
             whole.singular_configurations.extend(other.singular_configurations);
             whole.damped_mode = whole.damped_mode.or(other.damped_mode);
             whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
+            let deep = whole.too_deep.take().into_iter().chain(other.too_deep);
+            whole.too_deep = deep.min_by(|a, b| a.time.total_cmp(&b.time));
             whole.beyond_tolerance = whole.beyond_tolerance.into_iter().chain(other.beyond_tolerance).reduce(f64::max);
             whole.add_methods(&other.methods);
             whole

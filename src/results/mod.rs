@@ -43,5 +43,5 @@ pub use statistics::{
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
     AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary,
-    SingularSummary, SubsystemSummary, Summary,
+    SingularSummary, SubsystemSummary, Summary, TooDeepSummary,
 };

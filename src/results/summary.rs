@@ -42,6 +42,9 @@ pub struct Summary {
     /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unmet_switch: Option<f64>,
+    /// The first surfaces that a contact does not hold apart any more, in any sample.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub too_deep: Option<TooDeepSummary>,
     /// How many times the tolerance the local errors of a sample's steps add up to, where that is more than once: rows that need the
     /// sample are unresolved.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -109,6 +112,19 @@ pub struct SingularSummary {
     pub time: f64,
     /// Names of the constraints.
     pub constraints: Vec<String>,
+}
+
+/// Surfaces that overlap more deeply than their contact can tell, or pass through one another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TooDeepSummary {
+    /// Name of the contact.
+    pub contact: String,
+    /// When, s.
+    pub time: f64,
+    /// How deep, m; `None` where they pass through one another within a step.
+    pub depth: Option<f64>,
+    /// How deep the contact may be, m.
+    pub deepest: f64,
 }
 
 /// A mode that the steps damp: its frequency, Hz, and steps that would not, s.

@@ -41,7 +41,7 @@ mod visit;
 
 pub use closure::{Closure, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, ToleranceSchedule, schedule_for_tolerance};
-pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch};
+pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetRun, Observed, Stop};
 pub use error::SimulationError;

@@ -1,7 +1,7 @@
 //! The run of an ensemble of samples, however the schedule's steps are taken.
 
 use super::control::{Controller, Integration, Schedule};
-use super::diagnostics::{OpenConstraint, SingularPass};
+use super::diagnostics::{OpenConstraint, SingularPass, TooDeep};
 use super::ensemble::{Channel, EnsembleRun, ExtrapolatedRun, Observed, Stop};
 use super::error::SimulationError;
 use super::explicit::ExplicitRun;
@@ -111,6 +111,11 @@ impl<'s> SampleRun<'s> {
     /// See [`EnsembleRun::open_constraint`].
     pub fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
         self.levels().iter().find_map(|run| run.open_constraint(stop, schedule))
+    }
+
+    /// See [`EnsembleRun::too_deep`].
+    pub fn too_deep(&self) -> Option<TooDeep> {
+        self.levels().first().and_then(EnsembleRun::too_deep)
     }
 
     /// See [`EnsembleRun::beyond_tolerance_from`].

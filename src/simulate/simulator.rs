@@ -18,8 +18,8 @@ use super::start::{
 use super::statics::Equilibrium;
 use crate::assemble::{EquationId, OutputId, System};
 use crate::compile::{
-    Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_start,
-    compile_switches,
+    Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_overlaps,
+    compile_start, compile_switches,
 };
 use crate::model::Analysis;
 use crate::numerics::Sample;
@@ -187,6 +187,7 @@ pub struct Simulator {
     pub vibrations: Option<Arc<Vibrations>>,
     /// Compiled where steps are controlled.
     switches: OnceLock<Option<SwitchProgram>>,
+    overlaps: OnceLock<Option<SwitchProgram>>,
     /// Found where steps are controlled or watched.
     features: OnceLock<Option<Features>>,
     /// Compiled where rows are closed.
@@ -224,6 +225,7 @@ impl Simulator {
             equilibrium,
             vibrations,
             switches: OnceLock::new(),
+            overlaps: OnceLock::new(),
             features: OnceLock::new(),
             free_closure: OnceLock::new(),
         })
@@ -376,6 +378,11 @@ impl Simulator {
     /// Where the equations switch, if they do.
     pub(super) fn switches(&self) -> Option<&SwitchProgram> {
         self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
+    }
+
+    /// Gaps of surfaces that may not overlap too deeply, if there are any.
+    pub(super) fn overlaps(&self) -> Option<&SwitchProgram> {
+        self.overlaps.get_or_init(|| compile_overlaps(&self.system)).as_ref()
     }
 
     /// Functions of the positions that a step may pass over, if forces have any.

@@ -3,7 +3,7 @@
 use super::internal::InternalError;
 use super::kept::KeptPart;
 use super::reduced::Found;
-use crate::methods::{Ensemble, Method, MethodResult, Simulated, Stop, Validation};
+use crate::methods::{Ensemble, Method, MethodResult, Simulated, Stop, TooDeep, Validation};
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample};
 use crate::results::{Bounds, MethodSummary, Summary};
 use crate::simulate::{ExcitedMode, Schedule, SingularPass, SwitchSearch};
@@ -93,6 +93,12 @@ impl Results {
     /// The first row before which steps have a switch inside them. Steps from a tolerance end there.
     pub fn switched_from(&self) -> Option<usize> {
         self.switches.as_ref().and_then(|(found, _)| found.switched_from)
+    }
+
+    /// The first surfaces that a contact does not hold apart any more, of all samples.
+    pub fn too_deep(&self) -> Option<&TooDeep> {
+        let found = self.simulated().filter_map(|simulated| simulated.too_deep.as_ref());
+        found.min_by(|a, b| a.time.total_cmp(&b.time))
     }
 
     /// The first row that cannot be relied on, whatever a method says of it.

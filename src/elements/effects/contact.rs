@@ -143,6 +143,9 @@ impl ForceElement for Contact {
             touches.map(|touch| law.act(forces, &pair, touch)).collect()
         };
         if let Some(felt) = felt.into_iter().reduce(Felt::and) {
+            if let Some(deepest) = self.deepest(forces, &surface, radius)? {
+                forces.overlaps_to(felt.gap, deepest);
+            }
             felt.measured(forces);
         }
         Ok(())
@@ -155,6 +158,23 @@ fn direction<'g>(forces: &dyn Forces<'g>, formulas: &[Formula; 3]) -> Result<Vec
 }
 
 impl Contact {
+    /// How deep the surfaces may overlap: to the line or the edge that one of them is about. `None` where that does not matter, or where there
+    /// is nothing about it.
+    fn deepest<'g>(
+        &self,
+        forces: &dyn Forces<'g>,
+        surface: &Surface<'g>,
+        radius: Scalar<'g>,
+    ) -> Result<Option<Scalar<'g>>, BuildError> {
+        let deepest = match surface {
+            Surface::Edges(_) => forces.prescribed(&self.rounding)? + radius,
+            Surface::Whole(Shape::Solid(_, reach) | Shape::Hull(_, reach)) => *reach,
+            Surface::Whole(Shape::Round(outer)) => *outer + radius,
+            Surface::Whole(Shape::Plane(_) | Shape::Hollow(_) | Shape::Ground(_)) => return Ok(None),
+        };
+        Ok((!deepest.is_zero()).then_some(deepest))
+    }
+
     /// Of the first body.
     fn surface<'g>(&self, forces: &dyn Forces<'g>, radius: Scalar<'g>) -> Result<Option<Surface<'g>>, BuildError> {
         // A cylinder's axis is no line that all of it is about.

@@ -62,11 +62,16 @@ impl<'s> SwitchWatch<'s> {
         self.after = values;
     }
 
+    /// (value, rate) of a switch at the step's beginning and at its end.
+    pub fn ends(&self, switch: usize, lane: usize) -> [[f64; 2]; 2] {
+        let place = switch * self.tile.width() + lane;
+        [self.before[place], self.after[place]]
+    }
+
     /// The least and the largest value that a switch has in the step between [`begin`](Self::begin) and [`end`](Self::end), as far as its
     /// ends and a change of sign between them show.
     pub fn extent(&self, switch: usize, lane: usize, h: f64) -> [f64; 2] {
-        let place = switch * self.tile.width() + lane;
-        let (start, end) = (self.before[place], self.after[place]);
+        let [start, end] = self.ends(switch, lane);
         let [low, high] = [start[0].min(end[0]), start[0].max(end[0])];
         match crossing(start, end, h) {
             Some(Crossing { hidden: true, .. }) => [low.min(-high), high.max(-low)],

@@ -10,7 +10,9 @@ use super::tiling::tiles;
 use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
-use crate::simulate::diagnostics::{OpenConstraint, PartingWatch, SingularPass, SingularWatch, not_finite};
+use crate::simulate::diagnostics::{
+    OpenConstraint, OverlapWatch, PartingWatch, SingularPass, SingularWatch, TooDeep, not_finite,
+};
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::sampling::{Instants, Sampling};
@@ -45,6 +47,8 @@ struct TileRun<'s> {
     switches: Option<SwitchExtents<'s>>,
     /// Without a tolerance: whether steps pass over what forces do in space.
     features: Option<FeatureWatch<'s>>,
+    /// Where surfaces may overlap to some depth only.
+    overlaps: Option<OverlapWatch<'s>>,
     /// Whether the first rows were advanced to.
     begun: bool,
     /// The first of the samples that stopped, and its state at the beginning of the failed step.
@@ -118,7 +122,6 @@ impl<'s> EnsembleRun<'s> {
                 stepper.retire(count..width);
                 Ok(TileRun {
                     simulator,
-                    stepper,
                     sampling: Sampling::new(simulator, &start),
                     observes_accelerations,
                     accelerations: None,
@@ -129,6 +132,8 @@ impl<'s> EnsembleRun<'s> {
                     beyond: None,
                     switches: None,
                     features: None,
+                    overlaps: simulator.overlaps().map(|program| OverlapWatch::new(program, &stepper)),
+                    stepper,
                     stopped: None,
                     watch: None,
                     parting: None,
@@ -246,6 +251,12 @@ impl<'s> EnsembleRun<'s> {
         self.tiles.iter().filter_map(|tile| tile.beyond).min()
     }
 
+    /// The first surfaces that a contact does not hold apart any more.
+    pub fn too_deep(&self) -> Option<TooDeep> {
+        let found = self.tiles.iter().filter_map(|tile| tile.overlaps.as_ref()?.found());
+        found.min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+
     /// The sample with the largest sum of local errors over the tolerance, and that sum.
     pub fn largest_error_ratio(&self) -> Option<(usize, f64)> {
         let ratios = self.tiles.iter().flat_map(|tile| {
@@ -297,6 +308,9 @@ impl TileRun<'_> {
                 if let Some(features) = &mut self.features {
                     features.begin(&self.stepper);
                 }
+                if let Some(overlaps) = &mut self.overlaps {
+                    overlaps.begin(&self.stepper);
+                }
                 let failures = match &mut self.lanes {
                     Some(lanes) => lanes.step(&mut self.stepper, h, end),
                     None => self.stepper.step(h, end),
@@ -315,7 +329,9 @@ impl TileRun<'_> {
                 }
                 let features = self.features.as_mut();
                 let hidden = features.is_some_and(|it| it.end_hidden(&self.stepper, self.count, (h, end)));
-                self.beyond = self.beyond.or(hidden.then_some(row));
+                let (overlaps, is_divided) = (self.overlaps.as_mut(), self.lanes.is_some());
+                let is_too_deep = overlaps.is_some_and(|it| it.end(&self.stepper, self.count, (h, end), is_divided));
+                self.beyond = self.beyond.or((hidden || is_too_deep).then_some(row));
                 self.sample(end);
                 self.reduce(end);
                 stops.extend(failures.into_iter().map(|StepFailure { lane, time, equation }| Stop {

@@ -24,7 +24,7 @@ use crate::methods::{
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
     Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, SampleRun, Schedule,
-    SimulationError, Simulator, Stop, choose_independent,
+    SimulationError, Simulator, Stop, TooDeep, choose_independent,
 };
 
 use jet::SampleJet;
@@ -207,12 +207,22 @@ impl<'a> Motions<'a> {
         Simulated {
             effort: effort(run.counters()),
             beyond_tolerance_from: run.beyond_tolerance_from(),
+            too_deep: run.too_deep().map(|found| self.too_deep(found)),
             worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
             reduced,
             missing: self.schedule.rows - reached,
         }
+    }
+}
+
+impl Motions<'_> {
+    fn too_deep(&self, found: TooDeep) -> methods::TooDeep {
+        let mut contacts = self.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
+        let contact = contacts.nth(found.contact).map(|effect| effect.name.clone()).unwrap_or_default();
+        let TooDeep { time, depth, deepest, .. } = found;
+        methods::TooDeep { contact, time, depth, deepest }
     }
 }
 

@@ -1,0 +1,106 @@
+//! Surfaces that overlap more deeply than their contact can tell, or that pass through one another within a step.
+
+use crate::compile::SwitchProgram;
+use crate::simulate::control::SwitchWatch;
+use crate::simulate::step::Stepper;
+
+/// Of the deepest overlap, what is left where nothing has a nearest side any more.
+const NOTHING_LEFT: f64 = 0.02;
+
+/// Of the deepest overlap, the distance at which surfaces that passed each other would but have grazed.
+const GRAZES: f64 = 0.9;
+
+/// Two surfaces that a contact does not hold apart any more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TooDeep {
+    /// Place among the effects whose surfaces may overlap to some depth only.
+    pub contact: usize,
+    /// End of the step, s.
+    pub time: f64,
+    /// m; `None` where they passed through one another between the ends of the step.
+    pub depth: Option<f64>,
+    /// m
+    pub deepest: f64,
+}
+
+/// Search for such surfaces, over the steps of a tile.
+#[derive(Clone, Debug)]
+pub struct OverlapWatch<'s> {
+    watch: SwitchWatch<'s>,
+    contacts: usize,
+    found: Option<TooDeep>,
+}
+
+impl<'s> OverlapWatch<'s> {
+    /// For the samples of a tile, with the gaps and what is left of the overlaps.
+    pub fn new(program: &'s SwitchProgram, stepper: &Stepper) -> Self {
+        let contacts = program.switches.len() / 2;
+        Self { watch: SwitchWatch::new(program, stepper.tile()), contacts, found: None }
+    }
+
+    /// Before a step.
+    pub fn begin(&mut self, stepper: &Stepper) {
+        self.watch.begin(stepper.tile());
+    }
+
+    /// Examines the first `count` lanes after a step of length h up to `end`, which is one step or, where `is_divided`, several. Whether the
+    /// first such surfaces were found.
+    pub fn end(&mut self, stepper: &Stepper, count: usize, (h, end): (f64, f64), is_divided: bool) -> bool {
+        if self.found.is_some() {
+            return false;
+        }
+        self.watch.end(stepper.tile());
+        let lanes = (0..count).filter(|&lane| stepper.alive()[lane]);
+        let mut all = lanes.flat_map(|lane| (0..self.contacts).map(move |contact| (lane, contact)));
+        self.found = all.find_map(|(lane, contact)| {
+            let [[gap, _], [gap_after, _]] = self.watch.ends(contact, lane);
+            let left = self.watch.ends(self.contacts + contact, lane);
+            let deepest = left[1][0] - gap_after;
+            let found = |depth| TooDeep { contact, time: end, depth, deepest };
+            if left[1][0] < NOTHING_LEFT * deepest {
+                return Some(found(Some(-gap_after)));
+            }
+            let nearest = nearest(left, h).filter(|_| !is_divided)?;
+            let touched = gap < 0.0 || gap_after < 0.0;
+            match () {
+                () if touched && nearest < NOTHING_LEFT * deepest => Some(found(Some(deepest - nearest))),
+                () if !touched && nearest < GRAZES * deepest => Some(found(None)),
+                () => None,
+            }
+        });
+        self.found.is_some()
+    }
+
+    /// The first that were found.
+    pub fn found(&self) -> Option<TooDeep> {
+        self.found
+    }
+}
+
+/// The least distance between the ends of a step of length h of what moves past a point or a line at a constant velocity, given the distances
+/// and their rates at the ends; `None` where it does not first approach and then part.
+fn nearest([[left, rate], [left_after, rate_after]]: [[f64; 2]; 2], h: f64) -> Option<f64> {
+    if !(left > 0.0 && rate < 0.0 && left_after > 0.0 && rate_after > 0.0) {
+        return None;
+    }
+    // With l² = d² + s² and ṡ = v: l l̇ = v s.
+    let square_of_speed = (left_after * rate_after - left * rate) / h;
+    let square = left * left * (1.0 - rate * rate / square_of_speed);
+    Some(square.max(0.0).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_distance_on_the_way_is_found() {
+        // At 4 m/s by steps of 10 ms, past a point at a distance of 5 mm, and through a line.
+        let past = |x: f64, d: f64| [x.hypot(d), 4.0 * x / x.hypot(d)];
+        for d in [5e-3, 0.0] {
+            let found = nearest([past(-0.017, d), past(0.023, d)], 0.01).unwrap();
+            assert!((found - d).abs() < 1e-9, "{found}");
+        }
+        assert_eq!(nearest([past(0.02, 0.0), past(0.06, 0.0)], 0.01), None);
+    }
+}
