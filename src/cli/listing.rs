@@ -5,6 +5,7 @@ use super::console::to_json;
 use super::status::{Status, StatusDocs};
 use super::table::{Align, Table};
 use crate::elements::effects::EffectKind;
+use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 
 /// A list of the language.
@@ -59,7 +60,11 @@ fn outputs() -> Vec<OutputDocs> {
             of: effect.keyword,
             output: format!("EFFECT.{name}"),
             unit,
-            meaning: "value and sign as in the effect's equation".to_owned(),
+            meaning: match name == Sensor::AXIAL.name() {
+                true => "tension between its two points: negative where it pushes them apart",
+                false => "value and sign as in the effect's equation",
+            }
+            .to_owned(),
         }));
     }
     outputs
