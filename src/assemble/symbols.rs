@@ -123,9 +123,7 @@ impl<'g> Mechanism<'g, '_> {
             }
             ReactionComponent::Torque => reaction.torque[2],
             ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
-            ReactionComponent::Axial => {
-                reaction.along_line.unwrap_or_else(|| reaction.force.dot(self.axis_of(joint)))
-            }
+            ReactionComponent::Axial => reaction.along_line.unwrap_or_else(|| reaction.force.dot(self.axis_of(joint))),
             ReactionComponent::Radial => {
                 let axis = self.axis_of(joint);
                 if !self.is_spatial && axis[2].is_zero() {
@@ -180,9 +178,12 @@ impl<'g> Mechanism<'g, '_> {
         let outputs = description.outputs.iter();
         outputs
             .map(|output| {
-                let expr = self.formula(&output.formula, Context::Everything)?.expr();
-                let Output { name, unit, dimension, .. } = output.clone();
-                Ok(OutputInfo { name, unit, dimension, expr })
+                let Output { name, formula, unit, dimension, of_results } = output.clone();
+                let expr = match of_results {
+                    true => self.g.number(0.0),
+                    false => self.formula(&formula, Context::Everything)?,
+                };
+                Ok(OutputInfo { name, unit, dimension, expr: expr.expr(), of_results: of_results.then_some(formula) })
             })
             .collect()
     }

@@ -56,15 +56,17 @@ impl Listing {
 fn outputs() -> Vec<OutputDocs> {
     let mut outputs = reference::outputs();
     for effect in EffectKind::docs() {
-        outputs.extend(effect.sensors.into_iter().map(|(name, unit)| OutputDocs {
-            of: effect.keyword,
-            output: format!("EFFECT.{name}"),
-            unit,
-            meaning: match name == Sensor::AXIAL.name() {
-                true => "tension between its two points: negative where it pushes them apart",
-                false => "value and sign as in the effect's equation",
+        outputs.extend(effect.sensors.into_iter().map(|(name, unit)| {
+            OutputDocs {
+                of: effect.keyword,
+                output: format!("EFFECT.{name}"),
+                unit,
+                meaning: match name == Sensor::AXIAL.name() {
+                    true => "tension between its two points: negative where it pushes them apart",
+                    false => "value and sign as in the effect's equation",
+                }
+                .to_owned(),
             }
-            .to_owned(),
         }));
     }
     outputs
