@@ -1,4 +1,5 @@
-//! Formulas of numbers known by their names, and of parameters: evaluated when a sample is over, no part of the equations.
+//! Formulas of numbers known by their names, and of parameters: evaluated when a sample is over, no part of the
+//! equations.
 
 use symdiff::{Builder, Expr, Formula, Graph, Scalar};
 

@@ -5,8 +5,8 @@ use csv::WriterBuilder;
 use super::csv::number;
 use crate::results::{StatisticsResult, Uncertain};
 
-/// Statistics of reduced outputs as CSV, a line each: `name`, `unit`, `mean`, `deviation` and the quantiles `q0.05`, …, each followed by its
-/// error.
+/// Statistics of reduced outputs as CSV, a line each: `name`, `unit`, `mean`, `deviation` and the quantiles `q0.05`, …,
+/// each followed by its error.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

@@ -225,7 +225,8 @@ pub fn check_speeds(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-/// Reports questions that an analysis cannot answer: reduced outputs of one configuration, forces in kinematics, and Taylor bounds of modes. The entries are those of outputs and requirements.
+/// Reports questions that an analysis cannot answer: reduced outputs of one configuration, forces in kinematics, and
+/// Taylor bounds of modes. The entries are those of outputs and requirements.
 pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 2]) {
     let analysis = reader.model.analysis;
     let over_time = matches!(analysis, Analysis::Motion | Analysis::Kinematics | Analysis::Modes(LinearisedAt::Motion));

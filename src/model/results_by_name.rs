@@ -1,4 +1,5 @@
-//! Formulas of numbers that are known by their names when a sample is over: reduced outputs, and what an analysis adds to the outputs.
+//! Formulas of numbers that are known by their names when a sample is over: reduced outputs, and results
+//! that an analysis adds to the outputs.
 
 use std::ops::Range;
 
@@ -24,7 +25,7 @@ pub(super) struct Source {
     pub dimension: Option<Dimension>,
 }
 
-/// What a name in a formula of numbers may be.
+/// Names in a formula of numbers.
 pub(super) struct Numbers {
     /// The dimension of a number, where that is known; `None` of what is none.
     pub dimension: fn(&Description, &str) -> Option<Option<Dimension>>,
@@ -41,7 +42,7 @@ pub(super) const REDUCED: Numbers = Numbers {
     help: "what is compared with a reduced output is one number a motion; make it a reduced output too",
 };
 
-/// Outputs, and what an analysis adds to them.
+/// Outputs, and results that an analysis adds to them.
 pub(super) const RESULTS: Numbers = Numbers {
     dimension: |model, name| of_output(model, name).or_else(|| of_analysis(model, name)),
     refusal: "neither an output, nor a result of the analysis, nor a parameter",
@@ -53,7 +54,7 @@ fn of_output(model: &Description, name: &str) -> Option<Option<Dimension>> {
     model.outputs.iter().find(|own| own.name == name).map(|own| own.dimension)
 }
 
-/// The dimension of what an analysis adds to the outputs, where that is known; `None` of what it does not add.
+/// The dimension of a result, where that is known; `None` of a name that is no result of the analysis.
 fn of_analysis(model: &Description, name: &str) -> Option<Option<Dimension>> {
     let rate = Dimension::FREQUENCY;
     match model.analysis {

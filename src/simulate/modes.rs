@@ -135,8 +135,8 @@ impl Linearised {
         }
     }
 
-    /// Those of the mechanism with its states held, and those of the states with the mechanism held: together their equations have no symmetric
-    /// matrices.
+    /// Those of the mechanism with its states held, and those of the states with the mechanism held: together their
+    /// equations have no symmetric matrices.
     fn modes(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, Watched)> {
         let mut modes = self.modes_of_mechanism(simulator, h).unwrap_or_default();
         modes.extend(self.modes_of_states(simulator, h));

@@ -88,7 +88,8 @@ fn it_begins_settled() {
     assert_eq!((output(&bounds, "old").unit.as_str(), curve(&bounds, "slow")[0]), ("m", 0.0));
 }
 
-/// ẍ = −k x(t − T) − c ẋ with x = x₀ before, by Runge and Kutta's steps of T/10 through the cubic between old ones, in rows of 0.02 s.
+/// ẍ = −k x(t − T) − c ẋ with x = x₀ before, by Runge and Kutta's steps of T/10 through the cubic between old ones, in
+/// rows of 0.02 s.
 fn by_old_values(time: f64) -> Vec<f64> {
     const PARTS: usize = 10;
     let h = time / PARTS as f64;

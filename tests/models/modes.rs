@@ -345,8 +345,8 @@ bounds: { chebyshev: { order: 8 }, scan: { points: 101 } }
     }
 }
 
-/// f = √(k/m)/2π and ζ = c/(2 √(k m)) of one mass over the box: margins of requirements on them, and on the response k⁻¹ of slow loads, and which
-/// tolerance matters: of ln f, k and m have ½ each.
+/// f = √(k/m)/2π and ζ = c/(2 √(k m)) of one mass over the box: margins of requirements on them, and on the response
+/// k⁻¹ of slow loads, and which tolerance matters: of ln f, k and m have ½ each.
 #[test]
 fn requirements_on_frequencies_have_the_margins_of_closed_forms() {
     let text = |limits: &str| {

@@ -1,4 +1,5 @@
-//! The table of analyses and questions: every question is asked in every analysis, and what comes is what the table says.
+//! The table of analyses and questions: every question is asked in every analysis, and what comes is what the table
+//! says.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +15,8 @@ fn table() -> Vec<Vec<String>> {
     table.lines().skip(2).map(cells).collect()
 }
 
-/// An oscillator of k/m = 400 1/s² on a driven carriage: what is asked beside, and the names of an output and of what is limited.
+/// An oscillator of k/m = 400 1/s² on a driven carriage: what is asked beside, and the names of an output and of what
+/// is limited.
 struct Analysis {
     keys: &'static str,
     body: &'static str,

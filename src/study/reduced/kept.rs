@@ -27,8 +27,8 @@ impl KeptReduced {
         self.errors[value].decisive(0).unwrap_or(f64::NAN)
     }
 
-    /// The first so many values at samples of the subsystem's box, one after the other, sample by sample. In parallel, with the same bits
-    /// for any number of threads.
+    /// The first `count` values at samples of the subsystem's box, one after the other, sample by sample. In parallel,
+    /// with the same bits for any number of threads.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
         let wanted: Vec<usize> = (0..count).collect();
         let closures = self.closures();

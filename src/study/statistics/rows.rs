@@ -74,7 +74,8 @@ impl<'a> Rows<'a> {
         self.samples.iter().map(|samples| samples.len() / self.laws.dimension()).sum()
     }
 
-    /// The first so many outputs, and what an analysis adds to all of them, but for shapes and responses, which are many: each with its number.
+    /// The first `count` outputs, and the results that an analysis adds to the outputs, each with its number; without
+    /// shapes and responses, which are many.
     pub fn outputs(&self, count: usize) -> Vec<(usize, OutputStatistics)> {
         let is_one = |output: &usize| {
             let (name, _) = self.kept.named(*output);
