@@ -38,6 +38,7 @@ mod merging;
 mod mobilizers;
 mod names;
 mod nearest;
+mod number_formulas;
 mod placement;
 mod pose;
 mod reaction;
@@ -61,6 +62,7 @@ pub use build::{
 };
 pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inventory::Inventory;
+pub use number_formulas::NumberFormulas;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,
     SampledState, StartCondition, System, UncertainParameter,

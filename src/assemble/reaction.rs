@@ -16,6 +16,8 @@ pub struct Reaction<'g> {
     pub torque: Vector<'g>,
     /// About the joint's axis, N m, where there is no other torque and no force: of a motor and a gear.
     pub about_axis: Option<Scalar<'g>>,
+    /// Along a line that moves against both bodies, N: of a rod its tension.
+    pub along_line: Option<Scalar<'g>>,
 }
 
 impl<'g> Reaction<'g> {
@@ -46,7 +48,11 @@ impl<'g> Reaction<'g> {
             }
             _ => None,
         };
-        Self { force, magnitude, torque, about_axis }
+        let along_line = match (joint.axial_by_multiplier(), kept) {
+            (Some(sign), &[(_, lambda)]) => Some(sign * lambda),
+            _ => None,
+        };
+        Self { force, magnitude, torque, about_axis, along_line }
     }
 
     /// The same of a joint with teeth: its force is that on the second body at the pitch point.

@@ -276,7 +276,7 @@ impl<'g> Mechanism<'g, '_> {
             let arm = self.bodies[inboard.parent.body].rotate(from_second);
             torque += arm.cross(force);
         }
-        Some((motion.joint, Reaction { force, magnitude: force.norm(), torque, about_axis: None }))
+        Some((motion.joint, Reaction { force, magnitude: force.norm(), torque, about_axis: None, along_line: None }))
     }
 }
 

@@ -4,7 +4,7 @@ use symdiff::{Formula, Scalar};
 
 use super::mechanism::{Mechanism, dof};
 use super::system::OutputInfo;
-use crate::grammar::{EnergyKind, JointCoordinate, OnJoint, PointRef, ReactionComponent, Sensor, Symbol, TimeOrder};
+use crate::grammar::{EnergyKind, OnJoint, PointRef, ReactionComponent, Sensor, Symbol, TimeOrder};
 use crate::model::{Description, Output, Rotation};
 use crate::multibody::{BuildError, Context, OwnFunction, Quaternion, Vector, rotation};
 
@@ -123,7 +123,7 @@ impl<'g> Mechanism<'g, '_> {
             }
             ReactionComponent::Torque => reaction.torque[2],
             ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
-            ReactionComponent::Axial => reaction.force.dot(self.axis_of(joint)),
+            ReactionComponent::Axial => reaction.along_line.unwrap_or_else(|| reaction.force.dot(self.axis_of(joint))),
             ReactionComponent::Radial => {
                 let axis = self.axis_of(joint);
                 if !self.is_spatial && axis[2].is_zero() {
@@ -158,13 +158,19 @@ impl<'g> Mechanism<'g, '_> {
     /// without an axis.
     fn axis_of(&self, joint: usize) -> Vector<'g> {
         let kind = &self.joints[joint].kind;
-        let own =
-            [JointCoordinate::Angle, JointCoordinate::Displacement].map(|coordinate| OnJoint { joint, coordinate });
-        let driven = kind.coordinates(joint);
-        let has_axis = |on: &&OnJoint| self.joints[on.joint].kind.axis_of(on.coordinate).is_some();
-        let on = if kind.between().is_some() { own.iter().find(has_axis) } else { driven.iter().rfind(has_axis) };
         // An axis is a formula of parameters and t, as its joint's rows needed it.
-        on.and_then(|&on| self.axis_in_ground(on).ok()).unwrap_or_else(|| Vector::zero(self.g))
+        let axis = match (kind.between(), kind.reaction_axis()) {
+            (Some(between), Some(axis)) => {
+                self.unit_vector(axis, Context::Time).map(|axis| self.pair(between).outward(axis)).ok()
+            }
+            (Some(_), None) => None,
+            (None, _) => {
+                let driven = kind.coordinates(joint);
+                let has_axis = |on: &&OnJoint| self.joints[on.joint].kind.axis_of(on.coordinate).is_some();
+                driven.iter().rfind(has_axis).and_then(|&on| self.axis_in_ground(on).ok())
+            }
+        };
+        axis.unwrap_or_else(|| Vector::zero(self.g))
     }
 
     /// All outputs of a description.
@@ -172,9 +178,12 @@ impl<'g> Mechanism<'g, '_> {
         let outputs = description.outputs.iter();
         outputs
             .map(|output| {
-                let expr = self.formula(&output.formula, Context::Everything)?.expr();
-                let Output { name, unit, dimension, .. } = output.clone();
-                Ok(OutputInfo { name, unit, dimension, expr })
+                let Output { name, formula, unit, dimension, of_results } = output.clone();
+                let expr = match of_results {
+                    true => self.g.number(0.0),
+                    false => self.formula(&formula, Context::Everything)?,
+                };
+                Ok(OutputInfo { name, unit, dimension, expr: expr.expr(), of_results: of_results.then_some(formula) })
             })
             .collect()
     }

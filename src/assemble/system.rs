@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use symdiff::{Expr, Graph};
+use symdiff::{Expr, Formula, Graph};
 
 use crate::grammar::quantity::Dimension;
-use crate::model::{Analysis, ModesRequest, Space};
+use crate::model::{Analysis, ModesRequest, Parameter, Space};
 
 /// A mechanism's equations of motion over the symbols of `graph`.
 ///
@@ -66,6 +66,8 @@ pub struct System {
     pub analysis: Analysis,
     /// Questions about small vibrations.
     pub modes: ModesRequest,
+    /// The model's parameters, where outputs follow from results of the analysis.
+    pub declared_parameters: Vec<Parameter>,
     /// What each effect came to, in file order.
     pub effects: Vec<EffectInfo>,
     /// What the model says and no equation holds.
@@ -223,6 +225,15 @@ pub struct OutputInfo {
     pub dimension: Option<Dimension>,
     /// Its value.
     pub expr: Expr,
+    /// The formula over results of the analysis from which it follows, if it does; its expression is nothing then.
+    pub of_results: Option<Formula>,
+}
+
+impl OutputInfo {
+    /// Whether it follows from results of the analysis.
+    pub fn is_derived(&self) -> bool {
+        self.of_results.is_some()
+    }
 }
 
 /// Known values at the start; expressions over the parameters.

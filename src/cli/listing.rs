@@ -5,6 +5,7 @@ use super::console::to_json;
 use super::status::{Status, StatusDocs};
 use super::table::{Align, Table};
 use crate::elements::effects::EffectKind;
+use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 
 /// A list of the language.
@@ -55,11 +56,17 @@ impl Listing {
 fn outputs() -> Vec<OutputDocs> {
     let mut outputs = reference::outputs();
     for effect in EffectKind::docs() {
-        outputs.extend(effect.sensors.into_iter().map(|(name, unit)| OutputDocs {
-            of: effect.keyword,
-            output: format!("EFFECT.{name}"),
-            unit,
-            meaning: "value and sign as in the effect's equation".to_owned(),
+        outputs.extend(effect.sensors.into_iter().map(|(name, unit)| {
+            OutputDocs {
+                of: effect.keyword,
+                output: format!("EFFECT.{name}"),
+                unit,
+                meaning: match name == Sensor::AXIAL.name() {
+                    true => "tension between its two points: negative where it pushes them apart",
+                    false => "value and sign as in the effect's equation",
+                }
+                .to_owned(),
+            }
         }));
     }
     outputs

@@ -93,7 +93,9 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
     const MOST: usize = 3;
     let mut text = String::new();
     let varies = |contribution: &&ContributionSummary| contribution.total > 0.0;
-    for of_output in contributions.chunk_by(|a, b| a.output == b.output) {
+    // Shapes are many: the file has them.
+    let of_outputs = contributions.chunk_by(|a, b| a.output == b.output);
+    for of_output in of_outputs.filter(|own| !own[0].output.contains(".shape.")) {
         let share = |contribution: &ContributionSummary| {
             format!("{} {:.0} %", contribution.parameter, 100.0 * contribution.total)
         };

@@ -57,12 +57,45 @@ pub(super) fn statistics(summary: &Summary) -> String {
         _ => String::new(),
     };
     format!(
-        "{}{note}{}  the worst case is every case of the box{shares}, by {} samples of the surrogate\n{}\n",
+        "{}{note}{}{}  the worst case is every case of the box{shares}, by {} samples of the surrogate\n{}\n",
         laws(found),
         table.render(2),
+        reduced(found),
         found.samples,
         yields(found.requirements.iter().chain(&found.together))
     )
+}
+
+/// Table of the reduced outputs, with every quantile; nothing where there are none.
+fn reduced(found: &StatisticsSummary) -> String {
+    if found.reduced.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new([
+        ("reduced output", Align::Left),
+        ("mean", Align::Right),
+        ("deviation", Align::Right),
+        ("quantiles", Align::Left),
+        ("unit", Align::Left),
+    ]);
+    for own in &found.reduced {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        let digits = decimals(unit.of_si(own.deviation.value));
+        let estimate = |of: &Uncertain| {
+            let value = unit.of_si(of.value);
+            let number = match digits {
+                Some(digits) => format!("{value:.digits$}"),
+                None => format!("{value:.4e}"),
+            };
+            format!("{number} ± {:.1e}", unit.of_si(of.total()))
+        };
+        let quantile =
+            |(share, of): (&f64, &Uncertain)| format!("{} %: {}", (share * 1e14).round() / 1e12, estimate(of));
+        let quantiles: Vec<String> = found.quantiles.iter().zip(&own.quantiles).map(quantile).collect();
+        let [mean, deviation] = [&own.mean, &own.deviation].map(estimate);
+        table.row([own.name.clone(), mean, deviation, quantiles.join(", "), unit.text.to_owned()]);
+    }
+    table.render(2)
 }
 
 /// How many fulfil each requirement.

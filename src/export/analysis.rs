@@ -2,10 +2,11 @@
 
 use csv::WriterBuilder;
 
+use super::csv::number;
 use super::figure::Caption;
 use super::sweep::{Swept, SweptBounds, sweep_svg};
 use crate::numerics::BandError;
-use crate::results::{Band, OutputBounds, ResponsePoint};
+use crate::results::{Band, Contribution, OutputBounds, ResponsePoint};
 
 /// What every line begins or ends with.
 const BOUNDS: [&str; 4] = ["method", "lower", "upper", "error"];
@@ -38,6 +39,29 @@ pub fn response_csv(times: &[f64], points: &[ResponsePoint]) -> Result<Vec<u8>, 
                 let (time, frequency) = (time.to_string(), point.frequency.to_string());
                 let begin = [point.name.clone(), time, frequency, quantity.to_owned(), output.unit.clone()];
                 lines(&mut writer, &begin, output, row)?;
+            }
+        }
+    }
+    writer.into_inner().map_err(|e| e.into_error().into())
+}
+
+/// Which tolerances matter for every response at every frequency and time:
+/// `response,t,frequency,quantity,parameter,main,total,width_without`, as in `contributions.csv`.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub fn response_contributions_csv(times: &[f64], points: &[ResponsePoint]) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = WriterBuilder::new().from_writer(Vec::new());
+    writer.write_record(["response", "t", "frequency", "quantity", "parameter", "main", "total", "width_without"])?;
+    for (row, time) in times.iter().enumerate() {
+        for point in points {
+            for (quantity, contributions) in ["amplitude", "phase"].into_iter().zip(&point.contributions) {
+                for Contribution { parameter, main, total, width_without } in contributions {
+                    let numbers = [main[row], total[row], width_without[row]].map(number);
+                    let [time, frequency] = [time, &point.frequency].map(f64::to_string);
+                    let begin = [point.name.clone(), time, frequency, quantity.to_owned(), parameter.clone()];
+                    writer.write_record(begin.into_iter().chain(numbers))?;
+                }
             }
         }
     }

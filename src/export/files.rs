@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::export::analysis::{configuration_csv, response_csv, response_svgs};
+use crate::export::analysis::{configuration_csv, response_contributions_csv, response_csv, response_svgs};
 use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{PAGE, SCHEMA, SUMMARY};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
-use crate::export::statistics::statistics_csv;
+use crate::export::statistics::{reduced_statistics_csv, statistics_csv};
 use crate::export::stems::unique_stems;
 use crate::export::{
     Beside, bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg,
@@ -44,6 +44,9 @@ pub fn write_results(
     }
     if let Some(statistics) = summary.statistics.as_ref().filter(|statistics| !statistics.outputs.is_empty()) {
         files.add("statistics.csv", &statistics_csv(statistics)?)?;
+        if !statistics.summary.reduced.is_empty() {
+            files.add("reduced_statistics.csv", &reduced_statistics_csv(statistics)?)?;
+        }
     }
     if !summary.reduced.is_empty() {
         files.add("reduced.csv", &reduced_csv(&summary.reduced)?)?;
@@ -56,6 +59,9 @@ pub fn write_results(
     let mut figures = Vec::with_capacity(bounds.outputs.len());
     if !bounds.responses.is_empty() {
         files.add("response.csv", &response_csv(&bounds.times, &bounds.responses)?)?;
+        if bounds.responses.iter().any(|point| point.contributions.iter().any(|own| !own.is_empty())) {
+            files.add("response_contributions.csv", &response_contributions_csv(&bounds.times, &bounds.responses)?)?;
+        }
         let plots =
             response_svgs(Caption { model: &summary.model, prefix: "figure" }, &bounds.times, &bounds.responses)?;
         let stems = unique_stems(plots.iter().map(|(name, _)| name.as_str()));

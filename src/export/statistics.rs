@@ -5,6 +5,25 @@ use csv::WriterBuilder;
 use super::csv::number;
 use crate::results::{StatisticsResult, Uncertain};
 
+/// Statistics of reduced outputs as CSV, a line each: `name`, `unit`, `mean`, `deviation` and the quantiles `q0.05`, …,
+/// each followed by its error.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub fn reduced_statistics_csv(statistics: &StatisticsResult) -> Result<Vec<u8>, csv::Error> {
+    let quantiles = statistics.summary.quantiles.iter().map(|share| format!("q{}", number(*share)));
+    let columns = ["mean".to_owned(), "deviation".to_owned()].into_iter().chain(quantiles);
+    let headings = ["name", "unit"].map(str::to_owned).into_iter();
+    let mut writer = WriterBuilder::new().from_writer(Vec::new());
+    writer.write_record(headings.chain(columns.flat_map(|name| [name.clone(), format!("{name}.error")])))?;
+    for own in &statistics.summary.reduced {
+        let values = [&own.mean, &own.deviation].into_iter().chain(&own.quantiles);
+        let numbers = values.flat_map(|value| [number(value.value), number(value.total())]);
+        writer.write_record([own.name.clone(), own.unit.clone()].into_iter().chain(numbers))?;
+    }
+    writer.into_inner().map_err(|error| error.into_error().into())
+}
+
 /// The table of all statistics as CSV. Columns: `t`, then for each output `x3.mean`, `x3.deviation`, `x3.q0.00135`, … each followed by its error
 /// (`x3.mean.error`: half the 95 % confidence interval, and what surrogate and steps may add), `x3.linear` and `x3.rss`, and last
 /// `unresolved`, the outputs whose numbers are unreliable in the row. Unknown values are `NaN`.

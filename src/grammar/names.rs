@@ -266,7 +266,11 @@ fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&s
         _ => None,
     };
     if let Some(component) = of_axis {
-        return table.has_axis(joint).then_some(Symbol::Reaction { joint, component });
+        let has_it = match component {
+            ReactionComponent::Axial => table.has_axial_force(joint),
+            _ => table.has_axis(joint),
+        };
+        return has_it.then_some(Symbol::Reaction { joint, component });
     }
     let axis = match part {
         Some(part) => Some(AXES.iter().position(|axis| *axis == part)?),

@@ -202,7 +202,8 @@ fn joint_outputs() -> Vec<OutputDocs> {
         reaction(&format!("torque.{axis}"), &torque, &meaning)
     }));
     let (axial, radial) = (
-        "reaction force on the second body along the joint's own axis, for a motor, gear or rack along that of the driven joint",
+        "reaction force on the second body along the joint's own axis, for a motor, gear or rack along that of the driven joint; \
+         of a `distance` its tension, of a `cam` positive where the follower is pushed away",
         "reaction force on the second body across that axis: the magnitude, or where the axis is one of the plane the \
          component along the axis turned by +90°",
     );

@@ -48,6 +48,8 @@ pub trait SymbolTable {
     fn has_place(&self, joint: usize) -> bool;
     /// Whether a joint has an axis of its own, or drives a joint that has one.
     fn has_axis(&self, joint: usize) -> bool;
+    /// Whether a joint's reaction has an `axial` part: along its axis, or along a line of its own.
+    fn has_axial_force(&self, joint: usize) -> bool;
     /// What a joint that is an equation sets equal to something else.
     fn equated(&self, joint: usize) -> Option<&Formula>;
 
@@ -234,7 +236,7 @@ pub enum ReactionComponent {
     Torque,
     /// About an axis (0 to 2: x, y, z) through the second point, N m.
     TorqueAbout(usize),
-    /// Force along the joint's own axis, N.
+    /// Force along the joint's own axis, N; of a rod its tension, of a cam its contact's force.
     Axial,
     /// Force across the joint's own axis, N: the magnitude; along a direction of the plane, with a sign.
     Radial,
@@ -323,6 +325,8 @@ impl Sensor {
     pub const START_TORQUE: Self = Self::of_force("start_torque");
     /// Between two surfaces.
     pub const FRICTION: Self = Self::of_force("friction");
+    /// Tension between two points, whatever the sign of the effect's own force.
+    pub const AXIAL: Self = Self::of_force("axial");
 
     /// Of a state; the name of the effect alone stands for it too.
     pub const VALUE: Self = Self::of_motion("value");

@@ -210,6 +210,8 @@ fn parts_of_joint(table: &impl SymbolTable, name: &str) -> String {
     if let Some(joint) = table.joint(name) {
         if table.has_axis(joint) {
             parts.extend(["axial", "radial", "torque.axial"]);
+        } else if table.has_axial_force(joint) {
+            parts.push("axial");
         }
         if table.has_place(joint) {
             parts.extend(match table.is_spatial() {

@@ -75,6 +75,8 @@ pub(super) struct PolynomialEstimate {
     pub excess: f64,
     pub truncation: f64,
     pub at_validation: Vec<f64>,
+    /// Where known.
+    pub sensitivity: Option<Sensitivity>,
     /// Of the polynomial, where they are to be kept.
     pub coefficients: Vec<f64>,
 }
@@ -119,14 +121,15 @@ impl BandBuilder {
     pub(super) fn set_polynomials(
         &mut self,
         rows: Rows<usize>,
-        found: &[PolynomialEstimate],
+        found: &mut [PolynomialEstimate],
         (validation, kinks): (&Validation, &[bool]),
     ) {
-        for (row, found) in rows.zip(found.chunks_exact(self.bands.len())) {
-            for (output, found) in found.iter().enumerate() {
+        for (row, found) in rows.zip(found.chunks_exact_mut(self.bands.len())) {
+            for (output, found) in found.iter_mut().enumerate() {
                 let seen = surrogate_error(&found.at_validation, &validation.direct.at(row, output));
                 let error = if kinks.get(output) == Some(&true) { BETWEEN_KINKS * seen } else { seen };
                 self.set(row, output, found.range, largest([error, found.truncation]) + found.excess);
+                self.sensitivities[output][row] = found.sensitivity.take();
             }
         }
     }

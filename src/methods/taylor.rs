@@ -124,7 +124,7 @@ impl BoundingMethod for Taylor {
         let range = TaylorRange::new(k, self.order, self.range);
         let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
         let simulated = ensemble.jets(&space, &mut |rows, values| {
-            let found: Vec<PolynomialEstimate> = values
+            let mut found: Vec<PolynomialEstimate> = values
                 .par_chunks_exact(space.len())
                 .map_init(
                     || range.clone(),
@@ -133,12 +133,19 @@ impl BoundingMethod for Taylor {
                         let at_validation = validation.points.iter().map(at_point).collect();
                         let (range, excess) = range.enclose(coefficients);
                         let coefficients = Vec::new();
-                        PolynomialEstimate { range, excess, truncation: 0.0, at_validation, coefficients }
+                        PolynomialEstimate {
+                            range,
+                            excess,
+                            truncation: 0.0,
+                            at_validation,
+                            sensitivity: None,
+                            coefficients,
+                        }
                     },
                 )
                 .collect();
             // With a kink, too, it is furthest off at the corners, which are among the validation samples.
-            bands.set_polynomials(rows, &found, (validation, &[]));
+            bands.set_polynomials(rows, &mut found, (validation, &[]));
         })?;
         Ok(bands.finish(1, simulated))
     }

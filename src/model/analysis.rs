@@ -225,18 +225,15 @@ pub fn check_speeds(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-/// Reports questions that an analysis cannot answer: reduced outputs except of positions over time, requirements of modes, forces
-/// in kinematics, and Taylor bounds of modes. The entries are those of outputs and requirements.
+/// Reports questions that an analysis cannot answer: reduced outputs of one configuration, forces in kinematics, and
+/// Taylor bounds of modes. The entries are those of outputs and requirements.
 pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 2]) {
     let analysis = reader.model.analysis;
-    let over_time = matches!(analysis, Analysis::Motion | Analysis::Kinematics);
+    let over_time = matches!(analysis, Analysis::Motion | Analysis::Kinematics | Analysis::Modes(LinearisedAt::Motion));
     let help = "with `analysis: motion` it can be asked for";
     if !over_time && !reader.model.reduced.is_empty() {
         let message = format!("a reduced output is one number a motion, and `analysis: {}` has none", analysis.name());
         reader.error(fields.key_span("outputs"), message, help.to_owned());
-    } else if matches!(analysis, Analysis::Modes(_)) && !reader.model.requirements.is_empty() {
-        let message = "a requirement is of a motion or of an equilibrium, not of modes";
-        reader.error(fields.key_span("requirements"), message, help.to_owned());
     }
     if analysis == Analysis::Kinematics {
         check_reduced_without_forces(reader, entries);

@@ -185,6 +185,8 @@ pub struct Output {
     pub unit: String,
     /// What kind of quantity it is; `None` where unknown.
     pub dimension: Option<Dimension>,
+    /// Whether the formula names results of the analysis, and other outputs: it is known when these are.
+    pub of_results: bool,
 }
 
 impl Description {

@@ -28,6 +28,7 @@ mod parts;
 mod reduced;
 mod requests;
 mod requirements;
+mod results_by_name;
 mod robots;
 mod scenes;
 mod scheme;

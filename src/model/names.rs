@@ -133,9 +133,12 @@ impl SymbolTable for Description {
 
     fn has_axis(&self, joint: usize) -> bool {
         let kind = &self.joints[joint].kind;
-        let own = [JointCoordinate::Angle, JointCoordinate::Displacement];
         let drives = || kind.coordinates(joint).iter().any(|on| self.has_coordinate(on.joint, on.coordinate));
-        own.into_iter().any(|coordinate| self.has_coordinate(joint, coordinate)) || kind.between().is_none() && drives()
+        kind.reaction_axis().is_some() || kind.between().is_none() && drives()
+    }
+
+    fn has_axial_force(&self, joint: usize) -> bool {
+        self.has_axis(joint) || self.joints[joint].kind.axial_by_multiplier().is_some()
     }
 
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode> {

@@ -3,6 +3,7 @@
 use symdiff::{Binary, Formula, Unary};
 
 use super::description::{ReducedKind, ReducedOutput};
+use super::results_by_name::{self, RESULTS, Source};
 use super::{display, file};
 use crate::grammar::dimension::Kind;
 use crate::grammar::names::Context;
@@ -40,12 +41,6 @@ const KINDS: [(&str, ReducedKind); 16] = [
 /// Keys that only some kinds have.
 const OWN: [(&str, &[&str]); 4] =
     [("at", &["value"]), ("target", &["settling", "overshoot"]), ("band", &["settling"]), ("line", &["straightness"])];
-
-/// A formula that was read, with its dimension where that is known.
-pub(super) struct Source {
-    pub formula: Formula,
-    pub dimension: Option<Dimension>,
-}
 
 /// Reports an output that is of a reduced output.
 ///
@@ -123,6 +118,7 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
     if let Some(node) = fields.get("unit") {
         display::read(reader, node, &name, dimension);
     }
+    let of_results = results_by_name::are_named(&reader.model, std::iter::empty());
     reader.model.reduced.push(ReducedOutput {
         name,
         text,
@@ -133,6 +129,7 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
         places: Vec::new(),
         from,
         to,
+        of_results,
     });
 }
 
@@ -247,6 +244,9 @@ pub(super) fn formula_of_outputs(reader: &mut Reader, node: &Node) -> Option<Sou
 fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Option<Source> {
     let scalar = reader.scalar(node, "a formula")?;
     let parsed = reader.parse(node, scalar, range.clone())?;
+    if results_by_name::are_named(&reader.model, parsed.names().map(|(name, _)| name)) {
+        return results_by_name::part(reader, node, range, &RESULTS);
+    }
     reader.refuse_like_names(node);
     let outputs = &reader.model.outputs;
     let formula = parsed

@@ -185,7 +185,7 @@ fn parts(reader: &Reader, entry: &Entry) -> Option<Vec<Output>> {
         };
         let formula = symdiff::Formula::parse(&name).ok()?;
         let name = format!("{}_{part}", entry.key);
-        Some(Output { name, formula, unit: dimension.unit(), dimension: Some(dimension) })
+        Some(Output { name, formula, unit: dimension.unit(), dimension: Some(dimension), of_results: false })
     };
     parts.into_iter().map(output).collect()
 }
@@ -222,7 +222,7 @@ fn output(reader: &mut Reader, entry: &Entry, all: &[Entry]) -> Option<Output> {
     if formula.names().next().is_none() {
         reader.error(node.span.clone(), "constant output: it refers to no variable", None);
     }
-    Some(Output { name: entry.key.clone(), formula, unit, dimension })
+    Some(Output { name: entry.key.clone(), formula, unit, dimension, of_results: false })
 }
 
 /// The unit of a formula that is just a name, where its dimension alone does not say it.

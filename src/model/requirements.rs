@@ -4,14 +4,12 @@ use symdiff::{Binary, Formula, Unary};
 
 use super::description::{Limit, Requirement};
 use super::file;
-use super::reduced::{self, Source};
-use crate::grammar::Symbol;
-use crate::grammar::dimension::{self, Kind};
+use super::reduced;
+use super::results_by_name::{self, REDUCED, Source};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
-use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Two sides of a comparison.
@@ -46,7 +44,7 @@ fn of_text(reader: &mut Reader, node: &Node, entry: &Entry) -> Option<Requiremen
     let sides = [0..place, place + length..scalar.text.len()];
     let of_reduced = sides.iter().any(|range| names_reduced(reader, &scalar.text[range.clone()]));
     let [own, limit] = if of_reduced {
-        sides.map(|range| part_of_reduced(reader, node, range))
+        sides.map(|range| results_by_name::part(reader, node, range, &REDUCED))
     } else {
         let comparison = reduced::comparison(reader, node)?;
         comparison.sides.map(Some)
@@ -84,7 +82,7 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
     let side = |reader: &mut Reader, node: &Node| match of_reduced {
         true => {
             let length = reader.scalar(node, "a formula")?.text.len();
-            part_of_reduced(reader, node, 0..length)
+            results_by_name::part(reader, node, 0..length, &REDUCED)
         }
         false => reduced::formula_of_outputs(reader, node),
     };
@@ -177,9 +175,16 @@ fn required(
             }
         }
     }
+    let names: Vec<&str> = slacks.iter().flat_map(Formula::names).map(|(name, _)| name).collect();
+    let of_results = !of_reduced && results_by_name::are_named(&reader.model, names.iter().copied());
     let unit = dimension.map_or_else(String::new, Dimension::unit);
+    let unit = results_by_name::unit(names.into_iter()).filter(|_| of_results).map_or(unit, str::to_owned);
+    if of_results {
+        slacks = slacks.iter().flat_map(|slack| results_by_name::at_frequencies(&reader.model, slack)).collect();
+    }
     let times = (!of_reduced).then_some(times);
-    Requirement { name: entry.key.clone(), text, unit, display, slacks, places: Vec::new(), times, limits }
+    let name = entry.key.clone();
+    Requirement { name, text, unit, display, slacks, places: Vec::new(), times, limits, of_results }
 }
 
 /// Names and numbers of a formula.
@@ -196,48 +201,4 @@ fn declared(reader: &Reader, of: &str, dimension: Option<Dimension>) -> Option<D
 /// Whether a text names a reduced output.
 fn names_reduced(reader: &Reader, text: &str) -> bool {
     words(text).any(|word| reader.model.reduced.iter().any(|reduced| reduced.name == word))
-}
-
-/// The formula of reduced outputs and parameters in a part of a scalar.
-fn part_of_reduced(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Option<Source> {
-    let scalar = reader.scalar(node, "a formula")?;
-    let formula: Formula = reader.parse(node, scalar, range.clone())?;
-    if formula.names().any(|(name, _)| reader.is_unread_output(name)) {
-        return None;
-    }
-    let mut unknown = None;
-    for (name, span) in formula.names() {
-        if reader.model.reduced.iter().any(|reduced| reduced.name == name) {
-            continue;
-        }
-        match reader.symbol(name) {
-            Some(Symbol::Parameter(index)) => {
-                if let Some(used) = reader.used.get_mut(index) {
-                    *used = true;
-                }
-            }
-            _ => unknown = Some((clip(name), range.start + span.start..range.start + span.end)),
-        }
-    }
-    if let Some((name, span)) = unknown {
-        let message = format!("`{name}` is neither a reduced output nor a parameter");
-        let help =
-            "what is compared with a reduced output is one number a motion; make it a reduced output too".to_owned();
-        reader.error(scalar.place(&node.span, span), message, help);
-        return None;
-    }
-    let mut mismatches = Vec::new();
-    let kind = |name: &str| match reader.model.reduced.iter().find(|reduced| reduced.name == name) {
-        Some(reduced) => reduced.dimension.map_or(Kind::Any, Kind::motion),
-        None => match reader.symbol(name) {
-            Some(Symbol::Parameter(index)) => reader.kinds.get(index).copied().unwrap_or(Kind::Any),
-            _ => Kind::Any,
-        },
-    };
-    let dimension = dimension::analyse(&formula, kind, |_| [None; 2], &mut mismatches).dimension();
-    for mismatch in mismatches {
-        let part = range.start + mismatch.span.start..range.start + mismatch.span.end;
-        reader.error(scalar.place(&node.span, part), mismatch.message, None);
-    }
-    Some(Source { formula, dimension })
 }

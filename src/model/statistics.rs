@@ -45,8 +45,10 @@ fn quantiles(reader: &mut Reader, node: &Node) {
     let mut shares = Vec::new();
     for item in items {
         let Some(scalar) = reader.scalar(item, "a share") else { return };
-        let percent =
-            number_and_unit(&scalar.text).filter(|(_, unit, _)| *unit == "%").map(|(value, ..)| value / 100.0);
+        // 99.9 % is 0.999, and not 0.9990000000000001.
+        let percent = number_and_unit(&scalar.text)
+            .filter(|(_, unit, _)| *unit == "%")
+            .map(|(value, ..)| (value * 1e13).round() / 1e15);
         let share = percent.or_else(|| scalar.text.parse().ok()).filter(|share| *share > 0.0 && *share < 1.0);
         let Some(share) = share else {
             let message = format!("`{}` is not a share above 0 and below 1", clip(&scalar.text));

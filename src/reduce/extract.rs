@@ -125,10 +125,12 @@ pub fn narrow(description: &mut Description, left: &[usize]) {
     description.bounds.methods_mut().into_iter().for_each(|(_, method)| method.narrow(left));
 }
 
-/// By parameter, whether a requirement of numbers of a motion names it, which no equation may: `stroke <= room`.
+/// By parameter, whether a requirement of numbers of a motion or of results names it, which no equation may:
+/// `stroke <= room`.
 pub fn required(description: &Description) -> Vec<bool> {
-    let of_numbers = description.requirements.iter().filter(|own| own.times.is_none());
-    let named = Dependencies::by(description, of_numbers.flat_map(|own| &own.slacks)).parameters;
+    let of_numbers = description.requirements.iter().filter(|own| own.times.is_none()).flat_map(|own| &own.slacks);
+    let of_results = description.outputs.iter().filter(|own| own.of_results).map(|own| &own.formula);
+    let named = Dependencies::by(description, of_numbers.chain(of_results)).parameters;
     let mut required = vec![false; description.parameters.len()];
     named.into_iter().for_each(|parameter| required[parameter] = true);
     with_earlier(description, &mut required);

@@ -68,6 +68,8 @@ pub struct ResponsePoint {
     pub amplitude: OutputBounds,
     /// rad; of the output behind the load, where it is negative.
     pub phase: OutputBounds,
+    /// Which tolerance matters for the amplitude, and for the phase; empty where it is not known.
+    pub contributions: [Vec<Contribution>; 2],
 }
 
 /// Of one output's bands, the one to look at: the first that is resolved to the end, or else the first.

@@ -38,7 +38,8 @@ pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, 
 pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
 pub use samples::{SampleFormat, SampleTable};
 pub use statistics::{
-    LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Uncertain, YieldSummary,
+    LawSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary,
+    Uncertain, YieldSummary,
 };
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{

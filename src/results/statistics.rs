@@ -95,6 +95,9 @@ pub struct StatisticsSummary {
     pub simulations: usize,
     /// By output, where it varies most.
     pub outputs: Vec<OutputStatisticsSummary>,
+    /// Reduced outputs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reduced: Vec<NumberStatistics>,
     /// How many fulfil each requirement.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<YieldSummary>,
@@ -128,6 +131,24 @@ pub struct OutputStatisticsSummary {
     pub linear: f64,
     /// Root sum square, to either side.
     pub rss: f64,
+    /// Mean.
+    pub mean: Uncertain,
+    /// Standard deviation.
+    pub deviation: Uncertain,
+    /// In the order of the shares.
+    pub quantiles: Vec<Uncertain>,
+}
+
+/// Distribution of a reduced output. SI.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NumberStatistics {
+    /// Name.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// Mean.
     pub mean: Uncertain,
     /// Standard deviation.

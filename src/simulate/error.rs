@@ -104,6 +104,14 @@ pub enum SimulationError {
         /// Names of coordinates that are left free.
         coordinates: Vec<String>,
     },
+    /// A requirement names what the analysis does not find.
+    #[error("`{name}` is none of the results of this analysis, which are {known}")]
+    NoResult {
+        /// The name.
+        name: String,
+        /// Some that it has.
+        known: String,
+    },
     /// A term of the equations has no finite value.
     #[error("{term} is not a finite number at t = {time} s ({})", parameter_list(parameters))]
     NotFinite {

@@ -17,12 +17,14 @@
 
 mod closure;
 mod control;
+mod derived;
 mod diagnostics;
 mod enclosure;
 mod ensemble;
 mod error;
 mod excitations;
 mod explicit;
+mod fast_states;
 mod features;
 mod further;
 mod modal;

@@ -4,11 +4,12 @@
 //! About the nominal start the equations of motion are M δẅ + C δv + K δq + Φ_qᵀ δλ = 0 with Φ_q δq = 0. A mode φ (φᵀMφ = 1, frequency ω)
 //! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): slow modes have hardly any part in φᵀMw/ω².
 
-use nalgebra::{DMatrix, DVector, Dyn, Matrix3, SVD, SymmetricEigen, Vector3};
+use nalgebra::{Complex, DMatrix, DVector, Dyn, Matrix3, SVD, SymmetricEigen, Vector3};
 use symdiff::{Expr, math, slopes};
 
 use super::control::Schedule;
 use super::excitations::{Excitation, Watched, excitations};
+use super::fast_states::{StateMode, of_states};
 use super::simulator::Simulator;
 use crate::compile::{Coefficients, equations_of_motion};
 
@@ -62,7 +63,7 @@ pub fn excited_modes(simulator: &Simulator, schedule: &Schedule) -> Vec<ExcitedM
     }
     let linear = Linearised::at_start(simulator);
     let (mut modes, watched): (Vec<ExcitedMode>, Vec<Watched>) =
-        linear.modes(simulator, schedule.longest_step()).unwrap_or_default().into_iter().unzip();
+        linear.modes(simulator, schedule.longest_step()).into_iter().unzip();
     let slower = modes.len().saturating_sub(MOST_WATCHED);
     if !watched.is_empty() {
         let later = excitations(simulator, schedule, &watched[slower..], SLOWEST);
@@ -82,6 +83,8 @@ struct Linearised {
     acceleration: DVector<f64>,
     /// Derivatives of the outputs by q, v, w and λ.
     outputs: [DMatrix<f64>; 4],
+    /// Places of the coordinates whose velocities are states.
+    states: Vec<usize>,
 }
 
 impl Linearised {
@@ -128,11 +131,50 @@ impl Linearised {
             velocity: vector(&layout.v),
             acceleration: vector(&layout.w),
             outputs: derivatives(&outputs),
+            states: (0..system.q.len()).filter(|&place| system.coordinates[place].is_state).collect(),
         }
     }
 
+    /// Those of the mechanism with its states held, and those of the states with the mechanism held: together their
+    /// equations have no symmetric matrices.
+    fn modes(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, Watched)> {
+        let mut modes = self.modes_of_mechanism(simulator, h).unwrap_or_default();
+        modes.extend(self.modes_of_states(simulator, h));
+        modes.sort_by(|(a, _), (b, _)| a.frequency.total_cmp(&b.frequency));
+        modes
+    }
+
+    fn modes_of_states(&self, simulator: &Simulator, h: f64) -> Vec<(ExcitedMode, Watched)> {
+        let count = self.states.len();
+        let block = |matrix: &DMatrix<f64>| {
+            DMatrix::from_fn(count, count, |row, column| matrix[(self.states[row], self.states[column])])
+        };
+        let rates: Vec<f64> = self.states.iter().map(|&place| self.acceleration[place]).collect();
+        let found = if count > 0 { of_states(block(&self.mass), block(&self.damping), &rates) } else { Vec::new() };
+        let size = |value: Complex<f64>| math::hypot(value.re, value.im);
+        let [_, by_v, by_w, _] = &self.outputs;
+        let of_mode = |mode: StateMode| {
+            let of_output = |output: usize| {
+                let by = |(&place, &shape): (&usize, &Complex<f64>)| {
+                    shape * (mode.value * by_w[(output, place)] + by_v[(output, place)])
+                };
+                size(self.states.iter().zip(&mode.shape).map(by).sum())
+            };
+            let frequency = size(mode.value);
+            let excited = ExcitedMode {
+                frequency,
+                decay: (-mode.value.re).clamp(0.0, frequency),
+                by_scheme: by_scheme(h, frequency, simulator.program.coefficients),
+                excitations: vec![Excitation { time: 0.0, amplitude: mode.amplitude }],
+                in_outputs: (0..by_v.nrows()).map(of_output).collect(),
+            };
+            (excited, Watched { weighted: vec![0.0; self.mass.nrows()], frequency })
+        };
+        found.into_iter().filter(|mode| size(mode.value) * h > SLOWEST).map(of_mode).collect()
+    }
+
     /// `None` where M is not positive on the motions that the constraints allow.
-    fn modes(&self, simulator: &Simulator, h: f64) -> Option<Vec<(ExcitedMode, Watched)>> {
+    fn modes_of_mechanism(&self, simulator: &Simulator, h: f64) -> Option<Vec<(ExcitedMode, Watched)>> {
         let allowed = self.allowed_motions()?;
         let on_allowed = |matrix: &DMatrix<f64>| allowed.transpose() * matrix * &allowed;
         let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
@@ -161,7 +203,6 @@ impl Linearised {
                 modes.push(self.mode(&shape, square.sqrt(), of_scheme, constraints.as_ref()));
             }
         }
-        modes.sort_by(|(a, _), (b, _)| a.frequency.total_cmp(&b.frequency));
         Some(modes)
     }
 
@@ -188,20 +229,22 @@ impl Linearised {
         let mode = ExcitedMode {
             frequency: omega,
             decay,
-            by_scheme: [h, 0.5 * h].map(|h| decay_by_scheme(coefficients, h * omega) / h),
+            by_scheme: by_scheme(h, omega, coefficients),
             excitations: vec![Excitation { time: 0.0, amplitude }],
             in_outputs,
         };
         (mode, Watched { weighted: weighted.iter().copied().collect(), frequency: omega })
     }
 
-    /// A basis of the motions with Φ_q δq = 0: columns.
+    /// A basis of the motions with Φ_q δq = 0 of which no state is a part: columns.
     fn allowed_motions(&self) -> Option<DMatrix<f64>> {
         let n = self.mass.nrows();
-        if self.constraint.nrows() == 0 {
+        if self.constraint.nrows() == 0 && self.states.is_empty() {
             return Some(DMatrix::identity(n, n));
         }
-        let normal = self.constraint.transpose() * &self.constraint;
+        let mut normal = self.constraint.transpose() * &self.constraint;
+        let held = normal.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
+        self.states.iter().for_each(|&place| normal[(place, place)] += held);
         if normal.iter().any(|value| !value.is_finite()) {
             return None;
         }
@@ -213,6 +256,11 @@ impl Linearised {
             .collect();
         (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
     }
+}
+
+/// Decay of a mode by the scheme with steps of `h`, and with halved ones, 1/s.
+fn by_scheme(h: f64, frequency: f64, coefficients: Coefficients) -> [f64; 2] {
+    [h, 0.5 * h].map(|h| decay_by_scheme(coefficients, h * frequency) / h)
 }
 
 /// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`: from the spectral

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Tile, WIDTHS};
 
+use super::derived::Derived;
 use super::diagnostics::{not_finite, outside, over_constrained, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_equilibrium, no_factors, not_driven};
 use super::features::Features;
@@ -49,6 +50,8 @@ pub struct Assembled {
     pub equilibrium: Option<Arc<Equilibrium>>,
     /// Where small vibrations are asked for.
     pub vibrations: Option<Arc<Vibrations>>,
+    /// Outputs that follow from the results of the analysis, if any.
+    pub derived: Option<Arc<Derived>>,
 }
 
 impl Assembled {
@@ -137,6 +140,7 @@ impl Assembled {
         let vibrations = matches!(system.analysis, Analysis::Modes(_))
             .then(|| Arc::new(Vibrations::new(&system, &mobility.redundant, mobility.degrees_of_freedom, &nominal)));
         further_outputs(&mut system, vibrations.as_deref());
+        let derived = Derived::of(&system)?.map(Arc::new);
         if let (Some(equilibrium), Some(_)) = (&mut equilibrium, system.analysis.is_without_steps().then_some(())) {
             *equilibrium = Arc::new(Equilibrium::new(&system, &mobility.redundant));
         }
@@ -144,7 +148,7 @@ impl Assembled {
             return Err(not_driven(&system, &start, &nominal));
         }
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
-        Ok(Self { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations })
+        Ok(Self { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, derived })
     }
 
     /// Some outputs in the nominal state, with these parameters in their formulas.
@@ -185,6 +189,8 @@ pub struct Simulator {
     pub equilibrium: Option<Arc<Equilibrium>>,
     /// Where small vibrations are asked for.
     pub vibrations: Option<Arc<Vibrations>>,
+    /// Outputs that follow from the results of the analysis, if any.
+    pub derived: Option<Arc<Derived>>,
     /// Compiled where steps are controlled.
     switches: OnceLock<Option<SwitchProgram>>,
     overlaps: OnceLock<Option<SwitchProgram>>,
@@ -208,7 +214,7 @@ impl Simulator {
     /// # Errors
     /// Also where the limit is exceeded.
     pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
-        let Assembled { mut system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations } =
+        let Assembled { mut system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, derived } =
             Assembled::of_samples(Samples::All, system, scheme, h, operations)?;
         let samples = pivot_samples(&system, &start.layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples);
@@ -224,6 +230,7 @@ impl Simulator {
             shared,
             equilibrium,
             vibrations,
+            derived,
             switches: OnceLock::new(),
             overlaps: OnceLock::new(),
             features: OnceLock::new(),

@@ -34,10 +34,12 @@ pub(super) fn arrange(description: &Description, bounds: &mut Bounds, summary: &
     };
     let first = bounds.outputs.len().saturating_sub(2 * frequencies().count());
     let mut lines = bounds.outputs.split_off(first).into_iter();
+    let mut contributions = bounds.contributions.split_off(first.min(bounds.contributions.len())).into_iter();
     let names: Vec<String> = lines.as_slice().iter().map(|line| line.name.clone()).collect();
     for (name, frequency) in frequencies() {
         let (Some(amplitude), Some(phase)) = (lines.next(), lines.next()) else { break };
-        bounds.responses.push(ResponsePoint { name, frequency, amplitude, phase });
+        let contributions = [(); 2].map(|()| contributions.next().unwrap_or_default());
+        bounds.responses.push(ResponsePoint { name, frequency, amplitude, phase, contributions });
     }
     // Eigenvalues have no Taylor bounds.
     for output in bounds.outputs.iter_mut().skip(description.outputs.len()) {
@@ -46,7 +48,6 @@ pub(super) fn arrange(description: &Description, bounds: &mut Bounds, summary: &
         let bands: Vec<&str> = output.bands.iter().map(|band| band.method.name()).collect();
         summary.errors.retain(|error| error.output != output.name || bands.contains(&error.method.as_str()));
     }
-    bounds.contributions.truncate(first);
     bounds.analysis = description.analysis;
     summary.errors.retain(|error| !names.contains(&error.output));
     summary.contributions.retain(|contribution| !names.contains(&contribution.output));

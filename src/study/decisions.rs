@@ -223,7 +223,7 @@ fn unasked(prepared: &[Prepared]) -> Option<Decision> {
         let known = |text: &String| description.symbol(text).is_some();
         let outputs = all.iter().filter(|text| known(text)).filter_map(|text| {
             let formula = Formula::parse(text).ok()?;
-            Some(Output { name: text.clone(), formula, unit: String::new(), dimension: None })
+            Some(Output { name: text.clone(), formula, unit: String::new(), dimension: None, of_results: false })
         });
         let outputs: Vec<Output> = outputs.collect();
         description.outputs.extend(outputs);

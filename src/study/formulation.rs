@@ -264,9 +264,20 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
         return within_budget(description, MOST_TO_CHECK, &of_system);
     }
     if description.bodies.len() <= FEW_BODIES {
-        let Simulator { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, .. } =
-            compiled(description)?;
-        return Ok(Assembled { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations });
+        let Simulator {
+            system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, derived, ..
+        } = compiled(description)?;
+        return Ok(Assembled {
+            system,
+            start,
+            nominal,
+            mobility,
+            undetermined,
+            shared,
+            equilibrium,
+            vibrations,
+            derived,
+        });
     }
     if assemble::closes_loops(description) {
         let absolute = assemble::in_absolute_coordinates(description)?;

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::reduced::{KeptReduced, Margins, MarginsOfPart};
+use super::reduced::{KeptReduced, Margins, MarginsOfPart, ReducedValues};
 use crate::methods::{self, KeptSurrogate};
 use crate::numerics::{BandError, SparseBasis};
 use crate::reduce::Subsystem;
@@ -42,6 +42,8 @@ struct Placed {
     part: KeptPart,
     /// Numbers of its uncertain parameters among those of the model.
     parameters: Vec<usize>,
+    /// Numbers of its reduced outputs in the model.
+    reduced: Vec<usize>,
     /// Numbers of its requirements in the model.
     requirements: Vec<usize>,
 }
@@ -66,7 +68,8 @@ impl KeptPart {
 impl Placed {
     fn margins(&self) -> Option<MarginsOfPart<'_>> {
         let kept = self.part.reduced.as_ref()?;
-        Some(MarginsOfPart { kept, parameters: &self.parameters, requirements: &self.requirements })
+        let Self { parameters, reduced, requirements, .. } = self;
+        Some(MarginsOfPart { kept, parameters, reduced, requirements })
     }
 }
 
@@ -77,11 +80,16 @@ impl Kept {
         for (number, (_, subsystem)) in parts.iter().enumerate() {
             subsystem.outputs.iter().enumerate().for_each(|(place, &output)| places[output] = (number, place));
         }
+        // What an analysis of one system adds to the model's outputs.
+        if let [(part, _)] = parts.as_slice() {
+            places.extend((outputs..part.errors.len()).map(|place| (0, place)));
+        }
         let shortest = parts.iter().map(|(part, _)| &part.times).min_by_key(|times| times.len());
         let times = shortest.cloned().unwrap_or_default();
-        let placed = |(part, Subsystem { parameters, requirements, .. }): (KeptPart, &Subsystem)| Placed {
+        let placed = |(part, Subsystem { parameters, requirements, reduced, .. }): (KeptPart, &Subsystem)| Placed {
             part,
             parameters: parameters.clone(),
+            reduced: reduced.clone(),
             requirements: requirements.clone(),
         };
         Self { parts: parts.into_iter().map(placed).collect(), places, times }
@@ -128,6 +136,24 @@ impl Kept {
     pub fn margins(&self) -> Option<Margins<'_>> {
         let asked = self.parts.iter().filter(|placed| !placed.requirements.is_empty());
         Margins::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?).filter(|margins| margins.count() > 0)
+    }
+
+    /// All of so many reduced outputs. `None` where there are none, or one of them is not known.
+    pub fn reduced(&self, count: usize) -> Option<ReducedValues<'_>> {
+        let asked = self.parts.iter().filter(|placed| !placed.reduced.is_empty());
+        ReducedValues::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?, count).filter(|_| count > 0)
+    }
+
+    /// How many outputs there are: the model's, and what an analysis adds.
+    pub fn outputs(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Name and unit of an output.
+    pub fn named(&self, output: usize) -> (&str, &str) {
+        let (part, place) = self.places[output];
+        let own = &self.parts[part].part.simulator.system.outputs[place];
+        (&own.name, &own.unit)
     }
 
     /// Prepares evaluation: compiles the loop closures that outputs need.

@@ -31,7 +31,8 @@ fn of_model(description: &Description) -> Result<(Assembled, Structure), RunErro
     let inventory = Inventory::of(description)?;
     let mut outputs = description.outputs.clone();
     let own = outputs.len();
-    let hidden = |formula| Output { name: String::new(), formula, unit: String::new(), dimension: None };
+    let hidden =
+        |formula| Output { name: String::new(), formula, unit: String::new(), dimension: None, of_results: false };
     outputs.extend(places(description).map(hidden));
     let places = outputs.len();
     outputs.extend(gravities(description).into_iter().flatten().cloned().map(hidden));

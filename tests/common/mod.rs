@@ -138,6 +138,7 @@ impl Vary for Description {
             formula: symdiff::Formula::parse(formula).unwrap(),
             unit: String::new(),
             dimension: None,
+            of_results: false,
         };
         self.outputs = formulas.iter().map(output).collect();
         self

@@ -87,3 +87,75 @@ fn it_begins_settled() {
     assert!(off(&bounds, "old", -1.0, |_| 0.5) < 1e-12);
     assert_eq!((output(&bounds, "old").unit.as_str(), curve(&bounds, "slow")[0]), ("m", 0.0));
 }
+
+/// ẍ = −k x(t − T) − c ẋ with x = x₀ before, by Runge and Kutta's steps of T/10 through the cubic between old ones, in
+/// rows of 0.02 s.
+fn by_old_values(time: f64) -> Vec<f64> {
+    const PARTS: usize = 10;
+    let h = time / PARTS as f64;
+    let mut known: Vec<[f64; 3]> = vec![[0.1, 0.0, -40.0]];
+    let mut rows = vec![0.1];
+    while rows.len() <= 100 {
+        let at = |known: &Vec<[f64; 3]>, step: f64| -> f64 {
+            let step = step - PARTS as f64;
+            if step <= 0.0 {
+                return 0.1;
+            }
+            let place = (step as usize).min(known.len() - 2);
+            let (s, [a, da, _], [b, db, _]) = (step - place as f64, known[place], known[place + 1]);
+            let (da, db) = (h * da, h * db);
+            a + s * (da + s * (3.0 * (b - a) - 2.0 * da - db + s * (2.0 * (a - b) + da + db)))
+        };
+        let step = (known.len() - 1) as f64;
+        let pull = |part: f64, v: f64| -400.0 * at(&known, step + part) - v;
+        let [x, v, _] = known[known.len() - 1];
+        let a1 = pull(0.0, v);
+        let (v2, v3);
+        v2 = v + 0.5 * h * a1;
+        let a2 = pull(0.5, v2);
+        v3 = v + 0.5 * h * a2;
+        let a3 = pull(0.5, v3);
+        let v4 = v + h * a3;
+        let a4 = pull(1.0, v4);
+        let next = [x + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4), v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)];
+        known.push([next[0], next[1], 0.0]);
+        let (before, now) = (step * h, (step + 1.0) * h);
+        let wanted = 0.02 * rows.len() as f64;
+        if now >= wanted - 1e-12 {
+            // Within a step the motion is a parabola.
+            let (s, dt) = (wanted - before, 0.5 * (a1 + a4));
+            rows.push(x + v * s + 0.5 * dt * s * s);
+        }
+    }
+    rows
+}
+
+/// A delay as short as a step has fast poles, which nothing excites: what is stated is what the steps do.
+#[test]
+fn errors_of_short_delays_are_those_of_the_steps() {
+    let bounds = run(&read(
+        "
+parameters: { T: { value: 1 ms, tolerance: 20% } }
+bodies: { p: { mass: 1, coordinates: [x] } }
+effects:
+  late: { delay: { input: p.x, time: T, initial: 0.1 m } }
+  pull: { force: { on: p, value: [-400 N/m*late - 1 N*s/m*p.vx, 0] } }
+initial: { p.x: 0.1, p.vx: 0 }
+outputs: { x: p.x }
+simulation: { duration: 2, step: 1e-3, output_step: 0.02 }
+bounds: { chebyshev: { order: 5 } }
+",
+    ));
+    let band = band(output(&bounds, "x"), Method::Chebyshev);
+    let missed = largest([0.8e-3, 1e-3, 1.2e-3].map(|time| {
+        let truth = by_old_values(time);
+        largest((0..truth.len()).map(|row| {
+            let (low, high) = (band.lower[row] - truth[row], truth[row] - band.upper[row]);
+            assert!(low.max(high) <= band.error.total[row] + 1e-7, "{time} at {row}: {low} {high}");
+            if time == 1e-3 { curve(&bounds, "x")[row] - truth[row] } else { 0.0 }
+        }))
+    }));
+    let stated = largest(band.error.total.iter().copied());
+    assert!(band.error.total[0] < 1e-5, "{:e}", band.error.total[0]);
+    assert!(stated < 20.0 * missed, "{stated:e} stated, {missed:e} missed");
+}

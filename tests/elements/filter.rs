@@ -143,3 +143,28 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.5 }
     assert!(together("left", "right", 1.0) < 1e-12 && together("angle", "image", -1.0) < 1e-12);
     assert!(largest(curve(&bounds, "angle").iter().copied()) > 0.1);
 }
+
+/// A filter that rings faster than the steps are long, from a start that is not settled: the steps damp it, halved ones
+/// too, and the error says so.
+#[test]
+fn steps_that_damp_a_ringing_filter_say_so() {
+    let (omega, damping) = (5e3_f64, 1e-4);
+    let bounds = run(&read(&format!(
+        "
+parameters: {{ size: {{ value: 1, tolerance: 1% }} }}
+bodies: {{ m: {{ mass: 1, coordinates: [x] }} }}
+effects: {{ ring: {{ filter: {{ input: size, numerator: [1], denominator: [1/{omega}^2, 2*{damping}/{omega}, 1] }} }} }}
+initial: {{ m.x: 0, m.vx: 0 }}
+outputs: {{ ring: ring }}
+simulation: {{ duration: 0.2, step: 1e-3, output_step: 0.02 }}
+bounds: {{ chebyshev: {{ order: 2 }} }}
+"
+    )));
+    let band = band(output(&bounds, "ring"), Method::Chebyshev);
+    let nominal = curve(&bounds, "ring");
+    for (row, time) in bounds.times.iter().enumerate().skip(1) {
+        let truth = 1.0 - (-damping * omega * time).exp() * (omega * time).cos();
+        let off = (nominal[row] - truth).abs();
+        assert!(band.error.unresolved[row] || band.error.total[row] > 0.8 * off, "{time}: {off} of {}", band.error.total[row]);
+    }
+}

@@ -1,6 +1,7 @@
 //! Small vibrations, against closed forms and against equations written by hand.
 
-use mbint::inner::results::{Bounds, Method};
+use mbint::inner::results::{Bounds, Method, Verdict};
+use mbint::inner::study::{self, Options};
 
 use crate::common::{nominal, read, run};
 use crate::statics::{close, ends, example, value};
@@ -342,4 +343,53 @@ bounds: { chebyshev: { order: 8 }, scan: { points: 101 } }
             }
         }
     }
+}
+
+/// f = √(k/m)/2π and ζ = c/(2 √(k m)) of one mass over the box: margins of requirements on them, and on the response
+/// k⁻¹ of slow loads, and which tolerance matters: of ln f, k and m have ½ each.
+#[test]
+fn requirements_on_frequencies_have_the_margins_of_closed_forms() {
+    let text = |limits: &str| {
+        format!(
+            "
+analysis: modes
+modes: {{ at: equilibrium, number: 1, responses: {{ slow: {{ load: x, output: x, from: 1e-4, to: 1e-3, points: 2 }} }} }}
+parameters: {{ k: {{ value: 400, unit: N/m, tolerance: 5% }}, m: {{ value: 1, unit: kg, tolerance: 2% }}, drive: 3 }}
+bodies: {{ block: {{ mass: m, coordinates: [x] }} }}
+effects: {{ s: {{ spring_damper: {{ between: [ground, block], along: x, stiffness: k, damping: 4, free_length: 0 }} }} }}
+outputs: {{ x: block.x }}
+requirements: {{ {limits} }}
+bounds: {{ chebyshev: {{ order: 6 }}, scan: {{ points: 5 }} }}
+"
+        )
+    };
+    let limits = "above: mode1.frequency >= drive*0.9, damped: { output: mode1.damping, min: 0.09, max: 0.105 }, \
+                  soft: slow.amplitude <= 2.6e-3, low: mode1.frequency <= 3.2";
+    let (bounds, summary) = study::run(&read(&text(limits)), Options::default()).unwrap();
+    let frequency = |k: f64, m: f64| (k / m).sqrt() / std::f64::consts::TAU;
+    let damping = |k: f64, m: f64| 4.0 / (2.0 * (k * m).sqrt());
+    let wanted = [
+        (frequency(380.0, 1.02) - 2.7, Verdict::Holds),
+        ((damping(420.0, 1.02) - 0.09).min(0.105 - damping(380.0, 0.98)), Verdict::Holds),
+        (2.6e-3 - 1.0 / 380.0, Verdict::Violated),
+        (3.2 - frequency(420.0, 0.98), Verdict::Violated),
+    ];
+    for (own, (margin, verdict)) in summary.requirements.iter().zip(wanted) {
+        assert_eq!(own.verdict, verdict, "{own:?}");
+        assert!(
+            (own.margin - margin).abs() < 1e-5 * margin.abs().max(0.1) + own.error,
+            "{}: {} for {margin}",
+            own.name,
+            own.margin
+        );
+    }
+    assert_eq!(summary.requirements.len(), wanted.len());
+    // Only the model's own outputs and the analysis' results are shown.
+    assert!(bounds.outputs.iter().all(|output| !output.name.contains("above")), "{:?}", bounds.outputs);
+    let shares = &bounds.contributions[bounds.outputs.iter().position(|own| own.name == "mode1.frequency").unwrap()];
+    let of = |name: &str| shares.iter().find(|own| own.parameter == name).unwrap().main[0];
+    let (k, m) = (0.05_f64.powi(2), 0.02_f64.powi(2));
+    assert!((of("k") - k / (k + m)).abs() < 2e-3 && (of("m") - m / (k + m)).abs() < 2e-3, "{} {}", of("k"), of("m"));
+    assert_eq!(bounds.responses[0].contributions[0].len(), 2);
+    assert!((bounds.responses[0].contributions[0][0].main[0] - 1.0).abs() < 1e-6);
 }

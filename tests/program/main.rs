@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
 mod allocate;
+mod analyses;
 mod bad_models;
 mod book;
 mod cli;

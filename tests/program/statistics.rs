@@ -185,3 +185,32 @@ fn a_stack_has_worst_case_root_sum_square_and_statistics_side_by_side() {
         assert!(report.contains(word), "{word}");
     }
 }
+
+/// The peak v²/2g of what is thrown up, v normal: its quantiles are those of v, squared, and the mean is (v² + σ²)/2g.
+#[test]
+fn reduced_outputs_have_quantiles() {
+    let place = Place::new();
+    let text = "
+model: thrown
+parameters: { v: { value: 2, unit: m/s, tolerance: 60 mm/s, distribution: normal } }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+initial: { ball.y: 0, ball.vy: v }
+outputs: { y: ball.y, peak: { max: y, unit: mm } }
+statistics: { quantiles: [50%, 99.9%] }
+simulation: { duration: 0.5, step: 1e-3, output_step: 0.25 }
+bounds: { chebyshev: { order: 3 } }
+";
+    fs::write(place.path().join("thrown.yaml"), text).unwrap();
+    let (printed, _) = place.run("run thrown.yaml -o out", 0);
+    assert!(printed.contains("99.9 %: 216.6"), "{printed}");
+    let table = fs::read_to_string(place.path().join("out/reduced_statistics.csv")).unwrap();
+    let (heading, line) = table.split_once('\n').unwrap();
+    assert_eq!(heading, "name,unit,mean,mean.error,deviation,deviation.error,q0.5,q0.5.error,q0.999,q0.999.error");
+    let cells: Vec<f64> = line.trim().split(',').skip(2).map(|cell| cell.parse().unwrap()).collect();
+    let of = |v: f64| v * v / 19.62;
+    let wanted = [of(2.0) + 0.02 * 0.02 / 19.62, of(2.0), of(2.0 + 0.02 * 3.090_232_306)];
+    for (found, wanted) in [(&cells[0..2], wanted[0]), (&cells[4..6], wanted[1]), (&cells[6..8], wanted[2])] {
+        assert!((found[0] - wanted).abs() < 1.5 * found[1] + 1e-9 && found[1] < 1e-3 * wanted, "{found:?} {wanted}");
+    }
+}

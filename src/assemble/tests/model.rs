@@ -147,7 +147,13 @@ impl Model {
     }
 
     pub fn output(&mut self, text: &str) {
-        let output = Output { name: text.to_owned(), formula: formula(text), unit: String::new(), dimension: None };
+        let output = Output {
+            name: text.to_owned(),
+            formula: formula(text),
+            unit: String::new(),
+            dimension: None,
+            of_results: false,
+        };
         self.0.outputs.push(output);
     }
 

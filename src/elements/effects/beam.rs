@@ -95,6 +95,7 @@ impl ForceElement for Beam {
     const SENSORS: &'static [TypedSensor] = &[
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::FORCE, Dimension::FORCE),
+        (Sensor::AXIAL, Dimension::FORCE),
         (Sensor::TORQUE, Dimension::TORQUE),
         (Sensor::START_TORQUE, Dimension::TORQUE),
     ];
@@ -187,6 +188,7 @@ impl ForceElement for Beam {
         forces.sensors([
             (Sensor::LENGTH, length),
             (Sensor::FORCE, tension),
+            (Sensor::AXIAL, tension),
             (Sensor::TORQUE, moments[1]),
             (Sensor::START_TORQUE, at_start),
         ]);
@@ -229,6 +231,7 @@ impl Beam {
         forces.sensors([
             (Sensor::LENGTH, measured.length),
             (Sensor::FORCE, measured.tension),
+            (Sensor::AXIAL, measured.tension),
             (Sensor::TORQUE, end[2]),
             (Sensor::START_TORQUE, start[2]),
             (TORQUE_Y, end[1]),

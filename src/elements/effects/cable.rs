@@ -58,6 +58,7 @@ impl ForceElement for Cable {
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::RATE, Dimension::VELOCITY),
         (Sensor::FORCE, Dimension::FORCE),
+        (Sensor::AXIAL, Dimension::FORCE),
     ];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
@@ -79,7 +80,7 @@ impl ForceElement for Cable {
         let tension = tension.only_where(tight);
         let potential = (stiffness * taut.integral).only_where(tight);
         forces.potential(&[stiffness, free, corner], potential);
-        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension)]);
+        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension), (Sensor::AXIAL, tension)]);
         Ok(())
     }
 }

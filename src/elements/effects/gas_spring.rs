@@ -64,6 +64,7 @@ impl ForceElement for GasSpring {
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::RATE, Dimension::VELOCITY),
         (Sensor::FORCE, Dimension::FORCE),
+        (Sensor::AXIAL, Dimension::FORCE),
         (PRESSURE, Dimension::PRESSURE),
     ];
 
@@ -90,7 +91,8 @@ impl ForceElement for GasSpring {
         let push = (pressure - ambient) * area;
         forces.between(&a, &b, push * direction);
         forces.potential(&[filled, volume, ambient, area, free], stored + ambient * area * length);
-        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, push), (PRESSURE, pressure)]);
+        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (PRESSURE, pressure)]);
+        forces.sensors([(Sensor::FORCE, push), (Sensor::AXIAL, -push)]);
         Ok(())
     }
 }

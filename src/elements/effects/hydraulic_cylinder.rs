@@ -105,6 +105,7 @@ impl ForceElement for HydraulicCylinder {
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::RATE, Dimension::VELOCITY),
         (Sensor::FORCE, Dimension::FORCE),
+        (Sensor::AXIAL, Dimension::FORCE),
         (PISTON_PRESSURE, Dimension::PRESSURE),
         (ROD_PRESSURE, Dimension::PRESSURE),
         (FLOWS[0], Dimension::VOLUME_FLOW),
@@ -140,7 +141,7 @@ impl ForceElement for HydraulicCylinder {
         }
         let push = pressures[0] * areas[0] - pressures[1] * areas[1];
         forces.between(&a, &b, push * direction);
-        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, push)]);
+        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, push), (Sensor::AXIAL, -push)]);
         forces.sensors([(FLOWS[0], flows[0]), (FLOWS[1], flows[1])]);
         Ok(())
     }

@@ -11,7 +11,8 @@ use mbint_derive::Element;
 use symdiff::Formula;
 
 use super::{ForceElement, Forces, TypedSensor};
-use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, SymbolTable, TimeOrder};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, Sensor, SymbolTable, TimeOrder};
 use crate::multibody::BuildError;
 
 /// A constant tension between two points, or a constant force or torque of a joint.
@@ -37,7 +38,11 @@ pub struct Preload {
 }
 
 impl ForceElement for Preload {
-    const SENSORS: &'static [TypedSensor] = &[];
+    const SENSORS: &'static [TypedSensor] = &[(Sensor::AXIAL, Dimension::FORCE)];
+
+    fn sensors(&self) -> Vec<TypedSensor> {
+        Self::SENSORS.iter().copied().filter(|_| self.between.is_some()).collect()
+    }
 
     fn coordinates(&self) -> Vec<OnJoint> {
         self.on.into_iter().collect()
@@ -51,6 +56,7 @@ impl ForceElement for Preload {
                 let line = b.position - a.position;
                 let length = line.norm();
                 forces.between(&b, &a, force / length * line);
+                forces.sensor(Sensor::AXIAL, force);
                 force * length
             }
             (_, Some(on)) => {

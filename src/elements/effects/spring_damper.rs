@@ -64,6 +64,7 @@ impl ForceElement for SpringDamper {
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::RATE, Dimension::VELOCITY),
         (Sensor::FORCE, Dimension::FORCE),
+        (Sensor::AXIAL, Dimension::FORCE),
     ];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
@@ -91,7 +92,7 @@ impl ForceElement for SpringDamper {
         if self.force.is_none() {
             forces.potential(&[spring.stiffness, spring.free_length], potential);
         }
-        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension)]);
+        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension), (Sensor::AXIAL, tension)]);
         Ok(())
     }
 }

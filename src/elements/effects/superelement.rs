@@ -20,7 +20,8 @@ use symdiff::{Formula, Scalar};
 use super::matrices::{Matrices, OF_NODE};
 use super::{ForceElement, Forces, ReducedInertia, TypedSensor};
 use crate::elements::Glyph;
-use crate::grammar::{Checked, Fields, PointRef, Reader, SymbolTable};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
 use crate::multibody::{BuildError, Pair, RelativeDisplacement, Vector};
 
 /// A flexible body by its mass and stiffness matrices: by nodes and modes.
@@ -52,7 +53,11 @@ pub struct Superelement {
 
 impl ForceElement for Superelement {
     const GLYPH: Glyph = Glyph::Beam;
-    const SENSORS: &'static [TypedSensor] = &[];
+    const SENSORS: &'static [TypedSensor] = &[(Sensor::AXIAL, Dimension::FORCE)];
+
+    fn sensors(&self) -> Vec<TypedSensor> {
+        Self::SENSORS.iter().copied().filter(|_| self.nodes.len() == 2).collect()
+    }
 
     fn reduced_inertia(&self) -> Option<ReducedInertia<'_>> {
         Some(ReducedInertia { nodes: &self.nodes, matrices: &self.matrices, factor: &self.mass })
@@ -86,7 +91,12 @@ impl ForceElement for Superelement {
             };
             let second = &end.pair.second.point;
             let there = forces.point_at(first.body, second.position);
-            forces.between(&there, second, -(end.at.outward * three(0)));
+            let pull = end.at.outward * three(0);
+            forces.between(&there, second, -pull);
+            if ends.len() == 1 {
+                let line = end.pair.offset();
+                forces.sensor(Sensor::AXIAL, pull.dot(line) / line.norm());
+            }
             forces.torque(first.body, second.body, -end.at.torque(three(3)));
         }
         for mode in 0..self.matrices.modes {

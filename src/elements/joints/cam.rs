@@ -85,6 +85,11 @@ impl Joint for Cam {
         Some(Placement { separation: Separation::Distance(&self.base), orientation: Orientation::Free })
     }
 
+    /// Contact.
+    fn axial_by_multiplier(&self) -> Option<f64> {
+        Some(-1.0)
+    }
+
     fn glyph(&self) -> Glyph {
         Glyph::Gear
     }

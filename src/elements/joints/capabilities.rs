@@ -68,6 +68,16 @@ pub trait Joint: Debug {
         self.mobilizer()?.axis_of(coordinate)
     }
 
+    /// The direction in the first frame along which `axial` counts its reaction; `None` where it has none of its own.
+    fn reaction_axis(&self) -> Option<&[Formula; 3]> {
+        self.axis_of(JointCoordinate::Angle).or_else(|| self.axis_of(JointCoordinate::Displacement))
+    }
+
+    /// `axial` over the one multiplier, where its force acts along a line that moves against both bodies.
+    fn axial_by_multiplier(&self) -> Option<f64> {
+        None
+    }
+
     /// The force that its multiplier λ stands for, where that acts between two bodies by teeth; `own` is its own index.
     ///
     /// # Errors

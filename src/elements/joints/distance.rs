@@ -50,6 +50,11 @@ impl Joint for Distance {
         Some(Placement { separation: Separation::Distance(&self.length), orientation: Orientation::Free })
     }
 
+    /// Tension.
+    fn axial_by_multiplier(&self) -> Option<f64> {
+        Some(1.0)
+    }
+
     fn glyph(&self) -> Glyph {
         Glyph::Rod
     }

@@ -55,6 +55,10 @@ impl Joint for PinInSlot {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::AboutAxis })
     }
 
+    fn reaction_axis(&self) -> Option<&[Formula; 3]> {
+        Some(&self.axis)
+    }
+
     fn glyph(&self) -> Glyph {
         Glyph::Slot
     }

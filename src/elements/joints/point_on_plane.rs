@@ -50,6 +50,10 @@ impl Joint for PointOnPlane {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::Free })
     }
 
+    fn reaction_axis(&self) -> Option<&[Formula; 3]> {
+        Some(&self.normal)
+    }
+
     fn glyph(&self) -> Glyph {
         Glyph::Plane
     }

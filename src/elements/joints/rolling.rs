@@ -71,6 +71,10 @@ impl Joint for Rolling {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::Free })
     }
 
+    fn reaction_axis(&self) -> Option<&[Formula; 3]> {
+        Some(&self.axis)
+    }
+
     fn glyph(&self) -> Glyph {
         Glyph::Gear
     }

@@ -101,6 +101,10 @@ impl Joint for RollingOnPlane {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::Free })
     }
 
+    fn reaction_axis(&self) -> Option<&[Formula; 3]> {
+        Some(&self.normal)
+    }
+
     fn glyph(&self) -> Glyph {
         Glyph::Plane
     }

@@ -8,28 +8,26 @@ mod composition;
 mod detail;
 mod estimator;
 mod outputs_alone;
+mod polynomials;
 mod range_search;
 mod sensitivity;
 mod sub_box;
-
-use rayon::prelude::*;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
-use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
+use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{
-    ParameterBox, PolynomialRange, RangeKind, Sample, SparseWork, Surrogate, SurrogateWork, largest, truncation,
-};
+use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, Sample, Surrogate, largest};
 use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, Row};
 use estimator::RangeEstimator;
 use outputs_alone::OutputsAlone;
+use polynomials::expanded;
 use range_search::{Previous, RangeSearch};
 use sensitivity::SensitivityAnalysis;
 
@@ -357,44 +355,4 @@ fn composed(
         }
     })?;
     failure.map_or(Ok((bands, simulated)), Err)
-}
-
-/// The outputs themselves are expanded.
-fn expanded(
-    ensemble: &dyn Ensemble,
-    surrogate: &Surrogate,
-    range: PolynomialRange,
-    samples: &[Sample],
-    validation: &Validation,
-    mut kept: Option<&mut Vec<KeptRow>>,
-) -> Result<(BandBuilder, Simulated), EnsembleError> {
-    let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
-    let kinks: Vec<bool> = (0..ensemble.outputs()).map(|output| ensemble.has_kink(output)).collect();
-    let sampling = Sampling { observed: Observed::Outputs, until: Until::FirstStop, finish: false };
-    let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
-        let keeps = kept.is_some();
-        let found: Vec<PolynomialEstimate> = values
-            .par_chunks_exact(samples.len())
-            .map_init(
-                || (range.clone(), SurrogateWork::default(), SparseWork::default()),
-                |(range, work, sparse), responses| {
-                    let coefficients = surrogate.coefficients(responses, work);
-                    let mut at_validation = vec![0.0; validation.points.len()];
-                    surrogate.basis().values(&validation.points, &coefficients, &mut at_validation, sparse);
-                    let enclosed = range.enclose(&coefficients);
-                    let truncation = truncation(surrogate.basis(), &coefficients);
-                    let (range, excess) = (enclosed.outer, enclosed.excess());
-                    let coefficients = if keeps { coefficients } else { Vec::new() };
-                    PolynomialEstimate { range, excess, truncation, at_validation, coefficients }
-                },
-            )
-            .collect();
-        bands.set_polynomials(rows.clone(), &found, (validation, &kinks));
-        if let Some(kept) = &mut kept {
-            let lines: Vec<&[f64]> = found.iter().map(|found| found.coefficients.as_slice()).collect();
-            let of_rows = rows.zip(lines.chunks_exact(ensemble.outputs().max(1)));
-            kept.extend(of_rows.map(|(row, lines)| KeptRow::of_outputs(ensemble.time(row), lines)));
-        }
-    })?;
-    Ok((bands, simulated))
 }

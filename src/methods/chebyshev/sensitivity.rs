@@ -30,6 +30,30 @@ struct Fine {
     lattice: Vec<Vec<f64>>,
 }
 
+/// Outputs as functions of the parameters.
+pub(super) trait Predicted {
+    /// How many they are.
+    fn outputs(&self) -> usize;
+    /// Through whose samples they go.
+    fn surrogate(&self) -> &Surrogate;
+    /// Values of some of them, output by output, point by point.
+    fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64>;
+}
+
+impl Predicted for Row<'_> {
+    fn outputs(&self) -> usize {
+        Row::outputs(self)
+    }
+
+    fn surrogate(&self) -> &Surrogate {
+        Row::surrogate(self)
+    }
+
+    fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
+        Row::predict_some(self, outputs, points)
+    }
+}
+
 /// What is the same in all rows.
 pub(super) struct SensitivityAnalysis {
     /// ξ of the nominal parameters.
@@ -41,7 +65,7 @@ pub(super) struct SensitivityAnalysis {
 }
 
 impl SensitivityAnalysis {
-    /// For outputs that are composed from a surrogate over a box.
+    /// For outputs that follow from a surrogate over a box.
     pub fn new(domain: &ParameterBox, surrogate: &Surrogate) -> Self {
         let k = domain.dimension();
         let nominal: Vec<f64> = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
@@ -52,12 +76,14 @@ impl SensitivityAnalysis {
     }
 
     /// Sensitivities of every output, whose ranges are known.
-    pub fn of_row(&self, row: &Row, found: &[Extent]) -> Vec<Sensitivity> {
+    pub fn of_row(&self, row: &impl Predicted, found: &[Extent]) -> Vec<Sensitivity> {
         let (surrogate, decomposition) = match &self.fine {
             Some(fine) => (&fine.surrogate, &fine.decomposition),
             None => (row.surrogate(), &self.own),
         };
-        let coefficients = surrogate.coefficients(&row.predict(surrogate.samples()), &mut SurrogateWork::default());
+        let every: Vec<usize> = (0..row.outputs()).collect();
+        let values = row.predict_some(&every, surrogate.samples());
+        let coefficients = surrogate.coefficients(&values, &mut SurrogateWork::default());
         let k = self.nominal.len();
         let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, &coefficients, found, axis)).collect();
         let of_output = |(output, coefficients): (usize, &[f64])| {
@@ -73,7 +99,7 @@ impl SensitivityAnalysis {
 
     /// Every output's width with one parameter at its nominal value, from the outputs' `coefficients`. For many parameters, as far as
     /// the places of the extremes tell, which is all there is to know of an output that rises or falls with each.
-    fn widths_without(&self, row: &Row, coefficients: &[f64], found: &[Extent], axis: usize) -> Vec<f64> {
+    fn widths_without(&self, row: &impl Predicted, coefficients: &[f64], found: &[Extent], axis: usize) -> Vec<f64> {
         if let Some(fine) = &self.fine {
             return fine.widths_without(coefficients, axis);
         }

@@ -26,6 +26,8 @@ pub struct ReducedOutput {
     pub from: f64,
     /// Until when, s.
     pub to: f64,
+    /// Whether the formulas name results of the analysis, and outputs, instead of the motion.
+    pub of_results: bool,
 }
 
 /// Reduction of a motion.
@@ -82,6 +84,8 @@ pub struct Requirement {
     pub times: Option<(f64, f64)>,
     /// Constant limits.
     pub limits: Vec<Limit>,
+    /// Whether the slacks name results of the analysis, and outputs, instead of the motion.
+    pub of_results: bool,
 }
 
 /// A constant limit.

@@ -92,7 +92,7 @@ grammar! {
     Requirement is "a requirement" {
         /// A comparison: `x3 >= 0.4 m`; instead of `output`.
         that: Option<String>,
-        /// An output, a reduced output, or a formula of them.
+        /// An output, a reduced output, a result of the analysis, or a formula of them.
         output: Option<Number>,
         /// The largest value allowed.
         max: Option<Number>,

@@ -74,7 +74,13 @@ fn body_of(value: &StartValue) -> Option<usize> {
 pub fn outputs(reader: &mut Reader, source: &Source, built: &Built) {
     let mut push = |name: String, text: String, dimension: Dimension| {
         let formula = formula(reader, &Value::Text(text));
-        reader.model.outputs.push(Output { name, formula, unit: dimension.unit(), dimension: Some(dimension) });
+        reader.model.outputs.push(Output {
+            name,
+            formula,
+            unit: dimension.unit(),
+            dimension: Some(dimension),
+            of_results: false,
+        });
     };
     if source.floating {
         let root = &source.robot.links[source.robot.root].name;

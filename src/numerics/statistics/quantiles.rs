@@ -103,4 +103,66 @@ mod tests {
             }
         }
     }
+
+    /// By scipy 1.17.1: `beta.ppf` and `lognorm.ppf`.
+    #[test]
+    fn prepared_quantiles_are_those_of_scipy() {
+        let shares = [1e-6, 0.001, 0.05, 0.5, 0.95, 0.999];
+        let beta = |alpha, beta| Distribution::Beta { alpha, beta, lower: 0.0, upper: 1.0 };
+        let lognormal = Distribution::Lognormal { median: 2e5, sigma: 0.1, lower: 0.0, upper: f64::INFINITY };
+        let of_beta = [
+            (
+                beta(0.9, 2.2),
+                [
+                    9.579_791_806_036e-8,
+                    0.000_206_417_255_243_7,
+                    0.016_101_485_361_352_7,
+                    0.241_904_509_018_187_2,
+                    0.726_532_986_953_363_3,
+                    0.953_422_657_754_447_7,
+                ],
+            ),
+            (
+                beta(2.5, 1.5),
+                [
+                    0.002_996_222_488_947_2,
+                    0.047_797_770_513_992,
+                    0.235_534_041_442_621_9,
+                    0.647_547_720_122_869,
+                    0.937_587_476_142_084_9,
+                    0.995_561_474_311_724_1,
+                ],
+            ),
+            (
+                beta(60.0, 40.0),
+                [
+                    0.365_451_243_274_441,
+                    0.446_188_241_964_063_6,
+                    0.518_636_636_728_434_1,
+                    0.600_669_257_301_867_3,
+                    0.679_077_343_447_286_1,
+                    0.742_619_908_044_877_4,
+                ],
+            ),
+        ];
+        for (law, values) in of_beta {
+            let prepared = Quantiles::new(&law);
+            for (share, value) in shares.into_iter().zip(values) {
+                assert!((law.quantile(share) - value).abs() < 1e-12, "{law:?} {share}: {}", law.quantile(share));
+                assert!(
+                    (prepared.of_share(share) - value).abs() < 1e-9,
+                    "{law:?} {share}: {}",
+                    prepared.of_share(share)
+                );
+            }
+        }
+        let prepared = Quantiles::new(&lognormal);
+        for (share, value) in
+            [(0.001, 146_832.742_950_449_96), (0.05, 169_666.034_824_167_32), (0.999, 272_418.802_483_982_5)]
+        {
+            assert!((prepared.of_share(share) / value - 1.0).abs() < 1e-13, "{share}: {}", prepared.of_share(share));
+        }
+        assert!((lognormal.mean() / 201_002.504_171_880_2 - 1.0).abs() < 1e-13);
+        assert!((lognormal.deviation() / 20_150.605_889_240_79 - 1.0).abs() < 1e-13);
+    }
 }

@@ -15,5 +15,6 @@ mod response;
 mod roots;
 mod vibrations;
 
+pub use first_order::{Eigenvalue, eigenvalues};
 pub use outputs::further_outputs;
 pub use vibrations::{ALIKE, Place, Vibrations};

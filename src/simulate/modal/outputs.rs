@@ -12,11 +12,11 @@ const QUANTITIES: &[(&str, &str)] = &[("frequency", "Hz"), ("damping", "")];
 
 /// Adds the outputs of a mechanism's vibrations after the model's.
 pub fn further_outputs(system: &mut System, vibrations: &Vibrations) {
-    let model = system.outputs.clone();
+    let model: Vec<OutputInfo> = system.outputs.iter().filter(|output| !output.is_derived()).cloned().collect();
     let quantities = vibrations.quantities();
     let expr = system.graph.constant(0.0);
     let mut add = |name: String, unit: String| {
-        system.outputs.push(OutputInfo { name, unit, dimension: None, expr });
+        system.outputs.push(OutputInfo { name, unit, dimension: None, expr, of_results: None });
     };
     if quantities.is_some() {
         let taken = |name: &str| model.iter().any(|output| output.name == name);

@@ -32,6 +32,8 @@ pub struct Vibrations {
     gradients: Gradients,
     /// Outputs of the model itself.
     outputs: usize,
+    /// Outputs that follow from the results.
+    derived: usize,
     /// Modes that are told.
     number: usize,
     /// Load and output of each response, by number, and its frequencies, Hz.
@@ -66,7 +68,8 @@ impl Vibrations {
     /// Of a mechanism with so many degrees of freedom and this nominal start (the layout's registers).
     pub fn new(system: &System, redundant: &[ConstraintId], freedom: usize, nominal: &[f64]) -> Self {
         let ModesRequest { number, responses } = &system.modes;
-        let outputs = system.outputs.len();
+        // Those that follow from modes come last.
+        let outputs = system.outputs.iter().filter(|output| !output.is_derived()).count();
         let named = |name: &str| system.outputs.iter().position(|output| output.name == name);
         let response = |response: &crate::model::ResponseRequest| {
             Some((named(&response.load)?, named(&response.output)?, response.frequencies.clone()))
@@ -78,6 +81,7 @@ impl Vibrations {
             states: (0..system.q.len()).filter(|&place| system.coordinates[place].is_state).collect(),
             gradients: Gradients::new(system, outputs),
             outputs,
+            derived: system.outputs.len() - outputs,
             number: (*number).min(freedom),
             responses: responses.iter().filter_map(response).collect(),
             first: None,
@@ -197,6 +201,7 @@ impl Vibrations {
         let (linear, outputs) = self.linearised(state);
         let gradients = self.gradients.at(state, &self.scale, self.outputs);
         let mut told = outputs[..self.outputs].to_vec();
+        told.extend(std::iter::repeat_n(f64::NAN, self.derived));
         if let Modes::OfStates { growth, .. } = &place.modes {
             told.push(*growth);
         }

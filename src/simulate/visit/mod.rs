@@ -44,7 +44,7 @@ impl Simulator {
         channels: &[Channel],
     ) -> Result<Visit, SimulationError> {
         if let Some(vibrations) = &self.vibrations {
-            return self.visit_modes(vibrations, sample, steps);
+            return self.visit_modes(vibrations, sample, steps, channels);
         }
         match self.system.analysis {
             Analysis::Kinematics => self.visit_kinematics(sample, steps.0, channels),

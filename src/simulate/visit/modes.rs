@@ -4,7 +4,7 @@ use super::Visit;
 use crate::compile::Layout;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
-use crate::simulate::ensemble::{EnsembleRun, Observed, Stop};
+use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::modal::{ALIKE, Place, Vibrations};
 use crate::simulate::simulator::Simulator;
@@ -22,6 +22,7 @@ impl Simulator {
         vibrations: &Vibrations,
         sample: &Sample,
         steps: (&Schedule, Option<Controller>),
+        channels: &[Channel],
     ) -> Result<Visit, SimulationError> {
         let nominal = match vibrations.nominal.get() {
             Some(nominal) => nominal,
@@ -33,11 +34,19 @@ impl Simulator {
         let (states, stop) = self.states(sample, steps)?;
         let lines = self.system.outputs.len();
         let mut visit = Visit { stop, ..Visit::default() };
-        for (state, nominal) in states.iter().zip(nominal) {
-            match self.followed(vibrations, state, nominal, sample, states.len() == 1) {
-                Some(place) => visit.values.extend(vibrations.tell(state, &place, nominal)),
-                None => visit.values.extend(std::iter::repeat_n(f64::NAN, lines)),
-            }
+        let mut reduction = Reduction::new(channels, lines, 1);
+        for (row, (state, nominal)) in states.iter().zip(nominal).enumerate() {
+            let mut told = match self.followed(vibrations, state, nominal, sample, states.len() == 1) {
+                Some(place) => vibrations.tell(state, &place, nominal),
+                None => vec![f64::NAN; lines],
+            };
+            self.derived.iter().for_each(|derived| derived.set(sample, &mut told));
+            visit.values.extend_from_slice(&told);
+            reduction.push(steps.0.time(row), told, &[true]);
+        }
+        visit.reduced = reduction.finish();
+        if visit.stop.is_some() {
+            visit.reduced.fill(f64::NAN);
         }
         Ok(visit)
     }

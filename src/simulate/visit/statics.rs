@@ -15,6 +15,7 @@ impl Simulator {
         if let Some(last) = values.last_mut().filter(|_| !self.system.has_states()) {
             *last = equilibrium.stability(&state, sample).smallest;
         }
+        self.derived.iter().for_each(|derived| derived.set(sample, &mut values));
         let mut reduction = Reduction::new(channels, values.len(), 1);
         reduction.push(0.0, values.clone(), &[true]);
         Ok(Visit { values, reduced: reduction.finish(), ..Visit::default() })

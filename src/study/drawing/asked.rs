@@ -49,7 +49,7 @@ impl Frame {
 
 impl Asked {
     fn formula(&mut self, formula: Formula) -> usize {
-        self.0.push(Output { name: String::new(), formula, unit: String::new(), dimension: None });
+        self.0.push(Output { name: String::new(), formula, unit: String::new(), dimension: None, of_results: false });
         self.0.len() - 1
     }
 

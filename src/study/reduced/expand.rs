@@ -18,20 +18,25 @@ pub fn expanded(description: &Description) -> Cow<'_, Description> {
     let mut expanded = description.clone();
     let outputs = &mut expanded.outputs;
     for reduced in &mut expanded.reduced {
-        reduced.places = reduced.sources.iter().map(|source| place(outputs, &reduced.name, source)).collect();
+        let of_results = reduced.of_results;
+        reduced.places =
+            reduced.sources.iter().map(|source| place(outputs, &reduced.name, source, of_results)).collect();
     }
-    for Requirement { name, slacks, places, .. } in expanded.requirements.iter_mut().filter(|own| own.times.is_some()) {
-        *places = slacks.iter().map(|slack| place(outputs, name, slack)).collect();
+    for own in expanded.requirements.iter_mut().filter(|own| own.times.is_some()) {
+        let Requirement { name, slacks, places, of_results, .. } = own;
+        *places = slacks.iter().map(|slack| place(outputs, name, slack, *of_results)).collect();
     }
     Cow::Owned(expanded)
 }
 
 /// The output with a formula; a new one where none has it.
-fn place(outputs: &mut Vec<Output>, name: &str, formula: &Formula) -> usize {
+fn place(outputs: &mut Vec<Output>, name: &str, formula: &Formula, of_results: bool) -> usize {
     let terms = |formula: &Formula| formula.terms().iter().map(|(term, _)| term.clone()).collect::<Vec<Term>>();
     let own = terms(formula);
-    outputs.iter().position(|output| terms(&output.formula) == own).unwrap_or_else(|| {
-        outputs.push(Output { name: name.to_owned(), formula: formula.clone(), unit: String::new(), dimension: None });
+    let is_same = |output: &Output| output.of_results == of_results && terms(&output.formula) == own;
+    outputs.iter().position(is_same).unwrap_or_else(|| {
+        let (name, formula) = (name.to_owned(), formula.clone());
+        outputs.push(Output { name, formula, unit: String::new(), dimension: None, of_results });
         outputs.len() - 1
     })
 }

@@ -22,10 +22,24 @@ pub struct KeptReduced {
 }
 
 impl KeptReduced {
+    /// How far a value may be from the truth anywhere in the box; unknown where it cannot be relied on.
+    pub fn value_error(&self, value: usize) -> f64 {
+        self.errors[value].decisive(0).unwrap_or(f64::NAN)
+    }
+
+    /// The first `count` values at samples of the subsystem's box, one after the other, sample by sample. In parallel,
+    /// with the same bits for any number of threads.
+    pub fn values<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
+        let wanted: Vec<usize> = (0..count).collect();
+        let closures = self.closures();
+        let of_chunk = |samples: &[P]| self.surrogate.values(0, (&wanted, samples), &closures);
+        let chunks: Vec<Vec<f64>> = samples.par_chunks(CHUNK).map(of_chunk).collect();
+        together(count, &chunks, samples.len())
+    }
+
     /// How far a requirement's margin may be from the truth anywhere in the box; unknown where it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
-        let of_part = |part: usize| self.errors[part].decisive(0).unwrap_or(f64::NAN);
-        largest(self.plan.parts(requirement).map(of_part))
+        largest(self.plan.parts(requirement).map(|part| self.value_error(part)))
     }
 
     /// The part of it that a better surrogate would not have.
@@ -48,13 +62,7 @@ impl KeptReduced {
             (0..count * samples.len()).map(margin).collect::<Vec<f64>>()
         };
         let chunks: Vec<Vec<f64>> = samples.par_chunks(CHUNK).map(of_chunk).collect();
-        let mut margins = Vec::with_capacity(count * samples.len());
-        for requirement in 0..count {
-            for (chunk, samples) in chunks.iter().zip(samples.chunks(CHUNK)) {
-                margins.extend_from_slice(&chunk[requirement * samples.len()..][..samples.len()]);
-            }
-        }
-        margins
+        together(count, &chunks, samples.len())
     }
 
     /// By what values follow from channels.
@@ -62,4 +70,18 @@ impl KeptReduced {
         let closure = |independent| Box::new(Composition { plan: &self.plan, independent }) as Box<dyn Closure + '_>;
         self.surrogate.independent().into_iter().map(closure).collect()
     }
+}
+
+/// Lines of chunks of samples as lines of all samples.
+fn together(count: usize, chunks: &[Vec<f64>], samples: usize) -> Vec<f64> {
+    let of_line = |line: usize| {
+        let of_chunk = |chunk: &Vec<f64>| {
+            let own = chunk.len() / count;
+            chunk[line * own..][..own].to_vec()
+        };
+        chunks.iter().flat_map(of_chunk).collect::<Vec<f64>>()
+    };
+    let mut all = Vec::with_capacity(count * samples);
+    (0..count).for_each(|line| all.extend(of_line(line)));
+    all
 }

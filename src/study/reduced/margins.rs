@@ -1,13 +1,55 @@
-//! Margins of all requirements of a model, each of the subsystem that has it.
+//! Margins of all requirements of a model, and its reduced outputs, each of the subsystem that has it.
 
 use super::kept::KeptReduced;
 
-/// What a subsystem kept, the numbers of its parameters, and those of its requirements in the model.
+/// What a subsystem kept, and the numbers of its parameters, reduced outputs and requirements in the model.
 #[derive(Clone, Copy)]
 pub struct MarginsOfPart<'k> {
     pub kept: &'k KeptReduced,
     pub parameters: &'k [usize],
+    pub reduced: &'k [usize],
     pub requirements: &'k [usize],
+}
+
+impl MarginsOfPart<'_> {
+    /// Samples of the model's box as those of the subsystem's.
+    fn own<P: AsRef<[f64]>>(&self, samples: &[P]) -> Vec<Vec<f64>> {
+        let pick = |sample: &P| self.parameters.iter().map(|&place| sample.as_ref()[place]).collect();
+        samples.iter().map(pick).collect()
+    }
+}
+
+/// All reduced outputs as functions of all uncertain parameters.
+pub struct ReducedValues<'k> {
+    parts: Vec<MarginsOfPart<'k>>,
+    /// By reduced output: its part, and its number there.
+    places: Vec<(usize, usize)>,
+}
+
+impl<'k> ReducedValues<'k> {
+    /// So many of these parts; `None` where one is of none.
+    pub fn of(parts: Vec<MarginsOfPart<'k>>, count: usize) -> Option<Self> {
+        let place = |number: usize| {
+            let own = |part: &MarginsOfPart| part.reduced.iter().position(|&own| own == number);
+            parts.iter().enumerate().find_map(|(part, of)| Some((part, own(of)?)))
+        };
+        let places = (0..count).map(place).collect::<Option<Vec<_>>>()?;
+        Some(Self { parts, places })
+    }
+
+    /// How far one may be from the truth anywhere in the box; unknown where it cannot be relied on.
+    pub fn error(&self, number: usize) -> f64 {
+        let (part, own) = self.places[number];
+        self.parts[part].kept.value_error(own)
+    }
+
+    /// Values at samples of the model's box, one after the other; NaN where one is unknown.
+    pub fn values<P: AsRef<[f64]> + Sync>(&self, samples: &[P]) -> Vec<Vec<f64>> {
+        let found: Vec<Vec<f64>> =
+            self.parts.iter().map(|part| part.kept.values(part.reduced.len(), &part.own(samples))).collect();
+        let of = |&(part, own): &(usize, usize)| found[part][own * samples.len()..][..samples.len()].to_vec();
+        self.places.iter().map(of).collect()
+    }
 }
 
 /// Margins of all requirements as functions of all uncertain parameters.
@@ -48,11 +90,7 @@ impl<'k> Margins<'k> {
 
     /// Margins at samples of the model's box, requirement by requirement, sample by sample; NaN where one is unknown.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, samples: &[P]) -> Vec<f64> {
-        let of_part = |part: &MarginsOfPart| {
-            let pick = |sample: &P| part.parameters.iter().map(|&place| sample.as_ref()[place]).collect();
-            let own: Vec<Vec<f64>> = samples.iter().map(pick).collect();
-            part.kept.margins(part.requirements.len(), &own)
-        };
+        let of_part = |part: &MarginsOfPart| part.kept.margins(part.requirements.len(), &part.own(samples));
         let found: Vec<Vec<f64>> = self.parts.iter().map(of_part).collect();
         let of = |&(part, own): &(usize, usize)| &found[part][own * samples.len()..][..samples.len()];
         self.places.iter().flat_map(of).copied().collect()

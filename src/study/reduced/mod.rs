@@ -21,7 +21,7 @@ pub(super) use ensemble::{Store, steps_of};
 pub(super) use expand::{expanded, shown};
 pub(super) use found::Found;
 pub use kept::KeptReduced;
-pub use margins::{Margins, MarginsOfPart};
+pub use margins::{Margins, MarginsOfPart, ReducedValues};
 pub(super) use refine::run;
 
 use super::bands::bands;

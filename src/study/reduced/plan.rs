@@ -4,9 +4,8 @@
 //! nominal motion: the extreme in each window is a channel of its own, which the surrogate expands, and the maximum is the largest of
 //! the channels' polynomials, kinks included. So it is with events: the windows lie around the humps in which they can occur.
 
-use symdiff::{Builder, Expr, Formula, Graph};
-
-use crate::model::{Description, ParameterValue, ReducedKind, ReducedOutput, Requirement};
+use crate::assemble::NumberFormulas;
+use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
 use crate::simulate::{Accumulation, Channel};
 
 /// Most windows of a reduced output: a motion with more extremes has them two by two in one.
@@ -62,16 +61,7 @@ enum Value {
         target: usize,
     },
     /// The least of formulas of reduced outputs (by number) and parameters.
-    Formulas(Box<Formulas>),
-}
-
-/// Formulas of reduced outputs and parameters.
-#[derive(Debug)]
-struct Formulas {
-    graph: Graph,
-    roots: Vec<Expr>,
-    reduced: Vec<Expr>,
-    parameters: Vec<Expr>,
+    Formulas(Box<NumberFormulas>),
 }
 
 /// Makes channels.
@@ -213,7 +203,9 @@ impl Planner<'_> {
             Some((from, to)) if from == to => self.windowed_at(&own.places, from),
             Some(span) => own.places.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect(),
             None => {
-                let formula = |slack| Value::Formulas(Box::new(Formulas::of(description, slack)));
+                let names: Vec<&str> = description.reduced.iter().map(|own| own.name.as_str()).collect();
+                let formula =
+                    |slack| Value::Formulas(Box::new(NumberFormulas::of(&description.parameters, &names, slack)));
                 return own.slacks.iter().map(std::slice::from_ref).map(formula).collect();
             }
         };
@@ -267,6 +259,7 @@ impl Value {
         // NaN is passed on.
         let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
         let greatest = |places: &[usize]| places.iter().map(|&place| channels[place]).fold(f64::NEG_INFINITY, larger);
+        let least_of = |values: &[f64]| -values.iter().map(|&value| -value).fold(f64::NEG_INFINITY, larger);
         let least = |places: &[usize]| -places.iter().map(|&place| -channels[place]).fold(f64::NEG_INFINITY, larger);
         match self {
             Self::Greatest(places) => greatest(places),
@@ -293,7 +286,7 @@ impl Value {
                 let beyond = if start <= target { greatest(above) - target } else { target - least(below) };
                 larger(0.0, beyond)
             }
-            Self::Formulas(formulas) => formulas.least(parameters, before),
+            Self::Formulas(formulas) => least_of(&formulas.values(parameters, before)),
         }
     }
 }
@@ -305,57 +298,6 @@ impl Humps {
         let occurs = |&(height, _): &(&usize, &usize)| channels[*height] >= 0.0 || channels[*height].is_nan();
         self.heights.iter().zip(&self.times).filter(occurs).map(|(_, &time)| channels[time])
     }
-}
-
-impl Formulas {
-    fn of(description: &Description, formulas: &[Formula]) -> Self {
-        let builder = Builder::new();
-        let reduced: Vec<_> = description.reduced.iter().map(|reduced| builder.variable(&reduced.name)).collect();
-        let mut known = Vec::new();
-        let mut parameters = Vec::new();
-        for parameter in &description.parameters {
-            let value = match &parameter.value {
-                ParameterValue::Interval { .. } => {
-                    let symbol = builder.variable(&parameter.name);
-                    parameters.push(symbol.expr());
-                    symbol
-                }
-                ParameterValue::Formula(formula) => build(&builder, formula, &known, &[]),
-            };
-            known.push((parameter.name.as_str(), value));
-        }
-        let names: Vec<_> =
-            description.reduced.iter().map(|own| own.name.as_str()).zip(reduced.iter().copied()).collect();
-        let roots = formulas.iter().map(|formula| build(&builder, formula, &known, &names).expr()).collect();
-        let reduced = reduced.iter().map(|reduced| reduced.expr()).collect();
-        Self { roots, reduced, parameters, graph: builder.finish() }
-    }
-
-    /// The least of them.
-    fn least(&self, parameters: &[f64], reduced: &[f64]) -> f64 {
-        let values = self.graph.evaluate(&self.roots, |symbol| {
-            let of = |symbols: &[Expr], values: &[f64]| {
-                symbols.iter().position(|own| *own == symbol).and_then(|place| values.get(place).copied())
-            };
-            of(&self.reduced, reduced).or_else(|| of(&self.parameters, parameters)).unwrap_or(f64::NAN)
-        });
-        values.into_iter().fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
-    }
-}
-
-/// A formula of names that are known; NaN for others, of which the reader leaves none.
-fn build<'g>(
-    builder: &'g Builder,
-    formula: &Formula,
-    known: &[(&str, symdiff::Scalar<'g>)],
-    reduced: &[(&str, symdiff::Scalar<'g>)],
-) -> symdiff::Scalar<'g> {
-    let find = |name: &str| {
-        let found = reduced.iter().chain(known).find(|(own, _)| *own == name).map(|(_, value)| *value);
-        Ok::<_, std::convert::Infallible>(found.unwrap_or_else(|| builder.number(f64::NAN)))
-    };
-    let Ok(built) = formula.build(builder, find);
-    built
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! tolerance stack.
 
 mod laws;
+mod numbers;
 mod requirements;
 mod rows;
 
@@ -80,11 +81,13 @@ fn of_run(
         left_out: laws.left_out(),
         outside: laws.outside(),
         simulations,
-        outputs: outputs.iter().enumerate().filter_map(|(place, output)| side_by_side(bounds, place, output)).collect(),
+        outputs: outputs.iter().filter_map(|(place, output)| side_by_side(bounds, *place, output)).collect(),
+        reduced: numbers::all(&rows),
         requirements,
         together,
         failure: note,
     };
+    let outputs = outputs.into_iter().map(|(_, output)| output).collect();
     Ok(StatisticsResult { times: kept.times().to_vec(), outputs, summary })
 }
 

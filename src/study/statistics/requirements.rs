@@ -167,6 +167,8 @@ fn capability(rows: &Rows, requirement: &Requirement, margins: &[f64], summary: 
         let moments: Vec<(f64, f64)> = requirement.places.iter().map(own).collect();
         let cpk = moments.iter().map(|(mean, deviation)| mean / (3.0 * deviation)).fold(f64::INFINITY, f64::min);
         let cp = match moments[..] {
+            // Of a response, the same limit at several frequencies.
+            _ if requirement.of_results && requirement.limits.len() < 2 => None,
             [(above, deviation), (below, _)] => Some((above + below) / (6.0 * deviation)),
             _ => None,
         };

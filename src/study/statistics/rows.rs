@@ -74,9 +74,15 @@ impl<'a> Rows<'a> {
         self.samples.iter().map(|samples| samples.len() / self.laws.dimension()).sum()
     }
 
-    /// The first so many outputs.
-    pub fn outputs(&self, count: usize) -> Vec<OutputStatistics> {
-        (0..count).map(|output| self.of_output(output)).collect()
+    /// The first `count` outputs, and the results that an analysis adds to the outputs, each with its number; without
+    /// shapes and responses, which are many.
+    pub fn outputs(&self, count: usize) -> Vec<(usize, OutputStatistics)> {
+        let is_one = |output: &usize| {
+            let (name, _) = self.kept.named(*output);
+            !name.contains(".shape.") && !name.starts_with("response.")
+        };
+        let further = (self.description.outputs.len()..self.kept.outputs()).filter(is_one);
+        (0..count).chain(further).map(|output| (output, self.of_output(output))).collect()
     }
 
     /// One replicate's samples: every so many of the lattice's points are a lattice again.
@@ -98,10 +104,10 @@ impl<'a> Rows<'a> {
             rows[widest] = self.of_row(widest, output, 1);
         }
         let quantile = |place: usize| rows.iter().map(|row| row.quantiles[place]).collect();
-        let description = &self.description.outputs[output];
+        let (name, unit) = self.kept.named(output);
         OutputStatistics {
-            name: description.name.clone(),
-            unit: description.unit.clone(),
+            name: name.to_owned(),
+            unit: unit.to_owned(),
             mean: rows.iter().map(|row| row.mean).collect(),
             deviation: rows.iter().map(|row| row.deviation).collect(),
             quantiles: (0..self.description.statistics.quantiles.len()).map(quantile).collect(),

@@ -199,6 +199,11 @@ impl<'r> Row<'r> {
         self.surrogate
     }
 
+    /// How many outputs there are.
+    pub fn outputs(&self) -> usize {
+        self.ensemble.outputs()
+    }
+
     /// Every output's range over the box.
     pub fn range(&self, range_search: &RangeSearch, previous: &mut Previous) -> Found {
         let outputs = self.ensemble.outputs();

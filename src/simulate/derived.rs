@@ -1,0 +1,65 @@
+//! Outputs that follow from the results of an analysis, once a sample has them: slacks of requirements on frequencies.
+
+use super::error::SimulationError;
+use crate::assemble::{NumberFormulas, System};
+
+/// Results that a message lists at most.
+const LISTED: usize = 8;
+
+/// Outputs of results.
+#[derive(Clone, Debug)]
+pub struct Derived {
+    formulas: NumberFormulas,
+    /// Places of the results among the outputs, in the formulas' order.
+    results: Vec<usize>,
+    /// Places of the outputs.
+    places: Vec<usize>,
+}
+
+impl Derived {
+    /// Of a system whose further outputs are known; `None` where nothing follows from results.
+    ///
+    /// # Errors
+    /// Where the analysis has no result of a name.
+    pub fn of(system: &System) -> Result<Option<Self>, SimulationError> {
+        let places: Vec<usize> =
+            (0..system.outputs.len()).filter(|&place| system.outputs[place].is_derived()).collect();
+        if places.is_empty() {
+            return Ok(None);
+        }
+        let formulas: Vec<_> = places.iter().filter_map(|&place| system.outputs[place].of_results.clone()).collect();
+        let parameters = &system.declared_parameters;
+        let is_parameter = |name: &str| parameters.iter().any(|parameter| parameter.name == name);
+        let place_of = |name: &str| system.outputs.iter().position(|own| own.name == name && !own.is_derived());
+        let (mut names, mut results) = (Vec::new(), Vec::new());
+        for name in formulas.iter().flat_map(symdiff::Formula::names).map(|(name, _)| name) {
+            match place_of(name) {
+                _ if names.contains(&name) => {}
+                Some(place) => {
+                    names.push(name);
+                    results.push(place);
+                }
+                None if is_parameter(name) => {}
+                None => return Err(no_result(system, name)),
+            }
+        }
+        Ok(Some(Self { formulas: NumberFormulas::of(parameters, &names, &formulas), results, places }))
+    }
+
+    /// Sets them in the outputs of a row.
+    pub fn set(&self, parameters: &[f64], row: &mut [f64]) {
+        let known: Vec<f64> = self.results.iter().map(|&place| row[place]).collect();
+        for (&place, value) in self.places.iter().zip(self.formulas.values(parameters, &known)) {
+            row[place] = value;
+        }
+    }
+}
+
+fn no_result(system: &System, name: &str) -> SimulationError {
+    let is_listed = |own: &&str| !own.contains(".shape.") && !own.starts_with("response.");
+    let further = system.outputs.iter().filter(|own| !own.is_derived()).map(|own| own.name.as_str());
+    let all: Vec<String> = further.filter(is_listed).map(|own| format!("`{own}`")).collect();
+    let more = if all.len() > LISTED { ", …" } else { "" };
+    let known = format!("{}{more}", all[..all.len().min(LISTED)].join(", "));
+    SimulationError::NoResult { name: name.to_owned(), known }
+}

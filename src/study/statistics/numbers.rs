@@ -1,0 +1,36 @@
+//! Reduced outputs: their distribution, by samples of the surrogate of what they are reduced to.
+
+use super::rows::Rows;
+use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
+use crate::results::{NumberStatistics, Uncertain};
+
+/// Samples, at most.
+const MOST: usize = 1 << 18;
+
+/// Those whose surrogate is known.
+pub(super) fn all(rows: &Rows) -> Vec<NumberStatistics> {
+    let reduced = &rows.description.reduced;
+    let Some(kept) = rows.kept.reduced(reduced.len()) else { return Vec::new() };
+    let shares = &rows.description.statistics.quantiles;
+    let fewer = rows.fewer(MOST / REPLICATES);
+    let mut of_number = vec![Replicates::new(shares.len()); reduced.len()];
+    for replicate in 0..REPLICATES {
+        let samples = rows.points(replicate, fewer);
+        for (own, values) in of_number.iter_mut().zip(kept.values(&samples)) {
+            own.add(&mut { values }, shares);
+        }
+    }
+    let number = |(place, own): (usize, Replicates)| {
+        let error = kept.error(place);
+        let with_error = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
+        NumberStatistics {
+            name: reduced[place].name.clone(),
+            unit: reduced[place].unit.clone(),
+            display: rows.description.display.get(&reduced[place].name).cloned(),
+            mean: with_error(own.mean()),
+            deviation: with_error(own.deviation()),
+            quantiles: own.quantiles().into_iter().map(with_error).collect(),
+        }
+    };
+    of_number.into_iter().enumerate().map(number).collect()
+}
