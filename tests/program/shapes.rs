@@ -110,6 +110,7 @@ assemblies:
         shape:
           - outline: { points: [[0, 0], [0.2, 0], { to: [0, 0.1], radius: 0.3 }], position: [0.01, 0.02] }
           - mesh: { file: corner.obj }
+          - outline: [[0, 0], [0.1, 0], [0.1, 0.1]]
           - capsule: { ends: [[0, 0], [0.1, 0.05]], radius: 0.01, rotation: { axis: z, angle: 30 deg } }
     joints: { pin: { revolute: [ground, arm.A] } }
 instances: { right: { of: arm }, left: { of: arm, mirror: x } }
@@ -129,10 +130,12 @@ simulation: { duration: 0.1, step: 1e-3, output_step: 0.1 }
     assert_eq!((&right[0]["points"][2]["radius"], &left[0]["points"][2]["radius"]), (&0.3.into(), &(-0.3).into()));
     assert_near(&right[1]["scale"], &[1.0, 1.0, 1.0]);
     assert_near(&left[1]["scale"], &[-1.0, 1.0, 1.0]);
-    assert_near(&left[2]["ends"][1], &[-0.1, 0.05, 0.0]);
+    // The short form, too.
+    assert_near(&left[2]["points"][1]["to"], &[-0.1, 0.0, 0.0]);
+    assert_near(&left[3]["ends"][1], &[-0.1, 0.05, 0.0]);
     let (sin, cos) = 15_f64.to_radians().sin_cos();
-    assert_near(&right[2]["orientation"], &[cos, 0.0, 0.0, sin]);
-    assert_near(&left[2]["orientation"], &[cos, 0.0, 0.0, -sin]);
+    assert_near(&right[3]["orientation"], &[cos, 0.0, 0.0, sin]);
+    assert_near(&left[3]["orientation"], &[cos, 0.0, 0.0, -sin]);
 }
 
 #[test]

@@ -39,6 +39,14 @@ macro_rules! shapes {
                 }
             }
 
+            /// The key whose list may stand for the mapping of a kind.
+            pub(crate) fn short(keyword: &str) -> Option<&'static str> {
+                match keyword {
+                    $(<$name as $crate::grammar::Element>::KEYWORD => <$name as $crate::grammar::Element>::SHORT,)*
+                    _ => None,
+                }
+            }
+
             /// Its form in the body's frame.
             pub fn shape(&self) -> Shape {
                 let (place, form) = match self {

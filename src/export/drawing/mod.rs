@@ -106,8 +106,9 @@ fn places(drawing: &Drawing) -> Vec<[f64; 3]> {
 fn panel(drawing: &Drawing, view: &View, corner: Px, size: Px) -> Group {
     let elements = drawing.elements.iter().filter(|element| element.glyph != Glyph::Nothing);
     let grounds = drawing.solids.iter().filter(|solid| solid.body == 0);
-    let grounds = grounds.filter_map(|solid| solid::solid(solid, drawing, view));
-    let mut group = Group::new().add(Group::new().set("class", "body still").add_all(grounds));
+    let grounds: Vec<Group> = grounds.filter_map(|solid| solid::solid(solid, drawing, view)).collect();
+    let still = (!grounds.is_empty()).then(|| Group::new().set("class", "body still").add_all(grounds));
+    let mut group = Group::new().add_all(still);
     for (index, known) in drawing.bodies[1..].iter().enumerate() {
         if let Some(along) = known.guide.and_then(|guide| view.direction(guide)) {
             group = group.add(hatching(view.px(known.position), along));

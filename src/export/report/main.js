@@ -88,7 +88,7 @@ const press = (id) => /** @type {HTMLElement | null} */ (document.querySelector(
 function key(event) {
   const { clock, view } = /** @type {Running} */ (running.get(current));
   const target = /** @type {Element} */ (event.target);
-  if (event.ctrlKey || event.metaKey || event.altKey || target.matches('input, select, textarea')) return;
+  if (event.ctrlKey || event.metaKey || event.altKey || target.matches('input:not([type="checkbox"]), select, textarea')) return;
   /** @type {Record<string, () => void>} */
   const acts = {
     ' ': () => clock.toggle(),
@@ -104,7 +104,7 @@ function key(event) {
     f: () => press('forces'),
   };
   const act = acts[event.key];
-  if (!act || (event.key === ' ' && target.matches('button, summary'))) return;
+  if (!act || (event.key === ' ' && target.matches('button, summary, input'))) return;
   event.preventDefault();
   act();
 }

@@ -94,6 +94,10 @@ fn image_of_shape(shape: &mut Node, axis: usize) {
     let Value::Mapping(kinds) = &mut shape.value else { return };
     let [kind] = kinds.as_mut_slice() else { return };
     let Some(images) = ShapeKind::images(&kind.key) else { return };
+    if let (Value::Sequence(_), Some(short)) = (&kind.value.value, ShapeKind::short(&kind.key)) {
+        let only = Entry { key: short.to_owned(), key_span: kind.key_span.clone(), value: kind.value.clone() };
+        kind.value.value = Value::Mapping(vec![only]);
+    }
     let Value::Mapping(keys) = &mut kind.value.value else { return };
     add_defaults(keys, &images, &kind.key_span);
     image_of_keys(keys, &images, axis, None);
