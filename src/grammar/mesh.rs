@@ -51,7 +51,7 @@ impl Value for Mesh {
             _ => error.to_string(),
         });
         match found.and_then(|bytes| triangles(&bytes)) {
-            Ok(found) => Some(Self { file: name.clone().into(), triangles: found.into() }),
+            Ok(found) => Some(Self { file: name.clone(), triangles: found.into() }),
             Err(reason) => {
                 let help = "an STL or OBJ file in the model's folder belongs here".to_owned();
                 reader.error(node.span.clone(), format!("`{}` is no mesh: {reason}", clip(name)), help);

@@ -121,8 +121,8 @@ export class Mechanism {
       if (this.shown.has(body)) continue;
       this.body(made, instant, body, [...(look.color || colorOf(body, dark)), look.alpha], look.shift);
     }
-    // Bodies that do not move have no ghosts.
-    for (const visual of this.visuals) if (look.symbols || visual.body > 0) this.visual(made, instant, visual, look, dark);
+    // Bodies that do not move have no ghosts, and planes without an end neither.
+    for (const visual of this.visuals) if (look.symbols || (visual.body > 0 && visual.shape !== 'plane')) this.visual(made, instant, visual, look, dark);
     if (!look.symbols) return made;
     const first = made.length;
     // A force has its arrow, or its symbol.

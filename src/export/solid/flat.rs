@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn triangles_of_a_polygon_have_its_area() {
         // An L of area 3, and the same the other way round.
-        let mut corners = vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        let mut corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
         for _ in 0..2 {
             let points: Vec<[f64; 3]> = corners.iter().map(|[x, y]| [*x, *y, 0.5]).collect();
             let found = triangulated(&points);

@@ -84,7 +84,7 @@ schema_only! {
     /// A shape, or several.
     #[schemars(untagged, inline)]
     pub enum ShapeFile {
-        One(ShapeKind),
+        One(Box<ShapeKind>),
         Several(Vec<ShapeKind>),
     }
 
