@@ -1,4 +1,5 @@
-//! Forces that effects apply at points, as pictures show them: the sum for each pair of bodies, where it acts on the whole.
+//! Forces that effects apply at points, as pictures show them: the sum for each pair of bodies, where it acts on the
+//! whole.
 
 use symdiff::Scalar;
 
@@ -8,7 +9,8 @@ use crate::grammar::Sensor;
 use crate::multibody::Vector;
 
 impl<'g> Mechanism<'g, '_> {
-    /// One of [`Sensor::THRUSTS`]; `None` where the effect has no such force. Nothing of it is in the graph before it is asked for.
+    /// One of [`Sensor::THRUSTS`]; `None` where the effect has no such force. Nothing of it is in the graph before it
+    /// is asked for.
     pub fn thrust(&self, effect: usize, measure: Sensor) -> Option<Scalar<'g>> {
         let place = |parts: &[Sensor; 6]| parts.iter().position(|part| *part == measure);
         let (pair, part) = Sensor::THRUSTS.iter().enumerate().find_map(|(pair, parts)| Some((pair, place(parts)?)))?;

@@ -14,7 +14,8 @@ pub(super) const MOST_TRIANGLES: usize = 12_000;
 /// Largest file of a mesh that is read, bytes.
 const MOST_BYTES: u64 = 100_000_000;
 
-/// Reads meshes that have not been read, from files beside the model or in a folder there, and leaves out those that cannot be, and
+/// Reads meshes that have not been read, from files beside the model or in a folder there, and leaves out those that
+/// cannot be, and
 /// those that are too many.
 pub(super) fn read_meshes(drawing: &mut Drawing, beside: &Path, most: usize) {
     let mut left = most;

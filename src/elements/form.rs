@@ -5,7 +5,8 @@ use symdiff::Formula;
 
 use crate::grammar::{Mesh, PointRef, Rotation};
 
-/// A form in its own frame. Its numbers, m, are formulas in a model, outputs of it where they are asked, and numbers in a drawing.
+/// A form in its own frame. Its numbers, m, are formulas in a model, outputs of it where they are asked, and numbers
+/// in a drawing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "shape", rename_all = "snake_case")]
 pub enum Form<T> {

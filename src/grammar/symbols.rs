@@ -329,7 +329,8 @@ impl Sensor {
     /// How fast a state changes.
     pub const CHANGE: Self = Self::of_force("rate");
 
-    /// Places and parts of the forces that an effect applies at points, for pictures: of each of a few pairs of bodies x, y and z of the
+    /// Places and parts of the forces that an effect applies at points, for pictures: of each of a few pairs of bodies
+    /// x, y and z of the
     /// place, then of the force on the second. No formula of a file can have such a name.
     pub const THRUSTS: [[Self; 6]; 3] = [
         Self::of_thrust(["<x 0>", "<y 0>", "<z 0>", "<fx 0>", "<fy 0>", "<fz 0>"]),

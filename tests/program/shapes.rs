@@ -1,4 +1,5 @@
-//! `shape:` of bodies, and surfaces of contacts: where pictures have them, against geometry by hand; the motion is the same without.
+//! `shape:` of bodies, and surfaces of contacts: where pictures have them, against geometry by hand; the motion is the
+//! same without.
 
 use std::fs;
 
@@ -95,7 +96,8 @@ fn shapes_are_where_the_file_puts_them_and_leave_no_plane() {
     assert_near(&drawing["bodies"][1]["position"], &[0.0, 0.1, 0.0]);
 }
 
-/// The image of an instance has the image of its shapes: an outline the other way round, and a mesh with a negative factor.
+/// The image of an instance has the image of its shapes: an outline the other way round, and a mesh with a negative
+/// factor.
 #[test]
 fn shapes_are_mirrored_with_their_instance() {
     let text = "

@@ -216,7 +216,8 @@ impl Hull {
     }
 }
 
-/// The faces of the convex hull of points, each with its corners in order, seen from outside; `None` where they lie in a plane.
+/// The faces of the convex hull of points, each with its corners in order, seen from outside; `None` where they lie in
+/// a plane.
 pub fn faces_of_hull(points: Vec<[f64; 3]>) -> Option<Vec<Vec<[f64; 3]>>> {
     let hull = Hull::of(points)?;
     let corners = |(place, face): (usize, &Face)| {

@@ -5,7 +5,8 @@ use super::view::Px;
 /// Places that are nearer than this are one, px.
 const NEAR: f64 = 1.0;
 
-/// The corners of the convex hull, in order (Andrew's monotone chain, Inf. Process. Lett. 9 (1979) 216); both ends of places on a line.
+/// The corners of the convex hull, in order (Andrew's monotone chain, Inf. Process. Lett. 9 (1979) 216); both ends of
+/// places on a line.
 pub(super) fn hull(mut places: Vec<Px>) -> Vec<Px> {
     places.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     places.dedup_by(|a, b| (*a - *b).norm() < NEAR);

@@ -1,6 +1,7 @@
 // @ts-check
 import { ball, box, cone, cylinder } from './solids.js';
-// A small renderer on WebGL2: instances of meshes with one light, opaque ones first, then the others from far to near, then those on top of
+// A small renderer on WebGL2: instances of meshes with one light, opaque ones first, then the others from far to near,
+// then those on top of
 // all; and flat triangles and lines.
 
 /** @typedef {import('./solids.js').Mesh} Mesh */

@@ -1,6 +1,7 @@
 //! Forces of the nominal motion, for arrows: reactions of joints, and what effects apply at points.
 //!
-//! They come from a simulation of their own, so that the motion that is shown is not computed in another way because of them.
+//! They come from a simulation of their own, so that the motion that is shown is not computed in another way because
+//! of them.
 
 use symdiff::Formula;
 

@@ -56,7 +56,8 @@ impl Rows {
         Ok(Self { simulator, domain })
     }
 
-    /// Times of the rows that are looked at, and where samples stop. What is asked is given to `keep`: the sample, whether it is its first
+    /// Times of the rows that are looked at, and where samples stop. What is asked is given to `keep`: the sample,
+    /// whether it is its first
     /// row, and the values. The nominal sample, the first, reaches all rows; of a sample `numbers` are kept of a row.
     pub(super) fn of_samples(
         &self,

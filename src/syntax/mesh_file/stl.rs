@@ -2,7 +2,8 @@
 
 use super::{Triangle, point};
 
-/// 80 bytes, the number of triangles, and of each 12 numbers, normal first, and two bytes; `None` where it is something else.
+/// 80 bytes, the number of triangles, and of each 12 numbers, normal first, and two bytes; `None` where it is
+/// something else.
 pub fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let count = u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?) as usize;
     let triangles = bytes.get(84..)?;
