@@ -34,6 +34,7 @@ if [ "${1:-}" = pictures ]; then
     exit 0
 fi
 "$MBINT" run tests/browser/hostile.yaml --quiet --output "$REPORTS/hostile"
+"$MBINT" run tests/browser/shapes.yaml --quiet --output "$REPORTS/shapes"
 # Every shipped model and every example of the book, with few simulations.
 cp -r models docs/examples "$REPORTS/"
 for model in "$REPORTS"/{models,examples}/*.yaml; do

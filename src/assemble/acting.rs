@@ -121,10 +121,12 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
 
     fn at(&mut self, point: &MaterialPoint<'g>, force: Vector<'g>) {
         self.applied.add_force(point, force);
+        self.applied.note_thrust(None, point, force);
     }
 
     fn between(&mut self, from: &MaterialPoint<'g>, to: &MaterialPoint<'g>, force: Vector<'g>) {
         self.applied.add_force_pair(from, to, force);
+        self.applied.note_thrust(Some(from), to, force);
     }
 
     fn torque(&mut self, from: usize, on: usize, torque: Vector<'g>) {

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use symdiff::{Builder, Scalar};
 
 use super::mechanism::Mechanism;
+use super::thrust::Thrust;
 use crate::grammar::{JointCoordinate, OnJoint, Sensor};
 use crate::multibody::{
     AxisMotion, BuildError, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates, Vector, Wrench,
@@ -53,6 +54,8 @@ pub struct AppliedForces<'g> {
     touched: BTreeSet<Target>,
     /// Sensor values recorded since then.
     measured: Vec<(Sensor, Scalar<'g>)>,
+    /// Forces at points since then.
+    thrusts: Vec<Thrust<'g>>,
     /// How much room the effect has at the start.
     pub room: Option<Scalar<'g>>,
     /// The gap of its surfaces, and how deep they may overlap.
@@ -75,6 +78,7 @@ impl<'g> AppliedForces<'g> {
             sampled: Vec::new(),
             touched: BTreeSet::new(),
             measured: Vec::new(),
+            thrusts: Vec::new(),
             room: None,
             overlap: None,
             guard: None,
@@ -86,6 +90,7 @@ impl<'g> AppliedForces<'g> {
     pub fn begin(&mut self) {
         self.touched.clear();
         self.measured.clear();
+        self.thrusts.clear();
         self.room = None;
         self.overlap = None;
         self.guard = None;
@@ -136,6 +141,23 @@ impl<'g> AppliedForces<'g> {
     /// What the effect measures.
     pub fn measured(&self) -> &[(Sensor, Scalar<'g>)] {
         &self.measured
+    }
+
+    /// Notes a force at a point, whose opposite is at `from` if it is inside of the mechanism.
+    pub fn note_thrust(&mut self, from: Option<&MaterialPoint<'g>>, to: &MaterialPoint<'g>, force: Vector<'g>) {
+        let condition = self.guard.map(|guard| guard.condition);
+        let thrust = match from {
+            Some(from) if to.body == 0 => {
+                Thrust { bodies: [to.body, from.body], at: from.position, force: -force, condition }
+            }
+            _ => Thrust { bodies: [from.map_or(0, |from| from.body), to.body], at: to.position, force, condition },
+        };
+        self.thrusts.push(thrust);
+    }
+
+    /// The forces at points.
+    pub fn thrusts(&self) -> &[Thrust<'g>] {
+        &self.thrusts
     }
 
     /// Number of coordinates that the effect acts on.

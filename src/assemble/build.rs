@@ -213,6 +213,7 @@ fn apply_effects<'g>(
         applied.begin();
         effect.kind.apply(&mut Acting { m, effect: index, applied: &mut applied })?;
         m.sensors.extend(applied.measured().iter().map(|&(measure, value)| ((index, measure), value)));
+        m.thrusts.push(applied.thrusts().to_vec());
         let forces = applied.coordinates_touched(m);
         if forces == 0 && effect.kind.states().is_empty() {
             let why = "it moves nothing: it is zero, or acts on what is held".to_owned();

@@ -51,6 +51,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             modes: BTreeMap::new(),
             states: BTreeMap::new(),
             sensors: BTreeMap::new(),
+            thrusts: Vec::new(),
         };
         for parameter in &description.parameters {
             mechanism.add_parameter(parameter)?;

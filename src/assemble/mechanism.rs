@@ -8,6 +8,7 @@ use super::names::Names;
 use super::reaction::Reaction;
 use super::superelement::Superelement;
 use super::system::UncertainParameter;
+use super::thrust::Thrust;
 use super::tree::Tree;
 use crate::elements::joints::ToothForce;
 use crate::grammar::{Coordinate, JointCoordinate, OnJoint, PointRef, Sensor, TimeOrder};
@@ -147,6 +148,8 @@ pub struct Mechanism<'g, 'd> {
     pub modes: BTreeMap<(usize, usize), usize>,
     /// What the effects built so far measure, and all states.
     pub sensors: BTreeMap<(usize, Sensor), Scalar<'g>>,
+    /// The forces at points that each of the effects built so far applies.
+    pub thrusts: Vec<Vec<Thrust<'g>>>,
 }
 
 impl<'g> Mechanism<'g, '_> {

@@ -46,6 +46,7 @@ mod recursion;
 mod start;
 mod start_conditions;
 mod states;
+mod sum_of_thrusts;
 mod superelement;
 mod superelement_inertia;
 mod superelement_motion;
@@ -54,6 +55,7 @@ mod system;
 mod teeth;
 #[cfg(test)]
 pub(crate) mod tests;
+mod thrust;
 mod tree;
 
 pub use crate::multibody::{BuildError, ConditionId, ConstraintId, CoordinateId, EquationId, OutputId};

@@ -96,7 +96,8 @@ impl<'g> Mechanism<'g, '_> {
             }
             Symbol::Reaction { joint, component } => self.reaction(joint, component),
             Symbol::Sensor { effect, measure } => {
-                self.sensors.get(&(effect, measure)).copied().unwrap_or_else(|| g.number(0.0))
+                let measured = self.sensors.get(&(effect, measure)).copied();
+                measured.or_else(|| self.thrust(effect, measure)).unwrap_or_else(|| g.number(0.0))
             }
             Symbol::Energy(EnergyKind::Kinetic) => self.kinetic_energy(),
             Symbol::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),

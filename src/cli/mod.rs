@@ -15,6 +15,7 @@ mod kept_run;
 mod listing;
 mod load;
 mod man;
+mod meshes;
 mod methods;
 mod new;
 mod overview;

@@ -1,7 +1,10 @@
 //! `mbint show`: the assembled mechanism, as a picture and as a table.
 
+use std::path::Path;
+
 use super::args::{Format, ShowArgs};
 use super::console::{BOLD, Console, to_json};
+use super::meshes::{MOST_TRIANGLES, read_meshes};
 use super::run::results_of;
 use super::table::{Align, Table};
 use super::{Failure, Status, load};
@@ -13,8 +16,9 @@ pub(super) fn show(args: &ShowArgs, console: &mut Console) -> Result<Status, Fai
     let Some(model) = load::load(&args.model, &args.set.given()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let drawing =
+    let mut drawing =
         study::drawing(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", args.model.display())))?;
+    read_meshes(&mut drawing, args.model.parent().unwrap_or(Path::new("")), MOST_TRIANGLES);
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     let file = write_drawing(&folder, &drawing).map_err(|error| Failure::Failed(error.to_string()))?;

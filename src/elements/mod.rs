@@ -1,11 +1,14 @@
 //! The elements of the language: one file each, and one line in a registry.
 
 pub mod effects;
+mod form;
 mod glyph;
 pub mod joints;
 pub mod meshing;
+pub mod shapes;
 mod trajectory;
 
+pub use form::{Bend, Form, Shape, SurfaceAt, Surroundings};
 pub use glyph::Glyph;
 pub use joints::JointKind;
 pub use trajectory::{Timing, Trajectory, Waypoint};

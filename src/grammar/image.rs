@@ -13,6 +13,10 @@ pub enum Image {
     Axial,
     /// A list of polar vectors, some of them ends of arcs.
     Polars,
+    /// A rotation: its axis is axial, its angle stays.
+    Rotation,
+    /// Factors along three axes, or one for all: that across a mirror changes its sign.
+    Factors,
     /// A number that counts the other way where the joint of `on` turns, or there is none.
     Turning,
     /// A number that counts the other way where the joint of `on` turns.

@@ -12,7 +12,7 @@ use super::quantity::Dimension;
 use super::reader::Reader;
 use super::requirement::Quantity;
 use super::rotating::Rotating;
-use super::symbols::{JointCoordinate, PointRef, Reference, SymbolTable};
+use super::symbols::{JointCoordinate, PointRef, Reference, Rotation, SymbolTable};
 use super::values;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{self, Node};
@@ -183,6 +183,46 @@ vector! {
         yaml::Value::Sequence(_) => reader.three(node, quantity.context, quantity.dimension()),
         _ => reader.quantity(node, quantity).map(|all| [all.clone(), all.clone(), all]),
     };
+    /// Components along x and y, and also in the plane along z.
+    SpacePoint, image Polar, schema values::Components, leaves nothing_leaves,
+    read |reader, node, quantity| reader.components_in_space(node, quantity.context, quantity.dimension());
+    /// An axis of a shape: also in the plane any one.
+    SpaceAxis, image Polar, schema values::Direction, leaves nothing_leaves,
+    read |reader, node, _| reader.axis(node);
+    /// Factors along the axes of a frame, or one for all, which reflect where they are negative.
+    Factors, image Factors, schema values::PerAxis, leaves nothing_leaves,
+    read |reader, node, quantity| match node.value {
+        yaml::Value::Sequence(_) => reader.three(node, quantity.context, quantity.dimension()),
+        _ => reader.quantity(node, quantity).map(|all| [all.clone(), all.clone(), all]),
+    };
+}
+
+impl SpaceAxis {
+    /// z.
+    pub fn z() -> Self {
+        Self(unit_vector(2))
+    }
+}
+
+/// Of a shape: also in the plane any one.
+impl Value for Rotation {
+    const IMAGE: Image = Image::Rotation;
+
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, _quantity: &Quantity) -> Option<Self> {
+        reader.rotation_in_space(node, at)
+    }
+
+    fn schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<values::Rotation>()
+    }
+
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+        match self {
+            Self::RollPitchYaw(angles) => found.extend(angles),
+            Self::AxisAngle(axis, angle) => found.extend(axis.iter().chain([angle])),
+            Self::Quaternion(parameters) => found.extend(parameters),
+        }
+    }
 }
 
 fn nothing_leaves(_: &Node) -> bool {

@@ -13,6 +13,7 @@ mod friction;
 mod image;
 mod kinds;
 pub(crate) mod mapping;
+mod mesh;
 pub(crate) mod motions;
 pub(crate) mod names;
 mod on_joint;
@@ -45,7 +46,11 @@ pub use element::{
 };
 pub use friction::{FrictionMode, MeshKind};
 pub use image::{Image, KeyImage};
-pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, OfPlace, PerAxis, RotatingJoint, SlidingJoint};
+pub use kinds::{
+    Axis, BodyRef, Components, Direction, Factors, OfAngle, OfPlace, PerAxis, RotatingJoint, SlidingJoint, SpaceAxis,
+    SpacePoint,
+};
+pub use mesh::Mesh;
 pub use names::Context;
 pub use reader::{Fields, Lengths, Reader};
 pub use requirement::{Quantity, Requirement};

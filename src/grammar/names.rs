@@ -310,8 +310,9 @@ fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Symbo
 }
 
 fn measure_of(table: &impl SymbolTable, effect: usize, member: &str) -> Option<Symbol> {
-    let measures = table.measures(effect);
-    let (measure, _) = measures.into_iter().find(|(measure, _)| measure.name() == member)?;
+    let measures = table.measures(effect).into_iter().map(|(measure, _)| measure);
+    let thrusts = Sensor::THRUSTS.into_iter().flatten();
+    let measure = measures.chain(thrusts).find(|measure| measure.name() == member)?;
     Some(Symbol::Sensor { effect, measure })
 }
 

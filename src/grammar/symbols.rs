@@ -333,6 +333,20 @@ impl Sensor {
     /// How fast a state changes.
     pub const CHANGE: Self = Self::of_force("rate");
 
+    /// Places and parts of the forces that an effect applies at points, for pictures: of each of a few pairs of bodies
+    /// x, y and z of the
+    /// place, then of the force on the second. No formula of a file can have such a name.
+    pub const THRUSTS: [[Self; 6]; 3] = [
+        Self::of_thrust(["<x 0>", "<y 0>", "<z 0>", "<fx 0>", "<fy 0>", "<fz 0>"]),
+        Self::of_thrust(["<x 1>", "<y 1>", "<z 1>", "<fx 1>", "<fy 1>", "<fz 1>"]),
+        Self::of_thrust(["<x 2>", "<y 2>", "<z 2>", "<fx 2>", "<fy 2>", "<fz 2>"]),
+    ];
+
+    const fn of_thrust([x, y, z, fx, fy, fz]: [&'static str; 6]) -> [Self; 6] {
+        let [x, y, z] = [Self::of_force(x), Self::of_force(y), Self::of_force(z)];
+        [x, y, z, Self::of_force(fx), Self::of_force(fy), Self::of_force(fz)]
+    }
+
     /// What follows from positions, velocities and states alone, so that the effect's own formulas may refer to it.
     pub const fn of_motion(name: &'static str) -> Self {
         Self { name, is_motion: true, has_unit: true }

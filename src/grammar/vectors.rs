@@ -15,10 +15,19 @@ use crate::syntax::yaml::{Node, Value};
 impl<S: SymbolTable> Reader<'_, S> {
     /// Components of a dimension: two, in the plane z = 0, or three.
     pub fn components(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
-        let items = self.two_or_three(node, "a list of two or three numbers")?;
-        if !self.model.is_spatial() && plane::leaves_plane(node) {
-            self.leaves_the_plane(&items[2]);
+        if let Value::Sequence(items) = &node.value
+            && let [_, _, third] = items.as_slice()
+            && !self.model.is_spatial()
+            && plane::leaves_plane(node)
+        {
+            self.leaves_the_plane(third);
         }
+        self.components_in_space(node, context, wanted)
+    }
+
+    /// The same of what may leave the plane, such as a picture.
+    pub fn components_in_space(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
+        let items = self.two_or_three(node, "a list of two or three numbers")?;
         let mut read = items.iter().map(|item| self.formula(item, context, wanted)).collect::<Vec<_>>().into_iter();
         let [x, y] = [read.next()?, read.next()?];
         let z = read.next().unwrap_or_else(|| Some(Formula::number(0.0)));
@@ -78,7 +87,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// `x`, `y`, `z` or components of any length but zero.
-    fn axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
+    pub fn axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
         let along = |axis: usize| [0, 1, 2].map(|other| Formula::number(f64::from(u8::from(axis == other))));
         match node.scalar().map(|scalar| scalar.text.as_str()) {
             Some("x") => return Some(along(0)),
@@ -131,12 +140,26 @@ impl<S: SymbolTable> Reader<'_, S> {
 
     /// A rotation of parameters; `at` is where to say that something is missing.
     pub fn rotation(&mut self, node: &Node, at: Span) -> Option<Rotation> {
+        self.rotation_about(node, at, Self::rotation_axis)
+    }
+
+    /// The same of what may leave the plane, such as a picture.
+    pub fn rotation_in_space(&mut self, node: &Node, at: Span) -> Option<Rotation> {
+        self.rotation_about(node, at, Self::axis)
+    }
+
+    fn rotation_about(
+        &mut self,
+        node: &Node,
+        at: Span,
+        axis: fn(&mut Self, &Node) -> Option<[Formula; 3]>,
+    ) -> Option<Rotation> {
         let (kind, fields) = self.kind_of_rotation(node, at)?;
         let value = fields.get(kind)?;
         match kind {
             "rpy" => Some(Rotation::RollPitchYaw(self.three(value, Context::Constant, Dimension::ANGLE)?)),
             "axis" => {
-                let axis = self.rotation_axis(value);
+                let axis = axis(self, value);
                 let angle = self.required(&fields, "angle");
                 let angle = angle.and_then(|node| self.formula(node, Context::Constant, Dimension::ANGLE));
                 Some(Rotation::AxisAngle(axis?, angle?))

@@ -21,7 +21,7 @@ const USUAL: usize = 4;
 const MOST: usize = 200;
 
 /// Keys of rigid bodies that mean nothing here.
-const RIGID: [&str; 6] = ["mass", "inertia", "center_of_mass", "coordinates", "held", "points"];
+const RIGID: [&str; 7] = ["mass", "inertia", "center_of_mass", "coordinates", "held", "points", "shape"];
 
 /// Number of elements of the beam that a body's entry describes; `None` where it describes a rigid body.
 pub fn elements(entry: &Entry) -> Option<usize> {

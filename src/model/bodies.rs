@@ -6,6 +6,7 @@ use symdiff::Formula;
 use super::beams;
 use super::description::{Analysis, Body, FlexibleBeam, Inertia, Point};
 use super::{file, parts};
+use crate::elements::shapes::ShapeKind;
 use crate::grammar::motions::is_motion;
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
@@ -39,6 +40,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         prescribed_orientation: None,
         points: Vec::new(),
         standing: None,
+        shapes: Vec::new(),
     };
     reader.model.bodies.push(empty(GROUND));
     for entry in entries {
@@ -85,11 +87,21 @@ fn ground(reader: &mut Reader, entry: &Entry) {
     let Some(fields) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
     for key in ["mass", "inertia", "center_of_mass", "coordinates", "held", "beam"] {
         if fields.get(key).is_some() {
-            let help = "the ground does not move; it can be given `points` only".to_owned();
+            let help = "the ground does not move; it can be given `points` and a `shape` only".to_owned();
             reader.error(fields.key_span(key), format!("the ground has no `{key}`"), help);
         }
     }
     points(reader, &fields, 0);
+    shapes(reader, &fields, 0);
+}
+
+/// What a body looks like: one shape, or several.
+fn shapes(reader: &mut Reader, fields: &Fields, body: usize) {
+    let Some(node) = fields.get("shape") else { return };
+    let at = fields.key_span("shape");
+    let nodes = if let Value::Sequence(items) = &node.value { items.as_slice() } else { std::slice::from_ref(node) };
+    let shapes: Vec<_> = nodes.iter().map(|node| ShapeKind::read(reader, node, at.clone())).collect();
+    reader.model.bodies[body].shapes = shapes.into_iter().flatten().collect();
 }
 
 fn body(reader: &mut Reader, entry: &Entry, index: usize) {
@@ -128,6 +140,7 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
         needs_motion(reader, node, &prescribed);
     }
     points(reader, &fields, index);
+    shapes(reader, &fields, index);
 
     let body = &mut reader.model.bodies[index];
     body.mass = mass;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::elements::Glyph;
+use crate::elements::{Form, Glyph};
 
 /// An assembled mechanism.
 #[derive(Clone, Debug, Serialize)]
@@ -15,6 +15,8 @@ pub struct Drawing {
     pub bodies: Vec<DrawnBody>,
     /// Joints, then effects, in file order.
     pub elements: Vec<DrawnElement>,
+    /// Shapes of bodies, and surfaces of effects.
+    pub solids: Vec<DrawnSolid>,
     /// The sum of all gravities, m/s²; `None` where there is none.
     pub gravity: Option<[f64; 3]>,
     /// Lengths of bodies that are uncertain parameters.
@@ -69,6 +71,26 @@ pub struct DrawnElement {
     /// Its axis, or the direction that it acts in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<[f64; 3]>,
+}
+
+/// A form that moves with a body.
+#[derive(Clone, Debug, Serialize)]
+pub struct DrawnSolid {
+    /// Its body, by index; 0 is the ground.
+    pub body: usize,
+    /// The effect whose surface it is; `None` where it is the body's own shape.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<String>,
+    /// The origin of its frame in the body's frame.
+    pub position: [f64; 3],
+    /// Of its frame against the body's: Euler parameters.
+    pub orientation: [f64; 4],
+    /// Red, green and blue from 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<[f64; 3]>,
+    /// In its frame.
+    #[serde(flatten)]
+    pub form: Form<f64>,
 }
 
 /// The distance of two points of a body that an uncertain parameter is.

@@ -27,11 +27,11 @@ pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, foremo
 pub(crate) use cost::tests as cost_tests;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integrator, cost_curves, pareto};
 pub use decisions::{Decision, Each, Saving};
-pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
+pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint, DrawnSolid};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
-pub use motion::{Motion, MotionPolynomials, MovingSample, MovingVisual, Poses};
+pub use motion::{Motion, MotionPolynomials, MovingForce, MovingSample, Poses};
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};

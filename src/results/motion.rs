@@ -1,7 +1,5 @@
 //! How the bodies of a mechanism move: at the nominal parameters, at samples of the box, and as polynomials in the parameters.
 
-use serde::Serialize;
-
 use super::{Drawing, ParameterSummary};
 
 /// A mechanism's motion at times that were chosen from the rows of a simulation.
@@ -12,8 +10,6 @@ use super::{Drawing, ParameterSummary};
 pub struct Motion {
     /// The mechanism at its nominal start.
     pub drawing: Drawing,
-    /// What bodies of a robot look like.
-    pub visuals: Vec<MovingVisual>,
     /// Times of the poses, s.
     pub times: Vec<f64>,
     /// Number of simulated rows that the times were chosen from.
@@ -27,6 +23,8 @@ pub struct Motion {
     pub parameters: Vec<ParameterSummary>,
     /// The nominal motion.
     pub nominal: Poses,
+    /// Forces of the nominal motion.
+    pub forces: Vec<MovingForce>,
     /// Motions at samples of the box.
     pub samples: Vec<MovingSample>,
     /// Samples that cannot be assembled or do not move to the end.
@@ -43,6 +41,17 @@ pub struct Poses {
     /// (point, 3), m: of each body, the ground first, the points of [`DrawnBody`](super::DrawnBody), then its centre of mass where it
     /// has one. They do not move in their frames, but depend on parameters.
     pub points: Vec<f64>,
+}
+
+/// A force at a point of a body, in the ground's frame.
+#[derive(Clone, Debug)]
+pub struct MovingForce {
+    /// The joint or effect.
+    pub name: String,
+    /// Whether it is a joint's, on its second body.
+    pub is_reaction: bool,
+    /// (time, 6): its place, m, and the force, N.
+    pub values: Vec<f64>,
 }
 
 /// The motion at a sample.
@@ -67,25 +76,4 @@ pub struct MotionPolynomials {
     /// How far a point of a body is from its simulated place, m: at most, over all times and samples that the polynomials were not made
     /// from.
     pub error: f64,
-}
-
-/// A solid that moves with a body.
-#[derive(Clone, Debug, Serialize)]
-pub struct MovingVisual {
-    /// Its body, by index; 0 is the ground.
-    pub body: usize,
-    /// Where its middle is in the body's frame, m.
-    pub position: [f64; 3],
-    /// How it is turned there: Euler parameters.
-    pub orientation: [f64; 4],
-    /// `box`, `cylinder` (about z), `sphere` or `mesh`.
-    pub shape: &'static str,
-    /// The box' sides; radius and length; radius; factors of the mesh; m.
-    pub size: Vec<f64>,
-    /// Red, green and blue from 0 to 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub color: Option<[f64; 3]>,
-    /// The file of a mesh, as the robot's file names it.
-    #[serde(skip)]
-    pub file: Option<String>,
 }

@@ -5,6 +5,7 @@ pub(crate) mod diagnostic;
 pub(crate) mod frame;
 mod habit;
 mod harmless;
+pub(crate) mod mesh_file;
 pub(crate) mod mirrors;
 mod not_yaml;
 mod render;

@@ -1,4 +1,4 @@
-// Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door and hostile.yaml, and `all` of every other
+// Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door, shapes.yaml and hostile.yaml, and `all` of every other
 // model and example.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync, statSync } from 'node:fs';
@@ -247,6 +247,83 @@ test('scenes are a switch away', async () => {
     assert.ok(await page.evaluate(() => mbint.current().view.drawings > 0), name);
   }
   assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('forces are arrows on demand, as long as bounds.csv has them', async () => {
+  const { page, wrong, context } = await open(browser, report('shapes'));
+  const table = columns(join(reports, 'shapes', 'bounds.csv'));
+  for (const row of [0, 7, 20]) {
+    const forces = await page.evaluate((time) => mbint.current().movie.forcesAt(time), table.t[row]);
+    const pin = forces.find(({ name, reaction }) => name === 'pin' && reaction);
+    const size = Math.hypot(...pin.force);
+    const truth = table['pin_force.nominal'][row];
+    assert.ok(Math.abs(size - truth) < 2e-3 * truth, `${size} N instead of ${truth} N`);
+    assert.ok(forces.some(({ name, reaction }) => name === 'spring' && !reaction));
+  }
+  assert.ok(!(await page.locator('.bar.force').isVisible()));
+  assert.ok(await page.locator('.gravity').isVisible());
+  let before = await canvas(page);
+  for (const box of ['traced', 'forces']) {
+    await page.click(`#${box}`);
+    await frames(page, 3);
+    const now = await canvas(page);
+    assert.notEqual(now, before, box);
+    before = now;
+  }
+  assert.match(await page.locator('.bar.force').textContent(), /^\d+(\.\d+)? k?N$/);
+  // The tip of an arrow says whose it is.
+  const tip = await page.evaluate(() => {
+    const { view } = mbint.current();
+    const { place } = view.tips.find(({ name }) => name === 'pin');
+    return view.camera.pixel(place, view.canvas.clientWidth, view.canvas.clientHeight);
+  });
+  await page.locator('canvas').hover({ position: { x: tip[0], y: tip[1] } });
+  assert.match(await page.locator('.tip').textContent(), /^pin .* N$/);
+  await page.keyboard.press('f');
+  assert.equal(await page.locator('#forces').isChecked(), false);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('traces are the nominal paths of points', async () => {
+  const { page, context } = await open(browser, report('four_bar'));
+  assert.equal(await page.evaluate(() => mbint.current().view.traces.length), 0);
+  await page.click('#traced');
+  const table = columns(join(reports, 'four_bar', 'bounds.csv'));
+  const paths = await page.evaluate(() => mbint.current().view.traces.map(({ points }) => points));
+  // The tracer's is among them: it passes everywhere that bounds.csv has it.
+  const passes = (points, x, y) => points.some((_, at) => at % 3 === 0 && Math.hypot(points[at] - x, points[at + 1] - y) < 5e-3);
+  const rows = [0, 20, 55, 80];
+  const tracer = paths.filter((points) => rows.every((row) => passes(points, table['tracer_x.nominal'][row], table['tracer_y.nominal'][row])));
+  assert.ok(tracer.length >= 1, `${paths.length} paths`);
+  await context.close();
+});
+
+test('bodies look as their shapes say, and keep within the view', async () => {
+  const { page, wrong, context } = await open(browser, report('shapes'), { viewport: { width: 390, height: 800 } });
+  await frames(page, 3);
+  const [kinds, bars, inside] = await page.evaluate(() => {
+    const { view, movie } = mbint.current();
+    const { mechanism, camera, canvas } = view;
+    const pixels = mechanism.visuals.flatMap((visual) => mechanism.corners(movie.at(0), visual)).map((place) => camera.pixel(place, canvas.clientWidth, canvas.clientHeight));
+    const within = pixels.every(([x, y]) => x >= 0 && y >= 0 && x <= canvas.clientWidth && y <= canvas.clientHeight);
+    return [mechanism.visuals.map(({ shape }) => shape), movie.drawing.bodies.length - 1 - [...mechanism.shown].filter((body) => body > 0).length, within];
+  });
+  for (const kind of ['box', 'cylinder', 'sphere', 'capsule', 'mesh', 'plane']) assert.ok(kinds.includes(kind), `${kind} is not among ${kinds}`);
+  assert.equal(bars, 0, 'bodies that are drawn as bars');
+  assert.ok(inside, 'a shape is out of view');
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the window');
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('beside short plots, the mechanism covers no table', async () => {
+  const { page, context } = await open(browser, report('shapes'), { viewport: { width: 1280, height: 700 } });
+  await page.evaluate(() => scrollTo(0, 400));
+  await frames(page, 3);
+  const [stage, table] = await page.evaluate(() => ['.pinned', 'table'].map((part) => document.querySelector(part).getBoundingClientRect()).map(({ top, bottom }) => [top, bottom]));
+  assert.ok(stage[1] <= table[0], `${stage} ${table}`);
   await context.close();
 });
 

@@ -27,6 +27,7 @@ mod run_modes;
 mod sample;
 mod scenes;
 mod schema;
+mod shapes;
 mod shards;
 mod shells;
 mod show;

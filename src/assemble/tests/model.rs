@@ -76,6 +76,7 @@ impl Model {
             prescribed_orientation: None,
             points,
             standing: None,
+            shapes: Vec::new(),
         });
     }
 

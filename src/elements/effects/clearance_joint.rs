@@ -9,13 +9,13 @@
 //! spheres (Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369): 4/(3 (h₁ + h₂)) √(R r/(R − r)), h = (1 − ν²)/E.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Binary, Formula};
 
-use super::touch::{Law, Shape};
+use super::touch::{self, Law};
 use super::impact::Push;
 use super::felt::SENSORS;
 use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
-use crate::elements::Glyph;
+use crate::elements::{Form, Glyph, Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, PointRef};
 use crate::multibody::BuildError;
 
@@ -52,6 +52,17 @@ impl ForceElement for ClearanceJoint {
     const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = SENSORS;
 
+    fn surfaces(&self, _: Surroundings) -> Vec<SurfaceAt> {
+        let [bearing, journal] = self.between;
+        let bore = self.clearance.combined(Binary::Add, &self.radius);
+        let length = self.radius.combined(Binary::Mul, &Formula::number(2.0));
+        let journal_form = Form::Cylinder { axis: self.axis.0.clone(), length, radius: self.radius.clone() };
+        vec![
+            (bearing, Shape::in_place(Form::Bore { axis: self.axis.0.clone(), radius: bore })),
+            (journal, Shape::in_place(journal_form)),
+        ]
+    }
+
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let clearance = forces.prescribed(&self.clearance)?;
         let radius = forces.prescribed(&self.radius)?;
@@ -59,7 +70,7 @@ impl ForceElement for ClearanceJoint {
         let axis = forces.is_spatial().then(|| axis.unit());
         let impact = Push::of(forces, &self.impact)?;
         let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
-        let shape = Shape::Hollow(clearance);
+        let shape = touch::Shape::Hollow(clearance);
         let pair = forces.pair(self.between);
         let centre = pair.second.point.position;
         let law = Law { impact, friction, along: None };

@@ -21,6 +21,8 @@
 //! centres meet, is no contact that this can tell. Apart the force and its derivatives are exactly zero, and of a tile of samples that
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
+mod surfaces;
+
 use std::rc::Rc;
 
 use mbint_derive::Element;
@@ -37,8 +39,9 @@ use super::outline::Outline;
 use super::polyhedron::{self, Polyhedron};
 use super::rod::{self, Rod};
 use super::solid::{self, Solid};
-use super::touch::{Law, Shape, Surface, Touch};
+use super::touch::{self, Law, Surface, Touch};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
+use crate::elements::{Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Pair, Vector};
 
@@ -124,6 +127,13 @@ impl ForceElement for Contact {
     const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = SENSORS;
 
+    fn surfaces(&self, surroundings: Surroundings) -> Vec<SurfaceAt> {
+        let [first, second] = self.between;
+        let first = surfaces::of_first(self, surroundings).map(|form| (first, Shape::in_place(form)));
+        let second = surfaces::of_second(self, surroundings).into_iter().map(|shape| (second, shape));
+        first.into_iter().chain(second).collect()
+    }
+
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let radius = forces.prescribed(&self.radius)?;
         let Some(surface) = self.surface(forces, radius)? else { return Ok(()) };
@@ -180,21 +190,21 @@ impl Contact {
         // A cylinder's axis is no line that all of it is about.
         let around = if self.cylinder.is_some() { forces.graph().number(0.0) } else { radius };
         Ok(Some(if let Some(normal) = &self.plane {
-            Surface::Whole(Shape::Plane(direction(forces, normal)?))
+            Surface::Whole(touch::Shape::Plane(direction(forces, normal)?))
         } else if let Some(outer) = &self.circle {
-            Surface::Whole(Shape::Round(forces.prescribed(outer)?))
+            Surface::Whole(touch::Shape::Round(forces.prescribed(outer)?))
         } else if let Some(bore) = &self.hollow {
-            Surface::Whole(Shape::Hollow(forces.prescribed(bore)? - radius))
+            Surface::Whole(touch::Shape::Hollow(forces.prescribed(bore)? - radius))
         } else if let Some(points) = &self.path {
             Surface::Edges(self.outline(forces, points, false)?)
         } else if let Some(points) = &self.polygon {
             Surface::Edges(self.outline(forces, points, true)?)
         } else if let Some(height) = &self.height {
-            Surface::Whole(Shape::Ground(Ground::of(forces, height, radius)?))
+            Surface::Whole(touch::Shape::Ground(Ground::of(forces, height, radius)?))
         } else if let Some(solid) = self.solid(forces)? {
-            Surface::Whole(Shape::Solid(solid, forces.prescribed(&self.rounding)? + around))
+            Surface::Whole(touch::Shape::Solid(solid, forces.prescribed(&self.rounding)? + around))
         } else if let Some(hull) = hull_of(forces, self.hull.as_ref())? {
-            Surface::Whole(Shape::Hull(hull, forces.prescribed(&self.rounding)? + around))
+            Surface::Whole(touch::Shape::Hull(hull, forces.prescribed(&self.rounding)? + around))
         } else {
             return Ok(None);
         }))

@@ -6,6 +6,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar, math};
 
 use super::Forces;
+use crate::elements::form::Bend;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Vector};
 use crate::syntax::yaml;
@@ -89,11 +90,17 @@ impl Course {
         self.0.iter().map(corner).collect()
     }
 
+    /// Its points for a picture.
+    pub fn bends(&self) -> Vec<Bend<Formula>> {
+        self.0.iter().map(|stop| Bend { to: stop.place.clone(), radius: stop.radius.clone() }).collect()
+    }
+
     /// Reports too few points, neighbours that are one point somewhere in the box of parameters, and arcs that do not reach.
     pub fn check_edges<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, at: Span, (key, least): (&str, usize)) {
         let count = self.0.len();
         if count < least {
-            reader.error(at, format!("a `{key}` has {least} points or more, not {count}"), None);
+            let article = if key.starts_with('o') { "an" } else { "a" };
+            reader.error(at, format!("{article} `{key}` has {least} points or more, not {count}"), None);
             return;
         }
         let is_open = least == 2;
@@ -115,7 +122,7 @@ impl Course {
                 let (start, end) = (edge + 1, (edge + 1) % count + 1);
                 let label = reader.corners[corner].label.clone();
                 if chord == 0.0 {
-                    let help = (end == 1).then(|| "a polygon closes by itself: leave its last point out".to_owned());
+                    let help = (end == 1).then(|| "it closes by itself: leave its last point out".to_owned());
                     reader.error(at, format!("points {start} and {end} of the `{key}` are one point{label}"), help);
                     return;
                 }

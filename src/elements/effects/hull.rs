@@ -216,6 +216,31 @@ impl Hull {
     }
 }
 
+/// The faces of the convex hull of points, each with its corners in order, seen from outside; `None` where they lie in
+/// a plane.
+pub fn faces_of_hull(points: Vec<[f64; 3]>) -> Option<Vec<Vec<[f64; 3]>>> {
+    let hull = Hull::of(points)?;
+    let corners = |(place, face): (usize, &Face)| {
+        // Edges of the face one after the other, each on from the end of the one before.
+        let mut edges: Vec<[usize; 2]> =
+            hull.edges.iter().filter(|edge| edge.faces.contains(&place)).map(|edge| edge.ends).collect();
+        let mut ring = vec![edges.first()?[0]];
+        while let Some(next) = edges.iter().position(|ends| ends.contains(&ring[ring.len() - 1])) {
+            let [one, other] = edges.swap_remove(next);
+            ring.push(if one == ring[ring.len() - 1] { other } else { one });
+        }
+        ring.pop();
+        let mut ring: Vec<Point> = ring.into_iter().map(|corner| hull.points[corner]).collect();
+        if let [a, b, c, ..] = ring[..]
+            && dot(cross(minus(b, a), minus(c, b)), face.normal) < 0.0
+        {
+            ring.reverse();
+        }
+        Some(ring)
+    };
+    Some(hull.faces.iter().enumerate().filter_map(corners).collect())
+}
+
 pub(super) fn constant(g: &Builder, point: Point) -> Vector<'_> {
     point.map(|part| g.number(part)).into()
 }

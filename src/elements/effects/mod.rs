@@ -33,14 +33,17 @@ use schemars::JsonSchema;
 use symdiff::Formula;
 
 pub use self::carried::Carried;
+pub(super) use self::course::{Course, Points};
 pub use self::dry_friction::{DryFriction, Friction, FrictionAlong};
 pub use self::forces::Forces;
+pub use self::hull::faces_of_hull;
 pub use self::impact::Impact;
 #[cfg(test)]
 pub use self::impact::{Exponent, RestitutionLaw};
 use self::matrices::Matrices;
 use self::registry::effects;
-use crate::elements::Glyph;
+pub(super) use self::solid::{check_ends, check_lengths};
+use crate::elements::{Glyph, SurfaceAt, Surroundings};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Element, ElementDocs, Node, OnJoint, PointRef, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
@@ -105,6 +108,11 @@ pub trait ForceElement: Element {
     /// A direction that a drawing shows, in the ground's axes.
     fn direction(&self) -> Option<&[Formula; 3]> {
         None
+    }
+
+    /// Surfaces that it has at points of bodies, for pictures.
+    fn surfaces(&self, _: Surroundings) -> Vec<SurfaceAt> {
+        Vec::new()
     }
 
     /// Coordinates of joints that it acts on.

@@ -123,6 +123,13 @@ macro_rules! effects {
                 }
             }
 
+            /// Surfaces that it has at points of bodies, for pictures.
+            pub fn surfaces(&self, surroundings: $crate::elements::Surroundings) -> Vec<$crate::elements::SurfaceAt> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::surfaces(effect, surroundings),)*
+                }
+            }
+
             /// Coordinates of joints that it acts on.
             pub fn coordinates(&self) -> Vec<$crate::grammar::OnJoint> {
                 match self {

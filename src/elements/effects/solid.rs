@@ -137,7 +137,11 @@ fn inside<'g>(
 }
 
 /// Reports a capsule of other than two points, or of one twice, somewhere in the box of parameters.
-pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (key, ends): (&str, &Points)) {
+pub(in crate::elements) fn check_ends<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    at: Span,
+    (key, ends): (&str, &Points),
+) {
     let [start, end] = &**ends else {
         let message = format!("a `{key}` has 2 points, not {}", ends.len());
         let help = (key == "capsule").then(|| "several in a row are a `path`, in the plane".to_owned());
@@ -152,7 +156,7 @@ pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (
         if (0..3).all(is_same) {
             let label = &reader.corners[corner].label;
             let message = format!("the ends of the `{key}` are one point{label}");
-            let help = (key == "capsule").then(|| "a ball is a `circle`".to_owned());
+            let help = (key == "capsule").then(|| "a ball is a `circle`, as a shape a `sphere`".to_owned());
             reader.error(at, message, help);
             return;
         }
@@ -160,7 +164,7 @@ pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (
 }
 
 /// Reports a block that is flat somewhere in the box of parameters.
-pub(super) fn check_lengths<S: SymbolTable>(
+pub(in crate::elements) fn check_lengths<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     at: Span,
     (key, lengths): (&str, &[Formula; 3]),

@@ -16,11 +16,11 @@
 //! how fast the wheel's lowest point slides back, and the force acts there: on the wheel, the radius below the point. Without a wheel κ = 0.
 
 use mbint_derive::Element;
-use symdiff::{Formula, Scalar};
+use symdiff::{Binary, Formula, Scalar};
 
 use super::saturation::saturated;
 use super::{ForceElement, Forces, Scope, TypedSensor};
-use crate::elements::Glyph;
+use crate::elements::{Form, Glyph, Shape, SurfaceAt, Surroundings};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
 use crate::multibody::{BuildError, MaterialPoint, Vector};
@@ -104,6 +104,17 @@ impl ForceElement for Tyre {
     const RESISTS: bool = true;
     const SCOPE: Scope = Scope::LevelGround;
     const SENSORS: &'static [TypedSensor] = &[(SLIP_ANGLE, Dimension::ANGLE), (Sensor::FORCE, Dimension::FORCE)];
+
+    fn surfaces(&self, surroundings: Surroundings) -> Vec<SurfaceAt> {
+        let Some(radius) = self.radius.clone() else { return Vec::new() };
+        let form = if surroundings.spatial {
+            let length = radius.combined(Binary::Mul, &Formula::number(0.5));
+            Form::Cylinder { axis: [0.0, 1.0, 0.0].map(Formula::number), length, radius }
+        } else {
+            Form::Sphere { radius }
+        };
+        vec![(self.on, Shape::in_place(form))]
+    }
 
     fn sensors(&self) -> Vec<TypedSensor> {
         let side = self.cornering_stiffness.iter().flat_map(|_| Self::SENSORS.iter().copied());

@@ -4,17 +4,16 @@ use svg::node::element::path::Data;
 use svg::node::element::{Group, Path, Title};
 
 use super::glyph::{block, line, pair, px};
+use super::hull::hull;
 use super::view::{Px, View};
-use crate::results::DrawnBody;
+use super::{AddAll, solid};
+use crate::results::{Drawing, DrawnBody};
 
 /// Of a body without a shape and with one place only, px: wide enough to be seen with the mark of its centre of mass in it.
 const BLOCK: [f64; 2] = [44.0, 28.0];
 
 /// Number of colours.
 const COLORS: usize = 6;
-
-/// Places that are nearer than this are one, px.
-const NEAR: f64 = 1.0;
 
 /// Where a body is seen: its points, and its centre of mass where it has fewer than two.
 pub(super) fn places(body: &DrawnBody) -> Vec<[f64; 3]> {
@@ -28,12 +27,30 @@ pub(super) fn places(body: &DrawnBody) -> Vec<[f64; 3]> {
     places
 }
 
-/// A body, by its index: a solid, a bar or a block.
-pub(super) fn body(body: &DrawnBody, index: usize, view: &View) -> Group {
+/// A body, by its index: its shapes, or a solid, a bar or a block.
+pub(super) fn body(drawing: &Drawing, index: usize, view: &View) -> Group {
+    let body = &drawing.bodies[index];
+    let class = format!("body color{}", (index + COLORS - 1) % COLORS);
+    let group = Group::new().set("class", class).add(Title::new(body.name.clone()));
+    let own = drawing.solids.iter().filter(|solid| solid.body == index && solid.surface.is_none());
+    let surfaces = drawing.solids.iter().filter(|solid| solid.body == index && solid.surface.is_some());
+    let shapes: Vec<Group> = own.filter_map(|solid| solid::solid(solid, drawing, view)).collect();
+    let surfaces: Vec<Group> = surfaces.filter_map(|solid| solid::solid(solid, drawing, view)).collect();
     let corners = hull(places(body).iter().map(|&place| view.px(place)).collect());
-    let group = Group::new().set("class", format!("body color{}", index % COLORS)).add(Title::new(body.name.clone()));
+    // A surface is what a body looks like that has but one place.
+    let is_seen = !shapes.is_empty() || !surfaces.is_empty() && corners.len() < 2;
+    let group = if is_seen { group } else { by_places(group, body, &corners, view) };
+    let group = group.add_all(shapes).add_all(surfaces);
+    match body.center_of_mass {
+        Some(center) => group.add(center_mark(view.px(center))),
+        None => group,
+    }
+}
+
+/// A solid, a bar or a block.
+fn by_places(group: Group, body: &DrawnBody, corners: &[Px], view: &View) -> Group {
     let guide = body.guide.and_then(|axis| view.direction(axis));
-    let group = match corners.as_slice() {
+    match corners {
         [one] => group.add(block(*one, guide.unwrap_or_else(|| own_axis(body, view)), Px::from(BLOCK))),
         [from, to] => group.add(line(*from, *to).set("class", "bar")),
         [first, others @ ..] => {
@@ -42,10 +59,6 @@ pub(super) fn body(body: &DrawnBody, index: usize, view: &View) -> Group {
             group.add(Path::new().set("d", outline.close()))
         }
         [] => group,
-    };
-    match body.center_of_mass {
-        Some(center) => group.add(center_mark(view.px(center))),
-        None => group,
     }
 }
 
@@ -62,43 +75,4 @@ fn center_mark(at: Px) -> Path {
     let data = arc(Data::new().move_to(pair(at)).line_to(pair(at + right)), at + down).close();
     let data = arc(data.move_to(pair(at)).line_to(pair(at - right)), at - down).close();
     Path::new().set("d", data).set("class", "center")
-}
-
-/// The corners of the convex hull, in order (Andrew's monotone chain, Inf. Process. Lett. 9 (1979) 216); both ends of places on a line.
-fn hull(mut places: Vec<Px>) -> Vec<Px> {
-    places.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    places.dedup_by(|a, b| (*a - *b).norm() < NEAR);
-    if places.len() < 3 {
-        return places;
-    }
-    let half = |places: &mut dyn Iterator<Item = Px>| {
-        let mut chain: Vec<Px> = Vec::new();
-        for place in places {
-            while let [.., a, b] = chain[..]
-                && (b - a).perp(&(place - a)) <= NEAR * (place - a).norm()
-            {
-                chain.pop();
-            }
-            chain.push(place);
-        }
-        chain.pop();
-        chain
-    };
-    let mut corners = half(&mut places.iter().copied());
-    corners.extend(half(&mut places.iter().rev().copied()));
-    corners
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_hull_has_the_outer_places() {
-        let square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [5.0, 5.0], [0.0, 0.2]].map(Px::from);
-        assert_eq!(hull(square.to_vec()).len(), 4);
-        let straight = [[0.0, 0.0], [5.0, 5.0], [10.0, 10.0]].map(Px::from);
-        assert_eq!(hull(straight.to_vec()), [Px::new(0.0, 0.0), Px::new(10.0, 10.0)]);
-        assert_eq!(hull(vec![Px::new(1.0, 2.0); 5]), [Px::new(1.0, 2.0)]);
-    }
 }

@@ -2,7 +2,9 @@
 
 mod body;
 mod glyph;
+mod hull;
 mod label;
+mod solid;
 mod view;
 
 use std::collections::BTreeSet;
@@ -12,6 +14,7 @@ use svg::Document;
 use svg::node::element::{Group, Style, Text, Title};
 
 use self::glyph::{across, arrow, glyph, hatching, head, line, px};
+pub(super) use self::hull::flat_hull;
 use self::label::Labels;
 use self::view::{PLANE, Projection, Px, SPACE, View};
 use super::error::ExportError;
@@ -27,6 +30,8 @@ svg { background: #fff; font-family: sans-serif; fill: #222; }
 .color0 { fill: #0072b2; stroke: #0072b2; } .color1 { fill: #e69f00; stroke: #e69f00; }
 .color2 { fill: #009e73; stroke: #009e73; } .color3 { fill: #d55e00; stroke: #d55e00; }
 .color4 { fill: #cc79a7; stroke: #cc79a7; } .color5 { fill: #56b4e9; stroke: #56b4e9; }
+.still { fill: #666; stroke: #666; stroke-width: 1.5; }
+.body .rim, .body .wall { fill: none; } .body .thin { stroke-width: 1; } .body .fill { stroke: none; } .body .hatch { stroke-width: 1; }
 .body .center { fill-opacity: 1; stroke-width: 0.5; }
 .element { fill: #fff; stroke: #222; stroke-width: 1.5; stroke-linecap: round; stroke-linejoin: round; }
 .element .thin, .element .open, .element .teeth { fill: none; }
@@ -93,18 +98,22 @@ fn places(drawing: &Drawing) -> Vec<[f64; 3]> {
     let bodies = drawing.bodies[1..].iter().flat_map(body::places);
     let elements = drawing.elements.iter().filter(|element| element.glyph != Glyph::Nothing);
     let ground = drawing.bodies[0].points.iter().map(|point| point.position);
-    bodies.chain(ground).chain(elements.flat_map(|element| element.ends.iter().copied())).collect()
+    let solids = drawing.solids.iter().flat_map(|solid| solid::places(solid, drawing));
+    bodies.chain(ground).chain(solids).chain(elements.flat_map(|element| element.ends.iter().copied())).collect()
 }
 
 /// The mechanism as one view shows it.
 fn panel(drawing: &Drawing, view: &View, corner: Px, size: Px) -> Group {
     let elements = drawing.elements.iter().filter(|element| element.glyph != Glyph::Nothing);
-    let mut group = Group::new();
+    let grounds = drawing.solids.iter().filter(|solid| solid.body == 0);
+    let grounds: Vec<Group> = grounds.filter_map(|solid| solid::solid(solid, drawing, view)).collect();
+    let still = (!grounds.is_empty()).then(|| Group::new().set("class", "body still").add_all(grounds));
+    let mut group = Group::new().add_all(still);
     for (index, known) in drawing.bodies[1..].iter().enumerate() {
         if let Some(along) = known.guide.and_then(|guide| view.direction(guide)) {
             group = group.add(hatching(view.px(known.position), along));
         }
-        group = group.add(body::body(known, index, view));
+        group = group.add(body::body(drawing, index + 1, view));
     }
     let mut labels = Labels::default();
     let mut grounded = BTreeSet::new();

@@ -97,6 +97,12 @@ impl View {
         seen.then(|| Px::new(flat.x, -flat.y).normalize())
     }
 
+    /// Whether a side with this normal is turned to the reader.
+    pub fn shows(&self, normal: &Vector3<f64>) -> bool {
+        let towards = Vector3::from(self.projection.right).cross(&Vector3::from(self.projection.up));
+        normal.dot(&towards) > 1e-9 * normal.norm()
+    }
+
     /// A length of 1, 2 or 5 times a power of ten that is about so many px long, m.
     pub fn round_length(&self, px: f64) -> f64 {
         let wanted = px / self.scale;

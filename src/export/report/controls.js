@@ -20,6 +20,14 @@ function choice(label, options, act, chosen = 0) {
   return element('label', {}, [element('span', {}, [label]), select]);
 }
 
+/** @param {string} id @param {string} label @param {boolean} checked @param {(checked: boolean) => void} act */
+function checkbox(id, label, checked, act) {
+  const box = /** @type {HTMLInputElement} */ (element('input', { type: 'checkbox', id }));
+  box.checked = checked;
+  box.addEventListener('change', () => act(box.checked));
+  return element('label', {}, [box, label]);
+}
+
 /** Play, scrub, step, speed. @param {Clock} clock */
 export function player(clock) {
   const play = button('▶', 'Play (space)', () => clock.toggle());
@@ -59,9 +67,7 @@ export function options(view) {
   const { movie, mechanism } = view;
   const holder = element('div', { class: 'options' });
   if (movie.samples.length > 0) {
-    const box = /** @type {HTMLInputElement} */ (element('input', { type: 'checkbox', id: 'ghosts' }));
-    box.checked = view.ghosts;
-    box.addEventListener('change', () => view.set({ ghosts: box.checked }));
+    const ghosts = checkbox('ghosts', `${movie.samples.length} samples`, view.ghosts, (ghosts) => view.set({ ghosts }));
     const scale = element('span', { class: 'scale' });
     const tell = (/** @type {number} */ axis) => {
       const { lower, upper, unit } = movie.parameters[axis];
@@ -75,12 +81,15 @@ export function options(view) {
     const factors = [1, 2, 5, 10, 20, 50, 100];
     const exaggerate = choice('Deviations', factors.map((factor) => `× ${factor}`), (place) => view.set({ exaggeration: factors[place] }));
     exaggerate.id = 'exaggerate';
-    holder.append(element('div', { class: 'row' }, [element('label', {}, [box, `${movie.samples.length} samples`]), colors, scale, exaggerate]));
+    holder.append(element('div', { class: 'row' }, [ghosts, colors, scale, exaggerate]));
   }
   const names = ['nothing', ...mechanism.named.map(({ name }) => name)];
   const swept = choice('Swept by', names, (place) => view.set({ swept: place - 1 }));
   swept.id = 'swept';
-  holder.append(element('div', { class: 'row' }, [swept, button('⤢', 'Whole mechanism (0)', () => view.resetCamera())]));
+  const traced = checkbox('traced', 'Traces of points', view.traced, (traced) => view.set({ traced }));
+  const forces = checkbox('forces', 'Forces', view.forces, (forces) => view.set({ forces }));
+  const shown = [...(movie.duration > 0 ? [traced] : []), ...(movie.forces.length > 0 ? [forces] : [])];
+  holder.append(element('div', { class: 'row' }, [swept, ...shown, button('⤢', 'Whole mechanism (0)', () => view.resetCamera())]));
   if (movie.polynomials) holder.append(sliders(view));
   return holder;
 }

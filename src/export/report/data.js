@@ -5,13 +5,14 @@
  * @typedef {{name: string, position: number[]}} DrawnPoint
  * @typedef {{name: string, position: number[], angle?: number, orientation?: number[], center_of_mass?: number[], guide?: number[], points: DrawnPoint[]}} DrawnBody
  * @typedef {{name: string, kind: string, glyph: string, ends: number[][], bodies: number[], axis?: number[]}} DrawnElement
- * @typedef {{body: number, position: number[], orientation: number[], shape: string, size: number[], color?: number[], vertices?: string}} Visual
+ * @typedef {{body: number, surface: boolean, position: number[], orientation: number[], shape: string, size: number[], color?: number[], vertices?: string, within: number[][]}} Visual
  * @typedef {{model: string, spatial: boolean, bodies: DrawnBody[], elements: DrawnElement[], gravity: number[] | null}} Drawing
  * @typedef {{name: string, unit: string, nominal: number, lower: number, upper: number}} Parameter
  * @typedef {{scales: number[], data: string}} Packed
  * @typedef {{values: number[], bodies: Packed, points: string}} PackedSample
+ * @typedef {{name: string, reaction: boolean, values: Packed}} PackedForce
  * @typedef {{degrees: number[], bodies: Packed, points: string, error: number}} PackedPolynomials
- * @typedef {{drawing: Drawing, visuals: Visual[], times: string, rows: number, between: number, per_body: number, parameters: Parameter[], nominal: {bodies: string, points: string}, samples: PackedSample[], stopped: number, polynomials?: PackedPolynomials}} PackedMotion
+ * @typedef {{drawing: Drawing, visuals: Visual[], times: string, rows: number, between: number, per_body: number, parameters: Parameter[], nominal: {bodies: string, points: string}, forces: PackedForce[], samples: PackedSample[], stopped: number, polynomials?: PackedPolynomials}} PackedMotion
  * @typedef {{name: string, duration: number, outputs: string[], motion: PackedMotion | null}} Scene
  */
 

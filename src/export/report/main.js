@@ -19,7 +19,9 @@ function stageOf(article, movie, clock) {
   const canvas = /** @type {HTMLCanvasElement} */ (element('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The mechanism. Drag to turn or move it, turn the wheel to come nearer.' }));
   const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, preserveDrawingBuffer: true });
   const still = article.querySelector('.still');
-  const stage = element('section', { class: 'stage' });
+  // It stays in view beside longer plots, and within its own row.
+  const pinned = element('div', { class: 'pinned' });
+  const stage = element('section', { class: 'stage' }, [pinned]);
   const picture = element('div', { class: 'picture' });
   still?.after(stage);
   let view = null;
@@ -30,9 +32,9 @@ function stageOf(article, movie, clock) {
     still?.classList.add('replaced');
     const note = `${movie.times.length} of ${movie.rows} computed instants; straight lines between them are off by ${length(movie.between)} at most.`;
     const notes = clock.duration > 0 ? [element('small', { class: 'note' }, [note])] : [];
-    stage.append(picture, ...players, options(view), ...notes);
+    pinned.append(picture, ...players, options(view), ...notes);
   } else {
-    stage.append(...players, element('small', { class: 'note' }, ['This browser shows no WebGL: the mechanism is drawn at its start only.']));
+    pinned.append(...players, element('small', { class: 'note' }, ['This browser shows no WebGL: the mechanism is drawn at its start only.']));
   }
   return { view, stage };
 }
@@ -79,11 +81,14 @@ function show(number) {
   now.view?.changed();
 }
 
+/** A checkbox of the scene that is shown. @param {string} id */
+const press = (id) => /** @type {HTMLElement | null} */ (document.querySelector(`.scene:not(.hidden) [id="${id}"]`))?.click();
+
 /** Keys that mean the same everywhere but where they are typed into something. @param {KeyboardEvent} event */
 function key(event) {
   const { clock, view } = /** @type {Running} */ (running.get(current));
   const target = /** @type {Element} */ (event.target);
-  if (event.ctrlKey || event.metaKey || event.altKey || target.matches('input, select, textarea')) return;
+  if (event.ctrlKey || event.metaKey || event.altKey || target.matches('input:not([type="checkbox"]), select, textarea')) return;
   /** @type {Record<string, () => void>} */
   const acts = {
     ' ': () => clock.toggle(),
@@ -94,10 +99,12 @@ function key(event) {
     Home: () => clock.step(-1),
     End: () => clock.step(1),
     0: () => view?.resetCamera(),
-    g: () => document.getElementById('ghosts')?.click(),
+    g: () => press('ghosts'),
+    t: () => press('traced'),
+    f: () => press('forces'),
   };
   const act = acts[event.key];
-  if (!act || (event.key === ' ' && target.matches('button, summary'))) return;
+  if (!act || (event.key === ' ' && target.matches('button, summary, input'))) return;
   event.preventDefault();
   act();
 }

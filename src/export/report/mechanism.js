@@ -9,13 +9,16 @@ import { across, cross, dot, inverse, minus, norm, plus, product, times, turned,
 /** @typedef {import('./motion.js').Instant} Instant */
 /** @typedef {import('./renderer.js').Instance} Instance */
 /** @typedef {{body: number, local: number[], point: number}} Anchor */
-/** @typedef {{color: number[] | null, alpha: number, shift: number, symbols: boolean}} Look */
+/** @typedef {{color: number[] | null, alpha: number, shift: number, symbols: boolean, forces?: boolean}} Look */
 
 /** Colours that remain apart for the colour-blind (Okabe and Ito, 2008). */
 const COLORS = ['0072b2', 'e69f00', '009e73', 'd55e00', 'cc79a7', '56b4e9'].map((text) => [0, 2, 4].map((at) => parseInt(text.slice(at, at + 2), 16) / 255));
 
 /** @param {number} body @param {boolean} dark */
 export const colorOf = (body, dark) => COLORS[(body - 1 + COLORS.length) % COLORS.length].map((part) => (dark ? 0.85 * part + 0.15 : part));
+
+/** Meshes of the renderer that have other names. @type {Record<string, string>} */
+const MESHES = { sphere: 'ball', plane: 'box' };
 
 export class Mechanism {
   /** @param {Movie} movie */
@@ -35,11 +38,15 @@ export class Mechanism {
       // The axis turns with the first body.
       local: one.axis ? turned(inverse(movie.place(start.pose, one.bodies[0] || 0).q), one.axis) : null,
     }));
+    this.visuals = movie.visuals.map((visual, number) => ({ ...visual, mesh: visual.vertices ? `mesh${number}` : MESHES[visual.shape] || visual.shape }));
+    /** Bodies that are seen without bars: a surface alone is all that one with a single place has. */
+    this.shown = new Set(this.visuals.filter(({ body, surface }) => !surface || bodies[body].points.length < 2).map(({ body }) => body));
     this.extent = this.measure();
     const size = norm(minus(this.extent[1], this.extent[0])) || 1;
     /** Half the thickness of bars, m. */
     this.thickness = 0.011 * size;
-    this.visuals = movie.visuals.map((visual, number) => ({ ...visual, mesh: visual.vertices ? `mesh${number}` : visual.shape }));
+    /** Length of an arrow, m/N. */
+    this.perNewton = (18 * this.thickness) / movie.usualForce;
   }
 
   /** Meshes of the model's own. */
@@ -90,10 +97,18 @@ export class Mechanism {
     for (let step = 0; step <= 60; step++) {
       const instant = movie.at((movie.duration * step) / 60);
       movie.drawing.bodies.forEach((_, body) => (body > 0 || this.first[1] > 0) && this.joints(instant, body).forEach(include));
+      this.visuals.forEach((visual) => this.corners(instant, visual).forEach(include));
     }
     this.elements.forEach((one) => one.ends.forEach(include));
     const margin = 0.06 * Math.max(...greatest.map((x, axis) => x - least[axis]), 1e-6);
     return [least.map((x) => x - margin), greatest.map((x) => x + margin)];
+  }
+
+  /** Corners of the box that holds a visual. @param {Instant} instant @param {import('./data.js').Visual} visual */
+  corners(instant, { body, position, orientation, within }) {
+    const { p, q } = this.movie.place(instant.pose, body);
+    const corner = (/** @type {number} */ number) => [0, 1, 2].map((axis) => within[(number >> axis) & 1][axis]);
+    return [0, 1, 2, 3, 4, 5, 6, 7].map((number) => plus(p, turned(q, plus(position, turned(orientation, corner(number))))));
   }
 
   /** All solids of an instant. @param {Instant} instant @param {Look} look @param {boolean} dark @returns {Instance[]} */
@@ -101,16 +116,42 @@ export class Mechanism {
     /** @type {Instance[]} */
     const made = [];
     const neutral = dark ? [0.78, 0.8, 0.84] : [0.25, 0.27, 0.3];
-    const shown = new Set(this.visuals.map((visual) => visual.body));
     const { bodies } = this.movie.drawing;
     for (let body = 1; body < bodies.length; body++) {
-      if (shown.has(body)) continue;
+      if (this.shown.has(body)) continue;
       this.body(made, instant, body, [...(look.color || colorOf(body, dark)), look.alpha], look.shift);
     }
-    // Bodies that do not move have no ghosts.
-    for (const visual of this.visuals) if (look.symbols || visual.body > 0) this.visual(made, instant, visual, look, dark);
-    if (look.symbols) this.elements.forEach((one) => this.symbol(made, instant, one, [...neutral, 1], look.shift));
+    // Bodies that do not move have no ghosts, and planes without an end neither.
+    for (const visual of this.visuals) if (look.symbols || (visual.body > 0 && visual.shape !== 'plane')) this.visual(made, instant, visual, look, dark);
+    if (!look.symbols) return made;
+    const first = made.length;
+    // A force has its arrow, or its symbol.
+    this.elements.forEach((one) => (look.forces && one.glyph === 'force') || this.symbol(made, instant, one, [...neutral, 1], look.shift));
+    // In the plane shapes are as thick as they are, and symbols before them.
+    if (!this.movie.drawing.spatial) made.slice(first).forEach((item) => (item.top = true));
     return made;
+  }
+
+  /** Forces as arrows, and their tips. @param {number} time @param {boolean} dark @returns {{made: Instance[], tips: {name: string, place: number[], size: number}[]}} */
+  arrows(time, dark) {
+    /** @type {Instance[]} */
+    const made = [];
+    const r = this.thickness;
+    const tips = this.movie.forcesAt(time).flatMap(({ name, reaction, at, force }) => {
+      const size = norm(force);
+      const long = Math.min(size * this.perNewton, 40 * r);
+      if (long < 0.3 * r) return [];
+      const color = [...(reaction ? (dark ? [1, 0.44, 0.71] : [0.75, 0, 0.36]) : dark ? [1, 0.75, 0.2] : [0.85, 0.45, 0]), 1];
+      const along = unit(force);
+      const head = Math.min(3.2 * r, 0.5 * long);
+      const [first, second] = across(along);
+      const foot = this.movie.drawing.spatial ? at : plus(at, [0, 0, 4 * r + 0.35 * r * this.movie.drawing.bodies.length]);
+      const neck = plus(foot, times(long - head, along));
+      made.push({ mesh: 'cylinder', columns: alongAxis(along, 0.32 * r), origin: foot, stretch: times(long - head, along), color, top: true });
+      made.push({ mesh: 'cone', columns: [times(0.36 * head, first), times(0.36 * head, second), times(head, along)], origin: neck, stretch: [0, 0, 0], color, top: true });
+      return [{ name, place: plus(foot, times(long, along)), size }];
+    });
+    return { made, tips };
   }
 
   /** @param {Instance[]} made @param {Instant} instant @param {number} body @param {number[]} color @param {number} shift */
@@ -156,11 +197,20 @@ export class Mechanism {
     const { p, q } = this.movie.place(instant.pose, visual.body);
     const turn = product(q, visual.orientation);
     const origin = plus(p, turned(q, visual.position));
-    const size = visual.size;
-    const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis, place) => times(visual.shape === 'sphere' ? size[0] : visual.shape === 'cylinder' ? size[0] : size[place], turned(turn, axis)));
-    const color = [...(look.color || visual.color || colorOf(visual.body || 1, dark)).slice(0, 3), look.alpha];
-    const long = visual.shape === 'cylinder' ? times(size[1], turned(turn, [0, 0, 1])) : [0, 0, 0];
-    made.push({ mesh: visual.shape === 'sphere' ? 'ball' : visual.mesh, columns: axes, origin: minus(origin, times(0.5, long)), stretch: long, color });
+    const [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(turn, axis));
+    const neutral = dark ? [0.42, 0.44, 0.48] : [0.72, 0.73, 0.75];
+    const color = [...(look.color || visual.color || (visual.body > 0 ? colorOf(visual.body, dark) : neutral)).slice(0, 3), look.alpha];
+    const { shape, size } = visual;
+    const put = (/** @type {number[]} */ scale, /** @type {number[]} */ at = origin, /** @type {number[]} */ stretch = [0, 0, 0]) =>
+      made.push({ mesh: visual.mesh, columns: [times(scale[0], x), times(scale[1], y), times(scale[2], z)], origin: at, stretch, color });
+    if (shape === 'plane') {
+      const [wide, thick] = [22 * this.thickness, 0.6 * this.thickness];
+      put([wide, wide, thick], minus(origin, times(0.5 * thick, z)));
+    } else if (shape === 'cylinder' || shape === 'capsule') {
+      // A line has no radius of its own.
+      const radius = size[0] || 0.3 * this.thickness;
+      put([radius, radius, radius], minus(origin, times(0.5 * size[1], z)), times(size[1], z));
+    } else put(shape === 'sphere' ? [size[0], size[0], size[0]] : size);
   }
 
   /** @param {Instance[]} made @param {Instant} instant @param {Mechanism['elements'][number]} one @param {number[]} color @param {number} shift */
@@ -181,9 +231,14 @@ export class Mechanism {
       const at = ends[grounded < 0 ? 0 : grounded];
       const reach = Math.max(8 * r, 1.1 * norm(minus(ends[ends.length - 1], ends[0])));
       this.bar(made, minus(at, times(reach, unit(axis))), plus(at, times(reach, unit(axis))), 0.35 * r, color);
+    } else if (one.glyph === 'slot') {
+      const [at, reach] = [ends[ends.length - 1], 6 * r];
+      const side = times(1.1 * r, this.movie.drawing.spatial ? across(unit(axis))[0] : unit(cross(axis, [0, 0, 1])));
+      for (const rail of [plus(at, side), minus(at, side)]) this.bar(made, minus(rail, times(reach, unit(axis))), plus(rail, times(reach, unit(axis))), 0.3 * r, color);
+      made.push({ mesh: 'ball', columns: alongAxis([0, 0, 1], 0.7 * r), origin: at, stretch: [0, 0, 0], color });
     } else if (one.glyph === 'force') {
       this.arrow(made, ends[0], minus(ends[0], times(12 * r, unit(axis))), color);
-    } else if (['pin', 'slot', 'motor', 'torque', 'gear', 'weld', 'torsion_spring', 'plane'].includes(one.glyph)) {
+    } else if (['pin', 'motor', 'torque', 'gear', 'weld', 'torsion_spring', 'plane'].includes(one.glyph)) {
       pin(ends[0], one.glyph === 'motor' || one.glyph === 'gear' ? 1.1 : 0.7);
     }
     if (grounded >= 0 && ['pin', 'ball', 'weld', 'motor', 'universal'].includes(one.glyph)) {

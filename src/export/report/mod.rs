@@ -8,12 +8,11 @@ mod packing;
 mod page;
 mod script;
 mod statistics;
-mod stl;
 mod tables;
+mod visuals;
 
 pub(super) use folder::page_of_folders;
 pub use folder::write_report;
 pub use motion::ReportParts;
 pub(super) use motion::{MOTION, motion_json};
 pub(super) use page::{PageFigure, PageScene, page};
-pub use stl::stl_corners;

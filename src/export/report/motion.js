@@ -5,6 +5,7 @@ import { normalised } from './vectors.js';
 
 /** @typedef {import('./data.js').PackedMotion} PackedMotion */
 /** @typedef {{values: number[], bodies: Float32Array, points: Float32Array}} Moving */
+/** @typedef {{name: string, reaction: boolean, at: number[], force: number[]}} Force */
 /** @typedef {{pose: Float64Array, points: Float32Array}} Instant */
 
 export class Movie {
@@ -22,6 +23,8 @@ export class Movie {
     this.lines = this.bodies.length / this.times.length;
     /** Differences from the nominal motion. @type {Moving[]} */
     this.samples = data.samples.map((sample) => ({ values: sample.values, bodies: unpack(sample.bodies), points: floats(sample.points) }));
+    /** Of the nominal motion: six numbers a time. */
+    this.forces = (data.forces || []).map(({ name, reaction, values }) => ({ name, reaction, values: unpack(values) }));
     /** How many times differences from the nominal motion are shown. */
     this.exaggeration = 1;
     const found = data.polynomials;
@@ -63,6 +66,23 @@ export class Movie {
     if (sample === undefined) return { pose: this.interpolated(time, () => 0), points: this.points };
     const { bodies, points } = this.samples[sample];
     return { pose: this.interpolated(time, (place) => bodies[place]), points: this.points.map((value, place) => value + this.exaggeration * points[place]) };
+  }
+
+  /** The forces at a time of the nominal motion. @param {number} time @returns {Force[]} */
+  forcesAt(time) {
+    const [frame, share] = this.frame(time);
+    const next = Math.min(frame + 1, this.times.length - 1);
+    return this.forces.map(({ name, reaction, values }) => {
+      const six = [0, 1, 2, 3, 4, 5].map((part) => values[6 * frame + part] + share * (values[6 * next + part] - values[6 * frame + part]));
+      return { name, reaction, at: six.slice(0, 3), force: six.slice(3) };
+    });
+  }
+
+  /** A force that few of all times and forces exceed, N: what lasts, not what an impact has for an instant. */
+  get usualForce() {
+    const sizes = this.forces.flatMap(({ values }) => Array.from(this.times, (_, at) => Math.hypot(values[6 * at + 3], values[6 * at + 4], values[6 * at + 5])));
+    sizes.sort((a, b) => a - b);
+    return sizes[Math.floor(0.95 * (sizes.length - 1))] || sizes[sizes.length - 1] || 1;
   }
 
   /** Products of Chebyshev polynomials, term by term. @param {number[]} xi */

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::packing::{Packed, floats};
+use super::visuals::{Visual, visuals};
 use crate::export::drawing::drawing_svg;
-use crate::results::{Drawing, Motion, MotionPolynomials, MovingVisual, ParameterSummary, Poses};
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingForce, ParameterSummary, Poses};
 
 /// Its name.
 pub(in crate::export) const MOTION: &str = "motion.json";
@@ -18,8 +19,6 @@ pub struct ReportParts {
     pub texts: Vec<(String, String)>,
     /// The motion, or why there is none.
     pub motion: Result<Motion, String>,
-    /// Corners of the triangles of each visual of the motion that is a mesh whose file could be read.
-    pub meshes: Vec<Option<Vec<f32>>>,
     /// Whether `report.html` is written beside the other files; scenes have one together.
     pub page: bool,
 }
@@ -48,32 +47,31 @@ struct PackedMotion<'m> {
     drawing: &'m Drawing,
     /// The mechanism at its start, for readers without scripts.
     picture: String,
-    visuals: Vec<PackedVisual<'m>>,
+    visuals: Vec<Visual>,
     times: String,
     rows: usize,
     between: f64,
     per_body: usize,
     parameters: &'m [ParameterSummary],
     nominal: PackedNominal,
+    forces: Vec<PackedForce<'m>>,
     samples: Vec<PackedSample<'m>>,
     stopped: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     polynomials: Option<PackedPolynomials<'m>>,
 }
 
-/// A solid, with the corners of its triangles where it is a mesh.
-#[derive(Serialize)]
-struct PackedVisual<'m> {
-    #[serde(flatten)]
-    visual: &'m MovingVisual,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    vertices: Option<String>,
-}
-
 #[derive(Serialize)]
 struct PackedNominal {
     bodies: String,
     points: String,
+}
+
+#[derive(Serialize)]
+struct PackedForce<'m> {
+    name: &'m str,
+    reaction: bool,
+    values: Packed,
 }
 
 #[derive(Serialize)]
@@ -99,7 +97,7 @@ pub(in crate::export) fn motion_json(parts: &ReportParts) -> serde_json::Result<
     let written = Written {
         description: parts.description.as_deref(),
         model: parts.texts.iter().map(|(name, text)| Text { name, text }).collect(),
-        motion: parts.motion.as_ref().ok().map(|motion| packed(motion, &parts.meshes)),
+        motion: parts.motion.as_ref().ok().map(|motion| packed(motion)),
         absent: parts.motion.as_ref().err().map(String::as_str),
     };
     let mut json = serde_json::to_vec(&written)?;
@@ -107,7 +105,7 @@ pub(in crate::export) fn motion_json(parts: &ReportParts) -> serde_json::Result<
     Ok(json)
 }
 
-fn packed<'m>(motion: &'m Motion, meshes: &[Option<Vec<f32>>]) -> PackedMotion<'m> {
+fn packed(motion: &Motion) -> PackedMotion<'_> {
     let Motion { nominal, .. } = motion;
     let lines = nominal.bodies.len() / motion.times.len().max(1);
     let beside = |values: &[f64], nominal: &[f64]| -> Vec<f64> {
@@ -118,11 +116,8 @@ fn packed<'m>(motion: &'m Motion, meshes: &[Option<Vec<f32>>]) -> PackedMotion<'
         bodies: Packed::new(&beside(&poses.bodies, &nominal.bodies), lines),
         points: floats(&beside(&poses.points, &nominal.points)),
     };
-    let corners = |mesh: &Vec<f32>| floats(&mesh.iter().copied().map(f64::from).collect::<Vec<f64>>());
-    // A mesh whose file is not there has no shape.
-    let visuals = motion.visuals.iter().zip(meshes).filter(|(visual, mesh)| visual.file.is_none() || mesh.is_some());
     PackedMotion {
-        visuals: visuals.map(|(visual, mesh)| PackedVisual { visual, vertices: mesh.as_ref().map(corners) }).collect(),
+        visuals: motion.drawing.solids.iter().flat_map(visuals).collect(),
         drawing: &motion.drawing,
         picture: drawing_svg(&motion.drawing),
         times: floats(&motion.times),
@@ -131,10 +126,15 @@ fn packed<'m>(motion: &'m Motion, meshes: &[Option<Vec<f32>>]) -> PackedMotion<'
         per_body: motion.per_body,
         parameters: &motion.parameters,
         nominal: PackedNominal { bodies: floats(&nominal.bodies), points: floats(&nominal.points) },
+        forces: motion.forces.iter().map(force).collect(),
         samples: motion.samples.iter().map(|moving| sample(&moving.values, &moving.poses)).collect(),
         stopped: motion.stopped,
         polynomials: motion.polynomials.as_ref().map(|found| polynomials(found, nominal, lines)),
     }
+}
+
+fn force(force: &MovingForce) -> PackedForce<'_> {
+    PackedForce { name: &force.name, reaction: force.is_reaction, values: Packed::new(&force.values, 6) }
 }
 
 fn polynomials<'m>(found: &'m MotionPolynomials, nominal: &Poses, lines: usize) -> PackedPolynomials<'m> {

@@ -1,5 +1,6 @@
 // @ts-check
-import { hull } from './mechanism.js';
+import { colorOf, hull } from './mechanism.js';
+import { minus, norm } from './vectors.js';
 // What a point sweeps over: in the plane the hulls of all samples' places from one time to the next, in space their paths.
 
 /** @typedef {import('./mechanism.js').Mechanism} Mechanism */
@@ -29,4 +30,14 @@ export function sweptRegion(mechanism, anchor, color) {
     }
   }
   return [{ points, color: [...color, 0.28], lines: false }, nominal];
+}
+
+/** The nominal paths of all points that move, in the colours of their bodies. @param {Mechanism} mechanism @param {boolean} dark @returns {Flat[]} */
+export function traces(mechanism, dark) {
+  const { movie, named, extent } = mechanism;
+  const small = 1e-3 * norm(minus(extent[1], extent[0]));
+  const moving = named.map(({ anchor }) => ({ body: anchor.body, path: Array.from(movie.times, (time) => mechanism.where(movie.at(time), anchor)) }));
+  return moving
+    .filter(({ path }) => path.some((place) => norm(minus(place, path[0])) > small))
+    .map(({ body, path }) => ({ points: path.flat(), color: [...colorOf(body, dark), 0.9], lines: true }));
 }

@@ -1,9 +1,11 @@
 // @ts-check
-import { ball, box, cylinder } from './solids.js';
-// A small renderer on WebGL2: instances of meshes with one light, opaque ones first, then the others from far to near; and flat triangles and lines.
+import { ball, box, cone, cylinder } from './solids.js';
+// A small renderer on WebGL2: instances of meshes with one light, opaque ones first, then the others from far to near,
+// then those on top of
+// all; and flat triangles and lines.
 
 /** @typedef {import('./solids.js').Mesh} Mesh */
-/** @typedef {{columns: number[][], origin: number[], stretch: number[], color: number[], mesh: string}} Instance */
+/** @typedef {{columns: number[][], origin: number[], stretch: number[], color: number[], mesh: string, top?: boolean}} Instance */
 /** @typedef {{points: number[], color: number[], lines: boolean}} Flat */
 
 const VERTEX = `#version 300 es
@@ -54,7 +56,7 @@ export class Renderer {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.flatBuffer);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-    for (const [name, mesh] of /** @type {[string, Mesh][]} */ ([['box', box()], ['ball', ball(false)], ['capsule', ball(true)], ['cylinder', cylinder()]])) this.add(name, mesh);
+    for (const [name, mesh] of /** @type {[string, Mesh][]} */ ([['box', box()], ['ball', ball(false)], ['capsule', ball(true)], ['cylinder', cylinder()], ['cone', cone()]])) this.add(name, mesh);
   }
 
   /** @param {string} vertex @param {string} fragment */
@@ -105,7 +107,8 @@ export class Renderer {
       const at = [0, 1, 2].map((k) => item.origin[k] + item.stretch[k] / 2);
       return (camera[2] * at[0] + camera[6] * at[1] + camera[10] * at[2] + camera[14]) / (camera[3] * at[0] + camera[7] * at[1] + camera[11] * at[2] + camera[15]);
     };
-    const opaque = instances.filter((item) => item.color[3] >= 1).sort((a, b) => (a.mesh < b.mesh ? -1 : a.mesh > b.mesh ? 1 : 0));
+    const byMesh = (/** @type {Instance[]} */ items) => items.sort((a, b) => (a.mesh < b.mesh ? -1 : a.mesh > b.mesh ? 1 : 0));
+    const opaque = byMesh(instances.filter((item) => item.color[3] >= 1 && !item.top));
     const clear = instances.filter((item) => item.color[3] < 1).map((item) => ({ item, depth: depth(item) }));
     clear.sort((a, b) => b.depth - a.depth);
     // Regions on the ground plane cover each pixel once: whatever of them comes second is not nearer.
@@ -121,7 +124,14 @@ export class Renderer {
     this.drawFlats(flats.filter((flat) => flat.lines), camera);
     gl.useProgram(this.solid);
     gl.depthMask(false);
+    // What is as far as an opaque side is behind it: a ghost that is where its body is does not tint it.
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 4);
     this.drawInstances(clear.map(({ item }) => item));
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    gl.depthMask(true);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    this.drawInstances(byMesh(instances.filter((item) => item.top)));
   }
 
   /** Instances in their order, those of one mesh that follow each other together. @param {Instance[]} items */

@@ -55,6 +55,9 @@ export function ball(stretched) {
 /** A cylinder of radius 1 with flat ends, the upper one at the far end. */
 export const cylinder = () => revolved([[0, 0, 0, -1, 0], [1, 0, 0, -1, 0], [1, 0, 1, 0, 0], [1, 0, 1, 0, 1], [1, 0, 0, 1, 1], [0, 0, 0, 1, 1]], 28);
 
+/** A cone of radius and height 1. */
+export const cone = () => revolved([[0, 0, 0, -1, 0], [1, 0, 0, -1, 0], [1, 0, 0.7, 0.7, 0], [0, 1, 0.7, 0.7, 0]], 20);
+
 /** Triangles of a file: their normals are those of their planes. @param {Float32Array} corners @returns {Mesh} */
 export function triangles(corners) {
   const flat = [];

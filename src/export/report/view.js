@@ -1,16 +1,16 @@
 // @ts-check
 import { Camera } from './camera.js';
 import { length } from './controls.js';
-import { element } from './data.js';
+import { digits, element } from './data.js';
 import { Mechanism } from './mechanism.js';
-import { sweptRegion } from './regions.js';
+import { sweptRegion, traces } from './regions.js';
 import { Renderer } from './renderer.js';
-import { norm, times } from './vectors.js';
+import { dot, norm, times } from './vectors.js';
 // The picture of the mechanism: its contents, and the pointer on it. It is drawn when something has changed.
 
 /** @typedef {import('./motion.js').Movie} Movie */
 /** @typedef {import('./clock.js').Clock} Clock */
-/** @typedef {{ghosts?: boolean, colorBy?: number, swept?: number, xi?: number[] | null, exaggeration?: number}} Choices */
+/** @typedef {{ghosts?: boolean, colorBy?: number, swept?: number, xi?: number[] | null, exaggeration?: number, forces?: boolean, traced?: boolean}} Choices */
 
 /** From the least to the greatest value, apart for the colour-blind too. */
 const [LOW, MIDDLE, HIGH] = [[0.05, 0.36, 0.78], [0.72, 0.72, 0.72], [0.88, 0.45, 0]];
@@ -38,14 +38,22 @@ export class View {
     this.xi = null;
     /** @type {import('./renderer.js').Flat[]} */
     this.region = [];
+    this.forces = false;
+    this.traced = false;
+    /** @type {import('./renderer.js').Flat[]} */
+    this.traces = [];
+    /** @type {{name: string, place: number[], size: number}[]} */
+    this.tips = [];
     this.isWaiting = false;
     this.drawings = 0;
     this.label = element('div', { class: 'tip', hidden: '' });
     this.bar = element('div', { class: 'bar' });
     this.exaggerated = element('div', { class: 'exaggerated' });
-    holder.append(canvas, this.label, this.bar, this.exaggerated);
+    this.forceBar = element('div', { class: 'bar force', hidden: '' });
+    this.gravity = element('div', { class: 'gravity', hidden: '', title: `gravity, ${digits(norm(movie.drawing.gravity || [0, 0, 0]))} m/s²` }, [element('i'), 'g']);
+    holder.append(canvas, this.label, this.bar, this.forceBar, this.gravity, this.exaggerated);
     this.dark = matchMedia('(prefers-color-scheme: dark)');
-    this.dark.addEventListener('change', () => this.changed());
+    this.dark.addEventListener('change', () => this.set({ traced: this.traced }));
     new ResizeObserver(() => this.changed()).observe(canvas);
     clock.listen(() => this.changed());
     this.listen();
@@ -60,6 +68,7 @@ export class View {
       const chosen = this.mechanism.named[this.swept];
       this.region = chosen ? sweptRegion(this.mechanism, chosen.anchor, [0.8, 0.35, 0.6]) : [];
     }
+    if (choices.traced !== undefined) this.traces = this.traced ? traces(this.mechanism, this.dark.matches) : [];
     this.changed();
   }
 
@@ -85,7 +94,7 @@ export class View {
     const size = [Math.round(width * ratio), Math.round(height * ratio)];
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
     const dark = this.dark.matches;
-    const look = { color: null, alpha: 1, shift: 0, symbols: true };
+    const look = { color: null, alpha: 1, shift: 0, symbols: true, forces: this.forces };
     const items = mechanism.solids(movie.at(clock.time), look, dark);
     if (this.ghosts) {
       movie.samples.forEach(({ values }, sample) => {
@@ -97,22 +106,48 @@ export class View {
       const color = dark ? [1, 0.85, 1] : [0.42, 0.12, 0.5];
       items.push(...mechanism.solids(movie.anywhere(clock.time, this.xi), { color, alpha: 0.38, shift: -20, symbols: false }, dark));
     }
+    this.tips = [];
+    if (this.forces) {
+      const { made, tips } = mechanism.arrows(clock.time, dark);
+      items.push(...made);
+      this.tips = tips;
+    }
+    const flats = [...this.region, ...this.traces];
     const background = dark ? [0.071, 0.078, 0.09] : [0.975, 0.98, 0.985];
     const [, , eye] = this.camera.axes();
-    this.renderer.draw(items, this.region, this.camera.matrix(width / height), { light: this.camera.light(), eye, background });
+    this.renderer.draw(items, flats, this.camera.matrix(width / height), { light: this.camera.light(), eye, background });
     this.drawings++;
-    this.scaleBar(width, height);
+    this.scaleBars(width, height);
+    this.pull();
   }
 
-  /** A round length, where all of one depth have one scale. @param {number} width @param {number} height */
-  scaleBar(width, height) {
+  /** A round length and a round force, where all of one depth have one scale. @param {number} width @param {number} height */
+  scaleBars(width, height) {
     const metres = (2 * this.camera.halfHeight(width / height)) / height;
-    const wanted = metres * 110;
-    const power = 10 ** Math.floor(Math.log10(wanted));
-    const round = ([5, 2].find((nice) => nice * power <= wanted) || 1) * power;
-    this.bar.style.width = `${round / metres}px`;
-    this.bar.textContent = length(round);
+    const round = (/** @type {number} */ wanted) => {
+      const power = 10 ** Math.floor(Math.log10(wanted));
+      return ([5, 2].find((nice) => nice * power <= wanted) || 1) * power;
+    };
+    const long = round(metres * 110);
+    this.bar.style.width = `${long / metres}px`;
+    this.bar.textContent = length(long);
+    this.forceBar.hidden = !this.forces;
+    const newtons = metres / this.mechanism.perNewton;
+    const force = round(newtons * 110);
+    this.forceBar.style.width = `${force / newtons}px`;
+    this.forceBar.textContent = force < 1e4 ? `${digits(force)} N` : `${digits(force / 1e3)} kN`;
     this.exaggerated.textContent = this.movie.exaggeration > 1 ? `deviations shown × ${this.movie.exaggeration}` : '';
+  }
+
+  /** Gravity's direction, as it is seen. */
+  pull() {
+    const { gravity } = this.movie.drawing;
+    const [right, up] = this.camera.axes();
+    const [x, y] = gravity ? [dot(gravity, right), dot(gravity, up)] : [0, 0];
+    const seen = gravity ? Math.hypot(x, y) / (norm(gravity) || 1) : 0;
+    this.gravity.hidden = seen < 0.05;
+    const arrow = /** @type {HTMLElement} */ (this.gravity.firstChild);
+    arrow.style.transform = `rotate(${Math.atan2(-x, -y)}rad) scaleY(${seen})`;
   }
 
   listen() {
@@ -164,16 +199,21 @@ export class View {
   point(event) {
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
     const instant = this.movie.at(this.clock.time);
-    const seen = this.mechanism.named.map(({ name, anchor }) => {
-      const place = this.mechanism.where(instant, anchor);
-      const [x, y] = this.camera.pixel(place, width, height);
-      return { name, place, x, y, far: Math.hypot(x - event.offsetX, y - event.offsetY) };
+    const { spatial } = this.movie.drawing;
+    const place = (/** @type {number[]} */ at) => `${at.slice(0, spatial ? 3 : 2).map((x) => (Math.abs(x) < 1e-9 * norm(at) ? 0 : x).toFixed(4)).join(', ')} m`;
+    const points = this.mechanism.named.map(({ name, anchor }) => {
+      const at = this.mechanism.where(instant, anchor);
+      return { name, at, text: place(at) };
     });
-    const near = seen.reduce((best, one) => (one.far < best.far ? one : best), { name: '', place: [0, 0, 0], x: 0, y: 0, far: 14 });
+    const forces = this.tips.map(({ name, place: at, size }) => ({ name, at, text: `${digits(size)} N` }));
+    const seen = [...points, ...forces].map(({ name, at, text }) => {
+      const [x, y] = this.camera.pixel(at, width, height);
+      return { name, text, x, y, far: Math.hypot(x - event.offsetX, y - event.offsetY) };
+    });
+    const near = seen.reduce((best, one) => (one.far < best.far ? one : best), { name: '', text: '', x: 0, y: 0, far: 14 });
     this.label.hidden = near.name === '';
     if (near.name === '') return;
-    const digitsOf = near.place.slice(0, this.movie.drawing.spatial ? 3 : 2).map((x) => (Math.abs(x) < 1e-9 * norm(near.place) ? 0 : x).toFixed(4));
-    this.label.replaceChildren(element('b', {}, [near.name]), ` ${digitsOf.join(', ')} m`);
+    this.label.replaceChildren(element('b', {}, [near.name]), ` ${near.text}`);
     const [left, top] = times(1, [Math.min(near.x + 12, width - 180), Math.max(near.y - 34, 4), 0]);
     this.label.style.transform = `translate(${left}px, ${top}px)`;
   }

@@ -2,6 +2,7 @@
 
 use symdiff::Formula;
 
+use crate::elements::shapes::ShapeKind;
 use crate::grammar::{Coordinate, Rotation};
 use crate::syntax::mirrors::Mirrors;
 
@@ -52,6 +53,8 @@ pub struct Body {
     pub points: Vec<Point>,
     /// Where its instance stands, if that has a ground of its own.
     pub standing: Option<Standing>,
+    /// Its looks; nothing of the motion depends on them.
+    pub shapes: Vec<ShapeKind>,
 }
 
 /// How an instance stands: the frame in which assembly begins to look for its bodies.

@@ -20,6 +20,8 @@ grammar! {
         held: Option<Held>,
         /// Named points in the body's frame, m.
         points: Option<IndexMap<String, PointFile>>,
+        /// Its looks, for `mbint show` and the report; nothing of the motion depends on them.
+        shape: Option<ShapeFile>,
         /// Instead of all that: a beam with mass, which bends. Its nodes `start`, `node1`, ..., `end` are bodies.
         beam: Option<FlexibleBeam>,
     }

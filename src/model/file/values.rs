@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
+use crate::elements::shapes::ShapeKind;
 use crate::grammar::mapping::schema_only;
 
 schema_only! {
@@ -78,6 +79,13 @@ schema_only! {
     pub enum PointFile {
         At(Components),
         Frame(Box<PointFrame>),
+    }
+
+    /// A shape, or several.
+    #[schemars(untagged, inline)]
+    pub enum ShapeFile {
+        One(Box<ShapeKind>),
+        Several(Vec<ShapeKind>),
     }
 
     /// A moment of inertia, the three principal ones along the frame's axes, or a tensor.

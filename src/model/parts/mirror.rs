@@ -7,6 +7,7 @@
 use super::Writer;
 use crate::elements::effects::EffectKind;
 use crate::elements::joints::JointKind;
+use crate::elements::shapes::ShapeKind;
 use crate::grammar::{Image, KeyImage};
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::source::Span;
@@ -49,17 +50,7 @@ impl Writer<'_, '_> {
                 self.reader.error(found.key_span.clone(), message, help);
             }
         }
-        for known in images.iter().filter(|known| !matches!(known.image, Image::Same | Image::Unknown)) {
-            // Directions that are not written are reflected, too.
-            let Some(default @ (serde_json::Value::String(_) | serde_json::Value::Array(_))) = &known.default else {
-                continue;
-            };
-            if let Some(value) =
-                written(default, &kind.key_span).filter(|_| !keys.iter().any(|key| key.key == known.name))
-            {
-                keys.push(Entry { key: known.name.to_owned(), key_span: kind.key_span.clone(), value });
-            }
-        }
+        add_defaults(keys, &images, &kind.key_span);
         for axis in mirrors.axes() {
             image_of_keys(keys, &images, axis, is_turning);
         }
@@ -82,6 +73,8 @@ fn image_of_part(key: &mut Entry, axis: usize) {
     match (key.key.as_str(), &mut key.value.value) {
         ("center_of_mass", _) => polar(&mut key.value, axis),
         ("inertia", _) => products(&mut key.value, axis),
+        ("shape", Value::Sequence(shapes)) => shapes.iter_mut().for_each(|shape| image_of_shape(shape, axis)),
+        ("shape", _) => image_of_shape(&mut key.value, axis),
         ("points", Value::Mapping(points)) => points.iter_mut().for_each(|point| frame(&mut point.value, axis)),
         ("held", Value::Mapping(held)) => {
             for value in held {
@@ -94,6 +87,20 @@ fn image_of_part(key: &mut Entry, axis: usize) {
         }
         _ => {}
     }
+}
+
+/// The image of a shape of a body.
+fn image_of_shape(shape: &mut Node, axis: usize) {
+    let Value::Mapping(kinds) = &mut shape.value else { return };
+    let [kind] = kinds.as_mut_slice() else { return };
+    let Some(images) = ShapeKind::images(&kind.key) else { return };
+    if let (Value::Sequence(_), Some(short)) = (&kind.value.value, ShapeKind::short(&kind.key)) {
+        let only = Entry { key: short.to_owned(), key_span: kind.key_span.clone(), value: kind.value.clone() };
+        kind.value.value = Value::Mapping(vec![only]);
+    }
+    let Value::Mapping(keys) = &mut kind.value.value else { return };
+    add_defaults(keys, &images, &kind.key_span);
+    image_of_keys(keys, &images, axis, None);
 }
 
 /// Whether the image of an effect is another where it is on a joint that turns.
@@ -111,6 +118,20 @@ fn has_image(effect: &Entry, wanted: impl Fn(Image) -> bool) -> bool {
     kinds.first().is_some_and(|kind| images(&kind.key).into_iter().any(|known| wanted(known.image)))
 }
 
+/// Writes what is not written and has an image: directions, and factors.
+fn add_defaults(keys: &mut Vec<Entry>, images: &[KeyImage], at: &Span) {
+    for known in images.iter().filter(|known| !matches!(known.image, Image::Same | Image::Unknown)) {
+        let default = known.default.as_ref().filter(|default| {
+            matches!(default, serde_json::Value::String(_) | serde_json::Value::Array(_))
+                || matches!(known.image, Image::Factors)
+        });
+        let value = default.and_then(|default| written(default, at));
+        if let Some(value) = value.filter(|_| !keys.iter().any(|key| key.key == known.name)) {
+            keys.push(Entry { key: known.name.to_owned(), key_span: at.clone(), value });
+        }
+    }
+}
+
 /// The images of what stands behind keys.
 fn image_of_keys(keys: &mut [Entry], images: &[KeyImage], axis: usize, is_turning: Option<bool>) {
     for key in keys {
@@ -118,6 +139,13 @@ fn image_of_keys(keys: &mut [Entry], images: &[KeyImage], axis: usize, is_turnin
         match known.image {
             Image::Same | Image::Unknown => {}
             Image::Polar => polar(&mut key.value, axis),
+            Image::Rotation => rotation(&mut key.value, axis),
+            Image::Factors => {
+                if let Value::Scalar(_) = key.value.value {
+                    key.value.value = Value::Sequence(vec![key.value.clone(); 3]);
+                }
+                polar(&mut key.value, axis);
+            }
             Image::Axial if is_turning == Some(true) => negate(&mut key.value),
             Image::Axial => axial(&mut key.value, axis),
             Image::Polars => {

@@ -69,6 +69,7 @@ pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usi
         prescribed_orientation: None,
         points: Vec::new(),
         standing: None,
+        shapes: Vec::new(),
     }
 }
 

@@ -48,7 +48,7 @@ impl Frame {
 }
 
 impl Asked {
-    fn formula(&mut self, formula: Formula) -> usize {
+    pub fn formula(&mut self, formula: Formula) -> usize {
         self.0.push(Output { name: String::new(), formula, unit: String::new(), dimension: None, of_results: false });
         self.0.len() - 1
     }
@@ -61,7 +61,7 @@ impl Asked {
         formulas.each_ref().map(|formula| self.formula(formula.clone()))
     }
 
-    fn rotation(&mut self, rotation: &Rotation) -> AskedRotation {
+    pub fn rotation(&mut self, rotation: &Rotation) -> AskedRotation {
         match rotation {
             Rotation::RollPitchYaw(angles) => AskedRotation::RollPitchYaw(self.vector(angles)),
             Rotation::AxisAngle(axis, angle) => {

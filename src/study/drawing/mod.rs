@@ -3,6 +3,7 @@
 //! What a drawing needs is asked as outputs of the model, so that it comes through the same equations as all else.
 
 pub(super) mod asked;
+mod solids;
 
 use std::collections::BTreeSet;
 
@@ -10,8 +11,8 @@ use nalgebra::Vector3;
 
 use super::RunError;
 use super::formulation::assembled;
-use crate::elements::Glyph;
 use crate::elements::effects::Scope;
+use crate::elements::{Glyph, Surroundings};
 use crate::grammar::{Coordinate, PointRef, Reference};
 use crate::model::{Body, Description};
 use crate::numerics::Sample;
@@ -30,6 +31,36 @@ const SAME: f64 = 1e-6;
 /// # Errors
 /// Where the mechanism cannot be built or assembled.
 pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
+    let drawing = drawn(description, None)?;
+    if !has_ground(description) {
+        return Ok(drawing);
+    }
+    let places = drawing.bodies.iter().flat_map(|body| {
+        let points = body.points.iter().map(|point| point.position);
+        points.chain(body.center_of_mass).chain([body.position])
+    });
+    let along = extent(places.map(|place| place[0]));
+    drawn(description, Some(along))
+}
+
+/// Whether effects act on ground of which a drawing shows a part.
+pub(super) fn has_ground(description: &Description) -> bool {
+    let surfaces = |along: Option<[f64; 2]>| {
+        let surroundings = Surroundings { spatial: description.space.spatial, along };
+        description.effects.iter().map(|effect| effect.kind.surfaces(surroundings).len()).sum::<usize>()
+    };
+    surfaces(None) < surfaces(Some([0.0, 1.0]))
+}
+
+/// From where to where numbers go, with a margin.
+pub(super) fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (least, most) = numbers.fold((0.0_f64, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
+    let margin = if most > least { 0.3 * (most - least) } else { 1.0 };
+    [least - margin, most + margin]
+}
+
+/// Draws it with its ground from one place to another along x, m.
+pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Result<Drawing, RunError> {
     let mut asked = Asked::default();
     let bodies = description.bodies.iter().enumerate();
     let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
@@ -37,6 +68,8 @@ pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
     let effects = description.effects.iter().map(|effect| effect.kind.direction());
     let directions: Vec<Option<AskedVector>> =
         joints.chain(effects).map(|direction| direction.map(|direction| asked.vector(direction))).collect();
+    let surroundings = Surroundings { spatial: description.space.spatial, along };
+    let asked_solids = solids::asked(description, surroundings, &mut asked);
     let first_length = asked.0.len();
     let pairs = pairs_of_points(description, &mut asked);
 
@@ -45,6 +78,7 @@ pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
     let nominal: Sample = assembled.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let values = Values(assembled.outputs_at_start(0..first_length, &nominal));
     let frames = bodies.iter().map(|body| values.frame(body)).collect();
+    let solids = solids::solids(description, &asked_solids, &bodies, &values);
     let mut scene = Scene { description: whole, bodies, frames, values, origins: BTreeSet::new() };
     let lengths = scene.lengths(&assembled, first_length, &pairs);
     let gravity = scene.gravity(&directions);
@@ -54,6 +88,7 @@ pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
         spatial: description.space.spatial,
         bodies: scene.drawn_bodies(),
         elements,
+        solids,
         gravity,
         lengths,
     })

@@ -3,21 +3,18 @@
 //! Poses are outputs of the whole model like any other, asked in place of its own: the same equations and the same steps, and nothing of it is in
 //! the program of a run.
 
+mod forces;
+mod rows;
 mod samples;
 mod thinning;
-mod visuals;
 
-use rayon::prelude::*;
-
+use super::RunError;
 use super::drawing::asked::{Asked, AskedBody, Values};
-use super::drawing::drawing;
-use super::{RunError, formulation};
-use crate::model::{Analysis, Description, ModesRequest, Stepping};
-use crate::numerics::{ParameterBox, Sample, SparseWork, SurrogateWork};
-use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, MovingVisual, ParameterSummary, Poses};
-use crate::simulate::{
-    Controller, EnsembleRun, Integration, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance,
-};
+use super::drawing::{drawing, drawn, extent, has_ground};
+use crate::model::Description;
+use crate::numerics::{Sample, SparseWork, SurrogateWork};
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
+use rows::Rows;
 use samples::Samples;
 use thinning::Thinning;
 
@@ -27,15 +24,6 @@ const NEAR: f64 = 2e-4;
 /// Fewest and most poses.
 const FEWEST: usize = 24;
 const MOST: usize = 600;
-
-/// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
-const MOST_NUMBERS: usize = 1 << 24;
-
-/// Rows that are simulated at a time.
-const BLOCK: usize = 64;
-
-/// Controlling samples of the steps beside the nominal one.
-const CONTROLLING: usize = 8;
 
 /// How a motion is found.
 #[derive(Clone, Copy, Debug)]
@@ -61,11 +49,10 @@ pub fn motion(description: &Description, options: MotionOptions) -> Result<Motio
 
 /// A model that is asked for its bodies' poses in place of its outputs.
 pub(super) struct Posed {
-    pub(super) simulator: Simulator,
+    pub(super) rows: Rows,
     bodies: Vec<AskedBody>,
     /// Whether bodies leave the plane.
     spatial: bool,
-    domain: ParameterBox,
 }
 
 /// The poses of one sample at every row, and its points.
@@ -73,8 +60,6 @@ pub(super) struct Posed {
 struct Recorded {
     rows: Vec<f64>,
     points: Vec<f64>,
-    /// All that was asked, in the first row.
-    at_start: Vec<f64>,
     stopped: Option<usize>,
 }
 
@@ -83,17 +68,7 @@ impl Posed {
         let mut asked = Asked::default();
         let bodies = description.bodies.iter().enumerate();
         let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
-        // Responses are between outputs that are not asked here.
-        let modes = ModesRequest { responses: Vec::new(), ..description.modes };
-        let whole = Description { outputs: asked.0, modes, ..description.clone() };
-        let simulator = formulation::compiled(&whole)?;
-        let parameters = &simulator.system.parameters;
-        let domain = ParameterBox {
-            nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
-            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
-            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
-        };
-        Ok(Self { simulator, bodies, spatial: description.space.spatial, domain })
+        Ok(Self { rows: Rows::asking(description, asked)?, bodies, spatial: description.space.spatial })
     }
 
     fn per_body(&self) -> usize {
@@ -101,9 +76,9 @@ impl Posed {
     }
 
     fn simulate(&mut self, description: &Description, drawing: Drawing, size: usize) -> Result<Motion, RunError> {
-        let samples = Samples::of(&self.domain);
+        let samples = Samples::of(&self.rows.domain);
         let wanted: Vec<Sample> =
-            [&self.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
+            [&self.rows.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
         let (times, recorded) = self.record(description, &drawing, &wanted)?;
         let rows = times.len();
         let complete = |sample: &Recorded| sample.stopped.is_none_or(|stopped| stopped >= rows);
@@ -117,7 +92,7 @@ impl Posed {
         let weights = self.weights(&recorded[0].points, &drawing);
         let looked_at: Vec<&[f64]> = [0].iter().chain(&shown).map(|&sample| recorded[sample].rows.as_slice()).collect();
         let thinning = Thinning { samples: looked_at, weights: &weights };
-        let (kept, between) = thinning.rows(&times, most, NEAR * self.simulator.system.length);
+        let (kept, between) = thinning.rows(&times, most, NEAR * self.rows.simulator.system.length);
 
         let poses = |sample: &Recorded| Poses {
             bodies: kept.iter().flat_map(|row| &sample.rows[row * lines..][..lines]).copied().collect(),
@@ -141,7 +116,7 @@ impl Posed {
             let degrees = (0..terms).flat_map(|term| surrogate.basis().degrees(term)).copied().collect();
             let (bodies, points) = (fit(|poses| &poses.bodies), fit(|poses| &poses.points));
             let points_of_box: Vec<Vec<f64>> =
-                samples.iter().map(|sample| self.domain.xi(&sample.values.clone().into())).collect();
+                samples.iter().map(|sample| self.rows.domain.xi(&sample.values.clone().into())).collect();
             let mut found = vec![0.0; nominal.bodies.len() * samples.len()];
             surrogate.basis().values(&points_of_box, &bodies, &mut found, &mut SparseWork::default());
             let lines = found.chunks_exact(samples.len().max(1)).enumerate();
@@ -154,7 +129,7 @@ impl Posed {
             let error = error.fold(0.0, f64::max);
             MotionPolynomials { degrees, error, bodies, points }
         });
-        let parameters = self.simulator.system.parameters.iter().map(|parameter| ParameterSummary {
+        let parameters = self.rows.simulator.system.parameters.iter().map(|parameter| ParameterSummary {
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
             display: description.parameter_units.get(&parameter.name).cloned(),
@@ -162,8 +137,9 @@ impl Posed {
             lower: parameter.lower,
             upper: parameter.upper,
         });
+        let found_times: Vec<f64> = kept.iter().map(|&row| times[row]).collect();
         Ok(Motion {
-            times: kept.iter().map(|&row| times[row]).collect(),
+            times: found_times.clone(),
             rows,
             between,
             per_body: self.per_body(),
@@ -172,14 +148,17 @@ impl Posed {
             stopped: wanted.len() - 1 - nodes.len() - samples.len(),
             samples,
             polynomials,
-            visuals: self.visuals(description, &recorded[0].at_start),
-            drawing,
+            forces: forces::forces(description, &found_times),
+            drawing: self.with_ground(description, drawing, &recorded[0].rows)?,
         })
     }
 
-    fn visuals(&self, description: &Description, at_start: &[f64]) -> Vec<MovingVisual> {
-        let values = Values(at_start.to_vec());
-        visuals::visuals(description, &self.bodies, &values)
+    /// The drawing with as much of its ground as the nominal motion passes.
+    fn with_ground(&self, description: &Description, drawing: Drawing, rows: &[f64]) -> Result<Drawing, RunError> {
+        if !has_ground(description) {
+            return Ok(drawing);
+        }
+        drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
     }
 
     /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for angles, m.
@@ -204,128 +183,16 @@ impl Posed {
         drawing: &Drawing,
         wanted: &[Sample],
     ) -> Result<(Vec<f64>, Vec<Recorded>), RunError> {
-        let can = self.simulator.can_assemble(wanted);
-        let running: Vec<usize> = (0..wanted.len()).filter(|&sample| sample == 0 || can[sample]).collect();
-        let samples: Vec<Sample> = running.iter().map(|&sample| wanted[sample].clone()).collect();
-        let mut recorded = vec![Recorded { stopped: Some(0), ..Recorded::default() }; wanted.len()];
-        running.iter().for_each(|&sample| recorded[sample].stopped = None);
-        let times = match description.analysis.is_without_steps() {
-            true => self.visit(description, drawing, (&running, &samples), &mut recorded)?,
-            false => self.follow(description, drawing, (&running, &samples), &mut recorded)?,
-        };
+        let mut recorded = vec![Recorded::default(); wanted.len()];
+        let numbers = self.per_body() * (self.bodies.len() - 1);
+        let (times, stopped) = self.rows.of_samples(description, wanted, numbers, |sample, is_first, values| {
+            self.pose(&values, &mut recorded[sample].rows);
+            if is_first {
+                recorded[sample].points = self.points(&values, drawing);
+            }
+        })?;
+        recorded.iter_mut().zip(stopped).for_each(|(recorded, stopped)| recorded.stopped = stopped);
         Ok((times, recorded))
-    }
-
-    /// By time steps.
-    fn follow(
-        &self,
-        description: &Description,
-        drawing: &Drawing,
-        (running, samples): (&[usize], &[Sample]),
-        recorded: &mut [Recorded],
-    ) -> Result<Vec<f64>, RunError> {
-        let (schedule, controller) = self.schedule(description, samples)?;
-        let every = self.every(schedule.rows, samples.len());
-        let mut times = Vec::new();
-        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?;
-        let outputs = self.simulator.system.outputs.len();
-        let mut values = Vec::new();
-        let mut next = 0;
-        while next < schedule.rows && recorded[0].stopped.is_none() {
-            let block = next..(next + BLOCK).min(schedule.rows);
-            for stop in run.advance(&schedule, block.clone(), controller, Observed::Outputs, &mut values) {
-                recorded[running[stop.sample]].stopped.get_or_insert(stop.row.div_ceil(every));
-            }
-            let end = recorded[0].stopped.map_or(block.end, |row| block.end.min(row * every));
-            for (row, of_row) in block.clone().zip(values.chunks_exact(outputs * samples.len())) {
-                if row >= end || row % every > 0 {
-                    continue;
-                }
-                times.push(schedule.time(row));
-                for (place, &sample) in running.iter().enumerate() {
-                    let own = (0..outputs).map(|output| of_row[output * samples.len() + place]).collect();
-                    self.keep(Values(own), row == 0, drawing, &mut recorded[sample]);
-                }
-            }
-            next = block.end;
-        }
-        Ok(times)
-    }
-
-    /// Configuration by configuration.
-    fn visit(
-        &self,
-        description: &Description,
-        drawing: &Drawing,
-        (running, samples): (&[usize], &[Sample]),
-        recorded: &mut [Recorded],
-    ) -> Result<Vec<f64>, RunError> {
-        let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
-        let rows =
-            if description.analysis == Analysis::Kinematics { Schedule::rows_of(duration, output_step) } else { 1 };
-        let every = self.every(rows, samples.len());
-        let times: Vec<f64> =
-            (0..rows).step_by(every).map(|row| Schedule::time_of(duration, output_step, row)).collect();
-        let schedule = Schedule::fixed(duration, output_step, output_step);
-        let outputs = self.simulator.system.outputs.len();
-        let found: Vec<_> =
-            samples.par_iter().map(|sample| self.simulator.visit(sample, (&schedule, None), &[])).collect();
-        for (&sample, visit) in running.iter().zip(found) {
-            let visit = match visit {
-                Err(error) if sample == 0 => return Err(error.into()),
-                Err(_) => {
-                    recorded[sample].stopped = Some(0);
-                    continue;
-                }
-                Ok(visit) => visit,
-            };
-            recorded[sample].stopped = visit.stop.map(|stop| stop.row.div_ceil(every));
-            for (row, values) in visit.values.chunks_exact(outputs).step_by(every).enumerate() {
-                self.keep(Values(values.to_vec()), row == 0, drawing, &mut recorded[sample]);
-            }
-        }
-        let reached = recorded[0].stopped.unwrap_or(times.len());
-        Ok(times[..reached.min(times.len())].to_vec())
-    }
-
-    /// How many rows one stands for that is looked at.
-    fn every(&self, rows: usize, samples: usize) -> usize {
-        let lines = self.per_body() * (self.bodies.len() - 1);
-        (rows * lines * samples).div_ceil(MOST_NUMBERS).max(1)
-    }
-
-    fn keep(&self, values: Values, is_first: bool, drawing: &Drawing, into: &mut Recorded) {
-        self.pose(&values, &mut into.rows);
-        if is_first {
-            into.points = self.points(&values, drawing);
-            into.at_start = values.0;
-        }
-    }
-
-    /// The steps: the model's, or those that its tolerance asks for at the nominal sample and corners of the box.
-    fn schedule(
-        &self,
-        description: &Description,
-        samples: &[Sample],
-    ) -> Result<(Schedule, Option<Controller>), RunError> {
-        let simulation = &description.simulation;
-        let (duration, output_step) = (simulation.duration, simulation.output_step);
-        let (schedule, controller) = match simulation.stepping {
-            Stepping::Fixed(step) => {
-                let integration = Integration::of_levels(simulation.extrapolation.unwrap_or(1));
-                (Schedule::fixed(duration, step, output_step).taken(integration), None)
-            }
-            Stepping::Tolerance(tolerance) => {
-                let controlling = &samples[..samples.len().min(1 + CONTROLLING)];
-                let found =
-                    schedule_for_tolerance(&self.simulator, controlling, (duration, output_step), tolerance, &|| {
-                        false
-                    })?;
-                (found.schedule, Some(Controller { tolerance, duration }))
-            }
-        };
-        let functions = TimeFunctions::of(&self.simulator, duration);
-        Ok((functions.map_or_else(|| schedule.clone(), |functions| functions.divided(&schedule).schedule), controller))
     }
 
     fn pose(&self, values: &Values, into: &mut Vec<f64>) {
@@ -368,8 +235,8 @@ mod tests {
     #[test]
     fn poses_come_through_the_same_tapes() {
         let description = four_bar();
-        let whole = formulation::compiled(&description).unwrap().program;
-        let posed = Posed::compile(&description).unwrap().simulator.program;
+        let whole = crate::study::formulation::compiled(&description).unwrap().program;
+        let posed = Posed::compile(&description).unwrap().rows.simulator.program;
         let steps = |program: &crate::compile::Program| {
             [program.step_size(), program.step(), program.factor(), program.correct(), program.advance()]
                 .map(|tape| tape.len())

@@ -1,0 +1,48 @@
+//! Meshes of a drawing: those that a robot's file names are read here, others with the model.
+
+use std::path::Path;
+
+use crate::elements::Form;
+use crate::grammar::Mesh;
+use crate::results::Drawing;
+use crate::syntax::mesh_file::{Triangle, triangles};
+use crate::syntax::regular;
+
+/// Triangles of all meshes of a drawing; those beyond are left out.
+pub(super) const MOST_TRIANGLES: usize = 12_000;
+
+/// Largest file of a mesh that is read, bytes.
+const MOST_BYTES: u64 = 100_000_000;
+
+/// Reads meshes that have not been read, from files beside the model or in a folder there, and leaves out those that
+/// cannot be, and
+/// those that are too many.
+pub(super) fn read_meshes(drawing: &mut Drawing, beside: &Path, most: usize) {
+    let mut left = most;
+    drawing.solids.retain_mut(|solid| {
+        let Form::Mesh { mesh, .. } = &mut solid.form else { return true };
+        if mesh.triangles.is_empty()
+            && let Some(found) = read(&mesh.file, beside)
+        {
+            *mesh = Mesh { triangles: found.into(), ..mesh.clone() };
+        }
+        let count = mesh.triangles.len();
+        let fits = (1..=left).contains(&count);
+        left -= if fits { count } else { 0 };
+        fits
+    });
+}
+
+fn read(file: &str, beside: &Path) -> Option<Vec<Triangle>> {
+    let plain = file.strip_prefix("file://").unwrap_or(file);
+    // Of `package://NAME/…` the package may be the model's folder.
+    let within = plain.strip_prefix("package://").map(|path| path.split_once('/').map_or(path, |(_, rest)| rest));
+    let name = Path::new(plain).file_name()?;
+    let candidates = [Path::new(within.unwrap_or(plain)), Path::new(name)];
+    let beside = if beside.as_os_str().is_empty() { Path::new(".") } else { beside };
+    let folder = beside.canonicalize().ok()?;
+    // A link may lead out of the folder.
+    let within = |path: &Path| beside.join(path).canonicalize().ok().filter(|full| full.starts_with(&folder));
+    let found = candidates.into_iter().find_map(|path| regular(&within(path)?, MOST_BYTES).ok())?;
+    triangles(&found).ok()
+}

@@ -1,0 +1,34 @@
+//! A ball about its frame's origin.
+
+use mbint_derive::Element;
+use symdiff::Formula;
+
+use super::{Place, ShapeElement};
+use crate::elements::form::Form;
+
+/// A ball about its frame's origin; in the plane a disc.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "sphere",
+    what = "a sphere",
+    equation = "|r| ≤ R",
+    source = "Ericson, Real-Time Collision Detection (2005), ch. 4",
+    example = "{ radius: 0.03, position: [0.2, 0] }"
+)]
+pub struct Sphere {
+    /// R
+    #[quantity(unit = "m", constant, positive)]
+    radius: Formula,
+    #[group]
+    place: Place,
+}
+
+impl ShapeElement for Sphere {
+    fn place(&self) -> &Place {
+        &self.place
+    }
+
+    fn form(&self) -> Form<Formula> {
+        Form::Sphere { radius: self.radius.clone() }
+    }
+}

@@ -1,0 +1,47 @@
+//! Forms as pictures draw them: by flat faces, or by points within a radius of which they are.
+
+mod faces;
+mod flat;
+mod frame;
+
+pub(super) use faces::{Face, faces, moved_out};
+pub(super) use flat::{polyline, triangulated};
+pub(super) use frame::SolidFrame;
+
+use crate::elements::Form;
+
+/// Points of which a form is the convex hull, with what is within a radius of it; `None` of one that is no such hull.
+pub(super) fn core(form: &Form<f64>) -> Option<(Vec<[f64; 3]>, f64)> {
+    match form {
+        Form::Sphere { radius } => Some((vec![[0.0; 3]], *radius)),
+        Form::Capsule { ends, radius } => Some((ends.to_vec(), *radius)),
+        Form::Hull { points, radius } => Some((points.clone(), *radius)),
+        Form::Box { size, radius } => Some((faces::corners(*size).to_vec(), *radius)),
+        _ => None,
+    }
+}
+
+/// Points that hold a form between them, in its frame.
+pub(super) fn reach(form: &Form<f64>) -> Vec<[f64; 3]> {
+    let around = |point: [f64; 3], radius: f64| {
+        (0..3).flat_map(move |axis| {
+            [-radius, radius].map(|step| {
+                let mut beside = point;
+                beside[axis] += step;
+                beside
+            })
+        })
+    };
+    if let Some((points, radius)) = core(form) {
+        return points.into_iter().flat_map(|point| around(point, radius)).collect();
+    }
+    match form {
+        Form::Outline { points, is_closed, radius, .. } => {
+            polyline(points, *is_closed).into_iter().flat_map(|point| around(point, *radius)).collect()
+        }
+        Form::Bore { radius, .. } => around([0.0; 3], *radius).collect(),
+        Form::HalfSpace { .. } => vec![[0.0; 3]],
+        Form::Ground { points } => points.clone(),
+        _ => faces(form).into_iter().flatten().collect(),
+    }
+}

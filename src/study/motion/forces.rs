@@ -1,0 +1,154 @@
+//! Forces of the nominal motion, for arrows: reactions of joints, and what effects apply at points.
+//!
+//! They come from a simulation of their own, so that the motion that is shown is not computed in another way because
+//! of them.
+
+use symdiff::Formula;
+
+use super::super::drawing::asked::{Asked, AskedVector, Values};
+use super::rows::Rows;
+use crate::grammar::{PointRef, Sensor};
+use crate::model::{Analysis, Description};
+use crate::results::MovingForce;
+use crate::study::RunError;
+
+/// Most arrows; a model with more joints and effects has those of the first.
+const MOST: usize = 40;
+
+/// A force that is asked.
+struct AskedForce {
+    name: String,
+    is_reaction: bool,
+    at: AskedVector,
+    force: AskedVector,
+}
+
+/// The forces at some times of the nominal motion; none where they cannot be computed.
+pub(super) fn forces(description: &Description, times: &[f64]) -> Vec<MovingForce> {
+    // Without forces there is no motion that could show them, and not every motion is of forces.
+    let has_forces = matches!(description.analysis, Analysis::Motion | Analysis::Statics);
+    if !has_forces {
+        return Vec::new();
+    }
+    simulated(description, times).unwrap_or_default()
+}
+
+fn simulated(description: &Description, times: &[f64]) -> Result<Vec<MovingForce>, RunError> {
+    let mut asked = Asked::default();
+    let wanted = ask(description, &mut asked);
+    let numbers = asked.0.len();
+    let asking = Rows::asking(description, asked)?;
+    let mut rows: Vec<Values> = Vec::new();
+    let nominal = [asking.domain.nominal.clone()];
+    let (found, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values))?;
+    // Both runs have rows at the same times, this one perhaps more of them.
+    let row = |time: f64| found.partition_point(|&known| known < time - 1e-9 * time.abs()).min(found.len() - 1);
+    if found.is_empty() {
+        return Ok(Vec::new());
+    }
+    let along = |wanted: &AskedForce| -> Vec<f64> {
+        let at = |values: &Values| {
+            let [place, force] = [wanted.at, wanted.force].map(|asked| values.vector(asked));
+            [place.x, place.y, place.z, force.x, force.y, force.z]
+        };
+        times.iter().flat_map(|&time| at(&rows[row(time)])).collect()
+    };
+    let all = wanted.into_iter().map(|wanted| {
+        let values = along(&wanted);
+        MovingForce { name: wanted.name, is_reaction: wanted.is_reaction, values }
+    });
+    Ok(all.filter(is_there).take(MOST).collect())
+}
+
+/// Whether it acts at any time, and is a number at all of them.
+fn is_there(force: &MovingForce) -> bool {
+    let acts = force.values.as_chunks::<6>().0.iter().any(|values| values[3..].iter().any(|part| *part != 0.0));
+    acts && force.values.iter().all(|value| value.is_finite())
+}
+
+fn ask(description: &Description, asked: &mut Asked) -> Vec<AskedForce> {
+    let spatial = description.space.spatial;
+    let zero = || Formula::number(0.0);
+    let named = |owner: &str, parts: [&str; 3]| {
+        let [x, y, z] = parts.map(|part| Formula::name(&format!("{owner}.{part}")));
+        [x, y, if spatial { z } else { zero() }]
+    };
+    let mut found = Vec::new();
+    for joint in &description.joints {
+        let Some([_, second]) = joint.kind.between() else { continue };
+        let at = asked.vector(&place(description, second, spatial));
+        let force = asked.vector(&named(&joint.name, ["force.x", "force.y", "force.z"]));
+        found.push(AskedForce { name: joint.name.clone(), is_reaction: true, at, force });
+    }
+    for effect in &description.effects {
+        for parts in Sensor::THRUSTS {
+            let [x, y, z, fx, fy, fz] = parts.map(Sensor::name);
+            let at = asked.vector(&named(&effect.name, [x, y, z]));
+            let force = asked.vector(&named(&effect.name, [fx, fy, fz]));
+            found.push(AskedForce { name: effect.name.clone(), is_reaction: false, at, force });
+        }
+    }
+    found
+}
+
+/// Where a point is, in the ground's frame.
+fn place(description: &Description, of: PointRef, spatial: bool) -> [Formula; 3] {
+    let body = &description.bodies[of.body];
+    let point = of.point.map(|point| &body.points[point]);
+    if of.body == 0 {
+        return point.map_or([0.0; 3].map(Formula::number), |point| point.position.clone());
+    }
+    let owner = point.map_or(body.name.clone(), |point| format!("{}.{}", body.name, point.name));
+    let [x, y, z] = ["x", "y", "z"].map(|axis| Formula::name(&format!("{owner}.{axis}")));
+    [x, y, if spatial { z } else { Formula::number(0.0) }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model;
+
+    fn forces_of(text: &str) -> Vec<MovingForce> {
+        let description =
+            model::load_str("forces.yaml", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+        forces(&description, &[0.0, 0.005])
+    }
+
+    fn assert_near(found: &MovingForce, expected: [f64; 6]) {
+        for values in found.values.chunks_exact(6) {
+            let distance = values.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(distance < 1e-6, "{}: {values:?} instead of {expected:?}", found.name);
+        }
+    }
+
+    /// A weight hangs from a rod that hangs from a spring: each carries what is below it.
+    #[test]
+    fn what_hangs_is_carried() {
+        let found = forces_of(
+            "bodies:\n  upper: { mass: 2, coordinates: [y], points: { top: [0, 1], bottom: [0, -1] } }\n  lower: { mass: 3, coordinates: [y] }\n\
+             joints: { weld: { fixed: [upper.bottom, lower] } }\n\
+             effects:\n  weight: { gravity: { acceleration: [0, -10] } }\n  spring: { spring_damper: { between: [ground, upper.top], stiffness: 100, free_length: 0.5 } }\n\
+             initial: { upper.y: -2, upper.vy: 0 }\noutputs: { y: upper.y }\nsimulation: { duration: 0.01, step: 1e-3 }\n",
+        );
+        let names: Vec<(&str, bool)> = found.iter().map(|force| (force.name.as_str(), force.is_reaction)).collect();
+        assert_eq!(names, [("weld", true), ("spring", false)]);
+        // The spring is 1 m long: 50 N. The weld holds 3 kg.
+        assert_near(&found[0], [0.0, -3.0, 0.0, 0.0, 30.0, 0.0]);
+        assert_near(&found[1], [0.0, -1.0, 0.0, 0.0, 50.0, 0.0]);
+    }
+
+    /// A crate rests on two of its corners, to which the floor's force is spread as the lever says.
+    #[test]
+    fn a_floor_pushes_where_it_touches() {
+        let found = forces_of(
+            "bodies: { crate: { mass: 1, inertia: 1, points: { foot: [0, 0] } } }\n\
+             effects:\n  weight: { force: { on: crate, value: [0, -10] } }\n\
+             \u{20} floor: { contact: { between: [ground, crate], plane: y, corners: [[-1, 0], [1, 0]], impact: { stiffness: 1000, exponent: 1, dissipation: 0 } } }\n\
+             initial: { crate.y: -0.005, crate.vy: 0, crate.angle: 0, crate.angular_velocity: 0 }\noutputs: { y: crate.y }\n\
+             simulation: { duration: 0.01, step: 1e-3 }\n",
+        );
+        let of = |name: &str| found.iter().find(|force| force.name == name).unwrap();
+        assert_near(of("floor"), [0.0, -0.005, 0.0, 0.0, 10.0, 0.0]);
+        assert_near(of("weight"), [0.0, -0.005, 0.0, 0.0, -10.0, 0.0]);
+    }
+}

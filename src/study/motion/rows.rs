@@ -1,0 +1,181 @@
+//! Rows of a simulation of which other things are asked than the model's outputs.
+
+use rayon::prelude::*;
+
+use super::super::drawing::asked::{Asked, Values};
+use super::super::{RunError, formulation};
+use crate::model::{Analysis, Description, ModesRequest, Stepping};
+use crate::numerics::{ParameterBox, Sample};
+use crate::simulate::{
+    Controller, EnsembleRun, Integration, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance,
+};
+
+/// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
+const MOST_NUMBERS: usize = 1 << 24;
+
+/// Rows that are simulated at a time.
+const BLOCK: usize = 64;
+
+/// Controlling samples of the steps beside the nominal one.
+const CONTROLLING: usize = 8;
+
+/// A model that is asked for something in place of its outputs.
+pub(in crate::study) struct Rows {
+    pub(in crate::study) simulator: Simulator,
+    pub(super) domain: ParameterBox,
+}
+
+/// What is simulated.
+#[derive(Clone, Copy)]
+struct Running<'a> {
+    /// Places of the samples among those that are wanted.
+    running: &'a [usize],
+    samples: &'a [Sample],
+    /// Numbers of a sample that are kept of a row.
+    numbers: usize,
+}
+
+/// How many rows one stands for that is looked at, of so many numbers.
+fn every(numbers: usize) -> usize {
+    numbers.div_ceil(MOST_NUMBERS).max(1)
+}
+
+impl Rows {
+    /// Asks something.
+    pub(super) fn asking(description: &Description, asked: Asked) -> Result<Self, RunError> {
+        // Responses are between outputs that are not asked here.
+        let modes = ModesRequest { responses: Vec::new(), ..description.modes };
+        let whole = Description { outputs: asked.0, modes, ..description.clone() };
+        let simulator = formulation::compiled(&whole)?;
+        let parameters = &simulator.system.parameters;
+        let domain = ParameterBox {
+            nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
+            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
+            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+        };
+        Ok(Self { simulator, domain })
+    }
+
+    /// Times of the rows that are looked at, and where samples stop. What is asked is given to `keep`: the sample,
+    /// whether it is its first
+    /// row, and the values. The nominal sample, the first, reaches all rows; of a sample `numbers` are kept of a row.
+    pub(super) fn of_samples(
+        &self,
+        description: &Description,
+        wanted: &[Sample],
+        numbers: usize,
+        keep: impl FnMut(usize, bool, Values),
+    ) -> Result<(Vec<f64>, Vec<Option<usize>>), RunError> {
+        let can = self.simulator.can_assemble(wanted);
+        let running: Vec<usize> = (0..wanted.len()).filter(|&sample| sample == 0 || can[sample]).collect();
+        let samples: Vec<Sample> = running.iter().map(|&sample| wanted[sample].clone()).collect();
+        let mut stopped = vec![Some(0); wanted.len()];
+        running.iter().for_each(|&sample| stopped[sample] = None);
+        let run = Running { running: &running, samples: &samples, numbers };
+        let times = match description.analysis.is_without_steps() {
+            true => self.visit(description, run, &mut stopped, keep)?,
+            false => self.follow(description, run, &mut stopped, keep)?,
+        };
+        Ok((times, stopped))
+    }
+
+    /// By time steps.
+    fn follow(
+        &self,
+        description: &Description,
+        run: Running,
+        stopped: &mut [Option<usize>],
+        mut keep: impl FnMut(usize, bool, Values),
+    ) -> Result<Vec<f64>, RunError> {
+        let Running { running, samples, numbers } = run;
+        let (schedule, controller) = self.schedule(description, samples)?;
+        let every = every(schedule.rows * numbers * samples.len());
+        let mut times = Vec::new();
+        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?;
+        let outputs = self.simulator.system.outputs.len();
+        let mut values = Vec::new();
+        let mut next = 0;
+        while next < schedule.rows && stopped[0].is_none() {
+            let block = next..(next + BLOCK).min(schedule.rows);
+            for stop in run.advance(&schedule, block.clone(), controller, Observed::Outputs, &mut values) {
+                stopped[running[stop.sample]].get_or_insert(stop.row.div_ceil(every));
+            }
+            let end = stopped[0].map_or(block.end, |row| block.end.min(row * every));
+            for (row, of_row) in block.clone().zip(values.chunks_exact(outputs * samples.len())) {
+                if row >= end || row % every > 0 {
+                    continue;
+                }
+                times.push(schedule.time(row));
+                for (place, &sample) in running.iter().enumerate() {
+                    let own: Vec<f64> = (0..outputs).map(|output| of_row[output * samples.len() + place]).collect();
+                    keep(sample, row == 0, Values(own));
+                }
+            }
+            next = block.end;
+        }
+        Ok(times)
+    }
+
+    /// Configuration by configuration.
+    fn visit(
+        &self,
+        description: &Description,
+        run: Running,
+        stopped: &mut [Option<usize>],
+        mut keep: impl FnMut(usize, bool, Values),
+    ) -> Result<Vec<f64>, RunError> {
+        let Running { running, samples, numbers } = run;
+        let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
+        let rows =
+            if description.analysis == Analysis::Kinematics { Schedule::rows_of(duration, output_step) } else { 1 };
+        let every = every(rows * numbers * samples.len());
+        let times: Vec<f64> =
+            (0..rows).step_by(every).map(|row| Schedule::time_of(duration, output_step, row)).collect();
+        let schedule = Schedule::fixed(duration, output_step, output_step);
+        let outputs = self.simulator.system.outputs.len();
+        let found: Vec<_> =
+            samples.par_iter().map(|sample| self.simulator.visit(sample, (&schedule, None), &[])).collect();
+        for (&sample, visit) in running.iter().zip(found) {
+            let visit = match visit {
+                Err(error) if sample == 0 => return Err(error.into()),
+                Err(_) => {
+                    stopped[sample] = Some(0);
+                    continue;
+                }
+                Ok(visit) => visit,
+            };
+            stopped[sample] = visit.stop.map(|stop| stop.row.div_ceil(every));
+            for (row, values) in visit.values.chunks_exact(outputs).step_by(every).enumerate() {
+                keep(sample, row == 0, Values(values.to_vec()));
+            }
+        }
+        let reached = stopped[0].unwrap_or(times.len());
+        Ok(times[..reached.min(times.len())].to_vec())
+    }
+
+    /// The steps: the model's, or those that its tolerance asks for at the nominal sample and corners of the box.
+    fn schedule(
+        &self,
+        description: &Description,
+        samples: &[Sample],
+    ) -> Result<(Schedule, Option<Controller>), RunError> {
+        let simulation = &description.simulation;
+        let (duration, output_step) = (simulation.duration, simulation.output_step);
+        let (schedule, controller) = match simulation.stepping {
+            Stepping::Fixed(step) => {
+                let integration = Integration::of_levels(simulation.extrapolation.unwrap_or(1));
+                (Schedule::fixed(duration, step, output_step).taken(integration), None)
+            }
+            Stepping::Tolerance(tolerance) => {
+                let controlling = &samples[..samples.len().min(1 + CONTROLLING)];
+                let found =
+                    schedule_for_tolerance(&self.simulator, controlling, (duration, output_step), tolerance, &|| {
+                        false
+                    })?;
+                (found.schedule, Some(Controller { tolerance, duration }))
+            }
+        };
+        let functions = TimeFunctions::of(&self.simulator, duration);
+        Ok((functions.map_or_else(|| schedule.clone(), |functions| functions.divided(&schedule).schedule), controller))
+    }
+}
