@@ -6,7 +6,8 @@ use super::args::ReportArgs;
 use super::console::Console;
 use super::request::Job;
 use super::{Failure, Status};
-use crate::export::{ReportParts, stl_corners, write_report};
+use crate::export::{ReportParts, write_report};
+use crate::model::stl_corners;
 use crate::study::{self, MotionOptions};
 use crate::syntax::regular;
 

@@ -48,7 +48,7 @@ pub use owned::SUMMARY;
 pub use plot::{Beside, noise, plot_svg};
 pub use reduced::reduced_csv;
 pub use reference::effects as effects_page;
-pub use report::{ReportParts, stl_corners, write_report};
+pub use report::{ReportParts, write_report};
 pub use rounded::rounded;
 pub use samples::write_samples;
 pub use scenes::{remove_comparison, write_scenes};

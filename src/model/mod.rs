@@ -51,3 +51,4 @@ pub use file::{SCHEMA_VERSION, schema};
 pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
 pub use overlay::read_overlay;
 pub use overrides::Override;
+pub use robots::meshes::stl_corners;

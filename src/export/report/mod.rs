@@ -8,7 +8,6 @@ mod packing;
 mod page;
 mod script;
 mod statistics;
-mod stl;
 mod tables;
 
 pub(super) use folder::page_of_folders;
@@ -16,4 +15,3 @@ pub use folder::write_report;
 pub use motion::ReportParts;
 pub(super) use motion::{MOTION, motion_json};
 pub(super) use page::{PageFigure, PageScene, page};
-pub use stl::stl_corners;
