@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use super::assets::name_of;
 use super::couplings;
 use super::document::Item;
 use super::meshes;
@@ -59,8 +60,8 @@ impl<'i> Reader<'_, 'i, '_> {
             return;
         };
         let models = || self.root.of("asset").flat_map(|asset| asset.of("model"));
-        let Some(asset) = models().find(|known| meshes::name_of(known).as_ref() == Some(&model.value)) else {
-            let names: Vec<String> = models().filter_map(meshes::name_of).collect();
+        let Some(asset) = models().find(|known| name_of(known).as_ref() == Some(&model.value)) else {
+            let names: Vec<String> = models().filter_map(name_of).collect();
             let help = suggest::help(&model.value, "models", names.iter().map(String::as_str));
             let error = Diagnostic::error(model.span.clone(), format!("unknown model `{}`", clip(&model.value)));
             self.values.diagnostics.push(error.help(help));

@@ -1,62 +1,20 @@
 //! `<mesh>`: what its triangles enclose, as its `inertia` says; read where the mass of a body needs it.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::document::{Attribute, Item};
 use super::values::Values;
 use crate::model::robots::algebra;
 use crate::model::robots::meshes::{self, FORMATS, Faults, Measured, Triangle, Way};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;
-use crate::syntax::within::Within;
 
 /// Largest file of a mesh, bytes.
 const MOST_BYTES: u64 = 100_000_000;
 
 /// Part of the volume by which tetrahedra may exceed what is enclosed without a word.
 const SLIGHT: f64 = 0.01;
-
-/// Meshes of the file.
-pub struct Meshes<'i> {
-    pub files: &'i Within,
-    /// That of the file, and of its meshes in it.
-    pub folder: PathBuf,
-    pub meshdir: PathBuf,
-    /// Whether only the last part of a file's name counts.
-    pub strips: bool,
-    by_name: HashMap<String, &'i Item>,
-    /// Those read; none where it cannot be.
-    known: HashMap<String, Option<Measured>>,
-    /// Names of meshes that enclose nothing for certain, or less than their tetrahedra, with the place of the first and why.
-    open: Vec<(Span, String)>,
-    folded: Vec<(Span, String)>,
-}
-
-impl<'i> Meshes<'i> {
-    pub fn new(root: &'i Item, files: &'i Within, folder: &Path) -> Self {
-        let items = root.of("asset").flat_map(|asset| asset.of("mesh"));
-        let by_name = items.filter_map(|item| Some((name_of(item)?, item))).collect();
-        Self {
-            files,
-            folder: folder.to_owned(),
-            meshdir: PathBuf::new(),
-            strips: false,
-            by_name,
-            known: HashMap::new(),
-            open: Vec::new(),
-            folded: Vec::new(),
-        }
-    }
-}
-
-/// Its own name, or that of its file.
-pub fn name_of(item: &Item) -> Option<String> {
-    let of_file = |file: &Attribute| Some(Path::new(&file.value).file_stem()?.to_string_lossy().into_owned());
-    item.get("name").map(|name| name.value.clone()).or_else(|| item.get("file").and_then(of_file))
-}
 
 /// What the mesh of a name makes up; reports why nothing does.
 pub fn measured(values: &mut Values, named: &Attribute) -> Option<Measured> {

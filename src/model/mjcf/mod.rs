@@ -6,6 +6,7 @@
 //! tree as if it were written out.
 
 mod actuators;
+mod assets;
 mod attach;
 mod build;
 mod couplings;
@@ -87,12 +88,15 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
             return None;
         }
     };
+    let errors = reader.diagnostics.errors();
     let at = (!is_mjcf(model)).then(|| entry.value.span.clone());
     let document = document::read(&path, at, &reader.files, reader.diagnostics)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut values = Values::new(&document, &reader.files, folder, reader.diagnostics);
     let robot = read::robot(&document, &mut values)?;
-    if robot.joints.is_empty() && !sections.iter().any(|entry| entry.key == "bodies") {
+    // What could not be read may be what moves.
+    let is_whole = reader.diagnostics.errors() == errors;
+    if is_whole && robot.joints.is_empty() && !sections.iter().any(|entry| entry.key == "bodies") {
         let place = if is_mjcf(model) { document.span.clone() } else { entry.value.span.clone() };
         let help = if robot.bodies.len() > 1 {
             "a body moves that has a `<joint>` or a `<freejoint>`, and here none has"

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use symdiff::math;
 
+use super::assets::Meshes;
 use super::document::{Attribute, Item};
 use super::flags::Flags;
-use super::meshes::Meshes;
 use crate::model::robots::algebra::{self, Quaternion, Value};
 use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
