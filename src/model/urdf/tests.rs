@@ -164,7 +164,7 @@ fn prefixes_that_are_not_declared_are_other_programs() {
     assert!(read(&text, 0, &mut diagnostics).is_none());
     let spans: Vec<_> = diagnostics.iter().map(|found| found.span.clone().unwrap()).collect();
     assert_eq!(spans.iter().map(|span| &text[span.clone()]).collect::<Vec<_>>(), ["x"]);
-    assert_eq!(messages(&hinge("a:b='1'", "<link"))[0], "this is not XML: invalid name token");
+    assert!(messages(&hinge("a:b='1'", "<link"))[0].starts_with("this is not XML"));
     let many: String = (0..30).map(|place| format!("p{place}:x='1' ")).collect();
     assert!(messages(&hinge(&many, ""))[0].contains("an unknown namespace prefix"));
 }
