@@ -1,6 +1,6 @@
 //! `<asset>`: meshes by their names, what is known of those that were read, and where files of assets lie.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use super::document::{Attribute, Item};
@@ -16,7 +16,7 @@ pub struct Meshes<'i> {
     pub meshdir: PathBuf,
     /// Whether only the last part of a file's name counts.
     pub strips: bool,
-    pub by_name: HashMap<String, &'i Item>,
+    pub by_name: BTreeMap<String, &'i Item>,
     /// Those read; none where it cannot be.
     pub known: HashMap<String, Option<Measured>>,
     /// Names of meshes that enclose nothing for certain, or less than their tetrahedra, with the place of the first and why.
