@@ -257,6 +257,9 @@ fn joint_motion(table: &impl SymbolTable, joint: &str, member: &str) -> Option<S
     table.has_coordinate(joint, coordinate).then_some(Symbol::JointCoordinate { joint, coordinate, order })
 }
 
+/// Members of every joint that speak of its reaction.
+pub const REACTIONS: [&str; 5] = ["force", "torque", "force_body", "torque_body", "torque_at"];
+
 fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&str>) -> Option<Symbol> {
     let joint = table.joint(joint)?;
     let of_axis = match (member, part) {

@@ -56,6 +56,8 @@ mod random;
 mod reduced;
 mod reductions;
 mod reproducibility;
+mod robot_inertia;
+mod robot_wrenches;
 mod rotation;
 mod run_all;
 mod schemes;

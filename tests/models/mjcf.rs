@@ -10,8 +10,9 @@ use mbint::inner::model::{self, Description, Reading};
 use crate::common::{Findings, curve, distance, largest, load, nominal, row, rows};
 
 /// Files of the tests with commands to their actuators.
-const ROBOTS: [(&str, &str); 12] = [
+const ROBOTS: [(&str, &str); 14] = [
     ("actuators", "controls: { hold: 0.5*sin(3*t), turn: 0.8, push: 0.15*cos(5*t), spring: 0.3 }"),
+    ("attached", "controls: { push: 2*sin(3*t), kick: cos(2*t), right_lift: 0.5*sin(2*t), left_lift: -0.1 }"),
     ("ball_and_free", ""),
     ("cart_pole", ""),
     ("coupled", "controls: { drive: 1.5*sin(4*t) }"),
@@ -19,6 +20,11 @@ const ROBOTS: [(&str, &str); 12] = [
     ("floating_base", "controls: { hold_left: 0.4*sin(3*t), kick: -2*cos(6*t), push_right: 0.5*sin(5*t) }"),
     ("frames", ""),
     ("linkage", ""),
+    (
+        "memories",
+        "controls: { lag: sin(3*t), sum: cos(4*t), piston: 0.5*sin(2*t), hold: 2*sin(2*t), strong: sin(5*t), weak: cos(3*t), \
+         alone: sin(4*t), turn: 0.5*sin(3*t), slide: cos(2*t) }",
+    ),
     ("several_joints", ""),
     ("spatial_arm", ""),
     ("tendons", "controls: { muscle: -0.3*t }"),

@@ -178,9 +178,9 @@ impl Contact {
     ) -> Result<Option<Scalar<'g>>, BuildError> {
         let deepest = match surface {
             Surface::Edges(_) => forces.prescribed(&self.rounding)? + radius,
-            Surface::Whole(Shape::Solid(_, reach) | Shape::Hull(_, reach)) => *reach,
-            Surface::Whole(Shape::Round(outer)) => *outer + radius,
-            Surface::Whole(Shape::Plane(_) | Shape::Hollow(_) | Shape::Ground(_)) => return Ok(None),
+            Surface::Whole(touch::Shape::Solid(_, reach) | touch::Shape::Hull(_, reach)) => *reach,
+            Surface::Whole(touch::Shape::Round(outer)) => *outer + radius,
+            Surface::Whole(touch::Shape::Plane(_) | touch::Shape::Hollow(_) | touch::Shape::Ground(_)) => return Ok(None),
         };
         Ok((!deepest.is_zero()).then_some(deepest))
     }

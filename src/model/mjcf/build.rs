@@ -10,6 +10,7 @@ use super::tree::{Sections, in_unit, keys, lengths, list, map, text, values};
 use crate::grammar::motions::is_motion;
 use crate::model::robots::algebra::{self, Pose, Value, Vector};
 use crate::model::robots::masses::{self, Part};
+use crate::model::robots::names;
 use crate::model::robots::numbers::Number;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
@@ -24,10 +25,12 @@ pub struct Source<'r> {
 }
 
 impl<'r> Source<'r> {
-    pub fn new(robot: &'r Robot, named: &'r HashSet<String>) -> Self {
+    /// `words` are all of the model.
+    pub fn new(robot: &'r Robot, named: &'r HashSet<String>, words: &HashSet<String>) -> Self {
         let mut source = Self { robot, named, holders: vec![(0, Pose::identity())] };
         for (index, body) in robot.bodies.iter().enumerate().skip(1) {
-            let holder = if body.joints.is_empty() {
+            let is_held = body.joints.is_empty() && !names::is_reaction_asked(words, &weld_of(body));
+            let holder = if is_held {
                 let (holder, pose) = &source.holders[body.parent];
                 (*holder, pose.then(&source.vector(&body.position), &body.rotation))
             } else {
@@ -67,6 +70,11 @@ impl<'r> Source<'r> {
     }
 }
 
+/// The fixed joint of a body without joints, which is there where the model speaks of its reaction.
+fn weld_of(body: &Body) -> String {
+    format!("{}_weld", body.name)
+}
+
 /// A point with its frame.
 pub fn point(span: &Span, pose: &Pose) -> Node {
     let position = lengths(span, &pose.position);
@@ -92,7 +100,10 @@ pub fn bodies(sections: &mut Sections, source: &Source) {
         }
     }
     let mut between = Vec::new();
-    for body in robot.bodies.iter().skip(1) {
+    for (index, body) in robot.bodies.iter().enumerate().skip(1) {
+        if body.joints.is_empty() && source.holders[index].0 == index {
+            weld(source, body, &mut points, &mut between);
+        }
         joints(source, body, &mut points, &mut between);
     }
     for (index, body) in robot.bodies.iter().enumerate() {
@@ -180,6 +191,17 @@ fn part_of(source: &Source, index: usize, holder: usize) -> Option<Part> {
     });
     let tensor = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
     Some(Part { mass: total, center: pose.position, inertia: algebra::rotate_tensor(&pose.rotation, &tensor) })
+}
+
+/// The fixed joint of a body that has no other.
+fn weld(source: &Source, body: &Body, points: &mut [Vec<(String, Node)>], between: &mut Vec<Between>) {
+    let (holder, pose) = &source.holders[body.parent];
+    let pose = pose.then(&source.vector(&body.position), &body.rotation);
+    let at = add(&mut points[*holder], &weld_of(body), point(&body.span, &pose));
+    let ends = [format!("{}.{at}", source.robot.bodies[*holder].name), body.name.clone()];
+    let ends = list(&body.span, ends.map(|end| text(&body.span, end)));
+    let node = keys(&body.span, [("fixed", keys(&body.span, [("between", ends)]))]);
+    between.push(Between::Joint(weld_of(body), node));
 }
 
 /// The joints of a body, from the one that it is in outwards.

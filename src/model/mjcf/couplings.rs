@@ -1,47 +1,81 @@
-//! Equalities, fixed tendons and actuators.
+//! Equalities and fixed tendons; actuators are in `actuators`.
 
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Attribute, Item};
 use super::flags::on;
-use super::robot::{Actuator, At, Body, Coupling, Equality, Law, Length, Names, Robot, Tendon};
+use super::robot::{At, Body, Coupling, Equality, Length, Names, Robot, Tendon};
 use super::values::Values;
 use crate::model::robots::algebra::{self, Pose, Value};
 use crate::model::robots::names;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 
-/// Reads what couples and drives the joints of a robot whose bodies are read.
-pub fn read(root: &Item, values: &mut Values, robot: &mut Robot, names: &Names) {
-    let mut reader = Reader { values, robot, names, tendons: HashMap::new(), taken: HashSet::new() };
-    root.of("tendon").flat_map(|section| section.of("fixed")).for_each(|item| reader.tendon(item));
+/// Reads what couples and drives the joints of a robot whose bodies are read. Of an attached model, whose names have a prefix,
+/// only what speaks of nothing that is not attached.
+pub fn read(root: &Item, values: &mut Values, robot: &mut Robot, names: &Names, attached: Option<&str>) {
+    let taken = robot.equalities.iter().map(|own| &own.name).chain(robot.tendons.iter().map(|own| &own.name));
+    let taken = taken.chain(robot.actuators.iter().map(|own| &own.name)).cloned().collect();
+    let prefix = attached.unwrap_or("");
+    let mut reader = Reader { values, robot, names, prefix, tendons: HashMap::new(), taken };
     let flags = reader.values.settings.flags;
-    root.of("equality").filter(|_| flags.equalities).flat_map(|section| &section.items).for_each(|item| {
-        reader.equality(item);
-    });
-    root.of("actuator").filter(|_| flags.actuators).flat_map(|section| &section.items).for_each(|item| {
-        reader.actuator(item);
-    });
+    let acts = |tag: &str| match tag {
+        "equality" => flags.equalities,
+        "actuator" => flags.actuators,
+        _ => true,
+    };
+    for section in ["tendon", "equality", "actuator"] {
+        for item in root.of(section).filter(|_| acts(section)).flat_map(|section| &section.items) {
+            if attached.is_some() && !reader.is_attached(item) {
+                continue;
+            }
+            match section {
+                "tendon" => reader.tendon(item),
+                "equality" => {
+                    reader.equality(item);
+                }
+                _ => {
+                    reader.actuator(item);
+                }
+            }
+        }
+    }
 }
 
-struct Reader<'r, 'i, 'd> {
-    values: &'r mut Values<'i, 'd>,
-    robot: &'r mut Robot,
+pub struct Reader<'r, 'i, 'd> {
+    pub values: &'r mut Values<'i, 'd>,
+    pub robot: &'r mut Robot,
     names: &'r Names,
+    prefix: &'r str,
     /// By the names of the file.
     tendons: HashMap<String, usize>,
     taken: HashSet<String>,
 }
 
 impl Reader<'_, '_, '_> {
-    fn name(&mut self, item: &Item, otherwise: String) -> String {
-        let written = item.get("name").map_or(otherwise, |name| name.value.clone());
+    pub fn name(&mut self, item: &Item, otherwise: String) -> String {
+        let written = item.get("name").map_or(otherwise, |name| format!("{}{}", self.prefix, name.value));
         names::in_formulas(&written, &mut self.taken)
+    }
+
+    /// Whether everything that an element names is there.
+    fn is_attached(&self, item: &Item) -> bool {
+        let has = |attribute: &Attribute| {
+            let name = format!("{}{}", self.prefix, attribute.value);
+            match attribute.name.as_str() {
+                "joint" | "jointinparent" | "joint1" | "joint2" => self.names.joints.contains_key(&name),
+                "body1" | "body2" => attribute.value == "world" || self.names.bodies.contains_key(&name),
+                "site1" | "site2" => self.names.sites.contains_key(&name),
+                "tendon" | "tendon1" | "tendon2" => self.tendons.contains_key(&name),
+                _ => true,
+            }
+        };
+        item.attributes.iter().all(has) && item.items.iter().all(|inner| self.is_attached(inner))
     }
 
     /// What an attribute names.
     fn found<T: Copy>(&mut self, attribute: &Attribute, what: &str, known: &HashMap<String, T>) -> Option<T> {
-        let found = known.get(&attribute.value).copied();
+        let found = known.get(&format!("{}{}", self.prefix, attribute.value)).copied();
         if found.is_none() {
             let help = suggest::help(&attribute.value, what, known.keys().map(String::as_str));
             let singular = what.strip_suffix('s').map_or_else(|| what.to_owned(), |word| word.replace("bodie", "body"));
@@ -52,7 +86,7 @@ impl Reader<'_, '_, '_> {
     }
 
     /// A joint of one coordinate.
-    fn joint(&mut self, attribute: &Attribute) -> Option<usize> {
+    pub fn joint(&mut self, attribute: &Attribute) -> Option<usize> {
         let names = self.names;
         let joint = self.found(attribute, "joints", &names.joints)?;
         if self.robot.joints[joint].is_single() {
@@ -63,14 +97,14 @@ impl Reader<'_, '_, '_> {
         None
     }
 
-    fn needs(&mut self, item: &Item, names: &str) {
+    pub fn needs(&mut self, item: &Item, names: &str) {
         self.values.error(item.span.clone(), format!("`<{}>` needs {names}", item.tag), None);
     }
 
     fn tendon(&mut self, item: &Item) {
         let name = self.name(item, format!("tendon_{}", self.robot.tendons.len()));
         if let Some(written) = item.get("name") {
-            self.tendons.insert(written.value.clone(), self.robot.tendons.len());
+            self.tendons.insert(format!("{}{}", self.prefix, written.value), self.robot.tendons.len());
         }
         let mut terms = Vec::new();
         for term in item.of("joint") {
@@ -93,6 +127,7 @@ impl Reader<'_, '_, '_> {
             self.values.number(item, found, format!("tendon.{name}.{key}"), value, "")
         };
         let (stiffness, damping) = (number("stiffness", flags.springs), number("damping", flags.dampers));
+        let friction = number("frictionloss", flags.friction);
         let ends = self.values.get(item, class, &["tendon"], "springlength");
         let ends = ends.and_then(|found| self.values.parsed(found, 2)).unwrap_or_else(|| vec![-1.0]);
         // A length of −1 is that in the file's configuration.
@@ -108,6 +143,7 @@ impl Reader<'_, '_, '_> {
             length: Length { terms },
             stiffness,
             damping,
+            friction,
             slack,
         });
     }
@@ -245,94 +281,10 @@ impl Reader<'_, '_, '_> {
         Some(Coupling::Polynomial { first, second, coefficients })
     }
 
-    fn tendon_length(&mut self, attribute: &Attribute) -> Option<Length> {
+    pub fn tendon_length(&mut self, attribute: &Attribute) -> Option<Length> {
         let known = std::mem::take(&mut self.tendons);
         let found = self.found(attribute, "tendons", &known);
         self.tendons = known;
         Some(self.robot.tendons[found?].length.clone())
-    }
-
-    fn actuator(&mut self, item: &Item) -> Option<()> {
-        let name = self.name(item, format!("actuator_{}", self.robot.actuators.len()));
-        let class = self.values.class_of(item, None, "class");
-        let tags = [item.tag.as_str(), "general"];
-        let get = |values: &Values, key: &str| {
-            let found = values.get(item, class, &tags, key)?;
-            Some(Attribute {
-                name: found.name.clone(),
-                value: found.value.clone(),
-                span: found.span.clone(),
-                own: false,
-            })
-        };
-        let on =
-            match (get(self.values, "joint").or_else(|| get(self.values, "jointinparent")), get(self.values, "tendon"))
-            {
-                (Some(joint), _) => Length { terms: vec![(self.joint(&joint)?, 1.0)] },
-                (None, Some(tendon)) => self.tendon_length(&tendon)?,
-                (None, None) => {
-                    self.needs(item, "`joint` or `tendon`");
-                    return None;
-                }
-            };
-        let offset = on.terms.iter().map(|&(joint, by)| by * self.robot.joints[joint].reference).sum();
-        let law = self.law(item, &get, &name)?;
-        let gear = get(self.values, "gear");
-        let first = gear.as_ref().and_then(|found| self.values.parsed(found, 6)).map_or(1.0, |gear| gear[0]);
-        let gear = self.values.number(item, gear.as_ref(), format!("actuator.{name}.gear"), first, "");
-        let control = self.range(item, &get, "ctrlrange", "ctrllimited");
-        let control = control.filter(|_| self.values.settings.flags.clamps_controls);
-        let force = self.range(item, &get, "forcerange", "forcelimited");
-        self.robot.actuators.push(Actuator { name, span: item.span.clone(), on, offset, gear, law, control, force });
-        Some(())
-    }
-
-    fn law(&mut self, item: &Item, get: &dyn Fn(&Values, &str) -> Option<Attribute>, name: &str) -> Option<Law> {
-        let values = &mut *self.values;
-        let list = |values: &mut Values, key: &str, default: f64| {
-            let given = get(values, key).and_then(|found| values.parsed(&found, 10));
-            given.unwrap_or_else(|| vec![default])
-        };
-        let number = |values: &mut Values, key: &str, default: f64| {
-            let value = list(values, key, default)[0];
-            values.number(item, get(values, key).as_ref(), format!("actuator.{name}.{key}"), value, "")
-        };
-        Some(match item.tag.as_str() {
-            "motor" => Law::Affine { gain: 1.0, bias: [0.0; 3] },
-            "position" => Law::Position { kp: number(values, "kp", 1.0), kv: number(values, "kv", 0.0) },
-            "velocity" => Law::Velocity { kv: number(values, "kv", 1.0) },
-            "damper" => Law::Damper { kv: number(values, "kv", 1.0) },
-            _ => {
-                let mut plain = |key: &str, words: &[(&str, bool)]| match get(values, key) {
-                    Some(found) => values.word(&found, words),
-                    None => Some(false),
-                };
-                plain("dyntype", &[("none", false)])?;
-                plain("gaintype", &[("fixed", false)])?;
-                let is_affine = plain("biastype", &[("none", false), ("affine", true)])?;
-                let (gain, bias) = (list(values, "gainprm", 1.0)[0], list(values, "biasprm", 0.0));
-                let at = |place: usize| bias.get(place).copied().filter(|_| is_affine).unwrap_or(0.0);
-                Law::Affine { gain, bias: [at(0), at(1), at(2)] }
-            }
-        })
-    }
-
-    /// A range that holds.
-    fn range(
-        &mut self,
-        item: &Item,
-        get: &dyn Fn(&Values, &str) -> Option<Attribute>,
-        key: &str,
-        limited: &str,
-    ) -> Option<[f64; 2]> {
-        let words = [("true", Some(true)), ("false", Some(false)), ("auto", None)];
-        let limited = get(self.values, limited).and_then(|found| self.values.word(&found, &words)).flatten();
-        let ends = get(self.values, key).and_then(|found| self.values.exact::<2>(&found));
-        let holds = limited.unwrap_or(self.values.settings.autolimits && ends.is_some());
-        let ends = ends.filter(|_| holds)?;
-        if ends[0] >= ends[1] {
-            self.values.error(item.span.clone(), format!("the ends of `{key}` are reversed"), None);
-        }
-        Some(ends)
     }
 }

@@ -101,8 +101,10 @@ impl Reader<'_> {
             }
         };
         let start = self.diagnostics.sources.add(full.display().to_string(), text.clone());
-        let Some(document) = xml::parse(&text, start, "an MJCF", self.diagnostics) else { return };
-        let (root, places) = (document.root_element(), Places { start });
+        let mut held = String::new();
+        let parsed = xml::parse(&text, &mut held, start, "an MJCF", self.diagnostics);
+        let Some((document, places)) = parsed else { return };
+        let root = document.root_element();
         let tag = root.tag_name().name();
         if tag != "mujoco" && (within.is_none() || tag != "mujocoinclude" && Some(tag) != within) {
             let message = format!("an MJCF is a `<mujoco>`, but here is `<{}>`", clip(tag));
@@ -137,20 +139,33 @@ impl Reader<'_> {
             return;
         };
         let span = places.value(file);
-        let path = match self.within.find(&self.folder, file.value()) {
-            Ok(path) => path,
-            Err(error) => {
-                self.error(span, error.message, error.help);
-                return;
-            }
-        };
-        if self.open.contains(&path) {
-            self.error(span, format!("`{}` includes itself", clip(file.value())), None);
-        } else if self.files == MOST_FILES {
-            self.error(span, format!("the model includes more than {MOST_FILES} files"), None);
-        } else {
+        if let Some(path) = self.found(file.value(), &span) {
             self.file(&path, Some(span), Some(within), found);
         }
+    }
+
+    /// Another model, of which parts may be attached.
+    fn model(&mut self, file: &Attribute, found: &mut Vec<Item>) {
+        let Some(path) = self.found(&file.value, &file.span) else { return };
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let outer = std::mem::replace(&mut self.folder, folder);
+        self.file(&path, Some(file.span.clone()), None, found);
+        self.folder = outer;
+    }
+
+    /// The path of another file, unless that may not be read.
+    fn found(&mut self, name: &str, span: &Span) -> Option<PathBuf> {
+        match self.within.find(&self.folder, name) {
+            Err(error) => self.error(span.clone(), error.message, error.help),
+            Ok(path) if self.open.contains(&path) => {
+                self.error(span.clone(), format!("`{}` includes itself", clip(name)), None);
+            }
+            Ok(_) if self.files == MOST_FILES => {
+                self.error(span.clone(), format!("the model includes more than {MOST_FILES} files"), None);
+            }
+            Ok(path) => return Some(path),
+        }
+        None
     }
 
     /// An element with everything in it, unless it is ignored or refused.
@@ -183,6 +198,9 @@ impl Reader<'_> {
         let attributes = self.attributes(element, places, rule);
         let mut items = Vec::new();
         self.items_of(element, places, tag, &mut items);
+        if let ("model", Some(file)) = (tag, attributes.iter().find(|attribute| attribute.name == "file")) {
+            self.model(file, &mut items);
+        }
         self.levels -= 1;
         Some(Item { tag: tag.to_owned(), span, attributes, items })
     }

@@ -3,7 +3,8 @@
 //! Damping is −d v, friction −f v/√(v² + v₀²) as that of a URDF, a spring −k (s − s₀), a rotor −a dv/dt.
 
 use super::build::Source;
-use super::robot::{Actuator, At, Coupling, Equality, Joint, Kind, Law, Length, Tendon};
+use super::drives::{self, sum};
+use super::robot::{At, Coupling, Equality, Joint, Kind, Tendon};
 use super::tree::{Sections, keys, list, map, text, value, values};
 use crate::model::robots::algebra::{self, Pose, Value};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
@@ -38,7 +39,7 @@ pub fn add(
         stops(sections, source, limits, diagnostics);
     }
     robot.tendons.iter().for_each(|tendon| act(sections, source, tendon));
-    robot.actuators.iter().for_each(|actuator| drive(sections, source, actuator, controls));
+    drives::add(sections, source, controls);
     robot.equalities.iter().for_each(|equality| couple(sections, source, equality));
     for entry in controls {
         if entry.value.scalar().is_none() {
@@ -151,31 +152,9 @@ fn stops(sections: &mut Sections, source: &Source, limits: &Entry, diagnostics: 
     }
 }
 
-/// The sum of positions, or rates, in a formula.
-fn sum(source: &Source, length: &Length, rate: bool) -> String {
-    let term = |&(joint, by): &(usize, f64)| {
-        let coordinate = source.robot.joints[joint].coordinate(rate);
-        if by == 1.0 { coordinate } else { format!("({by:?})*{coordinate}") }
-    };
-    let terms: Vec<String> = length.terms.iter().map(term).collect();
-    format!("({})", if terms.is_empty() { "0".to_owned() } else { terms.join(" + ") })
-}
-
-/// A force on a sum of coordinates acts on each of them.
-fn on_each(sections: &mut Sections, source: &Source, name: &str, length: &Length, force: &Node) {
-    let Some(formula) = force.scalar() else { return };
-    for &(joint, by) in &length.terms {
-        let joint = &source.robot.joints[joint];
-        let text_of = if by == 1.0 { formula.text.clone() } else { format!("({by:?})*({})", formula.text) };
-        let node = keys(&force.span, [("on", text(&joint.span, &joint.name)), ("value", text(&force.span, text_of))]);
-        let name = if length.terms.len() == 1 { name.to_owned() } else { format!("{name}_{}", joint.name) };
-        sections.add("effects", &name, keys(&force.span, [("preload", node)]));
-    }
-}
-
 /// Spring and damper of a tendon.
 fn act(sections: &mut Sections, source: &Source, tendon: &Tendon) {
-    if !source.acts(&tendon.stiffness) && !source.acts(&tendon.damping) {
+    if ![&tendon.stiffness, &tendon.damping, &tendon.friction].into_iter().any(|number| source.acts(number)) {
         return;
     }
     let (length, rate) = (sum(source, &tendon.length, false), sum(source, &tendon.length, true));
@@ -192,53 +171,13 @@ fn act(sections: &mut Sections, source: &Source, tendon: &Tendon) {
     if source.acts(&tendon.damping) {
         terms.push(format!("- {}*{rate}", source.value(&tendon.damping).text()));
     }
-    on_each(sections, source, &tendon.name, &tendon.length, &text(&tendon.span, terms.join(" ")));
-}
-
-/// The force of an actuator.
-fn drive(sections: &mut Sections, source: &Source, actuator: &Actuator, controls: &[Entry]) {
-    let told = controls.iter().find(|entry| entry.key == actuator.name);
-    let control = told.and_then(|entry| entry.value.scalar());
-    let span = told.map_or(&actuator.span, |entry| &entry.value.span);
-    let mut u = control.map_or_else(|| "0".to_owned(), |control| format!("({})", control.text));
-    if let Some([lower, upper]) = actuator.control {
-        u = match control.map_or(Ok(0.0), |control| control.text.trim().parse::<f64>()) {
-            Ok(number) => format!("({:?})", number.clamp(lower.min(upper), upper)),
-            Err(_) => format!("clamp({u}, {lower:?}, {upper:?})"),
-        };
+    if source.acts(&tendon.friction) {
+        let slides = |&(joint, _): &(usize, f64)| source.robot.joints[joint].kind == Kind::Slide;
+        let slow = if tendon.length.terms.iter().any(slides) { SLOW_SLIDE } else { SLOW_TURN };
+        terms.push(format!("- {}*{rate}/sqrt({rate}^2 + {slow}^2)", source.value(&tendon.friction).text()));
     }
-    let gear = source.value(&actuator.gear).text();
-    let length = || format!("{gear}*({} + ({:?}))", sum(source, &actuator.on, false), actuator.offset);
-    let rate = || format!("{gear}*{}", sum(source, &actuator.on, true));
-    let number = |number| source.value(number).text();
-    let mut force = match &actuator.law {
-        Law::Affine { gain, bias: [constant, by_length, by_rate] } => {
-            let mut terms = vec![if *gain == 1.0 { u } else { format!("({gain:?})*{u}") }];
-            if *constant != 0.0 {
-                terms.push(format!("({constant:?})"));
-            }
-            if *by_length != 0.0 {
-                terms.push(format!("({by_length:?})*{}", length()));
-            }
-            if *by_rate != 0.0 {
-                terms.push(format!("({by_rate:?})*{}", rate()));
-            }
-            terms.join(" + ")
-        }
-        Law::Position { kp, kv } if source.acts(kv) => {
-            format!("{}*({u} - {}) - {}*{}", number(kp), length(), number(kv), rate())
-        }
-        Law::Position { kp, .. } => format!("{}*({u} - {})", number(kp), length()),
-        Law::Velocity { kv } => format!("{}*({u} - {})", number(kv), rate()),
-        Law::Damper { kv } => format!("-{}*{u}*{}", number(kv), rate()),
-    };
-    if let Some([lower, upper]) = actuator.force {
-        force = format!("clamp({force}, {lower:?}, {upper:?})");
-    }
-    let force = if gear == Value::Number(1.0).text() { force } else { format!("{gear}*({force})") };
-    if force != "0" {
-        on_each(sections, source, &actuator.name, &actuator.on, &text(span, force));
-    }
+    let shares = drives::shares(source, &tendon.name, &tendon.length, &terms.join(" "), &tendon.span);
+    shares.iter().for_each(|share| drives::push(sections, source, share));
 }
 
 /// A constraint of what stands in `<equality>`.

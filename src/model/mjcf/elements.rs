@@ -9,6 +9,7 @@ const CONTACT: &str = "contacts of geoms are ignored: an effect `contact` says w
 const SOLVER: &str = "mbint has its own integration, as `simulation` says";
 const NO_FLUID: &str = "there is no fluid: the effect `drag` resists";
 const NO_PLUGIN: &str = "what a plugin does is not in the file";
+const FIT: &str = "shapes are not fitted to meshes";
 const DELAY: &str = "controls act at once";
 const DYNAMICS: &str = "the actuator has a state of its own: `states` and an effect say it";
 const TRANSMISSION: &str = "actuators act on a joint or a fixed tendon: an effect `force` acts at a point";
@@ -29,20 +30,20 @@ pub const SECTIONS: &[Rule] = &[
     Rule { ignored: &[("model", "a model is called like its file")], ..rule("mujoco", "") },
     Rule {
         supported: "file",
-        ..rule("include", "mujoco worldbody body frame default asset actuator tendon equality contact sensor")
+        ..rule("include", "mujoco worldbody body frame replicate default asset actuator tendon equality contact sensor")
     },
     Rule {
         supported: "angle autolimits balanceinertia boundinertia boundmass coordinate eulerseq inertiafromgeom \
-                    inertiagrouprange settotalmass",
+                    inertiagrouprange settotalmass assetdir meshdir strippath",
         ignored: &[
-            ("assetdir meshdir texturedir strippath", "no meshes are read"),
+            ("texturedir", LOOKS),
             (
                 "alignfree fusestatic discardvisual usethread convexhull saveinertial savecanonical savecompiled conflict \
               passthrough",
                 "it does not change the motion",
             ),
         ],
-        refused: &[("fitaabb", "false", "it fits geoms to meshes, which are not read")],
+        refused: &[("fitaabb", "false", FIT)],
         ..rule("compiler", "mujoco")
     },
     ignored("lengthrange", "compiler", "it is of muscles"),
@@ -78,17 +79,24 @@ pub const SECTIONS: &[Rule] = &[
     ignored("custom", "mujoco", "it is data of other programs"),
     refused("extension", "mujoco", NO_PLUGIN),
     Rule { supported: "class", ..rule("default", "mujoco default") },
-    ignored("mesh", "default", "no meshes are read"),
+    Rule {
+        supported: "name class file vertex face scale refpos refquat inertia",
+        ignored: &[(
+            "normal texcoord smoothnormal maxhullvert octreedepth needsdf content_type material",
+            "it does not change the motion",
+        )],
+        refused: &[("builtin params", "", "only files, or `vertex` and `face`, are read")],
+        ..rule("mesh", "default asset")
+    },
     ignored("texture", "default asset", LOOKS),
     ignored("material", "default asset", LOOKS),
-    ignored("camera", "default worldbody body frame", LOOKS),
-    ignored("light", "default worldbody body frame", LOOKS),
+    ignored("camera", "default worldbody body frame replicate", LOOKS),
+    ignored("light", "default worldbody body frame replicate", LOOKS),
     ignored("pair", "default", CONTACT),
-    ignored(
-        "asset",
-        "mujoco",
-        "no meshes, textures or heights are read; a geom of a mesh needs an `inertial` beside it",
-    ),
+    rule("asset", "mujoco"),
+    ignored("hfield", "asset", CONTACT),
+    ignored("skin", "asset", LOOKS),
+    Rule { supported: "name file", ignored: &[("content_type", "it is of the file's name")], ..rule("model", "asset") },
     refused("deformable", "mujoco", "bodies are rigid"),
     ignored("contact", "mujoco", CONTACT),
     ignored("sensor", "mujoco", "`outputs` say what is observed"),
@@ -104,27 +112,25 @@ pub const BODIES: &[Rule] = &[
         supported: "name childclass pos quat axisangle xyaxes zaxis euler mocap",
         ignored: &[("user sleep simple fuse", "it does not change the motion")],
         refused: &[("gravcomp", "0", "a body has its weight: an effect `force` carries it")],
-        ..rule("body", "worldbody body frame")
+        ..rule("body", "worldbody body frame replicate")
     },
     Rule {
         supported: "name childclass pos quat axisangle xyaxes zaxis euler",
-        ..rule("frame", "worldbody body frame")
+        ..rule("frame", "worldbody body frame replicate")
     },
     Rule {
         supported: "mass pos quat axisangle xyaxes zaxis euler diaginertia fullinertia",
         ..rule("inertial", "body")
     },
     Rule {
-        supported: "name class type pos axis damping armature stiffness springref ref range limited frictionloss",
+        supported: "name class type pos axis damping armature stiffness springref springdamper ref range limited frictionloss \
+                    actuatorfrcrange actuatorfrclimited",
         ignored: &[
             ("group user", "it is data of other programs"),
             ("solreflimit solimplimit solreffriction solimpfriction margin", SOFT),
         ],
         refused: &[
-            ("springdamper", "0 0", "give `stiffness` and `damping`"),
             ("springyield", "0", "springs do not yield"),
-            ("actuatorfrcrange", "0 0", "give the actuators a `forcerange`"),
-            ("actuatorfrclimited", "false", "give the actuators a `forcerange`"),
             ("actuatorgravcomp", "false", "a body has its weight: an effect `force` carries it"),
         ],
         ..rule("joint", "body default frame")
@@ -147,20 +153,20 @@ pub const BODIES: &[Rule] = &[
         refused: &[
             ("shellinertia", "false", "geoms are solid: give the body an `inertial`"),
             ("fluidshape", "none", NO_FLUID),
-            ("fitscale", "1", "no meshes are read"),
+            ("fitscale", "1", FIT),
         ],
-        ..rule("geom", "worldbody body frame default")
+        ..rule("geom", "worldbody body frame replicate default")
     },
     Rule {
         supported: "name class pos quat axisangle xyaxes zaxis euler fromto",
         ignored: &[("type size rgba material group user mesh", LOOKS)],
-        ..rule("site", "worldbody body frame default")
+        ..rule("site", "worldbody body frame replicate default")
     },
     refused("plugin", "worldbody body geom asset actuator sensor", NO_PLUGIN),
-    refused("attach", "worldbody body frame", "save the model as one file by MuJoCo first"),
-    refused("replicate", "worldbody body frame", "save the model as one file by MuJoCo first"),
-    refused("composite", "worldbody body frame", "save the model as one file by MuJoCo first"),
-    refused("flexcomp", "worldbody body frame", "bodies are rigid"),
+    Rule { supported: "model body prefix", ..rule("attach", "worldbody body frame replicate") },
+    Rule { supported: "count offset euler sep", ..rule("replicate", "worldbody body frame replicate") },
+    refused("composite", "worldbody body frame replicate", "save the model as one file by MuJoCo first"),
+    refused("flexcomp", "worldbody body frame replicate", "bodies are rigid"),
 ];
 
 pub const COUPLINGS: &[Rule] = &[
@@ -173,9 +179,8 @@ pub const COUPLINGS: &[Rule] = &[
                 "limits of tendons are not held",
             ),
         ],
-        supported: "stiffness damping springlength",
+        supported: "stiffness damping springlength frictionloss",
         refused: &[
-            ("frictionloss", "0", "only joints have friction"),
             ("armature", "0", "only joints have rotors"),
             ("springyield", "0", "springs do not yield"),
             ("actuatorfrcrange", "0 0", "give the actuators a `forcerange`"),
@@ -209,7 +214,7 @@ pub const COUPLINGS: &[Rule] = &[
     refused("distance", "equality", "MuJoCo has it no more: the joint `distance` does this"),
     rule("tendon", "mujoco"),
     Rule {
-        supported: "name class stiffness damping springlength",
+        supported: "name class stiffness damping springlength frictionloss",
         ignored: &[
             ("group user", LOOKS),
             (
@@ -218,7 +223,6 @@ pub const COUPLINGS: &[Rule] = &[
             ),
         ],
         refused: &[
-            ("frictionloss", "0", "only joints have friction"),
             ("armature", "0", "only joints have rotors"),
             ("springyield", "0", "springs do not yield"),
             ("actuatorfrcrange", "0 0", "give the actuators a `forcerange`"),
@@ -235,11 +239,11 @@ pub const COUPLINGS: &[Rule] = &[
     rule("actuator", "mujoco"),
     Rule {
         supported: "name class joint jointinparent tendon gear ctrlrange ctrllimited forcerange forcelimited gaintype gainprm \
-                    biastype biasprm dyntype",
-        ignored: ACTUATOR_IGNORED,
+                    biastype biasprm dyntype dynprm",
+        ignored: GENERAL_IGNORED,
         refused: &[
             ("site refsite body cranksite slidersite cranklength", "", TRANSMISSION),
-            ("actdim actearly actlimited actrange dynprm", "", DYNAMICS),
+            ("actdim actlimited actrange", "", DYNAMICS),
             ("delay nsample interp", "0", DELAY),
             ("armature damping", "0", "give them to the joint"),
             ("inheritrange input ffrange velrange", "0", "give the ranges as numbers"),
@@ -253,15 +257,14 @@ pub const COUPLINGS: &[Rule] = &[
         ..rule("motor", "actuator default")
     },
     Rule {
-        supported: "name class joint jointinparent tendon gear ctrlrange ctrllimited forcerange forcelimited kp kv",
+        supported: "name class joint jointinparent tendon gear ctrlrange ctrllimited forcerange forcelimited kp kv \
+                    timeconst inheritrange",
         ignored: ACTUATOR_IGNORED,
         refused: &[
             ("site refsite cranksite slidersite cranklength", "", TRANSMISSION),
             ("delay nsample interp", "0", DELAY),
             ("armature damping", "0", "give them to the joint"),
-            ("timeconst", "0", DYNAMICS),
             ("dampratio", "0", "give `kv`"),
-            ("inheritrange", "0", "give the ranges as numbers"),
         ],
         ..rule("position", "actuator default")
     },
@@ -280,19 +283,26 @@ pub const COUPLINGS: &[Rule] = &[
     refused("intvelocity", "actuator", DYNAMICS),
     refused("orientation", "actuator", "actuators act on joints of one coordinate"),
     refused("pid", "actuator", DYNAMICS),
-    refused("cylinder", "actuator", DYNAMICS),
+    Rule {
+        supported: "name class joint jointinparent tendon gear ctrlrange ctrllimited forcerange forcelimited timeconst area \
+                    diameter bias",
+        ignored: ACTUATOR_IGNORED,
+        refused: ACTUATOR_REFUSED,
+        ..rule("cylinder", "actuator default")
+    },
     refused("muscle", "actuator", DYNAMICS),
     refused("dcmotor", "actuator", DYNAMICS),
-    refused("adhesion", "actuator", CONTACT),
+    ignored("adhesion", "actuator", CONTACT),
     ignored("intvelocity", "default", "actuators of this kind are refused"),
     ignored("orientation", "default", "actuators of this kind are refused"),
     ignored("pid", "default", "actuators of this kind are refused"),
-    ignored("cylinder", "default", "actuators of this kind are refused"),
     ignored("muscle", "default", "actuators of this kind are refused"),
     ignored("dcmotor", "default", "actuators of this kind are refused"),
-    ignored("adhesion", "default", "actuators of this kind are refused"),
+    ignored("adhesion", "default", CONTACT),
 ];
 
+const GENERAL_IGNORED: &[(&str, &str)] =
+    &[("group user lengthrange", "it does not change the motion"), ("actearly", SOLVER)];
 const ACTUATOR_IGNORED: &[(&str, &str)] = &[("group user lengthrange", "it does not change the motion")];
 const ACTUATOR_REFUSED: &[(&str, &str, &str)] = &[
     ("site refsite cranksite slidersite cranklength", "", TRANSMISSION),

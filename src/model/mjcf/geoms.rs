@@ -1,9 +1,11 @@
 //! Mass and inertia of a body's geoms.
 
 use super::document::Item;
+use super::meshes;
 use super::values::{Values, along_z};
 use crate::model::robots::algebra::{self, Pose, Value};
 use crate::model::robots::masses::{self, Part};
+use crate::model::robots::meshes::Measured;
 
 /// Density of water, kg/m³, which a geom has that says nothing.
 const DENSITY: f64 = 1000.0;
@@ -68,16 +70,31 @@ pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize
         values.error(item.span.clone(), format!("the {wrong} of this geom is negative"), None);
         return None;
     }
-    if shape == Shape::Mesh {
-        let help = "give the body an `<inertial>`, or the geom no mass: `mass=\"0\"`".to_owned();
-        values.error(item.span.clone(), "the inertia of this body would be that of a mesh, which is not read", help);
-        return None;
-    }
-    let (pose, sizes) = placed(values, item, class, shape)?;
-    let (volume, inertia) = of_unit_mass(shape, sizes);
+    let (pose, volume, inertia) = match (shape, get(values, "mesh")) {
+        (Shape::Mesh, Some(mesh)) => {
+            let Measured { size, center, inertia } = meshes::measured(values, mesh)?;
+            let (position, rotation) = values.frame(item, class, &["geom"]);
+            let pose = Pose { position: algebra::vector(position), rotation };
+            let center = pose.then(&algebra::vector(center), &algebra::identity());
+            (center, size, inertia.map(|row| row.map(|moment| moment / size)))
+        }
+        (Shape::Mesh, None) => {
+            values.error(item.span.clone(), "a geom that is a mesh needs `mesh`", None);
+            return None;
+        }
+        (_, Some(mesh)) => {
+            let help = "give the body an `<inertial>`, or the geom no mass: `mass=\"0\"`".to_owned();
+            values.error(mesh.span.clone(), "a shape that is fitted to a mesh is not supported", help);
+            return None;
+        }
+        _ => {
+            let (pose, sizes) = placed(values, item, class, shape)?;
+            let (volume, [x, y, z]) = of_unit_mass(shape, sizes);
+            (pose, volume, [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]])
+        }
+    };
     let mass = mass.unwrap_or(density * volume);
-    let tensor: [algebra::Vector; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|k| Value::Number(if i == k { mass * inertia[i] } else { 0.0 })));
+    let tensor = inertia.map(|row| row.map(|moment| Value::Number(mass * moment)));
     let pose = around.then(&pose.position, &pose.rotation);
     Some(Part {
         mass: Value::Number(mass),

@@ -5,16 +5,22 @@
 //! entries of the model's tree with the places of the MJCF (`build`, `start`, `effects`). All that comes after reads the
 //! tree as if it were written out.
 
+mod actuators;
+mod assets;
+mod attach;
 mod build;
 mod couplings;
 mod document;
+mod drives;
 mod effects;
 mod elements;
 mod flags;
 mod format;
 mod geoms;
+mod meshes;
 mod read;
 mod robot;
+mod springs;
 mod start;
 mod table;
 #[cfg(test)]
@@ -82,10 +88,24 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
             return None;
         }
     };
+    let errors = reader.diagnostics.errors();
     let at = (!is_mjcf(model)).then(|| entry.value.span.clone());
     let document = document::read(&path, at, &reader.files, reader.diagnostics)?;
-    let mut values = Values::new(&document, reader.diagnostics);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut values = Values::new(&document, &reader.files, folder, reader.diagnostics);
     let robot = read::robot(&document, &mut values)?;
+    // What could not be read may be what moves.
+    let is_whole = reader.diagnostics.errors() == errors;
+    if is_whole && robot.joints.is_empty() && !sections.iter().any(|entry| entry.key == "bodies") {
+        let place = if is_mjcf(model) { document.span.clone() } else { entry.value.span.clone() };
+        let help = if robot.bodies.len() > 1 {
+            "a body moves that has a `<joint>` or a `<freejoint>`, and here none has"
+        } else {
+            "the file has no `<body>` in its `<worldbody>`: it may be one that others include"
+        };
+        reader.error(place, "nothing of this robot can move", help.to_owned());
+        return None;
+    }
     let words = numbers::words(root, overrides);
     let written = match sections.iter().find(|entry| entry.key == "parameters").map(|entry| &entry.value.value) {
         Some(Value::Mapping(entries)) => entries.clone(),
@@ -103,7 +123,7 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
         let node = text(span, "spatial");
         sections.0.push(Entry { key: "space".to_owned(), key_span: span.clone(), value: node });
     }
-    let source = Source::new(&robot, &named);
+    let source = Source::new(&robot, &named, &words);
     let limits = own.iter().find(|entry| entry.key == "limits");
     let controls = own.iter().find(|entry| entry.key == "controls");
     let controls = controls.map_or(&[][..], |entry| reader.entries(&entry.value, "controls"));

@@ -6,13 +6,16 @@ use super::couplings;
 use super::document::{Attribute, Item};
 use super::flags::on;
 use super::geoms::{self, Solid};
+use super::meshes;
 use super::robot::{Body, Joint, Kind, Mass, Names, Robot, Site};
+use super::springs;
 use super::values::Values;
 use crate::model::robots::algebra::{self, Pose, Quaternion};
 use crate::model::robots::masses::Part;
 use crate::model::robots::names;
 use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 
 const KINDS: [(&str, Kind); 4] =
@@ -31,7 +34,7 @@ pub fn robot<'i>(root: &'i Item, values: &mut Values<'i, '_>) -> Option<Robot> {
         joints: Vec::new(),
         sites: Vec::new(),
     };
-    let robot = Robot {
+    let mut robot = Robot {
         gravity: gravity(root, values),
         bodies: vec![world],
         joints: Vec::new(),
@@ -39,20 +42,23 @@ pub fn robot<'i>(root: &'i Item, values: &mut Values<'i, '_>) -> Option<Robot> {
         tendons: Vec::new(),
         actuators: Vec::new(),
     };
-    let mut reader = Reader { values, robot, names: Names::default(), touching: Vec::new() };
+    let (mut names, mut touching) = (Names::default(), Vec::new());
+    let whole = Whole { robot: &mut robot, names: &mut names, touching: &mut touching, copies: &mut 0 };
+    let mut reader = Reader { values, root, whole, prefix: String::new(), suffix: String::new() };
     for item in root.of("worldbody") {
         reader.inside(item, 0, &Around { pose: Pose::identity(), class: None }, &mut Contents::default());
     }
-    let Reader { mut robot, names, touching, .. } = reader;
     if let [first, _, ..] = touching.as_slice() {
         let message = "contacts of geoms are ignored: bodies pass through each other and through the floor";
         let help = "an effect `contact` says which surfaces touch".to_owned();
         values.diagnostics.push(Diagnostic::warning(first.clone(), message).help(help));
     }
+    meshes::warn(values);
     if let Some(total) = values.settings.total_mass {
         scale(&mut robot, total);
     }
-    couplings::read(root, values, &mut robot, &names);
+    springs::set(&mut robot, values.settings.flags);
+    couplings::read(root, values, &mut robot, &names, None);
     (values.diagnostics.errors() == before).then_some(robot)
 }
 
@@ -72,30 +78,47 @@ fn gravity(root: &Item, values: &mut Values) -> [f64; 3] {
 }
 
 /// Context of an element.
-struct Around {
+pub struct Around {
     /// Of `<frame>`s in the body.
-    pose: Pose,
-    class: Option<usize>,
+    pub pose: Pose,
+    pub class: Option<usize>,
 }
 
 /// What a body is made of.
 #[derive(Default)]
-struct Contents<'i> {
+pub struct Contents<'i> {
     inertial: Option<&'i Item>,
     parts: Vec<Part>,
 }
 
-struct Reader<'v, 'i, 'd> {
-    values: &'v mut Values<'i, 'd>,
-    robot: Robot,
-    names: Names,
+/// Where what is read goes.
+pub struct Whole<'r> {
+    pub robot: &'r mut Robot,
+    pub names: &'r mut Names,
     /// Geoms that could touch something.
-    touching: Vec<crate::syntax::source::Span>,
+    pub touching: &'r mut Vec<Span>,
+    /// Of `<replicate>` and `<attach>`.
+    pub copies: &'r mut usize,
+}
+
+pub struct Reader<'r, 'i, 'd> {
+    pub values: &'r mut Values<'i, 'd>,
+    /// The document that is read.
+    pub root: &'i Item,
+    pub whole: Whole<'r>,
+    /// Around the names of the document.
+    pub prefix: String,
+    pub suffix: String,
 }
 
 impl<'i> Reader<'_, 'i, '_> {
+    /// A name as it is in the whole model.
+    fn written(&self, item: &Item) -> Option<String> {
+        item.get("name").map(|name| format!("{}{}{}", self.prefix, name.value, self.suffix))
+    }
+
     /// What stands in a body or in a frame.
-    fn inside(&mut self, item: &'i Item, body: usize, around: &Around, contents: &mut Contents<'i>) {
+    pub fn inside(&mut self, item: &'i Item, body: usize, around: &Around, contents: &mut Contents<'i>) {
         for inner in &item.items {
             match inner.tag.as_str() {
                 "body" => self.body(inner, body, around),
@@ -105,6 +128,8 @@ impl<'i> Reader<'_, 'i, '_> {
                     let class = self.values.class_of(inner, around.class, "childclass");
                     self.inside(inner, body, &Around { pose, class }, contents);
                 }
+                "replicate" => self.replicate(inner, body, around, contents),
+                "attach" => self.attach(inner, body, around, contents),
                 "inertial" => contents.inertial = Some(inner),
                 "joint" | "freejoint" => self.joint(inner, body, around),
                 "geom" => {
@@ -112,7 +137,7 @@ impl<'i> Reader<'_, 'i, '_> {
                     let mask =
                         |name| self.values.get(inner, class, &["geom"], name).map_or("1", |found| found.value.trim());
                     if mask("contype") != "0" || mask("conaffinity") != "0" {
-                        self.touching.push(inner.span.clone());
+                        self.whole.touching.push(inner.span.clone());
                     }
                     if body != 0
                         && (self.values.settings.from_geoms.is_none_or(|from| from))
@@ -127,13 +152,14 @@ impl<'i> Reader<'_, 'i, '_> {
         }
     }
 
-    fn body(&mut self, item: &'i Item, parent: usize, around: &Around) {
-        let written = item.get("name").map(|name| name.value.clone());
-        let index = self.robot.bodies.len();
+    /// A body with everything in it.
+    pub fn body(&mut self, item: &'i Item, parent: usize, around: &Around) {
+        let written = self.written(item);
+        let index = self.whole.robot.bodies.len();
         let plain = written.clone().unwrap_or_else(|| format!("body_{index}"));
-        let name = names::in_formulas(&plain, &mut self.names.taken);
+        let name = names::in_formulas(&plain, &mut self.whole.names.taken);
         if let Some(written) = written
-            && self.names.bodies.insert(written.clone(), index).is_some()
+            && self.whole.names.bodies.insert(written.clone(), index).is_some()
         {
             self.values.error(item.span.clone(), format!("a second body is called `{}`", clip(&written)), None);
         }
@@ -144,7 +170,7 @@ impl<'i> Reader<'_, 'i, '_> {
             let name = format!("body.{name}.pos.{}", ["x", "y", "z"][i]);
             self.values.number(item, item.get("pos"), name, position[i], "m")
         };
-        self.robot.bodies.push(Body {
+        self.whole.robot.bodies.push(Body {
             span: item.span.clone(),
             parent,
             position: [0, 1, 2].map(number),
@@ -157,9 +183,9 @@ impl<'i> Reader<'_, 'i, '_> {
         let class = self.values.class_of(item, around.class, "childclass");
         let mut contents = Contents::default();
         self.inside(item, index, &Around { pose: Pose::identity(), class }, &mut contents);
-        self.robot.bodies[index].mass = self.mass(item, &contents, index);
-        let free = |&joint: &usize| self.robot.joints[joint].kind == Kind::Free;
-        let joints = &self.robot.bodies[index].joints;
+        self.whole.robot.bodies[index].mass = self.mass(item, &contents, index);
+        let free = |&joint: &usize| self.whole.robot.joints[joint].kind == Kind::Free;
+        let joints = &self.whole.robot.bodies[index].joints;
         if joints.iter().any(free) && (joints.len() > 1 || parent != 0) {
             let help = "a free joint is the only one of a body in the world".to_owned();
             self.values.error(item.span.clone(), "this body cannot have a free joint", help);
@@ -168,21 +194,19 @@ impl<'i> Reader<'_, 'i, '_> {
 
     fn site(&mut self, item: &Item, body: usize, around: &Around) {
         let class = self.values.class_of(item, around.class, "class");
-        let Some(written) = item.get("name") else { return };
+        let Some(named) = item.get("name") else { return };
+        let written = format!("{}{}{}", self.prefix, named.value, self.suffix);
         let (position, rotation) = self.values.frame(item, class, &["site"]);
         let pose = around.pose.then(&algebra::vector(position), &rotation);
-        let mut taken: HashSet<String> = self.robot.bodies[body].sites.iter().map(|site| site.name.clone()).collect();
-        let name = names::in_formulas(&written.value, &mut taken);
-        let place = self.robot.bodies[body].sites.len();
-        if self.names.sites.insert(written.value.clone(), (body, place)).is_some() {
-            self.values.error(
-                written.span.clone(),
-                format!("a second site is called `{}`", clip(&written.value)),
-                None,
-            );
+        let mut taken: HashSet<String> =
+            self.whole.robot.bodies[body].sites.iter().map(|site| site.name.clone()).collect();
+        let name = names::in_formulas(&written, &mut taken);
+        let place = self.whole.robot.bodies[body].sites.len();
+        if self.whole.names.sites.insert(written.clone(), (body, place)).is_some() {
+            self.values.error(named.span.clone(), format!("a second site is called `{}`", clip(&written)), None);
         }
         let position = algebra::numbers(&pose.position).unwrap_or_default();
-        self.robot.bodies[body].sites.push(Site { name, position, rotation: pose.rotation });
+        self.whole.robot.bodies[body].sites.push(Site { name, position, rotation: pose.rotation });
     }
 
     fn joint(&mut self, item: &'i Item, body: usize, around: &Around) {
@@ -199,13 +223,13 @@ impl<'i> Reader<'_, 'i, '_> {
             Some(found) => self.values.word(found, &KINDS).unwrap_or(Kind::Hinge),
             None => Kind::Hinge,
         };
-        let index = self.robot.joints.len();
-        let written = item.get("name").map(|name| name.value.clone());
+        let index = self.whole.robot.joints.len();
+        let written = self.written(item);
         let plain = written.clone().unwrap_or_else(|| format!("joint_{index}"));
-        let mut taken: HashSet<String> = self.robot.joints.iter().map(|joint| joint.name.clone()).collect();
+        let mut taken: HashSet<String> = self.whole.robot.joints.iter().map(|joint| joint.name.clone()).collect();
         let name = names::in_formulas(&plain, &mut taken);
         if let Some(written) = written
-            && self.names.joints.insert(written.clone(), index).is_some()
+            && self.whole.names.joints.insert(written.clone(), index).is_some()
         {
             self.values.error(item.span.clone(), format!("a second joint is called `{}`", clip(&written)), None);
         }
@@ -256,7 +280,10 @@ impl<'i> Reader<'_, 'i, '_> {
             };
             [0, 1].map(end)
         });
-        self.robot.joints.push(Joint {
+        let force_range =
+            self.range(item, get(self.values, "actuatorfrcrange"), get(self.values, "actuatorfrclimited"));
+        let spring_damper = get(self.values, "springdamper").and_then(|found| self.values.exact::<2>(found));
+        self.whole.robot.joints.push(Joint {
             span: item.span.clone(),
             kind,
             body,
@@ -269,9 +296,11 @@ impl<'i> Reader<'_, 'i, '_> {
             spring_at,
             reference,
             range,
+            force_range,
+            spring_damper: spring_damper.filter(|both| both.iter().all(|part| *part > 0.0)),
             name,
         });
-        self.robot.bodies[body].joints.push(index);
+        self.whole.robot.bodies[body].joints.push(index);
     }
 
     /// A range that holds.
@@ -283,13 +312,14 @@ impl<'i> Reader<'_, 'i, '_> {
         let ends = ends.filter(|_| holds)?;
         if ends[0] >= ends[1] {
             let span = range.map_or_else(|| item.span.clone(), |found| found.span.clone());
-            self.values.error(span, "the ends of `range` are reversed", None);
+            let name = range.map_or("range", |found| &found.name);
+            self.values.error(span, format!("the ends of `{name}` are reversed"), None);
         }
         Some(ends)
     }
 
     fn mass(&mut self, item: &Item, contents: &Contents, body: usize) -> Option<Mass> {
-        let name = self.robot.bodies[body].name.clone();
+        let name = self.whole.robot.bodies[body].name.clone();
         let prefix = format!("body.{name}");
         let inertial = contents.inertial.filter(|_| self.values.settings.from_geoms != Some(true));
         let (from, solid, rotation, of_geoms) = match inertial {
@@ -335,10 +365,7 @@ impl<'i> Reader<'_, 'i, '_> {
                 rotation = algebra::identity();
                 self.values.exact(found)?
             }
-            (None, None) => {
-                self.values.error(item.span.clone(), "`<inertial>` needs `diaginertia` or `fullinertia`", None);
-                return None;
-            }
+            (None, None) => [0.0; 6],
             (Some(_), Some(found)) => {
                 self.values.error(found.span.clone(), "`diaginertia` and `fullinertia` exclude each other", None);
                 return None;

@@ -76,6 +76,10 @@ pub struct Joint {
     pub reference: f64,
     /// Less the reference.
     pub range: Option<[Number; 2]>,
+    /// Between which the force of its actuators stays.
+    pub force_range: Option<[f64; 2]>,
+    /// Time constant and damping ratio from which stiffness and damping follow.
+    pub spring_damper: Option<[f64; 2]>,
 }
 
 impl Joint {
@@ -131,6 +135,7 @@ pub struct Tendon {
     pub length: Length,
     pub stiffness: Number,
     pub damping: Number,
+    pub friction: Number,
     /// Lengths between which its spring is slack, less the length in the file's configuration.
     pub slack: [f64; 2],
 }
@@ -147,6 +152,15 @@ pub enum Law {
     Damper { kv: Number },
 }
 
+/// How an actuator's activation a follows its command u; without one it is u.
+#[derive(Clone, Copy, Debug)]
+pub enum Memory {
+    /// ȧ = u
+    Integrator,
+    /// ȧ = (u − a)/T, with T in s
+    Lag(f64),
+}
+
 pub struct Actuator {
     pub name: String,
     pub span: Span,
@@ -155,6 +169,7 @@ pub struct Actuator {
     pub offset: f64,
     pub gear: Number,
     pub law: Law,
+    pub memory: Option<Memory>,
     pub control: Option<[f64; 2]>,
     pub force: Option<[f64; 2]>,
 }
@@ -183,7 +198,7 @@ impl Robot {
             let own = [&joint.damping, &joint.friction, &joint.armature, &joint.stiffness, &joint.spring_at];
             own.into_iter().chain(joint.range.iter().flatten())
         });
-        let tendons = self.tendons.iter().flat_map(|tendon| [&tendon.stiffness, &tendon.damping]);
+        let tendons = self.tendons.iter().flat_map(|tendon| [&tendon.stiffness, &tendon.damping, &tendon.friction]);
         let actuators = self.actuators.iter().flat_map(|actuator| {
             let gains: Vec<&Number> = match &actuator.law {
                 Law::Affine { .. } => Vec::new(),

@@ -1,9 +1,11 @@
 //! Values of attributes: of the element itself, or of its class among the defaults; checked numbers, frames.
 
 use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
 use symdiff::math;
 
+use super::assets::Meshes;
 use super::document::{Attribute, Item};
 use super::flags::Flags;
 use crate::model::robots::algebra::{self, Quaternion, Value};
@@ -11,6 +13,7 @@ use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
+use crate::syntax::within::Within;
 
 /// The class that has no name, or is the outermost.
 const MAIN: &str = "main";
@@ -27,6 +30,7 @@ pub struct Values<'i, 'd> {
     classes: Vec<Class<'i>>,
     by_name: HashMap<String, usize>,
     pub settings: Settings,
+    pub meshes: Meshes<'i>,
 }
 
 /// What `<compiler>` says.
@@ -47,7 +51,8 @@ pub struct Settings {
 }
 
 impl<'i, 'd> Values<'i, 'd> {
-    pub fn new(root: &'i Item, diagnostics: &'d mut Diagnostics) -> Self {
+    /// For a file in a folder.
+    pub fn new(root: &'i Item, files: &'i Within, folder: &Path, diagnostics: &'d mut Diagnostics) -> Self {
         let settings = Settings {
             angle: std::f64::consts::PI / 180.0,
             euler: [0, 1, 2].map(|axis| (axis, true)),
@@ -60,7 +65,8 @@ impl<'i, 'd> Values<'i, 'd> {
             total_mass: None,
             flags: Flags::ALL,
         };
-        let mut values = Self { diagnostics, classes: Vec::new(), by_name: HashMap::new(), settings };
+        let meshes = Meshes::new(root, files, folder);
+        let mut values = Self { diagnostics, classes: Vec::new(), by_name: HashMap::new(), settings, meshes };
         for item in root.of("default") {
             values.class(item, None);
         }
@@ -135,6 +141,12 @@ impl<'i, 'd> Values<'i, 'd> {
         let from = [("true", Some(true)), ("false", Some(false)), ("auto", None)];
         if let Some(found) = self.choice(item, "inertiafromgeom", &from) {
             self.settings.from_geoms = found;
+        }
+        if let Some(folder) = item.get("meshdir").or_else(|| item.get("assetdir")) {
+            self.meshes.meshdir = PathBuf::from(&folder.value);
+        }
+        if let Some(found) = self.choice(item, "strippath", &yes) {
+            self.meshes.strips = found;
         }
         if let Some(found) = self.own_numbers(item, "inertiagrouprange") {
             self.settings.groups = found;

@@ -15,7 +15,7 @@ const MOST_OF_ONE: usize = 100;
 const MOST: usize = 200_000;
 
 /// A part with neither elements nor attributes, from its beginning to its end.
-const SKIPPED: [(&str, &str); 3] = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+pub const SKIPPED: [(&str, &str); 3] = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
 
 /// Finds the first place at which a text exceeds a limit, and says which.
 ///

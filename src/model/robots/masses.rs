@@ -13,10 +13,10 @@ pub struct Part {
     pub inertia: [Vector; 3],
 }
 
-/// The centre of mass of all parts, whose masses add up to `mass`.
+/// The centre of mass of all parts, whose masses add up to `mass`; without mass it is nowhere, and at 0.
 pub fn center(parts: &[Part], mass: &Value) -> Vector {
     match parts {
-        [] => algebra::vector([0.0; 3]),
+        _ if mass.is_zero() => algebra::vector([0.0; 3]),
         [part] => part.center.clone(),
         parts => std::array::from_fn(|i| {
             let moments: Vec<Value> = parts.iter().map(|part| algebra::mul(&part.mass, &part.center[i])).collect();

@@ -3,6 +3,8 @@
 pub mod algebra;
 mod budget;
 pub mod masses;
+pub mod meshes;
 pub mod names;
 pub mod numbers;
+mod prefixes;
 pub mod xml;

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::grammar::names::{GROUND, is_reserved};
+use crate::grammar::names::{GROUND, REACTIONS, is_reserved};
 
 /// A name as formulas can have it: `_` for characters not allowed, and more of them for names in use.
 pub fn in_formulas(written: &str, taken: &mut HashSet<String>) -> String {
@@ -15,4 +15,13 @@ pub fn in_formulas(written: &str, taken: &mut HashSet<String>) -> String {
     }
     taken.insert(name.clone());
     name
+}
+
+/// Whether a model, by all its words, speaks of a joint's reaction.
+pub fn is_reaction_asked(words: &HashSet<String>, joint: &str) -> bool {
+    let prefix = format!("{joint}.");
+    words.iter().any(|word| {
+        let member = word.strip_prefix("joint.").unwrap_or(word).strip_prefix(&prefix);
+        member.and_then(|member| member.split('.').next()).is_some_and(|member| REACTIONS.contains(&member))
+    })
 }

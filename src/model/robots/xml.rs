@@ -5,6 +5,7 @@ use std::ops::Range;
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
 use super::budget;
+use super::prefixes::{self, Declared};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -20,19 +21,45 @@ const MOST_NODES: u32 = 1_000_000;
 
 pub type Element<'a, 'i> = Node<'a, 'i>;
 
-/// Parses the text of a format (`a URDF`), which begins at offset `start` of the sources.
-pub fn parse<'t>(text: &'t str, start: usize, format: &str, diagnostics: &mut Diagnostics) -> Option<Document<'t>> {
+/// Parses the text of a format (`a URDF`), which begins at offset `start` of the sources. `held` keeps the text that is
+/// parsed where it is another: one in which all prefixes are declared.
+pub fn parse<'t>(
+    text: &'t str,
+    held: &'t mut String,
+    start: usize,
+    format: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Document<'t>, Places)> {
+    let mut places = Places { start, at: 0, length: 0 };
     if let Err((place, message)) = budget::check(text) {
-        diagnostics.push(Diagnostic::error(Places { start }.span(place), message));
+        diagnostics.push(Diagnostic::error(places.span(place), message));
         return None;
     }
+    let mut text = text;
+    let mut document = document_of(text);
+    let error_of = |text: &str| document_of(text).err();
+    let declared = document.as_ref().err().and_then(|error| prefixes::declared(text, error, error_of));
+    if let Some(Declared { text: whole, at, length }) = declared {
+        *held = whole;
+        (text, places) = (held.as_str(), Places { start, at, length });
+        document = document_of(text);
+    }
+    match document {
+        Ok(document) => Some((document, places)),
+        Err(error) => {
+            diagnostics.push(syntax_error(text, places, format, &error));
+            None
+        }
+    }
+}
+
+fn document_of(text: &str) -> Result<Document<'_>, roxmltree::Error> {
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options);
-    document.map_err(|error| diagnostics.push(syntax_error(text, start, format, &error))).ok()
+    Document::parse_with_options(text, options)
 }
 
 /// What the parser says, with what would be right where that is known.
-fn syntax_error(text: &str, start: usize, format: &str, error: &roxmltree::Error) -> Diagnostic {
+fn syntax_error(text: &str, places: Places, format: &str, error: &roxmltree::Error) -> Diagnostic {
     let at = error.pos();
     let line = text.split_inclusive('\n').take(at.row.saturating_sub(1) as usize).map(str::len).sum::<usize>();
     let column: usize = text[line..].chars().take(at.col.saturating_sub(1) as usize).map(char::len_utf8).sum();
@@ -60,19 +87,26 @@ fn syntax_error(text: &str, start: usize, format: &str, error: &roxmltree::Error
             (format!("this is not XML: {}", clip(message)), None)
         }
     };
-    Diagnostic::error(start + offset..start + offset + length, message).help(help)
+    Diagnostic::error(places.span(offset..offset + length), message).help(help)
 }
 
 /// Places of a document's parts among the sources.
 #[derive(Clone, Copy)]
 pub struct Places {
     /// Offset of the document's first byte.
-    pub start: usize,
+    start: usize,
+    /// Where declarations of prefixes were put in that the file does not have, and how many bytes.
+    at: usize,
+    length: usize,
 }
 
 impl Places {
     fn span(self, range: Range<usize>) -> Span {
-        self.start + range.start..self.start + range.end
+        let in_file = |offset: usize| {
+            let original = if offset < self.at + self.length { offset.min(self.at) } else { offset - self.length };
+            self.start + original
+        };
+        in_file(range.start)..in_file(range.end)
     }
 
     /// The element's start tag: the place of an error of the whole element.

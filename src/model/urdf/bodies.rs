@@ -6,12 +6,14 @@
 //!
 //! The other links are frames at points of it, named after them.
 
+use super::robot::{Joint, Kind};
 use super::source::{Source, formula, formulas};
 use crate::grammar::Coordinate;
 use crate::model::description::{Body, Inertia};
 use crate::model::names::Reader;
 use crate::model::robots::algebra::{self, Pose, Value, Vector};
 use crate::model::robots::masses::{Part, center, inertia};
+use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
@@ -23,6 +25,8 @@ const LEAST_RADIUS_SQUARED: f64 = 1e-8;
 pub struct Group {
     /// The first is nearest to the root.
     pub links: Vec<usize>,
+    /// Index of the robot's joint that leads to them; absent of the root's.
+    pub behind: Option<usize>,
     /// Index into the model's bodies; absent where it is left out.
     pub body: Option<usize>,
 }
@@ -35,12 +39,16 @@ pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usi
     let mut mass = algebra::sum(&masses);
     let center = center(&parts, &mass);
     let mut inertia = inertia(&parts, &center);
-    if mass.is_zero() {
-        let message =
-            format!("link `{}` moves, but has no mass: {LEAST_MASS} kg and {LEAST_INERTIA} kg m² are taken", root.name);
-        reader.diagnostics.push(Diagnostic::warning(root.span.clone(), message));
+    if mass.is_zero() && !is_determined(&inertia, group.behind.map(|joint| &source.robot.joints[joint])) {
         mass = algebra::number(LEAST_MASS);
-        (0..3).for_each(|i| inertia[i][i] = algebra::number(LEAST_INERTIA));
+        let mut taken = format!("{LEAST_MASS} kg");
+        if inertia.iter().flatten().all(Value::is_zero) {
+            (0..3).for_each(|i| inertia[i][i] = algebra::number(LEAST_INERTIA));
+            taken = format!("{LEAST_MASS} kg and {LEAST_INERTIA} kg m²");
+        }
+        let verb = if taken.contains("and") { "are" } else { "is" };
+        let message = format!("link `{}` moves, but has no mass: {taken} {verb} taken", root.name);
+        reader.diagnostics.push(Diagnostic::warning(root.span.clone(), message));
     } else if let Some(least) = too_small(&mass, &inertia) {
         let message = format!(
             "link `{}` has next to no inertia about some axis: {least:.1e} kg m² are added about each",
@@ -73,12 +81,26 @@ pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usi
     }
 }
 
-/// The links that have mass, or whose mass is a parameter.
+/// Whether a body without mass moves as its joint and its inertia say: a fixed joint lets it nowhere, a hinge turns it
+/// against its moment about the axis.
+fn is_determined(inertia: &[Vector; 3], joint: Option<&Joint>) -> bool {
+    let Some(joint) = joint else { return false };
+    let axis = algebra::vector(joint.axis);
+    let moment = (0..3).map(|i| {
+        let row: Vec<Value> = (0..3).map(|k| algebra::mul(&inertia[i][k], &axis[k])).collect();
+        algebra::mul(&axis[i], &algebra::sum(&row))
+    });
+    let moment = algebra::sum(&moment.collect::<Vec<Value>>());
+    let is_positive = !matches!(moment, Value::Number(moment) if moment <= 0.0);
+    joint.kind == Kind::Fixed || joint.kind.turns() && is_positive
+}
+
+/// The links that have mass or inertia, or of which either is a parameter.
 fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<Part> {
     let massive = group.links.iter().filter_map(|&link| {
         let inertial = source.robot.links[link].inertial.as_ref()?;
-        let named = source.named.contains(&inertial.mass.name);
-        (inertial.mass.value > 0.0 || named).then_some((link, inertial))
+        let acts = |number: &Number| number.value != 0.0 || source.named.contains(&number.name);
+        (acts(&inertial.mass) || inertial.inertia.iter().any(acts)).then_some((link, inertial))
     });
     let part = massive.map(|(link, inertial)| {
         let rotation = algebra::roll_pitch_yaw(&source.vector(&inertial.origin.rpy));

@@ -16,18 +16,18 @@ use crate::syntax::diagnostic::Diagnostic;
 /// Adds bodies and joints to the model.
 pub fn declare(reader: &mut Reader, source: &Source) -> Built {
     let robot = source.robot;
-    let mut groups = vec![Group { links: vec![robot.root], body: None }];
+    let mut groups = vec![Group { links: vec![robot.root], behind: None, body: None }];
     let mut of_link = vec![(0, Pose::identity()); robot.links.len()];
     for &index in &robot.order {
         let joint = &robot.joints[index];
-        if joint.kind == Kind::Fixed {
+        if source.welds(joint) {
             let rotation = algebra::roll_pitch_yaw(&source.vector(&joint.origin.rpy));
             let (group, pose) = &of_link[joint.parent];
             of_link[joint.child] = (*group, pose.then(&source.vector(&joint.origin.xyz), &rotation));
             groups[of_link[joint.child].0].links.push(joint.child);
         } else {
             of_link[joint.child] = (groups.len(), Pose::identity());
-            groups.push(Group { links: vec![joint.child], body: None });
+            groups.push(Group { links: vec![joint.child], behind: Some(index), body: None });
         }
     }
     let left_out = left_out(reader, source, &groups, &of_link);
@@ -75,13 +75,13 @@ fn left_out(reader: &mut Reader, source: &Source, groups: &[Group], of_link: &[(
     let mut holds = vec![false; groups.len()];
     for &index in robot.order.iter().rev() {
         let joint = &robot.joints[index];
-        if joint.kind == Kind::Fixed {
+        if source.welds(joint) {
             continue;
         }
         let (group, parent) = (of_link[joint.child].0, of_link[joint.parent].0);
         let named = |link: &usize| source.words.contains(&robot.links[*link].name);
         let wanted = groups[group].links.iter().any(named) || source.words.contains(&joint.name);
-        if source.mass(&groups[group].links) > 0.0 || holds[group] || wanted {
+        if source.has_inertia(&groups[group].links) || holds[group] || wanted {
             holds[parent] = true;
             continue;
         }

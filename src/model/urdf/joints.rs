@@ -4,18 +4,18 @@ use symdiff::Formula;
 
 use super::robot::Kind;
 use super::source::{Built, Source, coordinate, formula, point};
-use crate::elements::joints::{Equation, Gear, JointKind, Planar, Prismatic, Revolute};
+use crate::elements::joints::{Equation, Fixed, Gear, JointKind, Planar, Prismatic, Revolute};
 use crate::grammar::{Axis, Direction, PointRef, Rotating};
 use crate::model::description::Joint;
 use crate::model::names::Reader;
 use crate::model::robots::algebra::{self, Value};
 
-/// Adds a joint that moves, with the frame it is at on its parent.
+/// Adds a joint that moves, or holds what the model asks for, with the frame it is at on its parent.
 pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> Option<usize> {
     let joint = &source.robot.joints[index];
     let (parent, pose) = &built.places[joint.parent];
     let (parent, child) = ((*parent)?, built.places[joint.child].0?);
-    if matches!(joint.kind, Kind::Fixed | Kind::Floating) {
+    if joint.kind == Kind::Floating || source.welds(joint) {
         return None;
     }
     let rotation = algebra::roll_pitch_yaw(&source.vector(&joint.origin.rpy));
@@ -31,6 +31,7 @@ pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
     let axis = unit(joint.axis).map(Formula::number);
     let kind: JointKind = match joint.kind {
         Kind::Prismatic => Prismatic { between, axis: Direction(axis), angle: Formula::number(0.0) }.into(),
+        Kind::Fixed => Fixed { between, angle: Formula::number(0.0) }.into(),
         Kind::Planar => Planar { between, normal: Direction(axis) }.into(),
         _ => Revolute { between, axis: Axis(axis) }.into(),
     };

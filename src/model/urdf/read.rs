@@ -20,9 +20,9 @@ use crate::syntax::suggest::{self, clip};
 /// Reads the text, which begins at an offset of the sources; reports everything that is wrong with it.
 pub fn read(text: &str, start: usize, diagnostics: &mut Diagnostics) -> Option<Robot> {
     let before = diagnostics.errors();
-    let document = parse(text, start, "a URDF", diagnostics)?;
+    let mut held = String::new();
+    let (document, places) = parse(text, &mut held, start, "a URDF", diagnostics)?;
     let root = document.root_element();
-    let places = Places { start };
     let mut reader = Reader { places, diagnostics };
     reader.is_urdf(root).then_some(())?;
     let checked = check::rewrite(root, places, reader.diagnostics);

@@ -4,11 +4,12 @@ use std::collections::HashSet;
 
 use symdiff::Formula;
 
-use super::robot::{Kind, Robot};
+use super::robot::{Joint, Kind, Robot};
 use crate::grammar::{JointCoordinate, PointRef, Rotation};
 use crate::model::description::Point;
 use crate::model::names::Reader;
 use crate::model::robots::algebra::{Pose, Value, Vector};
+use crate::model::robots::names;
 use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -31,9 +32,15 @@ impl Source<'_> {
         numbers.each_ref().map(|number| self.value(number))
     }
 
-    /// Of some links, kg.
-    pub fn mass(&self, links: &[usize]) -> f64 {
-        links.iter().filter_map(|&link| Some(self.robot.links[link].inertial.as_ref()?.mass.value)).sum()
+    /// Whether a link of some has mass or inertia.
+    pub fn has_inertia(&self, links: &[usize]) -> bool {
+        let inertials = links.iter().filter_map(|&link| self.robot.links[link].inertial.as_ref());
+        inertials.flat_map(|own| std::iter::once(&own.mass).chain(&own.inertia)).any(|number| number.value != 0.0)
+    }
+
+    /// Whether a joint makes its links one body: a fixed one whose reaction the model does not speak of.
+    pub fn welds(&self, joint: &Joint) -> bool {
+        joint.kind == Kind::Fixed && !names::is_reaction_asked(self.words, &joint.name)
     }
 }
 

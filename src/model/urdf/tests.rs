@@ -150,3 +150,21 @@ fn large_files_are_refused_early() {
     let noise = format!("<!-- {} --><![CDATA[{}]]>", "<a>".repeat(200), "<a>".repeat(200));
     assert!(messages(&format!("<robot><link name='{}'/>{noise}</robot>", "&lt;>".repeat(200))).is_empty());
 }
+
+/// Exporters of robots write them so.
+#[test]
+fn prefixes_that_are_not_declared_are_other_programs() {
+    let head = "<?xml version='1.0'?><!-- <a:b> -->\n";
+    let limit = "<limit drake:acceleration='2.5' lower='-3' upper='3' effort='1' velocity='1'/>";
+    let found = robot(&format!("{head}{}", hinge("gz:version='2'", &format!("<ros:x y='1'/>{limit}"))));
+    assert_eq!(found.joints[0].limits.as_ref().unwrap().upper.as_ref().unwrap().value, 3.0);
+    // Places behind the outermost element are those of the file.
+    let text = hinge("gz:version='2'", "<limit lower='x' upper='3' effort='1' velocity='1'/>");
+    let mut diagnostics = Diagnostics::new("robot.urdf", &text);
+    assert!(read(&text, 0, &mut diagnostics).is_none());
+    let spans: Vec<_> = diagnostics.iter().map(|found| found.span.clone().unwrap()).collect();
+    assert_eq!(spans.iter().map(|span| &text[span.clone()]).collect::<Vec<_>>(), ["x"]);
+    assert!(messages(&hinge("a:b='1'", "<link"))[0].starts_with("this is not XML"));
+    let many: String = (0..30).map(|place| format!("p{place}:x='1' ")).collect();
+    assert!(messages(&hinge(&many, ""))[0].contains("an unknown namespace prefix"));
+}
