@@ -191,12 +191,10 @@ pub struct Simulator {
     pub vibrations: Option<Arc<Vibrations>>,
     /// Outputs that follow from the results of the analysis, if any.
     pub derived: Option<Arc<Derived>>,
-    /// Compiled where steps are controlled.
+    // Compiled where steps are controlled or watched, and where rows are closed.
     switches: OnceLock<Option<SwitchProgram>>,
     overlaps: OnceLock<Option<SwitchProgram>>,
-    /// Found where steps are controlled or watched.
     features: OnceLock<Option<Features>>,
-    /// Compiled where rows are closed.
     free_closure: OnceLock<Result<StartProgram, SimulationError>>,
 }
 
@@ -377,13 +375,8 @@ impl Simulator {
         compiled.as_ref().map_err(Clone::clone)
     }
 
-    /// Whether the equations switch somewhere.
-    pub fn has_switches(&self) -> bool {
-        self.switches().is_some()
-    }
-
     /// Where the equations switch, if they do.
-    pub(super) fn switches(&self) -> Option<&SwitchProgram> {
+    pub fn switches(&self) -> Option<&SwitchProgram> {
         self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
     }
 

@@ -60,7 +60,7 @@ impl Study<'_> {
         let tolerance = self.request.tolerance.is_some() || matches!(simulation.stepping, Stepping::Tolerance(_));
         match simulation.scheme {
             SchemeChoice::Explicit => tolerance,
-            SchemeChoice::Auto => tolerance && self.may_extrapolate() && !self.simulator.has_switches(),
+            SchemeChoice::Auto => tolerance && self.may_extrapolate() && self.simulator.switches().is_none(),
             SchemeChoice::Hht => false,
         }
     }
@@ -191,7 +191,7 @@ pub(super) fn decision(description: &Description, simulator: &Simulator) -> Opti
         let levels = if of_bounds.is_some() { ", extrapolated where that takes fewer steps" } else { "" };
         Decision { what: format!("integrated by HHT-I3{levels}"), why, saves: None }
     };
-    if simulator.has_switches() {
+    if simulator.switches().is_some() {
         return Some(by_scheme(
             "equations switch, which ends the steps of an explicit method of high order".to_owned(),
         ));

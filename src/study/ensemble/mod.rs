@@ -6,6 +6,7 @@ mod jet;
 mod nominal;
 mod progress;
 mod stored;
+mod told;
 
 use std::ops::Range as Rows;
 use std::sync::OnceLock;
@@ -18,18 +19,18 @@ use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{
-    self, DenseMotions, Effort, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, StopCause, Until,
-};
+use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, SampleRun, Schedule,
-    SimulationError, Simulator, Stop, TooDeep, choose_independent,
+    Certifier, Channel, Closure, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SimulationError,
+    Simulator, Stop, choose_independent,
 };
 
 use jet::SampleJet;
 pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
+use told::effort;
+pub(super) use told::stopped_at;
 
 /// Values (rows × lines × samples) that one block holds.
 const BLOCK: usize = 1 << 20;
@@ -215,28 +216,6 @@ impl<'a> Motions<'a> {
             missing: self.schedule.rows - reached,
         }
     }
-}
-
-impl Motions<'_> {
-    fn too_deep(&self, found: TooDeep) -> methods::TooDeep {
-        let mut contacts = self.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
-        let contact = contacts.nth(found.contact).map(|effect| effect.name.clone()).unwrap_or_default();
-        let TooDeep { time, depth, deepest, .. } = found;
-        methods::TooDeep { contact, time, depth, deepest }
-    }
-}
-
-fn effort(counters: Counters) -> Effort {
-    Effort { iterations: counters.iterations, rank_revealing: counters.rank_revealing }
-}
-
-pub(super) fn stopped_at(stop: &Stop) -> methods::Stop {
-    let cause = match stop.open {
-        _ if stop.singular => StopCause::SingularJet,
-        Some(open) => StopCause::Locked { constraint: open.constraint, residual: open.residual },
-        None => StopCause::NotConverged { equation: stop.equation },
-    };
-    methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }
 }
 
 impl Ensemble for Motions<'_> {

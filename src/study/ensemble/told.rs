@@ -1,0 +1,27 @@
+//! Findings of a run, as methods take them.
+
+use super::Motions;
+use crate::methods::{self, Effort, StopCause};
+use crate::simulate::{Counters, Stop, TooDeep};
+
+impl Motions<'_> {
+    pub(super) fn too_deep(&self, found: TooDeep) -> methods::TooDeep {
+        let mut contacts = self.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
+        let contact = contacts.nth(found.contact).map(|effect| effect.name.clone()).unwrap_or_default();
+        let TooDeep { time, depth, deepest, .. } = found;
+        methods::TooDeep { contact, time, depth, deepest }
+    }
+}
+
+pub(super) fn effort(counters: Counters) -> Effort {
+    Effort { iterations: counters.iterations, rank_revealing: counters.rank_revealing }
+}
+
+pub(in crate::study) fn stopped_at(stop: &Stop) -> methods::Stop {
+    let cause = match stop.open {
+        _ if stop.singular => StopCause::SingularJet,
+        Some(open) => StopCause::Locked { constraint: open.constraint, residual: open.residual },
+        None => StopCause::NotConverged { equation: stop.equation },
+    };
+    methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }
+}
