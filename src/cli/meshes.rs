@@ -5,18 +5,14 @@ use std::path::Path;
 use crate::elements::Form;
 use crate::grammar::Mesh;
 use crate::results::Drawing;
-use crate::syntax::mesh_file::{Triangle, triangles};
+use crate::syntax::mesh_file::{MOST_BYTES, Triangle, triangles};
 use crate::syntax::regular;
 
 /// Triangles of all meshes of a drawing; those beyond are left out.
 pub(super) const MOST_TRIANGLES: usize = 12_000;
 
-/// Largest file of a mesh that is read, bytes.
-const MOST_BYTES: u64 = 100_000_000;
-
 /// Reads meshes that have not been read, from files beside the model or in a folder there, and leaves out those that
-/// cannot be, and
-/// those that are too many.
+/// cannot be, and those that are too many.
 pub(super) fn read_meshes(drawing: &mut Drawing, beside: &Path, most: usize) {
     let mut left = most;
     drawing.solids.retain_mut(|solid| {

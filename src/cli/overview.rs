@@ -8,9 +8,8 @@ use super::table::{Align, Table};
 use super::verdicts;
 use crate::export::rounded as rounded_number;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{
-    AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary, TooDeepSummary,
-};
+use crate::results::{AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary, TooDeep};
+use crate::simulate::is_one_number;
 
 /// The largest width and error of each band.
 fn errors(errors: &[ErrorSummary]) -> String {
@@ -95,7 +94,7 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
     let varies = |contribution: &&ContributionSummary| contribution.total > 0.0;
     // Shapes are many: the file has them.
     let of_outputs = contributions.chunk_by(|a, b| a.output == b.output);
-    for of_output in of_outputs.filter(|own| !own[0].output.contains(".shape.")) {
+    for of_output in of_outputs.filter(|own| is_one_number(&own[0].output)) {
         let share = |contribution: &ContributionSummary| {
             format!("{} {:.0} %", contribution.parameter, 100.0 * contribution.total)
         };
@@ -141,8 +140,8 @@ fn rounded(time: f64) -> f64 {
 }
 
 /// Surfaces that a contact does not hold apart any more.
-pub(super) fn too_deep(found: &TooDeepSummary) -> String {
-    let TooDeepSummary { contact, time, depth, deepest } = found;
+pub(super) fn too_deep(found: &TooDeep) -> String {
+    let TooDeep { contact, time, depth, deepest } = found;
     let (time, deepest) = (rounded(*time), digits(1e3 * deepest));
     match depth {
         Some(depth) => format!(

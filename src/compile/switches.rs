@@ -52,8 +52,8 @@ pub fn compile_switches(system: &System) -> Option<SwitchProgram> {
     compile_values(system, graph, &values, jumps_with)
 }
 
-/// Gaps of all surfaces that may not overlap too deeply, and then what is left of these overlaps, in the order of the effects; `None` where
-/// there are none.
+/// Gaps of all surfaces that may not overlap too deeply, and then what is left of these overlaps, in the order of the
+/// effects; `None` where there are none.
 pub fn compile_overlaps(system: &System) -> Option<SwitchProgram> {
     let overlaps: Vec<Overlap> = system.effects.iter().filter_map(|effect| effect.overlap).collect();
     let mut graph = system.graph.clone();

@@ -251,8 +251,15 @@ pub fn kinds_schema(description: &str, kinds: Vec<(&'static str, &'static str, S
     })
 }
 
+/// Word, description and schema of an element, for [`kinds_schema`].
+pub fn kind_schema<E: Element + schemars::JsonSchema>(
+    generator: &mut SchemaGenerator,
+) -> (&'static str, &'static str, Schema) {
+    (E::KEYWORD, E::DESCRIPTION, short_or_full::<E>(generator))
+}
+
 /// The mapping of an element, or the list that may stand for it.
-pub fn short_or_full<E: Element + schemars::JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
+fn short_or_full<E: Element + schemars::JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     let full = generator.subschema_for::<E>();
     let Some(short) = E::SHORT else { return full };
     let keys = E::keys(generator);

@@ -41,8 +41,8 @@ mod vectors;
 pub(crate) use crate::syntax::source::Span;
 pub(crate) use crate::syntax::yaml::Node;
 pub use element::{
-    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kinds_schema, not_negative, object_schema,
-    one_of, ordered, short_or_full,
+    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kind_schema, kinds_schema, not_negative,
+    object_schema, one_of, ordered,
 };
 pub use friction::{FrictionMode, MeshKind};
 pub use image::{Image, KeyImage};

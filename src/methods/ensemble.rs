@@ -102,17 +102,24 @@ impl std::ops::AddAssign for Effort {
     }
 }
 
-/// Surfaces that overlap more deeply than their contact can tell.
+/// Surfaces that overlap more deeply than their contact can tell, or pass through one another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TooDeep {
     /// Name of the contact.
     pub contact: String,
-    /// s
+    /// When, s.
     pub time: f64,
-    /// m; `None` where they pass through one another within a step.
+    /// How deep, m; `None` where they pass through one another within a step.
     pub depth: Option<f64>,
-    /// m
+    /// How deep the contact may be, m.
     pub deepest: f64,
+}
+
+impl TooDeep {
+    /// The first in time.
+    pub fn first<'f>(found: impl IntoIterator<Item = &'f Self>) -> Option<Self> {
+        found.into_iter().min_by(|a, b| a.time.total_cmp(&b.time)).cloned()
+    }
 }
 
 /// What came of samples that were simulated together.
@@ -146,8 +153,7 @@ impl Simulated {
         self.missing = self.missing.max(shard.missing);
         let beyond = self.beyond_tolerance_from.into_iter().chain(shard.beyond_tolerance_from);
         self.beyond_tolerance_from = beyond.min();
-        let deep = self.too_deep.take().into_iter().chain(shard.too_deep);
-        self.too_deep = deep.min_by(|a, b| a.time.total_cmp(&b.time));
+        self.too_deep = TooDeep::first(self.too_deep.iter().chain(&shard.too_deep));
         let ratios = self.worst_ratio.take().into_iter().chain(shard.worst_ratio);
         self.worst_ratio = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a });
     }

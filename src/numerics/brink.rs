@@ -1,4 +1,5 @@
-//! Ends of ranges beside jumps. Where a function jumps, its range ends at the brink, and a search that fits peaks stops short of it.
+//! Ends of ranges beside jumps. Where a function jumps, its range ends at the brink, and a search that fits peaks stops
+//! short of it.
 
 use super::extent::Extent;
 
@@ -9,8 +10,8 @@ const DROP: f64 = 1e-3;
 /// After so many halvings two numbers in [−1, 1] have no other between them.
 const HALVINGS: usize = 64;
 
-/// Moves ends that stand short of a jump to its brink: along each axis, the first drop beside the end is halved until nothing lies between
-/// its two sides. `evaluate` gives all functions at some ξ, function by function.
+/// Moves ends that stand short of a jump to its brink: along each axis, the first drop beside the end is halved until
+/// nothing lies between its two sides. `evaluate` gives all functions at some ξ, function by function.
 ///
 /// Over several parameters the brink may rise along itself; an end that was moved may be off by as much again.
 pub fn to_brinks(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) {

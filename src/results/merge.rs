@@ -2,6 +2,7 @@
 
 use super::summary::MethodSummary;
 use super::{Band, Bounds, Contribution, EffectCost, Explanation, InstructionCounts, LeftOut, OutputBounds, Summary};
+use crate::methods::TooDeep;
 use crate::numerics::{BandError, EMPTY, Range, largest, union};
 
 /// The formulation of subsystems that differ in it.
@@ -60,8 +61,7 @@ impl Summary {
             whole.singular_configurations.extend(other.singular_configurations);
             whole.damped_mode = whole.damped_mode.or(other.damped_mode);
             whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
-            let deep = whole.too_deep.take().into_iter().chain(other.too_deep);
-            whole.too_deep = deep.min_by(|a, b| a.time.total_cmp(&b.time));
+            whole.too_deep = TooDeep::first(whole.too_deep.iter().chain(&other.too_deep));
             whole.beyond_tolerance = whole.beyond_tolerance.into_iter().chain(other.beyond_tolerance).reduce(f64::max);
             whole.add_methods(&other.methods);
             whole

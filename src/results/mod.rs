@@ -19,7 +19,7 @@ mod statistics;
 mod structure;
 mod summary;
 
-pub use crate::methods::Method;
+pub use crate::methods::{Method, TooDeep};
 pub use allocation::{AllocatedTolerance, Allocation, Criterion, NotMet, ToleranceZone, TradePoint};
 pub use analysis::{AnalysisSummary, ValueSummary};
 pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, foremost};
@@ -44,5 +44,5 @@ pub use statistics::{
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
     AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary,
-    SingularSummary, SubsystemSummary, Summary, TooDeepSummary,
+    SingularSummary, SubsystemSummary, Summary,
 };

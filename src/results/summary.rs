@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::statistics::StatisticsResult;
 use super::{AnalysisSummary, Band, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
 use crate::grammar::display_unit::DisplayUnit;
+use crate::methods::TooDeep;
 
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
@@ -44,7 +45,7 @@ pub struct Summary {
     pub unmet_switch: Option<f64>,
     /// The first surfaces that a contact does not hold apart any more, in any sample.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub too_deep: Option<TooDeepSummary>,
+    pub too_deep: Option<TooDeep>,
     /// How many times the tolerance the local errors of a sample's steps add up to, where that is more than once: rows that need the
     /// sample are unresolved.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -112,19 +113,6 @@ pub struct SingularSummary {
     pub time: f64,
     /// Names of the constraints.
     pub constraints: Vec<String>,
-}
-
-/// Surfaces that overlap more deeply than their contact can tell, or pass through one another.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TooDeepSummary {
-    /// Name of the contact.
-    pub contact: String,
-    /// When, s.
-    pub time: f64,
-    /// How deep, m; `None` where they pass through one another within a step.
-    pub depth: Option<f64>,
-    /// How deep the contact may be, m.
-    pub deepest: f64,
 }
 
 /// A mode that the steps damp: its frequency, Hz, and steps that would not, s.

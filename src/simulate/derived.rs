@@ -1,6 +1,7 @@
 //! Outputs that follow from the results of an analysis, once a sample has them: slacks of requirements on frequencies.
 
 use super::error::SimulationError;
+use super::modal::is_one_number;
 use crate::assemble::{NumberFormulas, System};
 
 /// Results that a message lists at most.
@@ -56,9 +57,8 @@ impl Derived {
 }
 
 fn no_result(system: &System, name: &str) -> SimulationError {
-    let is_listed = |own: &&str| !own.contains(".shape.") && !own.starts_with("response.");
     let further = system.outputs.iter().filter(|own| !own.is_derived()).map(|own| own.name.as_str());
-    let all: Vec<String> = further.filter(is_listed).map(|own| format!("`{own}`")).collect();
+    let all: Vec<String> = further.filter(|own| is_one_number(own)).map(|own| format!("`{own}`")).collect();
     let more = if all.len() > LISTED { ", …" } else { "" };
     let known = format!("{}{more}", all[..all.len().min(LISTED)].join(", "));
     SimulationError::NoResult { name: name.to_owned(), known }

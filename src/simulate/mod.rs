@@ -48,6 +48,7 @@ pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetRun, Observed, Stop};
 pub use error::SimulationError;
 pub use explicit::{ExplicitJets, ExplicitObstacle, explicit_schedule};
+pub use modal::is_one_number;
 pub use modes::{ExcitedMode, excited_modes};
 pub use sample_run::SampleRun;
 pub use simulator::{Assembled, Simulator};

@@ -11,7 +11,7 @@ use crate::methods::{Method, Sensitivity, Stop, StopCause};
 use crate::numerics::Sample;
 use crate::results::{
     Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
-    SingularSummary, Summary, TooDeepSummary,
+    SingularSummary, Summary,
 };
 use crate::simulate::{EnsembleRun, ExcitedMode, Observed, OpenConstraint, Schedule, SimulationError};
 
@@ -157,12 +157,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         singular_configurations: singular.collect(),
         damped_mode,
         unmet_switch,
-        too_deep: results.too_deep().map(|found| TooDeepSummary {
-            contact: found.contact.clone(),
-            time: found.time,
-            depth: found.depth,
-            deepest: found.deepest,
-        }),
+        too_deep: results.too_deep(),
         beyond_tolerance: results.beyond_tolerance(),
         integration: results.schedule.integration.name(),
         alpha: study.description.simulation.alpha,

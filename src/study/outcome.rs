@@ -96,9 +96,8 @@ impl Results {
     }
 
     /// The first surfaces that a contact does not hold apart any more, of all samples.
-    pub fn too_deep(&self) -> Option<&TooDeep> {
-        let found = self.simulated().filter_map(|simulated| simulated.too_deep.as_ref());
-        found.min_by(|a, b| a.time.total_cmp(&b.time))
+    pub fn too_deep(&self) -> Option<TooDeep> {
+        TooDeep::first(self.simulated().filter_map(|simulated| simulated.too_deep.as_ref()))
     }
 
     /// The first row that cannot be relied on, whatever a method says of it.

@@ -1,4 +1,5 @@
-//! Contacts that become too deep, and surfaces that pass through one another within a step: the run says so, and flags what follows.
+//! Contacts that become too deep, and surfaces that pass through one another within a step: the run says so, and flags
+//! what follows.
 
 use mbint::inner::results::{Bounds, Method, Summary};
 
@@ -26,8 +27,8 @@ fn first_flagged(bounds: &Bounds) -> Option<f64> {
     x.error.unresolved.iter().position(|&flagged| flagged).map(|row| bounds.times[row])
 }
 
-/// At 2 m/s a ball of 1 kg goes v/√K = 20 mm into a spring of 10 kN/m, which is more than a capsule's 10 mm and its own 5 mm, and less than
-/// the radii of two balls.
+/// At 2 m/s a ball of 1 kg goes v/√K = 20 mm into a spring of 10 kN/m, which is more than a capsule's 10 mm and its own
+/// 5 mm, and less than the radii of two balls.
 #[test]
 fn a_contact_that_is_too_soft_is_too_deep() {
     let capsule = "capsule: [[0, -0.1, 0], [0, 0.1, 0]], rounding: 10 mm";
@@ -45,8 +46,8 @@ fn a_contact_that_is_too_soft_is_too_deep() {
     }
 }
 
-/// A ball at 20 m/s that meets a capsule of 10 mm by steps of 10 ms, hits it by shorter ones and by those of a tolerance, and flies past another
-/// one.
+/// A ball at 20 m/s that meets a capsule of 10 mm by steps of 10 ms, hits it by shorter ones and by those of a
+/// tolerance, and flies past another one.
 #[test]
 fn what_passes_through_within_a_step_is_told() {
     let wall = "capsule: [[0, -0.1, 0], [0, 0.1, 0]], rounding: 5 mm";

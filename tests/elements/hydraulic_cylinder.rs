@@ -44,7 +44,8 @@ fn a_cylinder_behind_its_valve_moves_as_scipy_says() {
     }
 }
 
-/// The valve passes zero, where both of its edges begin to pass oil at once. SciPy 1.17, `solve_ivp`, Radau: 0.926590599 m at 0.5 s.
+/// The valve passes zero, where both of its edges begin to pass oil at once. SciPy 1.17, `solve_ivp`, Radau:
+/// 0.926590599 m at 0.5 s.
 #[test]
 fn a_valve_passes_zero() {
     let model = |simulation: &str| {

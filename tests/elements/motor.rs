@@ -210,8 +210,8 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.1, formulation: {formulat
     }
 }
 
-/// Motors that begin alike and part: on two hinges with one axis, and on bodies that gears couple. They are beyond 1e-4 rad where
-/// 0.2 t³ is, after eight steps; where both say the same, one is redundant and nothing is wrong.
+/// Motors that begin alike and part: on two hinges with one axis, and on bodies that gears couple. They are beyond 1e-4
+/// rad where 0.2 t³ is, after eight steps; where both say the same, one is redundant and nothing is wrong.
 #[test]
 fn motors_that_part_are_an_error_with_the_time() {
     let hinges = |more: &str| {

@@ -51,7 +51,8 @@ fn a_burst_is_resolved() {
     assert!(off < 1e-4 * 0.04, "{off:e}");
 }
 
-/// A condition and its negative change at the same time, whatever the parameters are: that is one jump. Here the signs' sum is 10 to the jump, and −10 then.
+/// A condition and its negative change at the same time, whatever the parameters are: that is one jump. Here the signs'
+/// sum is 10 to the jump, and −10 then.
 #[test]
 fn jumps_that_coincide_are_one() {
     let text = pushed("5*sign(sin(2*t) + 1e-3 - 1e-3) - 5*sign(-sin(2*t))", 2.0);

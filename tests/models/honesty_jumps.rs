@@ -1,4 +1,5 @@
-//! Whether bounds are honest where an output's own formula jumps: `mod`, `atan2` and `floor` of an angle that turns. The truths are closed forms.
+//! Whether bounds are honest where an output's own formula jumps: `mod`, `atan2` and `floor` of an angle that turns.
+//! The truths are closed forms.
 
 use std::f64::consts::{PI, TAU};
 

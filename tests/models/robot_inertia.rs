@@ -1,5 +1,5 @@
-//! Whatever of a robot's file carries inertia counts: links without mass, inertials without inertia, meshes. Closed forms:
-//! α = M/J about a hinge, a tensor turned with its link, Steiner, boxes and prisms.
+//! Whatever of a robot's file carries inertia counts: links without mass, inertials without inertia, meshes. Closed
+//! forms: α = M/J about a hinge, a tensor turned with its link, Steiner, boxes and prisms.
 
 use std::path::Path;
 

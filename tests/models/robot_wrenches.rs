@@ -28,8 +28,8 @@ const MJCF: &str = "<mujoco><worldbody><body name='arm' pos='0 0 1'><joint name=
 
 const OF_HAND: [&str; 6] = ["x", "y", "z", "x", "y", "z"];
 
-/// Sensors `force` and `torque` of MuJoCo 4.0 at a site in the origin of `hand`, which it holds itself: the opposite of what
-/// the arm does to the hand.
+/// Sensors `force` and `torque` of MuJoCo 4.0 at a site in the origin of `hand`, which it holds itself: the opposite of
+/// what the arm does to the hand.
 #[test]
 fn a_held_body_of_an_mjcf_feels_what_mujocos_sensors_say() {
     let yaml = "mjcf: robot.xml\ninitial: { elbow.angle: 0.3, elbow.angular_velocity: 0.6 }";
@@ -41,8 +41,8 @@ fn a_held_body_of_an_mjcf_feels_what_mujocos_sensors_say() {
     near(found, [1.84238656, -0.67057387, -4.74556572, -0.27694133, 0.34949949, -0.13812729]);
 }
 
-/// A payload on an arm that turns with ω = 0.6 rad/s and without acceleration, level: it is carried against its weight along the
-/// sensor's −x, and pulled inwards along its −z.
+/// A payload on an arm that turns with ω = 0.6 rad/s and without acceleration, level: it is carried against its weight
+/// along the sensor's −x, and pulled inwards along its −z.
 #[test]
 fn a_fixed_joint_of_a_urdf_is_a_force_torque_sensor() {
     let inertial = |at: &str, mass: &str| {

@@ -168,8 +168,8 @@ fn direction<'g>(forces: &dyn Forces<'g>, formulas: &[Formula; 3]) -> Result<Vec
 }
 
 impl Contact {
-    /// How deep the surfaces may overlap: to the line or the edge that one of them is about. `None` where that does not matter, or where there
-    /// is nothing about it.
+    /// How deep the surfaces may overlap: to the line or the edge that one of them is about. `None` where that does not
+    /// matter, or where there is nothing about it.
     fn deepest<'g>(
         &self,
         forces: &dyn Forces<'g>,

@@ -86,7 +86,8 @@ pub trait Forces<'g> {
     fn modal_force(&mut self, place: usize, force: Scalar<'g>);
     /// How much room there is where the effect begins: a start without any is refused, m.
     fn begins_within(&mut self, room: Scalar<'g>);
-    /// The gap of two surfaces, m, and how deep they may overlap: where the gap is less than −`deepest`, they have no nearest side.
+    /// The gap of two surfaces, m, and how deep they may overlap: where the gap is less than −`deepest`, they have no
+    /// nearest side.
     fn overlaps_to(&mut self, gap: Scalar<'g>, deepest: Scalar<'g>);
     /// Something that the effect measures, for outputs.
     fn sensor(&mut self, measure: Sensor, value: Scalar<'g>);

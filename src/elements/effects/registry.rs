@@ -205,11 +205,7 @@ macro_rules! effects {
             }
 
             fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                let kinds = vec![$((
-                    <$name as $crate::grammar::Element>::KEYWORD,
-                    <$name as $crate::grammar::Element>::DESCRIPTION,
-                    generator.subschema_for::<$name>(),
-                )),*];
+                let kinds = vec![$($crate::grammar::kind_schema::<$name>(generator)),*];
                 $crate::grammar::kinds_schema("An effect: one kind with its details.", kinds)
             }
         }

@@ -134,11 +134,7 @@ macro_rules! joints {
             }
 
             fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                let kinds = vec![$((
-                    <$name as $crate::grammar::Element>::KEYWORD,
-                    <$name as $crate::grammar::Element>::DESCRIPTION,
-                    $crate::grammar::short_or_full::<$name>(generator),
-                )),*];
+                let kinds = vec![$($crate::grammar::kind_schema::<$name>(generator)),*];
                 $crate::grammar::kinds_schema("A joint: one kind with its details.", kinds)
             }
         }

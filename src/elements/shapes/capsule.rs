@@ -26,14 +26,10 @@ pub struct Capsule {
     #[quantity(unit = "m", constant, positive)]
     radius: Formula,
     #[group]
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl ShapeElement for Capsule {
-    fn place(&self) -> &Place {
-        &self.place
-    }
-
     fn form(&self) -> Form<Formula> {
         // The reader has let two points through, no more and no less.
         let end = |place: usize| self.ends.get(place).cloned().unwrap_or([0.0; 3].map(Formula::number));

@@ -25,14 +25,10 @@ pub struct Cuboid {
     #[key(image = Same)]
     size: SpacePoint,
     #[group]
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl ShapeElement for Cuboid {
-    fn place(&self) -> &Place {
-        &self.place
-    }
-
     fn form(&self) -> Form<Formula> {
         Form::Box { size: self.size.0.clone(), radius: Formula::number(0.0) }
     }

@@ -27,14 +27,10 @@ pub struct Cylinder {
     #[key(default = SpaceAxis::z())]
     axis: SpaceAxis,
     #[group]
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl ShapeElement for Cylinder {
-    fn place(&self) -> &Place {
-        &self.place
-    }
-
     fn form(&self) -> Form<Formula> {
         Form::Cylinder { axis: self.axis.0.clone(), length: self.length.clone(), radius: self.radius.clone() }
     }

@@ -24,14 +24,10 @@ pub struct MeshShape {
     #[key(default = Factors::from_number(1.0))]
     scale: Factors,
     #[group]
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl ShapeElement for MeshShape {
-    fn place(&self) -> &Place {
-        &self.place
-    }
-
     fn form(&self) -> Form<Formula> {
         Form::Mesh { mesh: self.file.clone(), scale: self.scale.0.clone() }
     }

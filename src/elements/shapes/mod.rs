@@ -20,11 +20,8 @@ shapes! {
     mesh::MeshShape,
 }
 
-/// A kind of shape.
+/// A kind of shape; its field `place` is its frame in the body's.
 pub trait ShapeElement: Element {
-    /// Its frame in the body's.
-    fn place(&self) -> &Place;
-
     /// In its frame.
     fn form(&self) -> Form<Formula>;
 }

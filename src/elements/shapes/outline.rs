@@ -27,14 +27,10 @@ pub struct Outline {
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     thickness: Formula,
     #[group]
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl ShapeElement for Outline {
-    fn place(&self) -> &Place {
-        &self.place
-    }
-
     fn form(&self) -> Form<Formula> {
         Form::Outline {
             points: self.points.bends(),

@@ -50,7 +50,7 @@ macro_rules! shapes {
             /// Its form in the body's frame.
             pub fn shape(&self) -> Shape {
                 let (place, form) = match self {
-                    $(Self::$name(shape) => (ShapeElement::place(shape), ShapeElement::form(shape)),)*
+                    $(Self::$name(shape) => (&shape.place, ShapeElement::form(shape)),)*
                 };
                 Shape { position: place.position.0.clone(), rotation: place.rotation.clone(), form }
             }
@@ -62,11 +62,7 @@ macro_rules! shapes {
             }
 
             fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                let kinds = vec![$((
-                    <$name as $crate::grammar::Element>::KEYWORD,
-                    <$name as $crate::grammar::Element>::DESCRIPTION,
-                    $crate::grammar::short_or_full::<$name>(generator),
-                )),*];
+                let kinds = vec![$($crate::grammar::kind_schema::<$name>(generator)),*];
                 $crate::grammar::kinds_schema("A shape: one kind with its details.", kinds)
             }
         }

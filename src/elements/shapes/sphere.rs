@@ -20,14 +20,10 @@ pub struct Sphere {
     #[quantity(unit = "m", constant, positive)]
     radius: Formula,
     #[group]
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl ShapeElement for Sphere {
-    fn place(&self) -> &Place {
-        &self.place
-    }
-
     fn form(&self) -> Form<Formula> {
         Form::Sphere { radius: self.radius.clone() }
     }

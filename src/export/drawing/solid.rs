@@ -11,7 +11,7 @@ use super::glyph::{across, line, pair, px};
 use super::hull::hull;
 use super::view::{Px, View};
 use crate::elements::Form;
-use crate::export::solid::{Face, SolidFrame, core, faces, polyline, reach};
+use crate::export::solid::{Face, SolidFrame, core, faces, normal, polyline, reach};
 use crate::results::{Drawing, DrawnSolid};
 
 /// Edges of faces that are turned against one another by less than this are not drawn: cosine.
@@ -121,10 +121,6 @@ fn rounded(corners: &[Px], radius: f64) -> Path {
 
 /// The sides that are turned to the reader, and the edges between them that are sharp.
 fn polyhedron(faces: &[Face], frame: &SolidFrame, view: &View) -> Vec<Path> {
-    let normal = |face: &Face| -> Vector3<f64> {
-        let next = face.iter().cycle().skip(1);
-        face.iter().zip(next).map(|(a, b)| Vector3::from(*a).cross(&Vector3::from(*b))).sum()
-    };
     let placed = |face: &Face| face.iter().map(|&corner| frame.place(corner)).collect::<Face>();
     let shown: Vec<(Face, Vector3<f64>)> =
         faces.iter().map(placed).map(|face| (normal(&face), face)).map(|(normal, face)| (face, normal)).collect();

@@ -64,7 +64,7 @@ pub(in crate::export) fn triangulated(corners: &[[f64; 3]]) -> Vec<[[f64; 3]; 3]
 }
 
 /// The normal of a flat polygon, on the side from which its corners turn left (Newell); its length is twice the area.
-pub(super) fn normal(corners: &[[f64; 3]]) -> Vector3<f64> {
+pub(in crate::export) fn normal(corners: &[[f64; 3]]) -> Vector3<f64> {
     let next = corners.iter().cycle().skip(1);
     let pairs = corners.iter().zip(next).map(|(a, b)| Vector3::from(*a).cross(&Vector3::from(*b)));
     pairs.sum()

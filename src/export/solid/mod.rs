@@ -5,7 +5,7 @@ mod flat;
 mod frame;
 
 pub(super) use faces::{Face, faces, moved_out};
-pub(super) use flat::{polyline, triangulated};
+pub(super) use flat::{normal, polyline, triangulated};
 pub(super) use frame::SolidFrame;
 
 use crate::elements::Form;

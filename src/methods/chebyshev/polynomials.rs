@@ -7,7 +7,9 @@ use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simu
 use crate::methods::kept::KeptRow;
 use crate::methods::result::{BandBuilder, PolynomialEstimate, Sensitivity};
 use crate::methods::validation::Validation;
-use crate::numerics::{Extent, PolynomialRange, Range, Sample, SparseWork, Surrogate, SurrogateWork, truncation};
+use crate::numerics::{
+    Extent, PolynomialRange, Range, Sample, SparseWork, Surrogate, SurrogateWork, corners, truncation,
+};
 
 /// What varies by no more than this share of its size is rounding.
 const ROUNDING: f64 = 1e-10;
@@ -58,8 +60,7 @@ impl Polynomials<'_> {
         let mut points = self.surrogate.samples().to_vec();
         let k = points.first().map_or(0, Vec::len);
         if k <= MOST_CORNERS {
-            let corner = |number: usize| (0..k).map(|axis| if number >> axis & 1 == 1 { 1.0 } else { -1.0 }).collect();
-            points.extend((0..1 << k).map(corner));
+            points.extend(corners(k, 1 << k));
         }
         let every: Vec<usize> = (0..self.outputs()).collect();
         let of_line = |line: &[f64]| {

@@ -56,10 +56,7 @@ impl Reader<'_, '_, '_> {
 
     fn law(&mut self, item: &Item, get: &dyn Fn(&Values, &str) -> Option<Attribute>, name: &str) -> Option<Law> {
         let values = &mut *self.values;
-        let list = |values: &mut Values, key: &str, default: f64| {
-            let given = get(values, key).and_then(|found| values.parsed(&found, 10));
-            given.unwrap_or_else(|| vec![default])
-        };
+        let list = |values: &mut Values, key: &str, default: f64| numbers(values, get, key, default);
         let number = |values: &mut Values, key: &str, default: f64| {
             let value = list(values, key, default)[0];
             values.number(item, get(values, key).as_ref(), format!("actuator.{name}.{key}"), value, "")
@@ -93,10 +90,7 @@ impl Reader<'_, '_, '_> {
     /// What keeps the actuator's activation from its command at once: nothing, an integrator or a lag.
     fn memory(&mut self, item: &Item, get: &dyn Fn(&Values, &str) -> Option<Attribute>) -> Option<Option<Memory>> {
         let values = &mut *self.values;
-        let first = |values: &mut Values, key: &str, default: f64| {
-            let given = get(values, key).and_then(|found| values.parsed(&found, 10));
-            given.map_or(default, |numbers| numbers[0])
-        };
+        let first = |values: &mut Values, key: &str, default: f64| numbers(values, get, key, default)[0];
         let time = match item.tag.as_str() {
             "position" => first(values, "timeconst", 0.0),
             "cylinder" => first(values, "timeconst", 1.0),
@@ -164,4 +158,10 @@ impl Reader<'_, '_, '_> {
         }
         Some(ends)
     }
+}
+
+/// The numbers of an attribute, at least one; the default where there are none.
+fn numbers(values: &mut Values, get: &dyn Fn(&Values, &str) -> Option<Attribute>, key: &str, default: f64) -> Vec<f64> {
+    let given = get(values, key).and_then(|found| values.parsed(&found, 10));
+    given.unwrap_or_else(|| vec![default])
 }

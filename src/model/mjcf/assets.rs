@@ -19,7 +19,8 @@ pub struct Meshes<'i> {
     pub by_name: BTreeMap<String, &'i Item>,
     /// Those read; none where it cannot be.
     pub known: HashMap<String, Option<Measured>>,
-    /// Names of meshes that enclose nothing for certain, or less than their tetrahedra, with the place of the first and why.
+    /// Names of meshes that enclose nothing for certain, or less than their tetrahedra, with the place of the first and
+    /// why.
     pub open: Vec<(Span, String)>,
     pub folded: Vec<(Span, String)>,
 }

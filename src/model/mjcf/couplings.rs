@@ -11,8 +11,8 @@ use crate::model::robots::names;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 
-/// Reads what couples and drives the joints of a robot whose bodies are read. Of an attached model, whose names have a prefix,
-/// only what speaks of nothing that is not attached.
+/// Reads what couples and drives the joints of a robot whose bodies are read. Of an attached model, whose names have a
+/// prefix, only what speaks of nothing that is not attached.
 pub fn read(root: &Item, values: &mut Values, robot: &mut Robot, names: &Names, attached: Option<&str>) {
     let taken = robot.equalities.iter().map(|own| &own.name).chain(robot.tendons.iter().map(|own| &own.name));
     let taken = taken.chain(robot.actuators.iter().map(|own| &own.name)).cloned().collect();

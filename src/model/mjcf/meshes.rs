@@ -7,11 +7,9 @@ use super::values::Values;
 use crate::model::robots::algebra;
 use crate::model::robots::meshes::{self, FORMATS, Faults, Measured, Triangle, Way};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::mesh_file::MOST_BYTES;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;
-
-/// Largest file of a mesh, bytes.
-const MOST_BYTES: u64 = 100_000_000;
 
 /// Part of the volume by which tetrahedra may exceed what is enclosed without a word.
 const SLIGHT: f64 = 0.01;

@@ -194,8 +194,7 @@ impl<'i> Reader<'_, 'i, '_> {
 
     fn site(&mut self, item: &Item, body: usize, around: &Around) {
         let class = self.values.class_of(item, around.class, "class");
-        let Some(named) = item.get("name") else { return };
-        let written = format!("{}{}{}", self.prefix, named.value, self.suffix);
+        let (Some(named), Some(written)) = (item.get("name"), self.written(item)) else { return };
         let (position, rotation) = self.values.frame(item, class, &["site"]);
         let pose = around.pose.then(&algebra::vector(position), &rotation);
         let mut taken: HashSet<String> =

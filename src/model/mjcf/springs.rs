@@ -4,8 +4,8 @@
 //! k = m/(T ζ)²,   d = 2 m/T,   1/m = (M⁻¹)ⱼⱼ
 //! ```
 //!
-//! where M is the mass matrix of the joints in the file's configuration, with armatures: m is what a force in the joint feels while
-//! all others are free.
+//! where M is the mass matrix of the joints in the file's configuration, with armatures: m is what a force in the joint
+//! feels while all others are free.
 
 use nalgebra::{DMatrix, Vector3};
 

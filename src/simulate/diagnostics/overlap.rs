@@ -40,11 +40,13 @@ impl<'s> OverlapWatch<'s> {
 
     /// Before a step.
     pub fn begin(&mut self, stepper: &Stepper) {
-        self.watch.begin(stepper.tile());
+        if self.found.is_none() {
+            self.watch.begin(stepper.tile());
+        }
     }
 
-    /// Examines the first `count` lanes after a step of length h up to `end`, which is one step or, where `is_divided`, several. Whether the
-    /// first such surfaces were found.
+    /// Examines the first `count` lanes after a step of length h up to `end`, which is one step or, where `is_divided`,
+    /// several. Whether the first such surfaces were found.
     pub fn end(&mut self, stepper: &Stepper, count: usize, (h, end): (f64, f64), is_divided: bool) -> bool {
         if self.found.is_some() {
             return false;
@@ -77,8 +79,8 @@ impl<'s> OverlapWatch<'s> {
     }
 }
 
-/// The least distance between the ends of a step of length h of what moves past a point or a line at a constant velocity, given the distances
-/// and their rates at the ends; `None` where it does not first approach and then part.
+/// The least distance between the ends of a step of length h of what moves past a point or a line at a constant
+/// velocity, given the distances and their rates at the ends; `None` where it does not first approach and then part.
 fn nearest([[left, rate], [left_after, rate_after]]: [[f64; 2]; 2], h: f64) -> Option<f64> {
     if !(left > 0.0 && rate < 0.0 && left_after > 0.0 && rate_after > 0.0) {
         return None;

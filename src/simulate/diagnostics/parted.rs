@@ -1,5 +1,5 @@
-//! Constraints that others imply at the start and contradict later: two motors that begin alike and then part. The motion follows
-//! the others, and the redundant constraint stays open.
+//! Constraints that others imply at the start and contradict later: two motors that begin alike and then part. The
+//! motion follows the others, and the redundant constraint stays open.
 
 use symdiff::Expr;
 
@@ -10,7 +10,8 @@ use crate::simulate::residual_text::residual_text;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
 
-/// A residual beyond this is open, for an angle of 1 rad or the length of the model. Schemes that fulfil velocities drift by less.
+/// A residual beyond this is open, for an angle of 1 rad or the length of the model. Schemes that fulfil velocities
+/// drift by less.
 const OPEN: f64 = 1e-4;
 
 /// Times in s at which constraints are compared, to find whether they depend on the time.

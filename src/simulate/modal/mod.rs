@@ -16,5 +16,5 @@ mod roots;
 mod vibrations;
 
 pub use first_order::{Eigenvalue, eigenvalues};
-pub use outputs::further_outputs;
+pub use outputs::{further_outputs, is_one_number};
 pub use vibrations::{ALIKE, Place, Vibrations};

@@ -10,6 +10,11 @@ const GROWTH: &str = "growth";
 /// Results about a mode without states.
 const QUANTITIES: &[(&str, &str)] = &[("frequency", "Hz"), ("damping", "")];
 
+/// Whether an output is no part of a mode's shape or of a response, which are many.
+pub fn is_one_number(name: &str) -> bool {
+    !name.contains(".shape.") && !name.starts_with("response.")
+}
+
 /// Adds the outputs of a mechanism's vibrations after the model's.
 pub fn further_outputs(system: &mut System, vibrations: &Vibrations) {
     let model: Vec<OutputInfo> = system.outputs.iter().filter(|output| !output.is_derived()).cloned().collect();

@@ -20,7 +20,8 @@ const APART: f64 = 4.0;
 /// Steps are not divided further than to this share of the duration for jumps that coincide for some parameters only.
 const COINCIDING: f64 = 1e-6;
 
-/// Steps are not divided further than to this share of the duration for jumps that coincide for all parameters: a condition and its negative.
+/// Steps are not divided further than to this share of the duration for jumps that coincide for all parameters: a
+/// condition and its negative.
 const ONE: f64 = 1e-9;
 
 /// Halvings of a step. A mechanism's constraints are divided by the square of the step, and so is their rounding.

@@ -117,12 +117,6 @@ impl Values {
     }
 
     pub fn rotation(&self, asked: AskedRotation) -> UnitQuaternion<f64> {
-        // By sines and cosines that are the same bits everywhere; nalgebra's are the system's.
-        let about = |axis: Vector3<f64>, angle: f64| {
-            let half = 0.5 * angle;
-            let parts = Quaternion::from_parts(math::cos(half), math::sin(half) * axis.normalize());
-            UnitQuaternion::new_unchecked(parts)
-        };
         match asked {
             AskedRotation::None => UnitQuaternion::identity(),
             AskedRotation::Angle(angle) => about(Vector3::z(), self.0[angle]),
@@ -130,10 +124,7 @@ impl Values {
                 let [p0, p1, p2, p3] = parameters.map(|parameter| self.0[parameter]);
                 UnitQuaternion::from_quaternion(Quaternion::new(p0, p1, p2, p3))
             }
-            AskedRotation::RollPitchYaw(angles) => {
-                let [roll, pitch, yaw] = self.vector(angles).into();
-                about(Vector3::z(), yaw) * about(Vector3::y(), pitch) * about(Vector3::x(), roll)
-            }
+            AskedRotation::RollPitchYaw(angles) => roll_pitch_yaw(self.vector(angles).into()),
             AskedRotation::AxisAngle(axis, angle) => about(self.vector(axis), self.0[angle]),
         }
     }
@@ -152,4 +143,16 @@ impl Values {
         let position = body.position.map_or_else(Vector3::zeros, |position| self.vector(position));
         Frame { position, rotation: self.rotation(body.rotation) }
     }
+}
+
+/// By sines and cosines that are the same bits everywhere; nalgebra's are the system's.
+fn about(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
+    let half = 0.5 * angle;
+    let parts = Quaternion::from_parts(math::cos(half), math::sin(half) * axis.normalize());
+    UnitQuaternion::new_unchecked(parts)
+}
+
+/// About the fixed x, then y, then z.
+pub(super) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> UnitQuaternion<f64> {
+    about(Vector3::z(), yaw) * about(Vector3::y(), pitch) * about(Vector3::x(), roll)
 }

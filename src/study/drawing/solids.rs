@@ -1,9 +1,8 @@
 //! Solids in a drawing: shapes of bodies, surfaces that effects have, and what links of a robot look like.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use symdiff::math;
+use nalgebra::{UnitQuaternion, Vector3};
 
-use super::asked::{Asked, AskedBody, AskedRotation, AskedVector, Frame, Values};
+use super::asked::{Asked, AskedBody, AskedRotation, AskedVector, Frame, Values, roll_pitch_yaw};
 use crate::elements::{Form, Shape, Surroundings};
 use crate::grammar::{Mesh, PointRef};
 use crate::model::{self, Description, Visual};
@@ -109,13 +108,4 @@ fn is_finite(solid: &DrawnSolid) -> bool {
     let mut finite = solid.position.iter().chain(&solid.orientation).all(|number| number.is_finite());
     solid.form.map(|number| finite &= number.is_finite());
     finite
-}
-
-/// About the fixed x, then y, then z, by sines and cosines that are the same bits everywhere.
-fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> UnitQuaternion<f64> {
-    let about = |axis: Vector3<f64>, angle: f64| {
-        let half = 0.5 * angle;
-        UnitQuaternion::new_unchecked(Quaternion::from_parts(math::cos(half), math::sin(half) * axis))
-    };
-    about(Vector3::z(), yaw) * about(Vector3::y(), pitch) * about(Vector3::x(), roll)
 }

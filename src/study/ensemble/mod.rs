@@ -60,6 +60,8 @@ pub(super) struct Motions<'a> {
     pub(super) over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
+    /// Which outputs' formulas jump, found when it is asked: every row asks.
+    jumps: OnceLock<Vec<bool>>,
     /// Where simulations are stored, if they are.
     stored: Option<Stored<'a>>,
 }
@@ -75,7 +77,7 @@ impl<'a> Motions<'a> {
         interrupted: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
         let over = AtomicUsize::new(0);
-        let certifier = OnceLock::new();
+        let (certifier, jumps) = (OnceLock::new(), OnceLock::new());
         let (store, stored, channels, ledger) = (None, None, &[][..], None);
         Self {
             simulator,
@@ -89,6 +91,7 @@ impl<'a> Motions<'a> {
             ledger,
             over,
             certifier,
+            jumps,
             stored,
         }
     }
@@ -261,8 +264,11 @@ impl Ensemble for Motions<'_> {
     }
 
     fn jumps(&self, output: usize) -> bool {
-        let system = &self.simulator.system;
-        jumps(&system.graph, system.outputs[output].expr)
+        let of_all = || {
+            let system = &self.simulator.system;
+            system.outputs.iter().map(|output| jumps(&system.graph, output.expr)).collect()
+        };
+        self.jumps.get_or_init(of_all)[output]
     }
 
     fn seen(&self, row: usize, output: usize) -> Range {

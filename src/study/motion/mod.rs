@@ -10,7 +10,7 @@ mod thinning;
 
 use super::RunError;
 use super::drawing::asked::{Asked, AskedBody, Values};
-use super::drawing::{drawing, drawn, extent, has_ground};
+use super::drawing::{drawn, extent, has_ground};
 use crate::model::Description;
 use crate::numerics::{Sample, SparseWork, SurrogateWork};
 use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
@@ -41,7 +41,8 @@ pub struct MotionOptions {
 pub fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     pool.install(|| {
-        let drawing = drawing(description)?;
+        // Its ground is drawn when it is known what the motion passes.
+        let drawing = drawn(description, None)?;
         let mut posed = Posed::compile(description)?;
         posed.simulate(description, drawing, options.size)
     })

@@ -259,8 +259,8 @@ impl Value {
         // NaN is passed on.
         let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
         let greatest = |places: &[usize]| places.iter().map(|&place| channels[place]).fold(f64::NEG_INFINITY, larger);
-        let least_of = |values: &[f64]| -values.iter().map(|&value| -value).fold(f64::NEG_INFINITY, larger);
-        let least = |places: &[usize]| -places.iter().map(|&place| -channels[place]).fold(f64::NEG_INFINITY, larger);
+        let least_of = |values: &mut dyn Iterator<Item = f64>| -values.fold(f64::NEG_INFINITY, |a, b| larger(a, -b));
+        let least = |places: &[usize]| least_of(&mut places.iter().map(|&place| channels[place]));
         match self {
             Self::Greatest(places) => greatest(places),
             Self::Least(places) => least(places),
@@ -286,7 +286,7 @@ impl Value {
                 let beyond = if start <= target { greatest(above) - target } else { target - least(below) };
                 larger(0.0, beyond)
             }
-            Self::Formulas(formulas) => least_of(&formulas.values(parameters, before)),
+            Self::Formulas(formulas) => least_of(&mut formulas.values(parameters, before).into_iter()),
         }
     }
 }

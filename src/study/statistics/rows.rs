@@ -7,6 +7,7 @@ use crate::model::Description;
 use crate::numerics::largest;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
 use crate::results::{OutputStatistics, Uncertain};
+use crate::simulate::is_one_number;
 use crate::study::kept::{Evaluator, Kept};
 
 /// Samples where a model asks for no number: about a million.
@@ -77,11 +78,8 @@ impl<'a> Rows<'a> {
     /// The first `count` outputs, and the results that an analysis adds to the outputs, each with its number; without
     /// shapes and responses, which are many.
     pub fn outputs(&self, count: usize) -> Vec<(usize, OutputStatistics)> {
-        let is_one = |output: &usize| {
-            let (name, _) = self.kept.named(*output);
-            !name.contains(".shape.") && !name.starts_with("response.")
-        };
-        let further = (self.description.outputs.len()..self.kept.outputs()).filter(is_one);
+        let further = self.description.outputs.len()..self.kept.outputs();
+        let further = further.filter(|&output| is_one_number(self.kept.named(output).0));
         (0..count).chain(further).map(|output| (output, self.of_output(output))).collect()
     }
 

@@ -3,9 +3,10 @@
 use rustc_hash::FxHashMap;
 
 use super::Row;
+use crate::methods::chebyshev::polynomials::Polynomials;
 use crate::methods::expansion::{Expansion, Moves};
 use crate::methods::kept::KeptRow;
-use crate::numerics::{Extent, Range, SparseWork, largest, surrogate_error, to_brinks, truncation};
+use crate::numerics::{Extent, Range, largest, surrogate_error, to_brinks, truncation};
 
 /// Values of all outputs that are held at once, and points that are taken together at least.
 const AT_ONCE: usize = 1 << 20;
@@ -14,11 +15,8 @@ const LEAST_AT_ONCE: usize = 16;
 impl Row<'_> {
     /// Values of the polynomials through outputs' own samples, output by output.
     pub(super) fn own_polynomials(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
-        let coefficients: Vec<f64> =
-            outputs.iter().flat_map(|&output| self.own_coefficients(output).to_vec()).collect();
-        let mut values = vec![0.0; outputs.len() * points.len()];
-        self.surrogate.basis().values(points, &coefficients, &mut values, &mut SparseWork::default());
-        values
+        let first = self.extent.len() * self.surrogate.basis().len();
+        Polynomials { surrogate: self.surrogate, coefficients: &self.coefficients[first..] }.values(outputs, points)
     }
 
     pub(super) fn own_coefficients(&self, output: usize) -> &[f64] {

@@ -1,5 +1,5 @@
-//! Triangles of MuJoCo's MSH files: numbers of corners, normals, points of textures and triangles as 32-bit integers; then
-//! corners, normals and points of textures as 32-bit floats, and three places of corners a triangle.
+//! Triangles of MuJoCo's MSH files: numbers of corners, normals, points of textures and triangles as 32-bit integers;
+//! then corners, normals and points of textures as 32-bit floats, and three places of corners a triangle.
 
 use super::{Triangle, indexed};
 
