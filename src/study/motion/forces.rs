@@ -36,6 +36,9 @@ pub(super) fn forces(description: &Description, times: &[f64]) -> Vec<MovingForc
 fn simulated(description: &Description, times: &[f64]) -> Result<Vec<MovingForce>, RunError> {
     let mut asked = Asked::default();
     let wanted = ask(description, &mut asked);
+    if wanted.is_empty() {
+        return Ok(Vec::new());
+    }
     let numbers = asked.0.len();
     let asking = Rows::asking(description, asked)?;
     let mut rows: Vec<Values> = Vec::new();
@@ -112,6 +115,16 @@ mod tests {
         let description =
             model::load_str("forces.yaml", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         forces(&description, &[0.0, 0.005])
+    }
+
+    #[test]
+    fn a_body_by_itself_has_no_forces() {
+        assert!(
+            forces_of(
+                "bodies: { b: { mass: 1, coordinates: [x] } }\noutputs: { x: b.x }\nsimulation: { duration: 0.01 s, step: 0.005 s }\n"
+            )
+            .is_empty()
+        );
     }
 
     fn assert_near(found: &MovingForce, expected: [f64; 6]) {
