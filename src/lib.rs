@@ -9,23 +9,16 @@ pub use methods::Method;
 pub use results::Summary;
 pub use syntax::Diagnostics;
 
-// The rooms of the house, in the order of the data flow.
-mod assemble;
 mod cli;
-mod compile;
-mod elements;
-mod export;
-mod grammar;
-mod methods;
-mod model;
-mod multibody;
-mod numerics;
-mod reduce;
-mod results;
-mod simulate;
-mod store;
-mod study;
-mod syntax;
+
+// Rooms of the crates below keep their names here.
+use mbint_engine::{assemble, compile, simulate};
+use mbint_export::export;
+use mbint_language::{grammar, syntax};
+use mbint_methods::methods;
+use mbint_model::{elements, model};
+use mbint_numerics::numerics;
+use mbint_study::{results, store, study};
 
 #[doc(hidden)]
 pub mod inner;

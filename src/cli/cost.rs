@@ -261,7 +261,7 @@ fn asked(tolerance: f64) -> String {
 mod tests {
     use super::*;
     use crate::compile::Scheme;
-    use crate::results::cost_tests::{COMPOSED, SCAN};
+    use crate::results::cost_example::{COMPOSED, SCAN};
     use crate::results::{CostMethod, CostReference};
 
     fn study() -> CostStudy {

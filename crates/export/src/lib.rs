@@ -1,0 +1,14 @@
+//! From results to files: CSV, SVG, JSON summaries, snapshots, and the report that moves in a browser.
+
+#![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
+
+// Rooms of the crates below keep their names here.
+use mbint_engine::compile;
+use mbint_language::{grammar, syntax};
+use mbint_methods::methods;
+use mbint_model::{elements, model};
+use mbint_numerics::numerics;
+use mbint_study::{results, store};
+
+pub mod export;

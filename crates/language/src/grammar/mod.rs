@@ -1,0 +1,58 @@
+//! What a model file is made of: elements with their keys, quantities with units, names, and the reader that keeps
+//! places.
+//!
+//! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
+
+mod any_unit;
+pub mod declared;
+pub mod dimension;
+pub mod display_unit;
+mod element;
+pub mod formulas;
+mod friction;
+mod image;
+mod kinds;
+pub mod mapping;
+mod mesh;
+pub mod motions;
+pub mod names;
+mod on_joint;
+mod own_names;
+mod pairs;
+mod places;
+pub mod plane;
+pub mod quantity;
+mod range;
+pub mod reader;
+pub mod reference;
+mod requirement;
+mod rotating;
+mod standing;
+mod suspicious;
+mod symbols;
+pub mod tolerance;
+pub mod unit;
+mod unit_names;
+pub mod unknown;
+mod unread;
+pub mod values;
+mod vectors;
+
+pub use crate::syntax::source::Span;
+pub use crate::syntax::yaml::Node;
+pub use element::{
+    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kind_schema, kinds_schema, not_negative,
+    object_schema, one_of, ordered,
+};
+pub use friction::{FrictionMode, MeshKind};
+pub use image::{Image, KeyImage};
+pub use kinds::{
+    Axis, BodyRef, Components, Direction, Factors, OfAngle, OfPlace, PerAxis, RotatingJoint, SlidingJoint, SpaceAxis,
+    SpacePoint,
+};
+pub use mesh::Mesh;
+pub use names::Context;
+pub use reader::{Fields, Lengths, Reader};
+pub use requirement::{Quantity, Requirement};
+pub use rotating::Rotating;
+pub use symbols::*;

@@ -1,0 +1,410 @@
+//! What names stand for: the parts of a mechanism by their index.
+
+use symdiff::Formula;
+
+use super::friction::{FrictionMode, MeshKind};
+use super::quantity::Dimension;
+
+/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in
+/// the file; body 0 is the ground.
+pub trait SymbolTable {
+    /// Whether the mechanism leaves the plane.
+    fn is_spatial(&self) -> bool;
+    /// Whether bodies and joints are a robot's, whose numbers are parameters.
+    fn is_robot(&self) -> bool;
+    /// Names of the parameters.
+    fn parameters(&self) -> impl Iterator<Item = &str> + Clone;
+    /// Names of the bodies.
+    fn bodies(&self) -> impl Iterator<Item = &str> + Clone;
+    /// Names of a body's points.
+    fn points(&self, body: usize) -> impl Iterator<Item = &str> + Clone;
+    /// Names of the joints.
+    fn joints(&self) -> impl Iterator<Item = &str> + Clone;
+    /// Number of effects so far.
+    fn effects(&self) -> usize;
+    /// The effect of a name.
+    fn effect(&self, name: &str) -> Option<usize>;
+    /// The effect of a name, which may have a value by its name alone.
+    fn state(&self, name: &str) -> Option<usize>;
+    /// The trajectory of a name.
+    fn trajectory(&self, name: &str) -> Option<usize>;
+    /// The dimension of a trajectory's value, where it is known.
+    fn trajectory_dimension(&self, trajectory: usize) -> Option<Dimension>;
+    /// What an effect measures.
+    fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
+    /// Where a link of the robot is.
+    fn link(&self, name: &str) -> Option<PointRef>;
+    /// Named parts of a beam; none without a beam of that name.
+    fn parts_of_beam(&self, beam: &str) -> Option<String>;
+    /// Whether a body's orientation is that of Euler parameters, and not an angle about z.
+    fn has_orientation(&self, body: usize) -> bool;
+    /// Whether a joint has a coordinate.
+    fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool;
+    /// Which of a joint's motions friction resists; nothing where friction does not act in it.
+    fn friction_mode(&self, joint: usize) -> Option<FrictionMode>;
+    /// Which friction the teeth of a joint have; nothing where it has none.
+    fn mesh_kind(&self, joint: usize) -> Option<MeshKind>;
+    /// Whether a joint joins two points, so that its reaction has a place.
+    fn has_place(&self, joint: usize) -> bool;
+    /// Whether a joint has an axis of its own, or drives a joint that has one.
+    fn has_axis(&self, joint: usize) -> bool;
+    /// Whether a joint's reaction has an `axial` part: along its axis, or along a line of its own.
+    fn has_axial_force(&self, joint: usize) -> bool;
+    /// What a joint that is an equation sets equal to something else.
+    fn equated(&self, joint: usize) -> Option<&Formula>;
+
+    /// Names of the instances of assemblies, and of effects on many, which have dots in the names of their parts.
+    fn instances(&self) -> impl Iterator<Item = &str> + Clone;
+    /// The body or the point of a body that a port of an instance is.
+    fn port(&self, name: &str) -> Option<&str>;
+    /// Whether an effect of an instance is on a joint that turns.
+    fn is_on_turning_joint(&self, effect: &str) -> bool;
+
+    /// The parameter of a name.
+    fn parameter(&self, name: &str) -> Option<usize> {
+        self.parameters().position(|known| known == name)
+    }
+
+    /// The body of a name.
+    fn body(&self, name: &str) -> Option<usize> {
+        self.bodies().position(|known| known == name)
+    }
+
+    /// The joint of a name.
+    fn joint(&self, name: &str) -> Option<usize> {
+        self.joints().position(|known| known == name)
+    }
+
+    /// Ports and bodies of an instance, as they are called in it.
+    fn parts_of(&self, instance: &str) -> Vec<String>;
+
+    /// The name of a joint.
+    fn joint_name(&self, joint: usize) -> &str {
+        self.joints().nth(joint).unwrap_or_default()
+    }
+
+    /// The name of a body.
+    fn body_name(&self, body: usize) -> &str {
+        self.bodies().nth(body).unwrap_or_default()
+    }
+}
+
+/// A coordinate of a body's frame. A body turns by its angle or, with all four of them, by its Euler parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Coordinate {
+    /// Position of the frame's origin along the ground's x, m.
+    X,
+    /// Position of the frame's origin along the ground's y, m.
+    Y,
+    /// Position of the frame's origin along the ground's z, m.
+    Z,
+    /// Angle of the frame against the ground about z, rad, counter-clockwise, never wrapped.
+    Angle,
+    /// Euler parameter p0 (cosine of half the angle) to p3.
+    Euler(usize),
+}
+
+impl Coordinate {
+    /// The Euler parameters.
+    pub const ORIENTATION: [Self; 4] = [Self::Euler(0), Self::Euler(1), Self::Euler(2), Self::Euler(3)];
+
+    /// Whether it is a length rather than a part of the orientation.
+    pub fn is_length(self) -> bool {
+        matches!(self, Self::X | Self::Y | Self::Z)
+    }
+}
+
+/// A rotation from one frame to another.
+#[derive(Clone, Debug)]
+pub enum Rotation {
+    /// Turned about the fixed x, then y, then z, rad.
+    RollPitchYaw([Formula; 3]),
+    /// About an axis of any length but zero, by an angle in rad.
+    AxisAngle([Formula; 3], Formula),
+    /// Euler parameters p0 to p3, of any length but zero.
+    Quaternion([Formula; 4]),
+}
+
+impl Rotation {
+    /// Every formula in it.
+    pub fn formulas(&self) -> Vec<&Formula> {
+        match self {
+            Self::RollPitchYaw(angles) => angles.iter().collect(),
+            Self::AxisAngle(axis, angle) => axis.iter().chain([angle]).collect(),
+            Self::Quaternion(p) => p.iter().collect(),
+        }
+    }
+}
+
+/// A point of a body; the frame's origin where `point` is absent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PointRef {
+    /// Index into the bodies; 0 is the ground.
+    pub body: usize,
+    /// Index into that body's points.
+    pub point: Option<usize>,
+}
+
+/// How often a quantity is differentiated by time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TimeOrder {
+    /// The value.
+    Position,
+    /// Its first derivative by time.
+    Velocity,
+    /// Its second derivative by time.
+    Acceleration,
+}
+
+/// What a name in a formula stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symbol {
+    /// Index of the parameter.
+    Parameter(usize),
+    /// `t`, s.
+    Time,
+    /// `body.x`, `.y`, `.z`, `.angle`, `.p0` … `.p3`, `.vx`, …, `.angular_velocity`, `.ax`, …, `.angular_acceleration`.
+    Coordinate {
+        /// Index of the body.
+        body: usize,
+        /// Which of its coordinates.
+        coordinate: Coordinate,
+        /// The coordinate itself or a derivative.
+        order: TimeOrder,
+    },
+    /// `body.omega.x`, … and `body.alpha.x`, …, or `omega_body`, `alpha_body` in the body's frame.
+    AngularMotion {
+        /// Index of the body.
+        body: usize,
+        /// 0 to 2: x, y, z.
+        axis: usize,
+        /// Velocity or acceleration.
+        order: TimeOrder,
+        /// Whether the component is along the body's axis, not the ground's.
+        in_body: bool,
+    },
+    /// `body.roll`, `.pitch`, `.yaw`: rotations about the fixed x, then y, then z, rad, between −π and π.
+    RollPitchYaw {
+        /// Index of the body.
+        body: usize,
+        /// 0 to 2: roll, pitch, yaw.
+        angle: usize,
+    },
+    /// `joint.angle`, `.displacement`, `.angular_velocity`, `.velocity`, `.angular_acceleration`, `.acceleration`.
+    JointCoordinate {
+        /// Index of the joint.
+        joint: usize,
+        /// Which of its coordinates.
+        coordinate: JointCoordinate,
+        /// The coordinate itself or a derivative.
+        order: TimeOrder,
+    },
+    /// `body.point.x`, `.y`, `.z`, `.vx`, …, `.ax`, …; `coordinate` is a length.
+    Point {
+        /// Index of the body.
+        body: usize,
+        /// Index of the point in the body.
+        point: usize,
+        /// Along which axis of the ground.
+        coordinate: Coordinate,
+        /// The position or a derivative.
+        order: TimeOrder,
+    },
+    /// `joint.force`, `.force.x`, …, `.torque`, `.torque.x`, ….
+    Reaction {
+        /// Index of the joint.
+        joint: usize,
+        /// Which part of the reaction.
+        component: ReactionComponent,
+    },
+    /// `effect.length`, `effect.force`, …: what an effect measures.
+    Sensor {
+        /// Index of the effect.
+        effect: usize,
+        /// Which of its sensors.
+        measure: Sensor,
+    },
+    /// `trajectory`, `trajectory.rate`, `trajectory.acceleration`: a function of the time.
+    Trajectory {
+        /// Index of the trajectory.
+        trajectory: usize,
+        /// Its value or a derivative.
+        order: TimeOrder,
+    },
+    /// `energy`, `kinetic_energy`, `potential_energy`, J.
+    Energy(EnergyKind),
+}
+
+/// Part of a joint's reaction on its second body, in the ground's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReactionComponent {
+    /// Magnitude of the force, N.
+    Force,
+    /// Along an axis (0 to 2: x, y, z), N.
+    ForceAlong(usize),
+    /// About the second point, N m: in the plane the component about z; in space that about its axis where the joint
+    /// has a torque about its axis alone, else the magnitude.
+    Torque,
+    /// About an axis (0 to 2: x, y, z) through the second point, N m.
+    TorqueAbout(usize),
+    /// Force along the joint's own axis, N; of a rod its tension, of a cam its contact's force.
+    Axial,
+    /// Force across the joint's own axis, N: the magnitude; along a direction of the plane, with a sign.
+    Radial,
+    /// Torque about the joint's own axis, N m.
+    AxialTorque,
+    /// Force along an axis (0 to 2: x, y, z) of the second point's frame, N.
+    ForceInBody(usize),
+    /// Torque about an axis through the second point along one (0 to 2: x, y, z) of its frame, N m.
+    TorqueInBody(usize),
+    /// Torque about an axis (0 to 2: x, y, z, the ground's) through any point, N m.
+    TorqueAt(PointRef, usize),
+}
+
+impl ReactionComponent {
+    /// Whether it is a torque rather than a force.
+    pub fn is_torque(self) -> bool {
+        match self {
+            Self::Torque | Self::TorqueAbout(_) | Self::AxialTorque | Self::TorqueInBody(_) | Self::TorqueAt(..) => {
+                true
+            }
+            Self::Force | Self::ForceAlong(_) | Self::Axial | Self::Radial | Self::ForceInBody(_) => false,
+        }
+    }
+}
+
+/// Which energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyKind {
+    /// The sum of both.
+    Total,
+    /// Of the motion.
+    Kinetic,
+    /// Of gravity and springs.
+    Potential,
+}
+
+/// A coordinate of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum JointCoordinate {
+    /// Angle of the second frame against the first about the joint's axis, rad, never wrapped.
+    Angle,
+    /// Of the second point from the first along the joint's axis, m.
+    Displacement,
+}
+
+/// A joint's coordinate that an effect acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OnJoint {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Which of its coordinates.
+    pub coordinate: JointCoordinate,
+}
+
+impl OnJoint {
+    /// The angle of a joint.
+    pub fn angle(joint: usize) -> Self {
+        Self { joint, coordinate: JointCoordinate::Angle }
+    }
+}
+
+/// Something that an effect measures, by its name; elements may have their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Sensor {
+    name: &'static str,
+    is_motion: bool,
+    has_unit: bool,
+}
+
+impl Sensor {
+    /// Between two points.
+    pub const LENGTH: Self = Self::of_motion("length");
+    /// Of a spring or of teeth.
+    pub const ANGLE: Self = Self::of_motion("angle");
+    /// Between two surfaces.
+    pub const GAP: Self = Self::of_motion("gap");
+    /// Of a length, an angle or a gap.
+    pub const RATE: Self = Self::of_motion("rate");
+    /// Of a joint with friction.
+    pub const LOAD: Self = Self::of_force("load");
+    /// The force.
+    pub const FORCE: Self = Self::of_force("force");
+    /// The torque; of a beam that at its end.
+    pub const TORQUE: Self = Self::of_force("torque");
+    /// Of a beam at its start.
+    pub const START_TORQUE: Self = Self::of_force("start_torque");
+    /// Between two surfaces.
+    pub const FRICTION: Self = Self::of_force("friction");
+    /// Tension between two points, whatever the sign of the effect's own force.
+    pub const AXIAL: Self = Self::of_force("axial");
+
+    /// Of a state; the name of the effect alone stands for it too.
+    pub const VALUE: Self = Self::of_motion("value");
+    /// How fast a state changes.
+    pub const CHANGE: Self = Self::of_force("rate");
+
+    /// Places and parts of the forces that an effect applies at points, for pictures: of each of a few pairs of bodies
+    /// x, y and z of the
+    /// place, then of the force on the second. No formula of a file can have such a name.
+    pub const THRUSTS: [[Self; 6]; 3] = [
+        Self::of_thrust(["<x 0>", "<y 0>", "<z 0>", "<fx 0>", "<fy 0>", "<fz 0>"]),
+        Self::of_thrust(["<x 1>", "<y 1>", "<z 1>", "<fx 1>", "<fy 1>", "<fz 1>"]),
+        Self::of_thrust(["<x 2>", "<y 2>", "<z 2>", "<fx 2>", "<fy 2>", "<fz 2>"]),
+    ];
+
+    const fn of_thrust([x, y, z, fx, fy, fz]: [&'static str; 6]) -> [Self; 6] {
+        let [x, y, z] = [Self::of_force(x), Self::of_force(y), Self::of_force(z)];
+        [x, y, z, Self::of_force(fx), Self::of_force(fy), Self::of_force(fz)]
+    }
+
+    /// What follows from positions, velocities and states alone, so that the effect's own formulas may refer to it.
+    pub const fn of_motion(name: &'static str) -> Self {
+        Self { name, is_motion: true, has_unit: true }
+    }
+
+    /// What follows from the forces.
+    pub const fn of_force(name: &'static str) -> Self {
+        Self { name, is_motion: false, has_unit: true }
+    }
+
+    /// The same where nothing says in which unit.
+    #[must_use]
+    pub const fn of_unknown_unit(self) -> Self {
+        Self { has_unit: false, ..self }
+    }
+
+    /// What pushes a joint's coordinate.
+    pub fn of_effort(coordinate: JointCoordinate) -> Self {
+        match coordinate {
+            JointCoordinate::Angle => Self::TORQUE,
+            JointCoordinate::Displacement => Self::FORCE,
+        }
+    }
+
+    /// Its name, as in `spring.length`.
+    pub const fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// Whether it follows from positions, velocities and states alone.
+    pub fn is_motion(self) -> bool {
+        self.is_motion
+    }
+
+    /// Whether its unit is known.
+    pub fn has_unit(self) -> bool {
+        self.has_unit
+    }
+}
+
+/// An index in a joint, an effect or a value at the start.
+#[derive(Debug)]
+pub enum Reference<'a> {
+    /// Of a body.
+    Body(&'a mut usize),
+    /// Of a body, with one of its points.
+    Point(&'a mut PointRef),
+    /// Of a joint.
+    Joint(&'a mut usize),
+}

@@ -1,0 +1,134 @@
+//! Units that are called like a name of the model, and units behind fractions.
+
+use super::names::{self, Context};
+use super::own_names::{LikeName, OwnNames};
+use super::reader::Reader;
+use super::symbols::SymbolTable;
+use super::unit::{Unit, is_part_of_name};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::Node;
+
+impl<S: SymbolTable> Reader<'_, S> {
+    /// Words of the unit behind a number that the model has as names.
+    pub(super) fn like_names(&self, value: f64, unit: &str, own: Option<&OwnNames>) -> Vec<LikeName> {
+        let words = later_words(unit);
+        let Ok(Unit { dimension: whole, .. }) = Unit::parse(unit) else { return Vec::new() };
+        let is_own = |word: &str| !names::is_reserved(word) && self.is_name(word, own);
+        let like = |(operator, span): (char, Span)| {
+            let word = unit[span.clone()].to_owned();
+            let before = unit[..span.start].trim_end().trim_end_matches(operator).trim_end();
+            let spaced = format!("{value} {before} {operator} {word}");
+            let as_unit = format!("{value} {before} {operator} 1 {word}");
+            let dimension = Unit::parse(&word).ok()?.dimension;
+            is_own(&word).then_some(LikeName { word, spaced, as_unit, dimension, whole })
+        };
+        words.into_iter().filter_map(like).collect()
+    }
+
+    /// What to do where what was read last does not fit: a unit is called like something of the model, or stands behind a fraction.
+    pub(super) fn other_reading(&self, node: &Node) -> Option<String> {
+        let like = self.like_names.last().map(LikeName::help);
+        like.or_else(|| Some(of_fraction(&node.scalar()?.text)?.help()))
+    }
+
+    /// Reports a unit of what was read last that the model's own of that name would fit as well.
+    pub(super) fn refuse_ambiguous(&mut self, node: &Node) {
+        let is_alike = |like: &&LikeName| {
+            let own =
+                self.resolve(&like.word, Context::Output).ok().and_then(|symbol| self.kind_of(symbol).dimension());
+            own == Some(like.dimension)
+        };
+        if let Some(like) = self.like_names.iter().find(is_alike).cloned() {
+            self.report(node, &like);
+        }
+    }
+
+    /// Reports a unit of what was read last that is called like something of the model, where no dimension is asked for.
+    pub fn refuse_like_names(&mut self, node: &Node) {
+        if let Some(like) = self.like_names.first().cloned() {
+            self.report(node, &like);
+        }
+    }
+
+    /// The same for a parameter, which is asked for its dimension where it stands: a torque is one, whatever `m` is.
+    pub fn refuse_odd_units(&mut self, node: &Node) {
+        if let Some(like) = self.like_names.iter().find(|like| !like.whole.is_named()).cloned() {
+            self.report(node, &like);
+        }
+    }
+
+    fn report(&mut self, node: &Node, like: &LikeName) {
+        let message = format!("`{}` is a unit and a name of the model", like.word);
+        let help = format!("write `{}` with spaces for the model's own, `{}` for the unit", like.spaced, like.as_unit);
+        self.error(node.span.clone(), message, help);
+    }
+
+    /// Warns of `3/4 in`, where no dimension is asked for.
+    pub fn warn_of_fraction(&mut self, node: &Node) {
+        let Some(fraction) = node.scalar().and_then(|scalar| of_fraction(&scalar.text)) else { return };
+        let message = format!("`{}` is {}", fraction.text, fraction.meaning());
+        let help = format!("write `{}` where that is meant, `{}` where not", fraction.as_read(), fraction.as_meant());
+        self.diagnostics.push(Diagnostic::warning(node.span.clone(), message).help(help));
+    }
+}
+
+/// `1/12 in^4`, or `(1/12) in^4`.
+pub(super) struct Fraction<'t> {
+    text: &'t str,
+    above: &'t str,
+    below: &'t str,
+    unit: &'t str,
+}
+
+impl Fraction<'_> {
+    fn meaning(&self) -> String {
+        format!("{} over `{} {}`", self.above, self.below, self.unit)
+    }
+
+    fn as_read(&self) -> String {
+        format!("{}/({} {})", self.above, self.below, self.unit)
+    }
+
+    fn as_meant(&self) -> String {
+        format!("{} {}/{}", self.above, self.unit, self.below)
+    }
+
+    /// What to write for a part of a unit.
+    pub(super) fn help(&self) -> String {
+        format!("`{}` is {}; write `{}` for the part of a unit", self.text, self.meaning(), self.as_meant())
+    }
+
+    /// The same where the fraction is in parentheses, behind which no unit stands.
+    pub(super) fn help_in_parentheses(&self) -> String {
+        format!("a unit stands behind a number; write `{}`", self.as_meant())
+    }
+}
+
+/// The fraction of whole numbers that a text is, with a unit behind it.
+pub(super) fn of_fraction(text: &str) -> Option<Fraction<'_>> {
+    let text = text.trim();
+    let inner = text.strip_prefix('(').unwrap_or(text);
+    let (above, rest) = inner.split_once('/')?;
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let rest = rest.trim_start();
+    let length = rest.bytes().take_while(u8::is_ascii_digit).count();
+    let (below, behind) = rest.split_at(length);
+    let unit = behind.trim_start().strip_prefix(')').unwrap_or(behind).trim();
+    let is_one =
+        digits(above.trim()) && digits(below) && Unit::parse(unit).is_ok() && unit.starts_with(char::is_alphabetic);
+    is_one.then_some(Fraction { text, above: above.trim(), below, unit })
+}
+
+/// Words of a unit but the first, each with the operator before it.
+fn later_words(text: &str) -> Vec<(char, Span)> {
+    let mut found = Vec::new();
+    let mut end = 0;
+    while let Some(start) = text[end..].find(|c: char| c.is_alphabetic() || c == '°').map(|start| end + start) {
+        end = text[start..].find(|c: char| !is_part_of_name(c)).map_or(text.len(), |length| start + length);
+        if let Some(operator) = text[..start].trim_end().chars().last().filter(|c| "*·⋅/".contains(*c)) {
+            found.push((operator, start..end));
+        }
+    }
+    found
+}

@@ -1,0 +1,243 @@
+//! Diagnostics of a model with their locations: collected, not thrown one by one.
+
+use std::collections::HashSet;
+use std::fmt;
+
+use serde::Serialize;
+
+use super::source::{Sources, Span, Within};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// The model cannot be used.
+    Error,
+    /// The model can be used, but something is probably not meant as written.
+    Warning,
+}
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// Description in one line.
+    pub message: String,
+    /// Where; absent where the file as a whole is meant.
+    pub span: Option<Span>,
+    /// What stands beside the marker.
+    pub label: Option<String>,
+    /// Other places that explain it, each with its label.
+    pub secondary: Vec<(Span, String)>,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error at a place.
+    pub fn error(span: Span, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            message: message.into(),
+            span: Some(span),
+            label: None,
+            secondary: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// A warning at a place.
+    pub fn warning(span: Span, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(span, message) }
+    }
+
+    /// An error of the file as a whole.
+    pub fn of_file(message: impl Into<String>) -> Self {
+        Self { span: None, ..Self::error(0..0, message) }
+    }
+
+    /// Whether it says that a name stands for nothing.
+    fn is_of_unknown_name(&self) -> bool {
+        self.message.starts_with("unknown ") || self.message.contains("` has no point `")
+    }
+
+    /// With text beside the marker.
+    #[must_use]
+    pub fn label(mut self, label: impl Into<String>) -> Self {
+        self.label = Some(label.into());
+        self
+    }
+
+    /// With what would be right.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<Option<String>>) -> Self {
+        self.help = help.into();
+        self
+    }
+
+    /// With another place that explains it.
+    #[must_use]
+    pub fn also(mut self, span: Span, label: impl Into<String>) -> Self {
+        self.secondary.push((span, label.into()));
+        self
+    }
+}
+
+/// Everything that is wrong, with the texts it is wrong in.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnostics {
+    /// The texts that spans point into; the first is the model file.
+    pub sources: Sources,
+    items: Vec<Diagnostic>,
+    /// Whether names could not be read, so that nothing is known to be unknown.
+    names_lost: bool,
+}
+
+/// A diagnostic for machines (`--format json`).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Record {
+    /// An error or a warning.
+    pub severity: Severity,
+    /// Description of the error.
+    pub message: String,
+    /// Name of the text.
+    pub file: String,
+    /// From 1; absent where the file as a whole is meant.
+    pub line: Option<usize>,
+    /// Characters, from 1.
+    pub column: Option<usize>,
+    /// What would be right.
+    pub help: Option<String>,
+    /// In which instance of an assembly, where it is of one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instance: Option<String>,
+}
+
+impl Diagnostics {
+    /// Nothing wrong yet with this text.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
+        let mut sources = Sources::default();
+        sources.add(name, text);
+        Self { sources, ..Self::default() }
+    }
+
+    /// Adds one that is not there yet; of a copy, with the place of the instance that it is of, and of those around it.
+    pub fn push(&mut self, mut diagnostic: Diagnostic) {
+        // One text may be read several times, one after the other: for each component of its expansion.
+        let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.message == diagnostic.message;
+        if self.names_lost && diagnostic.is_of_unknown_name() || self.items.iter().rev().take(8).any(is_same) {
+            return;
+        }
+        let mut place = diagnostic.span.clone();
+        while let Some(Within { instance, of, span }) = place.and_then(|place| self.sources.within(&place)) {
+            diagnostic.secondary.push((span.clone(), format!("in `{instance}`, an instance of `{of}`")));
+            place = Some(span.clone());
+        }
+        self.items.push(diagnostic);
+    }
+
+    /// Reads a text that is added to the sources, with its places there.
+    pub fn read_more<T>(&mut self, start: usize, text: &str, read: impl FnOnce(&mut Self) -> T) -> T {
+        let mut own = Self::new("", text);
+        let result = read(&mut own);
+        let moved = |span: Span| start + span.start..start + span.end;
+        self.items.extend(own.items.into_iter().map(|found| Diagnostic {
+            // A diagnostic of the whole file points to its beginning.
+            span: Some(moved(found.span.clone().unwrap_or(0..0))),
+            secondary: found.secondary.iter().map(|(span, label)| (moved(span.clone()), label.clone())).collect(),
+            ..found
+        }));
+        result
+    }
+
+    /// Where names belong, there is something else: that was reported, and names that are unknown from now on are not.
+    pub fn names_are_lost(&mut self) {
+        self.names_lost = true;
+    }
+
+    /// Says of the error of a key that is not known which one is missing beside it.
+    pub fn also_missing(&mut self, error: usize, key: &str) {
+        if let Some(found) = self.items.get_mut(error) {
+            let known = found.help.take().map_or_else(String::new, |help| format!("; {help}"));
+            found.help = Some(format!("`{key}` is missing{known}"));
+        }
+    }
+
+    /// How many there are so far.
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Of those behind the `first`: says of names that are unknown because they are left out that they are.
+    pub fn found_without(&mut self, first: usize, left_out: &[String]) {
+        for diagnostic in self.items[first..].iter_mut().filter(|found| found.message.starts_with("unknown ")) {
+            if let Some(name) = left_out.iter().find(|name| diagnostic.message.ends_with(&format!(" `{name}`"))) {
+                diagnostic.help = Some(format!("`{name}` is left out here: leave this out too, or put `{name}` in"));
+            }
+        }
+    }
+
+    /// Of those behind the `first`, which were found in a scene: removes repetitions, and points to the scene
+    /// from the others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
+    pub fn found_in_scene(&mut self, first: usize, name: &Span, whole: &Span) {
+        let found = self.items.split_off(first);
+        let key = |diagnostic: &Diagnostic| (diagnostic.span.clone(), diagnostic.message.clone());
+        let said: HashSet<_> = self.items.iter().map(key).collect();
+        for diagnostic in found.into_iter().filter(|diagnostic| !said.contains(&key(diagnostic))) {
+            let inside =
+                diagnostic.span.as_ref().is_some_and(|span| whole.start <= span.start && span.end <= whole.end);
+            self.items.push(if inside { diagnostic } else { diagnostic.also(name.clone(), "in this scene") });
+        }
+    }
+
+    /// All, in the order in which they stand in the file.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        let mut sorted: Vec<&Diagnostic> = self.items.iter().collect();
+        sorted.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
+        sorted.into_iter()
+    }
+
+    /// Whether there is neither an error nor a warning.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Number of errors.
+    pub fn errors(&self) -> usize {
+        self.items.iter().filter(|diagnostic| diagnostic.severity == Severity::Error).count()
+    }
+
+    /// Whether the model cannot be used.
+    pub fn has_errors(&self) -> bool {
+        self.errors() > 0
+    }
+
+    /// All as plain data, in the order in which they stand in the file.
+    pub fn records(&self) -> Vec<Record> {
+        self.iter().map(|diagnostic| self.record(diagnostic)).collect()
+    }
+
+    fn record(&self, diagnostic: &Diagnostic) -> Record {
+        let located = diagnostic.span.as_ref().and_then(|span| self.sources.locate(span));
+        let source = located.as_ref().map(|(source, _)| *source).or(self.sources.first());
+        let place = located.as_ref().map(|(source, span)| source.place(span.start));
+        Record {
+            severity: diagnostic.severity,
+            message: diagnostic.message.clone(),
+            file: source.map_or_else(String::new, |source| source.name.clone()),
+            line: place.map(|place| place.line),
+            column: place.map(|place| place.column),
+            help: diagnostic.help.clone(),
+            instance: diagnostic.span.as_ref().and_then(|span| Some(self.sources.within(span)?.instance.clone())),
+        }
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Diagnostics {}

@@ -1,0 +1,22 @@
+//! Text → a tree in which every node knows its place, and the diagnostics that point there.
+
+mod commas;
+pub mod diagnostic;
+pub mod frame;
+mod habit;
+mod harmless;
+pub mod mesh_file;
+pub mod mirrors;
+mod not_yaml;
+mod render;
+pub mod scope;
+pub mod source;
+pub mod suggest;
+pub mod text_file;
+mod tree;
+pub mod within;
+pub mod yaml;
+
+pub use diagnostic::{Diagnostics, Record};
+pub use harmless::{harmless, is_harmful};
+pub use text_file::regular;

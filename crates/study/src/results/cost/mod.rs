@@ -1,0 +1,11 @@
+//! A work-precision study as data: what accuracy costs in time.
+
+#[doc(hidden)]
+pub mod example;
+mod front;
+mod method;
+mod study;
+
+pub use front::pareto;
+pub use method::{CostMethod, Integrator};
+pub use study::{CostPoint, CostReference, CostStudy, Deviation, cost_curves};

@@ -1,0 +1,48 @@
+//! What a run yields, as data only.
+
+mod allocation;
+mod analysis;
+mod bounds;
+mod cost;
+mod decisions;
+mod drawing;
+mod effect_cost;
+mod explanation;
+mod merge;
+mod motion;
+mod peaks;
+mod provenance;
+mod reduced;
+mod requirement;
+mod samples;
+mod statistics;
+mod structure;
+mod summary;
+
+pub use crate::methods::{Method, TooDeep};
+pub use allocation::{AllocatedTolerance, Allocation, Criterion, NotMet, ToleranceZone, TradePoint};
+pub use analysis::{AnalysisSummary, ValueSummary};
+pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, foremost};
+#[doc(hidden)]
+pub use cost::example as cost_example;
+pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integrator, cost_curves, pareto};
+pub use decisions::{Decision, Each, Saving};
+pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint, DrawnSolid};
+pub use effect_cost::{EffectCost, StepInstructions};
+pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
+pub use merge::Piece;
+pub use motion::{Motion, MotionPolynomials, MovingForce, MovingSample, Poses};
+pub use peaks::PeakSummary;
+pub use provenance::{ModelFile, Provenance, RunRequest};
+pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};
+pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
+pub use samples::{SampleFormat, SampleTable};
+pub use statistics::{
+    LawSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary,
+    Uncertain, YieldSummary,
+};
+pub use structure::{KindCount, MassRange, MobilityCount, Structure};
+pub use summary::{
+    AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary,
+    SingularSummary, SubsystemSummary, Summary,
+};

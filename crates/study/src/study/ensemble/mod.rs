@@ -1,0 +1,396 @@
+//! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
+
+pub(in crate::study) mod closure;
+mod dense;
+mod jet;
+mod nominal;
+mod progress;
+mod stored;
+mod told;
+
+use std::ops::Range as Rows;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use symdiff::jet::JetSpace;
+use symdiff::taylor_model::ModelSpace;
+
+use super::effort::instructions_of_step;
+use super::reduced::{Store, steps_of};
+use crate::compile::{has_kink, jumps};
+use crate::grammar::quantity::Dimension;
+use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, Until};
+use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
+use crate::simulate::{
+    Certifier, Channel, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SimulationError,
+    Simulator, Stop, choose_independent,
+};
+
+use jet::SampleJet;
+pub(super) use progress::Progress;
+pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
+use told::effort;
+pub(super) use told::stopped_at;
+
+/// Values (rows × lines × samples) that one block holds.
+const BLOCK: usize = 1 << 20;
+
+/// Most rows of a block.
+const MOST_ROWS: usize = 64;
+
+/// A range that is narrower than this, relative to the model's size and the run's duration, is rounding: Newton's iteration ends at 1e-12 or
+/// so.
+const AT_REST: f64 = 1e-10;
+
+/// A mechanism under one schedule.
+pub(super) struct Motions<'a> {
+    pub(super) simulator: &'a Simulator,
+    pub(super) domain: &'a ParameterBox,
+    pub(super) schedule: &'a Schedule,
+    /// Of the steps' local errors, where they are controlled.
+    pub(super) tolerance: Option<Controller>,
+    pub(super) progress: &'a Progress<'a>,
+    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Where outputs are reduced to one number: keeps what samples are reduced to.
+    store: Option<&'a Store>,
+    channels: &'a [Channel],
+    /// Notes all simulated values.
+    ledger: Option<&'a Ledger>,
+    /// Simulations that are over: at the end, or where they stopped.
+    pub(super) over: AtomicUsize,
+    /// Made when something is enclosed.
+    certifier: OnceLock<Certifier<'a>>,
+    /// Which outputs' formulas jump, found when it is asked: every row asks.
+    jumps: OnceLock<Vec<bool>>,
+    /// Where simulations are stored, if they are.
+    stored: Option<Stored<'a>>,
+}
+
+impl<'a> Motions<'a> {
+    /// Of a mechanism over a box.
+    pub fn new(
+        simulator: &'a Simulator,
+        domain: &'a ParameterBox,
+        schedule: &'a Schedule,
+        tolerance: Option<Controller>,
+        progress: &'a Progress<'a>,
+        interrupted: &'a (dyn Fn() -> bool + Sync),
+    ) -> Self {
+        let over = AtomicUsize::new(0);
+        let (certifier, jumps) = (OnceLock::new(), OnceLock::new());
+        let (store, stored, channels, ledger) = (None, None, &[][..], None);
+        Self {
+            simulator,
+            domain,
+            schedule,
+            tolerance,
+            progress,
+            interrupted,
+            store,
+            channels,
+            ledger,
+            over,
+            certifier,
+            jumps,
+            stored,
+        }
+    }
+
+    /// The same, which notes all simulated values.
+    pub fn noting(self, ledger: &'a Ledger) -> Self {
+        Self { ledger: Some(ledger), ..self }
+    }
+
+    /// The same, which also reduces outputs to one number.
+    pub fn keeping(self, store: Option<&'a Store>) -> Self {
+        Self { store, channels: store.map_or(&[], |store| &store.plan.channels), ..self }
+    }
+
+    /// The same, whose simulations are stored.
+    pub fn stored(self, stored: Option<Stored<'a>>) -> Self {
+        Self { stored, ..self }
+    }
+
+    /// The same, which reduces outputs to one number by these channels, for others to keep.
+    pub fn reducing(self, channels: &'a [Channel]) -> Self {
+        Self { channels, ..self }
+    }
+
+    /// By what outputs are reduced to one number.
+    pub fn channels(&self) -> &'a [Channel] {
+        self.channels
+    }
+
+    /// Keeps what outputs of samples were reduced to elsewhere.
+    pub fn keep_reduced(&self, samples: &[Sample], reduced: &[f64]) {
+        if let Some(store) = self.store.filter(|_| !reduced.is_empty()) {
+            store.keep(steps_of(self.schedule), samples, reduced);
+        }
+    }
+
+    /// Steps, and the tolerance of their local errors.
+    pub fn steps(&self) -> (&Schedule, Option<Controller>) {
+        (self.schedule, self.tolerance)
+    }
+
+    /// Instructions of a step of one sample.
+    pub fn instructions_of_step(&self) -> f64 {
+        instructions_of_step(self.simulator)
+    }
+
+    /// Rows of a block with so many lines of so many samples.
+    pub fn rows_a_block(lines: usize, samples: usize) -> usize {
+        (BLOCK / (lines * samples).max(1)).clamp(1, MOST_ROWS)
+    }
+
+    /// As [`Ensemble::simulate`], whether or not simulations are stored.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn simulate_here(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, SimulationError> {
+        if self.simulator.system.analysis.visits() {
+            return self.visit(samples, sampling, reduce);
+        }
+        let mut run = self.start(samples)?;
+        Ok(self.advance(&mut run, samples, sampling, reduce))
+    }
+
+    /// Samples at their start.
+    fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
+        let run = SampleRun::start(self.simulator, samples, self.schedule)?;
+        Ok(run.reducing(self.channels))
+    }
+
+    /// Simulations that are over: at the end, or where they stopped.
+    pub fn over(&self) -> usize {
+        self.over.load(Ordering::Relaxed)
+    }
+
+    fn advance(
+        &self,
+        run: &mut SampleRun,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Simulated {
+        let observed = match sampling.observed {
+            methods::Observed::Outputs => Observed::Outputs,
+            methods::Observed::Motion => Observed::Motion,
+        };
+        let Sampling { until, finish, .. } = sampling;
+        let rows_a_block = Self::rows_a_block(observed.count(self.simulator), samples.len());
+        let mut values = Vec::new();
+        let mut stop: Option<Stop> = None;
+        let mut stopped = Vec::new();
+        let mut next = 0;
+        let goes_on = |stop: &Option<Stop>| stop.is_none() || until == Until::End;
+        while next < self.schedule.rows && goes_on(&stop) && (finish || !self.is_interrupted()) {
+            let rows = next..(next + rows_a_block).min(self.schedule.rows);
+            let stops = run.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
+            stopped.extend(stops.iter().map(|stop| stop.sample));
+            stop = stop.into_iter().chain(stops).min_by_key(|stop| (stop.row, stop.sample));
+            reduce(rows.clone(), &values);
+            self.progress.advance(samples.len() * rows.len());
+            next = rows.end;
+        }
+        let reduced = if next == self.schedule.rows { run.reduced() } else { Vec::new() };
+        self.keep_reduced(samples, &reduced);
+        if next == self.schedule.rows || !goes_on(&stop) {
+            self.over.fetch_add(samples.len(), Ordering::Relaxed);
+        }
+        let reached = match &stop {
+            Some(stop) if until == Until::FirstStop => stop.row,
+            _ => next,
+        };
+        let stop = stop.map(|stop| Stop { open: run.open_constraint(&stop, self.schedule), ..stop });
+        Simulated {
+            effort: effort(run.counters()),
+            beyond_tolerance_from: run.beyond_tolerance_from(),
+            too_deep: run.too_deep().map(|found| self.too_deep(found)),
+            worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
+            stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
+            stopped,
+            reduced,
+            missing: self.schedule.rows - reached,
+        }
+    }
+}
+
+impl Ensemble for Motions<'_> {
+    fn domain(&self) -> &ParameterBox {
+        self.domain
+    }
+
+    fn outputs(&self) -> usize {
+        self.simulator.program.outputs.len()
+    }
+
+    fn rows(&self) -> usize {
+        self.schedule.rows
+    }
+
+    fn time(&self, row: usize) -> f64 {
+        self.schedule.time(row)
+    }
+
+    fn rounding(&self, output: usize) -> f64 {
+        let length = self.simulator.system.length;
+        let duration = self.schedule.output_step * self.schedule.rows as f64;
+        // Accelerations are second differences over steps, and forces are what these do to all masses.
+        let step = self.schedule.first_step();
+        let force = self.simulator.system.mass_of_bodies * length / (duration * step);
+        AT_REST
+            * match self.simulator.system.outputs[output].dimension {
+                Some(Dimension::ANGLE) => 1.0,
+                Some(Dimension::LENGTH) => length,
+                Some(Dimension::ANGULAR_VELOCITY) => 1.0 / duration,
+                Some(Dimension::VELOCITY) => length / duration,
+                Some(Dimension::ANGULAR_ACCELERATION) => 1.0 / (duration * step),
+                Some(Dimension::ACCELERATION) => length / (duration * step),
+                Some(Dimension::FORCE) => force,
+                Some(Dimension::TORQUE) => force * length,
+                _ => 0.0,
+            }
+    }
+
+    fn has_kink(&self, output: usize) -> bool {
+        let system = &self.simulator.system;
+        has_kink(&system.graph, system.outputs[output].expr)
+    }
+
+    fn jumps(&self, output: usize) -> bool {
+        let of_all = || {
+            let system = &self.simulator.system;
+            system.outputs.iter().map(|output| jumps(&system.graph, output.expr)).collect()
+        };
+        self.jumps.get_or_init(of_all)[output]
+    }
+
+    fn seen(&self, row: usize, output: usize) -> Range {
+        self.ledger.map_or(EMPTY, |ledger| ledger.range(row, output))
+    }
+
+    fn is_interrupted(&self) -> bool {
+        (self.interrupted)()
+    }
+
+    fn simulate(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, EnsembleError> {
+        let lines = methods::lines(self, sampling.observed);
+        let mut noted = |rows: Rows<usize>, values: &[f64]| {
+            self.ledger.into_iter().for_each(|ledger| ledger.note(rows.start, (lines, samples.len()), values));
+            reduce(rows, values);
+        };
+        match &self.stored {
+            Some(stored) => Ok(stored.simulate(self, samples, sampling, &mut noted)?),
+            None => Ok(self.simulate_here(samples, sampling, &mut noted)?),
+        }
+    }
+
+    fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
+        Ok(self.dense(samples)?)
+    }
+
+    fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
+        match &self.stored {
+            Some(stored) => Ok(stored.scan(self, grid)?),
+            None => methods::scan(self, grid, |samples, sampling, reduce| self.simulate(samples, sampling, reduce)),
+        }
+    }
+
+    fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
+        let parameters = 0..self.domain.dimension();
+        let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
+        let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
+        if self.simulator.system.analysis.visits() {
+            return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
+        }
+        let box_of_jet = (&center[..], &half_widths[..]);
+        let mut jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
+        let mut values = Vec::new();
+        let mut stop = None;
+        let mut next = 0;
+        while next < self.schedule.rows && stop.is_none() && !self.is_interrupted() {
+            let rows = next..(next + MOST_ROWS).min(self.schedule.rows);
+            stop = jet.advance(self.schedule, rows.clone(), &mut values);
+            reduce(rows.clone(), &values);
+            self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
+            next = rows.end;
+        }
+        if next == self.schedule.rows || stop.is_some() {
+            self.over.fetch_add(1, Ordering::Relaxed);
+        }
+        let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
+        let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
+        Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
+    }
+
+    fn obstacle_to_enclosure(&self) -> Option<String> {
+        if self.simulator.system.analysis.visits() {
+            return Some(format!("`analysis: {}`", self.simulator.system.analysis.name()));
+        }
+        if self.simulator.equilibrium.is_some() {
+            return Some("a start at an equilibrium".to_owned());
+        }
+        let system = &self.simulator.system;
+        if !system.velocity_constraint.is_empty() {
+            return Some(
+                "constraints of velocities, as of joint ".to_owned()
+                    + &system.constraints[system.constraint.len()].joint,
+            );
+        }
+        let effect = system.effects.iter().find(|effect| !effect.enclosed)?;
+        Some(format!("effect {} ({})", effect.name, effect.kind))
+    }
+
+    fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<methods::Lost> {
+        let lost = |time: f64, lost: EnclosureError| {
+            Some(methods::Lost { time, why: lost.to_string(), is_too_wide: lost == EnclosureError::Unproven })
+        };
+        let certifier = self.certifier.get_or_init(|| Certifier::new(self.simulator));
+        let first_step = self.schedule.first_step();
+        let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, first_step) {
+            Ok(enclosure) => enclosure,
+            Err(why) => return lost(0.0, why),
+        };
+        let mut models = Vec::new();
+        for next in 0..self.schedule.rows {
+            if self.is_interrupted() {
+                break;
+            }
+            if let Err((time, why)) = enclosure.advance(self.schedule, next) {
+                return lost(time, why);
+            }
+            if let Err(why) = enclosure.observe(&mut models) {
+                return lost(self.schedule.time(next), why);
+            }
+            row(&models);
+        }
+        None
+    }
+
+    fn scales(&self) -> &[f64] {
+        // Nothing is composed from coordinates then.
+        if self.simulator.system.analysis.visits() {
+            return &[];
+        }
+        &self.simulator.program.scale
+    }
+
+    fn independent(&self, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize> {
+        choose_independent(self.simulator, parameters, motion, time).into_iter().map(|id| id.number()).collect()
+    }
+
+    fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn methods::Closure + '_>, EnsembleError> {
+        Ok(Box::new(closure::MotionClosure::new(self.simulator, independent)?))
+    }
+}

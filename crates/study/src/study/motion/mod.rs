@@ -1,0 +1,268 @@
+//! The motion of all bodies, for a report: nominal, at samples, and as polynomials in the parameters.
+//!
+//! Poses are outputs of the whole model like any other, asked in place of its own: the same equations and the same steps, and nothing of it is in
+//! the program of a run.
+
+mod forces;
+mod rows;
+mod samples;
+mod thinning;
+
+use super::RunError;
+use super::drawing::asked::{Asked, AskedBody, Values};
+use super::drawing::{drawn, extent, has_ground};
+use crate::model::Description;
+use crate::numerics::{Sample, SparseWork, SurrogateWork};
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
+use rows::Rows;
+use samples::Samples;
+use thinning::Thinning;
+
+/// Straight lines between poses are near enough at this share of the model's size.
+const NEAR: f64 = 2e-4;
+
+/// Fewest and most poses.
+const FEWEST: usize = 24;
+const MOST: usize = 600;
+
+/// How a motion is found.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionOptions {
+    /// Threads; all cores where absent. The motion does not depend on them.
+    pub threads: Option<usize>,
+    /// How many numbers of two bytes all poses may come to, about.
+    pub size: usize,
+}
+
+/// Simulates the motion of all bodies.
+///
+/// # Errors
+/// Where the mechanism cannot be built, assembled or stepped.
+pub fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    pool.install(|| {
+        // Its ground is drawn when it is known what the motion passes.
+        let drawing = drawn(description, None)?;
+        let mut posed = Posed::compile(description)?;
+        posed.simulate(description, drawing, options.size)
+    })
+}
+
+/// A model that is asked for its bodies' poses in place of its outputs.
+pub(super) struct Posed {
+    pub(super) rows: Rows,
+    bodies: Vec<AskedBody>,
+    /// Whether bodies leave the plane.
+    spatial: bool,
+}
+
+/// The poses of one sample at every row, and its points.
+#[derive(Clone, Default)]
+struct Recorded {
+    rows: Vec<f64>,
+    points: Vec<f64>,
+    stopped: Option<usize>,
+}
+
+impl Posed {
+    pub(super) fn compile(description: &Description) -> Result<Self, RunError> {
+        let mut asked = Asked::default();
+        let bodies = description.bodies.iter().enumerate();
+        let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
+        Ok(Self { rows: Rows::asking(description, asked)?, bodies, spatial: description.space.spatial })
+    }
+
+    fn per_body(&self) -> usize {
+        if self.spatial { 7 } else { 3 }
+    }
+
+    fn simulate(&mut self, description: &Description, drawing: Drawing, size: usize) -> Result<Motion, RunError> {
+        let samples = Samples::of(&self.rows.domain);
+        let wanted: Vec<Sample> =
+            [&self.rows.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
+        let (times, recorded) = self.record(description, &drawing, &wanted)?;
+        let rows = times.len();
+        let complete = |sample: &Recorded| sample.stopped.is_none_or(|stopped| stopped >= rows);
+        let shown: Vec<usize> = (1..=samples.shown.len()).filter(|&sample| complete(&recorded[sample])).collect();
+        let nodes = &recorded[1 + samples.shown.len()..];
+        let surrogate = samples.surrogate.as_ref().filter(|_| nodes.iter().all(complete));
+
+        let lines = self.per_body() * (self.bodies.len() - 1);
+        let terms = surrogate.map_or(0, |surrogate| surrogate.basis().len());
+        let most = (size / (lines * (2 + shown.len() + terms)).max(1)).clamp(FEWEST, MOST);
+        let weights = self.weights(&recorded[0].points, &drawing);
+        let looked_at: Vec<&[f64]> = [0].iter().chain(&shown).map(|&sample| recorded[sample].rows.as_slice()).collect();
+        let thinning = Thinning { samples: looked_at, weights: &weights };
+        let (kept, between) = thinning.rows(&times, most, NEAR * self.rows.simulator.system.length);
+
+        let poses = |sample: &Recorded| Poses {
+            bodies: kept.iter().flat_map(|row| &sample.rows[row * lines..][..lines]).copied().collect(),
+            points: sample.points.clone(),
+        };
+        let nominal = poses(&recorded[0]);
+        let samples: Vec<MovingSample> = shown
+            .iter()
+            .map(|&sample| MovingSample { values: wanted[sample].to_vec(), poses: poses(&recorded[sample]) })
+            .collect();
+        let polynomials = surrogate.map(|surrogate| {
+            let nodes: Vec<Poses> = nodes.iter().map(poses).collect();
+            let fit = |line: fn(&Poses) -> &Vec<f64>| {
+                let of_nominal = line(&nominal);
+                let mut values = Vec::with_capacity(of_nominal.len() * nodes.len());
+                for (place, nominal) in of_nominal.iter().enumerate() {
+                    values.extend(nodes.iter().map(|node| line(node)[place] - nominal));
+                }
+                surrogate.coefficients(&values, &mut SurrogateWork::default())
+            };
+            let degrees = (0..terms).flat_map(|term| surrogate.basis().degrees(term)).copied().collect();
+            let (bodies, points) = (fit(|poses| &poses.bodies), fit(|poses| &poses.points));
+            let points_of_box: Vec<Vec<f64>> =
+                samples.iter().map(|sample| self.rows.domain.xi(&sample.values.clone().into())).collect();
+            let mut found = vec![0.0; nominal.bodies.len() * samples.len()];
+            surrogate.basis().values(&points_of_box, &bodies, &mut found, &mut SparseWork::default());
+            let lines = found.chunks_exact(samples.len().max(1)).enumerate();
+            let error = lines.flat_map(|(place, found)| {
+                let weight = weights[place % weights.len()];
+                let simulated = samples.iter().map(move |sample| sample.poses.bodies[place]);
+                let base = nominal.bodies[place];
+                found.iter().zip(simulated).map(move |(found, value)| weight * (found + base - value).abs())
+            });
+            let error = error.fold(0.0, f64::max);
+            MotionPolynomials { degrees, error, bodies, points }
+        });
+        let parameters = self.rows.simulator.system.parameters.iter().map(|parameter| ParameterSummary {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            display: description.parameter_units.get(&parameter.name).cloned(),
+            nominal: parameter.nominal,
+            lower: parameter.lower,
+            upper: parameter.upper,
+        });
+        let found_times: Vec<f64> = kept.iter().map(|&row| times[row]).collect();
+        Ok(Motion {
+            times: found_times.clone(),
+            rows,
+            between,
+            per_body: self.per_body(),
+            parameters: parameters.collect(),
+            nominal,
+            stopped: wanted.len() - 1 - nodes.len() - samples.len(),
+            samples,
+            polynomials,
+            forces: forces::forces(description, &found_times),
+            drawing: self.with_ground(description, drawing, &recorded[0].rows)?,
+        })
+    }
+
+    /// The drawing with as much of its ground as the nominal motion passes.
+    fn with_ground(&self, description: &Description, drawing: Drawing, rows: &[f64]) -> Result<Drawing, RunError> {
+        if !has_ground(description) {
+            return Ok(drawing);
+        }
+        drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
+    }
+
+    /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for angles, m.
+    fn weights(&self, points: &[f64], drawing: &Drawing) -> Vec<f64> {
+        let mut points = points.chunks_exact(3);
+        let reach = drawing.bodies.iter().map(|body| {
+            let own = points.by_ref().take(body.points.len() + usize::from(body.center_of_mass.is_some()));
+            own.map(|point| point.iter().map(|x| x * x).sum::<f64>().sqrt()).fold(0.0, f64::max)
+        });
+        let reach: Vec<f64> = reach.collect();
+        let of_body = |reach: f64| {
+            let turning = if self.spatial { vec![2.0 * reach; 4] } else { vec![reach] };
+            std::iter::repeat_n(1.0, self.per_body() - turning.len()).chain(turning)
+        };
+        reach[1..].iter().flat_map(|&reach| of_body(reach)).collect()
+    }
+
+    /// Times of the rows that are looked at, and the poses of every sample there. The nominal sample, the first, reaches all of them.
+    fn record(
+        &self,
+        description: &Description,
+        drawing: &Drawing,
+        wanted: &[Sample],
+    ) -> Result<(Vec<f64>, Vec<Recorded>), RunError> {
+        let mut recorded = vec![Recorded::default(); wanted.len()];
+        let numbers = self.per_body() * (self.bodies.len() - 1);
+        let (times, stopped) = self.rows.of_samples(description, wanted, numbers, |sample, is_first, values| {
+            self.pose(&values, &mut recorded[sample].rows);
+            if is_first {
+                recorded[sample].points = self.points(&values, drawing);
+            }
+        })?;
+        recorded.iter_mut().zip(stopped).for_each(|(recorded, stopped)| recorded.stopped = stopped);
+        Ok((times, recorded))
+    }
+
+    fn pose(&self, values: &Values, into: &mut Vec<f64>) {
+        for body in &self.bodies[1..] {
+            let frame = values.frame(body);
+            let [x, y, z] = frame.position.into();
+            match values.angle(body).filter(|_| !self.spatial) {
+                Some(angle) => into.extend([x, y, angle]),
+                None => {
+                    let turned = frame.rotation.quaternion();
+                    into.extend([x, y, z, turned.w, turned.i, turned.j, turned.k]);
+                }
+            }
+        }
+    }
+
+    /// Points of all bodies in their frames, as [`Poses`] has them.
+    fn points(&self, values: &Values, drawing: &Drawing) -> Vec<f64> {
+        let of_body = |(asked, drawn): (&AskedBody, &crate::results::DrawnBody)| {
+            let named = asked.points.iter().map(|&(point, _)| values.vector(point).into());
+            let origin = (drawn.points.len() > asked.points.len()).then_some([0.0; 3]);
+            let center = asked.center_of_mass.map_or([0.0; 3], |center| values.vector(center).into());
+            let center = drawn.center_of_mass.map(|_| center);
+            named.chain(origin).chain(center).flatten().collect::<Vec<f64>>()
+        };
+        self.bodies.iter().zip(&drawing.bodies).flat_map(of_body).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model;
+
+    fn four_bar() -> Description {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/four_bar.yaml");
+        model::load(&path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+    }
+
+    #[test]
+    fn poses_come_through_the_same_tapes() {
+        let description = four_bar();
+        let whole = crate::study::formulation::compiled(&description).unwrap().program;
+        let posed = Posed::compile(&description).unwrap().rows.simulator.program;
+        let steps = |program: &crate::compile::Program| {
+            [program.step_size(), program.step(), program.factor(), program.correct(), program.advance()]
+                .map(|tape| tape.len())
+        };
+        assert_eq!(steps(&posed), steps(&whole));
+        assert_ne!(posed.observe().len(), whole.observe().len());
+    }
+
+    #[test]
+    fn polynomials_meet_samples_that_they_were_not_made_from() {
+        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 300_000 }).unwrap();
+        let polynomials = motion.polynomials.as_ref().unwrap();
+        assert_eq!((motion.samples.len(), motion.stopped, polynomials.degrees.len()), (12, 0, 30));
+        // Tolerances are half a percent: what a polynomial of degree four leaves is far below a micrometre.
+        assert!(polynomials.error < 1e-7, "{}", polynomials.error);
+        assert!(motion.between < 1e-3, "{}", motion.between);
+        let several = super::motion(&four_bar(), MotionOptions { threads: Some(2), size: 300_000 }).unwrap();
+        assert_eq!(several.nominal.bodies, motion.nominal.bodies);
+        assert_eq!(several.polynomials.unwrap().bodies, polynomials.bodies);
+    }
+
+    #[test]
+    fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
+        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 1 }).unwrap();
+        assert_eq!((motion.times.len(), motion.rows), (FEWEST, 201));
+        assert!(motion.between > 1e-3, "{}", motion.between);
+    }
+}
