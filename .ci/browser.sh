@@ -18,7 +18,7 @@ fi
 : "${CHROMIUM:=$(command -v chromium)}"
 export CHROMIUM
 
-tests/browser/node_modules/.bin/tsc -p src/export/report
+tests/browser/node_modules/.bin/tsc -p crates/export/src/export/report
 if [ -z "${MBINT:-}" ]; then
     cargo build --locked
     MBINT=target/debug/mbint

@@ -54,7 +54,7 @@ mod symbols;
 mod system;
 mod teeth;
 #[cfg(test)]
-pub mod tests;
+pub(crate) mod tests;
 mod thrust;
 mod tree;
 

@@ -11,16 +11,34 @@ use crate::store::without;
 pub enum ExportError {
     /// The folder cannot be made or locked.
     #[error("cannot write into the folder {}: {source}", path.display())]
-    Folder { path: PathBuf, source: io::Error },
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Reason that the system gives.
+        source: io::Error,
+    },
     /// A file cannot be written.
     #[error("cannot write {}: {source}", path.display())]
-    Write { path: PathBuf, source: io::Error },
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Reason that the system gives.
+        source: io::Error,
+    },
     /// A folder has no results.
     #[error("{}, so there are no results to show; name the folder that `mbint run` wrote", without(folder, SUMMARY))]
-    NoResults { folder: PathBuf },
+    NoResults {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// A file of results cannot be read.
     #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: io::Error },
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Reason that the system gives.
+        source: io::Error,
+    },
     /// The table cannot be written as CSV.
     #[error("cannot write the table of bounds: {0}")]
     Csv(#[from] csv::Error),

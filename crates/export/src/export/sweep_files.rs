@@ -15,14 +15,17 @@ use crate::results::{Band, Method, OutputBounds, ReducedBand, ReducedSummary, Re
 
 /// A parameter that is swept.
 pub struct SweepAxis {
+    /// Name of the parameter.
     pub name: String,
     /// As the command line gives it; empty for the model's own.
     pub unit: String,
+    /// Its values, in the unit.
     pub values: Vec<f64>,
 }
 
 /// Results for one value of each.
 pub struct SweepPoint {
+    /// One value per axis, in the unit of the axis.
     pub values: Vec<f64>,
     /// Absent where the run failed.
     pub summary: Option<Summary>,
@@ -30,8 +33,11 @@ pub struct SweepPoint {
 
 /// A sweep; the last axis runs fastest.
 pub struct Sweep {
+    /// Name of the model.
     pub model: String,
+    /// Parameters that are swept.
     pub axes: Vec<SweepAxis>,
+    /// One point per combination of values.
     pub points: Vec<SweepPoint>,
 }
 

@@ -25,7 +25,14 @@ pub const MAX_TERMS: usize = 10_000;
 
 /// What stands in a field: a number with its unit, or a formula.
 pub enum Written {
-    Quantity { value: f64, unit: Unit },
+    /// A number with its unit.
+    Quantity {
+        /// In the unit.
+        value: f64,
+        /// The unit; one where there is none.
+        unit: Unit,
+    },
+    /// A formula.
     Formula(Formula),
 }
 

@@ -47,7 +47,8 @@ macro_rules! __grammar {
 macro_rules! __schema_only {
     ($($item:item)*) => {$(
         #[derive(JsonSchema)]
-        #[allow(dead_code)] // the schema is derived from the variants, which the reader does not make
+        // The schema is derived from the variants, which the reader does not make; those that need words have them.
+        #[allow(dead_code, missing_docs)]
         $item
     )*};
 }

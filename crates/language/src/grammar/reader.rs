@@ -80,7 +80,9 @@ pub struct Lengths {
 /// A function that is given by its values.
 #[derive(Clone, Debug)]
 pub struct Table {
+    /// Name of the function.
     pub name: String,
+    /// Interpolation of its values.
     pub spline: Spline,
     /// Of argument and value, where the file says so.
     pub dimensions: [Option<Dimension>; 2],
@@ -89,6 +91,7 @@ pub struct Table {
 /// Values of all parameters at once.
 #[derive(Clone, Debug)]
 pub struct Corner {
+    /// One value per parameter.
     pub values: Vec<f64>,
     /// ` at l1 = 0.1`; empty for the nominal values.
     pub label: String,

@@ -11,27 +11,74 @@ use crate::grammar::{Mesh, PointRef, Rotation};
 #[serde(tag = "shape", rename_all = "snake_case")]
 pub enum Form<T> {
     /// A box about the origin, and what is within a radius of it.
-    Box { size: [T; 3], radius: T },
+    Box {
+        /// Edges along x, y and z, m.
+        size: [T; 3],
+        /// Rounding of edges and corners, m.
+        radius: T,
+    },
     /// A cylinder about an axis through the origin.
-    Cylinder { axis: [T; 3], length: T, radius: T },
+    Cylinder {
+        /// Direction of the axis.
+        axis: [T; 3],
+        /// Length along the axis, m.
+        length: T,
+        /// Radius, m.
+        radius: T,
+    },
     /// A ball about the origin.
-    Sphere { radius: T },
+    Sphere {
+        /// Radius, m.
+        radius: T,
+    },
     /// What is within a radius of a line.
-    Capsule { ends: [[T; 3]; 2], radius: T },
+    Capsule {
+        /// Ends of the line, m.
+        ends: [[T; 3]; 2],
+        /// Radius, m.
+        radius: T,
+    },
     /// What is within a radius of the convex hull of points.
-    Hull { points: Vec<[T; 3]>, radius: T },
+    Hull {
+        /// Its points, m.
+        points: Vec<[T; 3]>,
+        /// Rounding of edges and corners, m.
+        radius: T,
+    },
     /// A line in x and y, or the plate inside of it where it is closed, and what is within a radius of them.
-    Outline { points: Vec<Bend<T>>, is_closed: bool, thickness: T, radius: T },
+    Outline {
+        /// Its points, m.
+        points: Vec<Bend<T>>,
+        /// Whether the last point is joined to the first.
+        is_closed: bool,
+        /// Extent along z, m.
+        thickness: T,
+        /// Distance around the line, m.
+        radius: T,
+    },
     /// The wall of a hole about an axis.
-    Bore { axis: [T; 3], radius: T },
+    Bore {
+        /// Direction of the axis.
+        axis: [T; 3],
+        /// Radius, m.
+        radius: T,
+    },
     /// All that is below a plane through the origin.
-    HalfSpace { normal: [T; 3] },
+    HalfSpace {
+        /// Direction out of the half space.
+        normal: [T; 3],
+    },
     /// Ground over the origin by its height.
-    Ground { points: Vec<[T; 3]> },
+    Ground {
+        /// Its points, m.
+        points: Vec<[T; 3]>,
+    },
     /// Triangles of a file.
     Mesh {
+        /// Its triangles.
         #[serde(skip)]
         mesh: Mesh,
+        /// Factors along x, y and z.
         scale: [T; 3],
     },
 }

@@ -96,8 +96,11 @@ pub struct Description {
 /// Indices of named items.
 #[derive(Clone, Debug, Default)]
 pub struct Places {
+    /// Of parameters.
     pub parameters: NameIndex,
+    /// Of bodies.
     pub bodies: NameIndex,
+    /// Of joints.
     pub joints: NameIndex,
 }
 

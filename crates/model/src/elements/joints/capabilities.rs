@@ -191,19 +191,44 @@ pub struct Toothed {
 #[derive(Clone, Copy, Debug)]
 pub enum Mobilizer<'a> {
     /// None.
-    Weld { twist: &'a Formula },
+    Weld {
+        /// Angle between the frames about z where the coordinates are zero, rad.
+        twist: &'a Formula,
+    },
     /// Rotation about the axis.
-    Rotation { axis: &'a [Formula; 3] },
+    Rotation {
+        /// Direction of the axis in the first frame.
+        axis: &'a [Formula; 3],
+    },
     /// Translation along the axis.
-    Translation { axis: &'a [Formula; 3], twist: &'a Formula },
+    Translation {
+        /// Direction of the axis in the first frame.
+        axis: &'a [Formula; 3],
+        /// Angle between the frames about z where the coordinates are zero, rad.
+        twist: &'a Formula,
+    },
     /// Rotation about the axis and translation along it.
-    RotationAndTranslation { axis: &'a [Formula; 3] },
+    RotationAndTranslation {
+        /// Direction of the axis in the first frame.
+        axis: &'a [Formula; 3],
+    },
     /// Rotation about the axis with a translation of `pitch` in a turn, m.
-    Helix { axis: &'a [Formula; 3], pitch: &'a Formula },
+    Helix {
+        /// Direction of the axis in the first frame.
+        axis: &'a [Formula; 3],
+        /// Translation in one turn, m.
+        pitch: &'a Formula,
+    },
     /// Rotations about an axis of the first frame and about one of the second, which stay perpendicular.
-    TwoRotations { axes: [&'a [Formula; 3]; 2] },
+    TwoRotations {
+        /// An axis of the first frame and one of the second.
+        axes: [&'a [Formula; 3]; 2],
+    },
     /// Translations across the normal and rotation about it.
-    PlanarMotion { normal: &'a [Formula; 3] },
+    PlanarMotion {
+        /// Normal of the plane in the first frame.
+        normal: &'a [Formula; 3],
+    },
     /// Any rotation; no translation.
     FreeRotation,
 }

@@ -32,7 +32,7 @@ impl Mixture {
     }
 
     /// Number of places.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.places.len()
     }
 

@@ -203,13 +203,13 @@ fn by_directions(k: usize, seen: &Subset, share: f64, slacks: &Slacks) -> Estima
 
 /// Adds places until none of the points that fail is left out. Returns whether one was added.
 fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> bool {
-    let before = mixture.len();
+    let before = mixture.count();
     let mut skipped = vec![false; seen.failing.len()];
     for _ in 0..2 * MOST_PLACES {
         let weights = seen.failing.iter().map(|point| mixture.weight(point));
         let left = weights.enumerate().filter(|(place, _)| !skipped[*place]);
         let Some((far, weight)) = left.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
-        if weight < UNCOVERED * share || mixture.len() >= MOST_PLACES {
+        if weight < UNCOVERED * share || mixture.count() >= MOST_PLACES {
             break;
         }
         skipped[far] = true;
@@ -217,7 +217,7 @@ fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<
             mixture.add(place, MOST_PLACES);
         }
     }
-    mixture.len() > before
+    mixture.count() > before
 }
 
 /// The point nearest to the middle, as far as can be seen from the start, at which nothing is left.
