@@ -34,7 +34,7 @@ impl Equation {
 
 /// M w + Φ_qᵀ λ − Q, n rows, and Φ_q with Ψ_v below it, over the system's symbols. No constraint pushes on states, and
 /// states are given where velocities are made to fulfil Ψ: Ψ_v has no columns of theirs
-/// ([`velocity_constraints_by_states`]).
+/// (`velocity_constraints_by_states`).
 pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
     let n = system.q.len();
     // Conditional forces come last: without them the rows are those of a system that has none.

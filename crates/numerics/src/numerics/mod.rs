@@ -2,8 +2,8 @@
 //!
 //! A method asks for samples of a [`ParameterBox`] in the coordinates ξ ∈ [−1, 1]^k and bounds what comes back:
 //!
-//! - [`ChebyshevBasis`]: responses at its nodes → coefficients → [`PolynomialRange`];
-//! - [`SparseGrid`]: responses at nodes that grow where they are needed → [`SparseTransform`] → coefficients in a
+//! - `ChebyshevBasis`: responses at its nodes → coefficients → [`PolynomialRange`];
+//! - [`SparseGrid`]: responses at nodes that grow where they are needed → `SparseTransform` → coefficients in a
 //!   [`SparseBasis`], for many parameters → [`SobolDecomposition`];
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;

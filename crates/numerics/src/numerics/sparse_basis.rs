@@ -78,8 +78,7 @@ impl SparseBasis {
         Self::closed(grid.dimension(), grid.len(), degrees)
     }
 
-    /// All terms up to `orders[i]` ≤ 255 in parameter i, the last index fastest, as in
-    /// [`ChebyshevBasis`](super::ChebyshevBasis).
+    /// All terms up to `orders[i]` ≤ 255 in parameter i, the last index fastest, as in `ChebyshevBasis`.
     pub fn tensor(orders: &[u8]) -> Self {
         let count = orders.iter().map(|&n| usize::from(n) + 1).product();
         let mut degrees = Vec::with_capacity(count * orders.len());

@@ -48,7 +48,7 @@ pub struct Trajectories<'t> {
     pub times: Vec<f64>,
 }
 
-/// Compiles a model, chooses its steps as a run does, and gives them to `write`, which asks for the samples by [`Trajectories::each`].
+/// Compiles a model, chooses its steps as a run does, and gives them to `write`, which asks for the samples by `Trajectories::each`.
 ///
 /// # Errors
 /// Where the mechanism cannot be built or stepped, and those of `write`.

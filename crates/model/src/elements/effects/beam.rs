@@ -1,5 +1,5 @@
 //! An element of a beam between two frames: Euler and Bernoulli's or Timoshenko's bending, with large rotations. In space it is
-//! that of [`super::spatial_beam`], in the plane
+//! that of `spatial_beam`, in the plane
 //!
 //! ```text
 //! d = r_B − r_A,   ℓ = |d|,   c = d/ℓ          φᵢ: angle from c to the beam's axis aᵢ at its end, fixed in that end's body
