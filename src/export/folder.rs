@@ -14,7 +14,8 @@ use super::replacing::{self, Replacement};
 /// and of two runs into one folder, the files of one remain, not a mixture. None is open but that which is being
 /// written.
 ///
-/// The folder is locked meanwhile: temporary files that are there already are those of a run that was killed, and are removed.
+/// The folder is locked meanwhile: temporary files that are there already are those of a run that was killed, and are
+/// removed.
 pub(super) struct AtomicFiles<'d> {
     dir: &'d Path,
     replacement: Replacement,
@@ -132,7 +133,8 @@ pub fn write_pages(dir: &Path, pages: &[(String, String)]) -> Result<Vec<PathBuf
     files.put_in_place()
 }
 
-/// Creates `dir` if it does not exist, and tests whether a file can be created in it, before a long run rather than after it.
+/// Creates `dir` if it does not exist, and tests whether a file can be created in it, before a long run rather than
+/// after it.
 ///
 /// # Errors
 /// If either fails.
