@@ -42,8 +42,8 @@ impl Row<'_> {
         Extent::at(range, 0.0, ends.map(|sample| self.surrogate.samples()[sample].clone()))
     }
 
-    /// The largest errors of the independent coordinates' polynomials, and of their velocities': those at validation samples, or what the
-    /// polynomials lack; zero of velocities that are not expanded, since no output needs them.
+    /// The largest errors of the independent coordinates' polynomials, and of their velocities': those at validation
+    /// samples, or what the polynomials lack; zero of velocities that are not expanded, since no output needs them.
     pub(super) fn coordinate_errors(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<(usize, f64)> {
         let expanded = self.expanded(points);
         let values = |line: usize| line * points.len()..(line + 1) * points.len();
