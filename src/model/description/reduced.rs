@@ -59,7 +59,8 @@ pub enum ReducedKind {
     LastWhen,
     /// From when on the source stays negative.
     Settling,
-    /// How far it goes beyond its target (the second source; its own value at the end where there is none), seen from its start.
+    /// How far it goes beyond its target (the second source; its own value at the end where there is none), seen from
+    /// its start.
     Overshoot,
     /// The width of the narrowest strip that holds the path of both sources.
     Straightness,
