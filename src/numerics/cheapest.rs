@@ -1,7 +1,9 @@
-//! The cheapest sizes under linearised constraints: min Σ cᵢ/fᵢ subject to gⱼ + Σᵢ hⱼᵢ (fᵢᵖ − aᵢᵖ) ≥ 0 and leastᵢ ≤ fᵢ ≤ mostᵢ.
+//! The cheapest sizes under linearised constraints: min Σ cᵢ/fᵢ subject to gⱼ + Σᵢ hⱼᵢ (fᵢᵖ − aᵢᵖ) ≥ 0 and leastᵢ ≤ fᵢ
+//! ≤ mostᵢ.
 //!
-//! The problem is convex and separable, so that its dual is a concave function of one multiplier for each constraint, whose minimisers
-//! follow from closed forms (C. Fleury, Structural weight optimization by dual methods of convex programming, Int. J. Numer. Meth. Eng. 14 (1979) 1761).
+//! The problem is convex and separable, so that its dual is a concave function of one multiplier for each constraint,
+//! whose minimisers follow from closed forms (C. Fleury, Structural weight optimization by dual methods of convex
+//! programming, Int. J. Numer. Meth. Eng. 14 (1979) 1761).
 
 use symdiff::math;
 
@@ -9,8 +11,8 @@ use symdiff::math;
 const ROUNDS: usize = 400;
 const SETTLED: f64 = 1e-10;
 
-/// Halvings of the logarithm of a multiplier; how far below the first guess it is looked for, and how far above that at which the constraint
-/// alone makes all sizes as small as they may be.
+/// Halvings of the logarithm of a multiplier; how far below the first guess it is looked for, and how far above that at
+/// which the constraint alone makes all sizes as small as they may be.
 const HALVINGS: usize = 80;
 const SMALLEST: f64 = 1e-12;
 const LARGEST: f64 = 1e6;
@@ -106,7 +108,8 @@ pub fn cheapest(
     sizes(&multipliers)
 }
 
-/// The multiplier up to `most` at which a constraint is just fulfilled; its value does not decrease with the multiplier.
+/// The multiplier up to `most` at which a constraint is just fulfilled; its value does not decrease with the
+/// multiplier.
 fn root(with: &mut dyn FnMut(f64) -> f64, before: f64, most: f64) -> f64 {
     let guess = if before > 0.0 { before } else { most.min(1.0) };
     let (mut low, mut high) = (guess, guess);

@@ -49,8 +49,8 @@ struct Factor {
     polynomial: u32,
 }
 
-/// Terms that differ only in their degree along one axis, in the order of that degree, which starts with 0; where there are
-/// at least two.
+/// Terms that differ only in their degree along one axis, in the order of that degree, which starts with 0; where there
+/// are at least two.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fibres {
     terms: Vec<u32>,
@@ -139,8 +139,8 @@ impl SparseBasis {
         is_tensor(&self.orders, self.len())
     }
 
-    /// Indices just beyond the terms: with one of them these stay closed. Only those along axes of a degree that tells what is missing;
-    /// none of a tensor.
+    /// Indices just beyond the terms: with one of them these stay closed. Only those along axes of a degree that tells
+    /// what is missing; none of a tensor.
     pub(super) fn front(&self) -> impl Iterator<Item = &[Before]> {
         self.front.iter().map(Vec::as_slice)
     }

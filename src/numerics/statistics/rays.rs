@@ -1,5 +1,6 @@
-//! Directional sampling: along each direction from the middle, the share that fails follows from where the slack changes its sign (P. Bjerager,
-//! Journal of Engineering Mechanics 114 (1988) 1285). What surrounds the middle, as a sphere does, has nearly the same share along all.
+//! Directional sampling: along each direction from the middle, the share that fails follows from where the slack
+//! changes its sign (P. Bjerager, Journal of Engineering Mechanics 114 (1988) 1285). What surrounds the middle, as a
+//! sphere does, has nearly the same share along all.
 
 use super::normals::farther_than;
 use super::special::normal_quantile;
