@@ -56,7 +56,8 @@ impl Study<'_> {
         }
     }
 
-    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
+    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is
+    /// one.
     pub(super) fn balance(
         &self,
         schedule: &Schedule,
