@@ -1,7 +1,7 @@
 //! Rules about text that neither rustfmt nor clippy checks.
 //!
-//! A rule counts its violations in the tracked files and has a limit. Where a limit is above zero, it is the number that
-//! was there when the rule was written: it may fall, never rise.
+//! A rule counts its violations in the tracked files and has a limit. Where a limit is above zero, it is the number
+//! that was there when the rule was written: it may fall, never rise.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
