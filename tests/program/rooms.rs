@@ -1,4 +1,5 @@
-//! The order of the source: rooms import only what is before them, files of a room form no circles, and no file is long.
+//! The order of the source: rooms import only what is before them, files of a room form no circles, and no file is
+//! long.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
