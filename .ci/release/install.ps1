@@ -1,7 +1,6 @@
 # Installs mbint for Windows:
 #
-#   powershell -ExecutionPolicy ByPass -c "irm https://github.com/mbint/mbint/releases/latest/download/install.ps1 |
-#   iex"
+#   powershell -ExecutionPolicy ByPass -c "irm https://github.com/mbint/mbint/releases/latest/download/install.ps1 | iex"
 #
 # $env:MBINT_INSTALL_DIR is the folder of the program, $env:MBINT_VERSION the version [the latest].
 $ErrorActionPreference = 'Stop'
