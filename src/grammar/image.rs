@@ -28,7 +28,7 @@ pub enum Image {
     SixRows,
     /// A mapping with keys of its own.
     Keys(fn() -> Vec<KeyImage>),
-    /// Nobody says what it is.
+    /// Not declared.
     Unknown,
 }
 
