@@ -62,7 +62,7 @@ impl BoundingMethod for Certified {
     }
 }
 
-/// What is known of a piece: ranges row by row, output by output, as far as they go.
+/// Ranges of a piece, row by row, output by output, as far as they go.
 struct Enclosed {
     piece: ParameterBox,
     ranges: Vec<Range>,

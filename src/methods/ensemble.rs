@@ -1,4 +1,4 @@
-//! What is bounded, as methods see it: outputs over time as functions of the uncertain parameters.
+//! Outputs over time as functions of the uncertain parameters: the quantities that methods bound.
 //!
 //! A method asks an [`Ensemble`] for samples, a jet or an enclosure. It knows neither the mechanism behind it nor its
 //! steps, nor which other methods run.

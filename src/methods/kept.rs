@@ -146,7 +146,7 @@ impl KeptBox {
         sample.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
     }
 
-    /// ξ of a sample; 0 along what has no width.
+    /// ξ of a sample; 0 along parameters without width.
     fn xi(&self, sample: &[f64]) -> Vec<f64> {
         let along = |axis: usize| match self.domain.half_width(axis) {
             half if half > 0.0 => (sample[axis] - self.domain.midpoint(axis)) / half,

@@ -140,7 +140,7 @@ pub trait BoundingMethod: Debug {
         0
     }
 
-    /// What it needs to know of the validation samples.
+    /// The knowledge of the validation samples that it needs.
     fn observes(&self, _problem: &Problem) -> Observed {
         Observed::Outputs
     }

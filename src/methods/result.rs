@@ -22,7 +22,7 @@ pub struct Sensitivity {
     pub width_without: Vec<f64>,
 }
 
-/// A method's bands of all outputs, their errors, and what they took.
+/// A method's bands of all outputs, their errors, and their cost.
 #[derive(Clone, Debug, Default)]
 pub struct MethodResult {
     /// By output and row.
@@ -51,7 +51,7 @@ pub struct MethodResult {
     pub kept: Option<KeptSurrogate>,
 }
 
-/// What is estimated of one output in one row.
+/// Estimates of one output in one row.
 #[derive(Clone, Debug)]
 pub struct Estimate {
     /// The range.

@@ -255,7 +255,7 @@ impl Validation {
         BandError::new(&ranges, &vec![0.0; rows], &time, self.spans[output], None).total
     }
 
-    /// The largest of the outputs' time errors, relative to what is allowed: a share of each output's range.
+    /// The largest of the outputs' time errors, relative to the allowed error: a share of each output's range.
     pub fn worst_share(&self, allowed: f64, rows: usize) -> f64 {
         let share = |output: usize| {
             let span = self.spans[output];

@@ -1,6 +1,6 @@
 //! Chebyshev bounds: a polynomial in the parameters, from samples at Chebyshev nodes, and its range.
 //!
-//! What is expanded are the independent coordinates, from which the outputs follow (`composition`), or the outputs
+//! The independent coordinates are expanded, from which the outputs follow (`composition`), or the outputs
 //! themselves (the paper's). The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too
 //! (`outputs_alone`).
 

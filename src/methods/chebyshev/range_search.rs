@@ -223,7 +223,7 @@ impl Functions<'_> {
     }
 }
 
-/// Intervals of the first lattice along some axes, for polynomials or what is composed of them.
+/// Intervals of the first lattice along some axes, for polynomials or compositions of them.
 fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
     let place = axes.len().clamp(1, MOST_PARAMETERS) - 1;
     let each = if are_polynomials { POLYNOMIAL[place] } else { COMPOSED[place] };

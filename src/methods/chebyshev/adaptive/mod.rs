@@ -34,7 +34,7 @@ const ADDED: f64 = 0.3;
 const TOGETHER: usize = 8;
 const GROWTH: usize = 8;
 
-/// Share of what is left of the budget that is kept for new validation samples, at most.
+/// Largest share of the remaining budget that is reserved for new validation samples.
 const KEPT_FREE: usize = 2;
 
 /// A surrogate that a value contradicts which was simulated elsewhere is refined until its nodes have grown by this

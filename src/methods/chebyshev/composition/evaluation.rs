@@ -113,8 +113,8 @@ impl Row<'_> {
     }
 
     /// Some outputs with the motion moved in some ways, output by output, way by way, point by point. All outputs
-    /// follow together from a motion, a few points at a time: memory grows with what is asked for, not with all outputs
-    /// times all points.
+    /// follow together from a motion, a few points at a time: memory grows with the outputs asked for, not with all
+    /// outputs times all points.
     pub fn evaluate_some(&self, outputs: &[usize], points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
         let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
         let (count, ways_count) = (points.len(), ways.len());

@@ -1,4 +1,4 @@
-//! Composition: what is expanded is what is smooth. The independent coordinates and their velocities become polynomials
+//! Composition: the smooth functions are expanded. The independent coordinates and their velocities become polynomials
 //! of the parameters; every output follows from them through the loop closure and its own formula.
 //!
 //! Where an output that is composed in this way is the same polynomial as the one through its own samples, that
@@ -46,7 +46,7 @@ pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
     parameters > 0 && (1..=MOST_COORDINATES).contains(&coordinates)
 }
 
-/// One mechanism's closures, and what is evaluated through them.
+/// One mechanism's closures, and the functions that are evaluated through them.
 pub(super) struct Composer<'a> {
     ensemble: &'a dyn Ensemble,
     /// Those used so far.
