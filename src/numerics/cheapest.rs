@@ -20,7 +20,7 @@ const LARGEST: f64 = 1e6;
 /// A constraint about the sizes at which it was linearised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linear {
-    /// Its value there; what is negative is not fulfilled.
+    /// Its value there; a negative one is not fulfilled.
     pub value: f64,
     /// Derivatives with respect to the p-th powers of the sizes.
     pub slopes: Vec<f64>,
@@ -162,7 +162,7 @@ mod tests {
         assert!((found[0] - 0.25).abs() < 1e-8 && (found[1] - 0.75).abs() < 1e-8, "{found:?}");
         let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &constraints), (&[0.01; 2], &[10.0, 0.5]));
         assert!((found[0] - 0.25).abs() < 1e-8 && found[1] == 0.5, "{found:?}");
-        // What sizes do not change, and what they change hardly at all, leaves the others as they are.
+        // A constraint that sizes do not change, or hardly change, leaves the others as they are.
         for slope in [0.0, -0.0, -1e-300] {
             let with_flat = [constraints[0].clone(), Linear { value: -1.0, slopes: vec![slope; 2] }];
             let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &with_flat), (&[0.01; 2], &[10.0, 0.5]));

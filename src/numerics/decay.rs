@@ -1,8 +1,8 @@
 //! What a polynomial lacks, by how its coefficients decay.
 //!
-//! Chebyshev coefficients of an analytic response fall as ρ^−j. What they have fallen to from the middle degree to the
-//! highest tells ρ, and what is missing beyond is the rest of the geometric series. Where they do not fall, as at a
-//! narrow resonance, it is large, whatever the samples between the nodes say.
+//! Chebyshev coefficients of an analytic response fall as ρ^−j. Their fall from the middle degree to the highest gives
+//! ρ, and the missing terms beyond are the rest of the geometric series. Where they do not fall, as at a narrow
+//! resonance, it is large, whatever the samples between the nodes say.
 
 use symdiff::math;
 

@@ -54,13 +54,12 @@ pub struct BandError {
     pub time: f64,
     /// Rows whose bounds cannot be relied on.
     pub unresolved: Vec<bool>,
-    /// Rows that are so for nothing but the size of their error, which is known: large beside the band, or beside what
-    /// is asked for.
+    /// Rows that are so only for the size of their error, which is known: large relative to the band or to the
+    /// tolerance asked for.
     pub coarse: Vec<bool>,
 }
 
-/// Largest difference between what a surrogate says of the validation samples and what they do; unknown where either
-/// is.
+/// Largest difference between a surrogate and the validation samples; unknown where either value is.
 pub fn surrogate_error(surrogate: &[f64], direct: &[f64]) -> f64 {
     largest(surrogate.iter().zip(direct).map(|(surrogate, direct)| surrogate - direct))
 }
@@ -119,14 +118,14 @@ impl BandError {
                 }
             });
         }
-        // Of what has no number nothing is known.
+        // An error that is not finite has no known size.
         let coarse =
             unresolved.iter().zip(&total).map(|(&unresolved, total)| unresolved && total.is_finite()).collect();
         Self { total, surrogate: largest(surrogate), time: largest(time), unresolved, coarse }
     }
 
     /// Rows whose range and error leave out a value that was simulated, given from the least to the largest of these:
-    /// one of the two is wrong. What is outside by rounding only is added to the error.
+    /// one of the two is wrong. An excess by rounding only is added to the error.
     pub fn contradicted(&mut self, ranges: &[Range], simulated: &[Range]) -> Vec<bool> {
         let mut contradicted = vec![false; ranges.len()];
         for (row, (range, simulated)) in ranges.iter().zip(simulated).enumerate() {
@@ -223,7 +222,7 @@ mod tests {
         let ranges = vec![Range { lower: 0.3, upper: 0.3 }; 2];
         assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[2e-3; 2], 1.0, None).unresolved, [false; 2]);
         assert_eq!(BandError::new(&ranges, &[1e-2; 2], &[2e-3; 2], 1.0, None).unresolved, [true; 2]);
-        // What was never seen has no span, and no error either.
+        // An output that was never seen has no span, and no error either.
         assert_eq!(BandError::new(&ranges, &[0.0; 2], &[f64::NAN; 2], 0.0, None).unresolved, [true; 2]);
         // At rest, to rounding.
         assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[1e-16; 2], 0.0, None).unresolved, [false; 2]);

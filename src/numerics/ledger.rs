@@ -20,7 +20,7 @@ impl Ledger {
     }
 
     /// Takes in consecutive rows' values, line by line, sample by sample; the outputs are the last of `lines` lines.
-    /// NaN, of samples that stopped, does not count, nor what is infinite.
+    /// NaN, of samples that stopped, does not count, nor do infinite values.
     pub fn note(&self, first: usize, (lines, samples): (usize, usize), values: &[f64]) {
         let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
         let known = ends.chunks_exact_mut(self.outputs.max(1)).skip(first);

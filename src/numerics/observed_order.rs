@@ -1,8 +1,8 @@
 //! The order at which three steps of different length agree: what the error by halving is worth.
 //!
 //! With an error C hᵠ, steps h, h/2 and r h give differences in the ratio ρ = (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ). Where q is not near
-//! 2, the error is not what a second-order scheme's would be: steps are too long for what they resolve, or the motion
-//! is not smooth.
+//! 2, the error is not that of a second-order scheme: steps are too long for the motion that they resolve, or the
+//! motion is not smooth.
 
 use symdiff::math;
 

@@ -32,8 +32,8 @@ impl Range {
         if self.contains(value) { 0.0 } else { (self.lower - value).max(value - self.upper) }
     }
 
-    /// Widened to values from the least to the largest of others; what is unknown stays so, and of none nothing
-    /// follows.
+    /// Widened to values from the least to the largest of others; an unknown range stays unknown, and an empty one
+    /// changes nothing.
     pub fn with(self, others: Self) -> Self {
         if self.lower.is_nan() || others == EMPTY {
             return self;

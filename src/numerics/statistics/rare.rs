@@ -20,7 +20,7 @@ const TOWARD: usize = 256;
 const PLACES: usize = 6;
 const MOST_PLACES: usize = 48;
 
-/// An interval that is this share of what it is of is good enough.
+/// A sampling error of at most this share of the value is small enough.
 const CLOSE: f64 = 5e-3;
 
 /// The narrowest of several intervals is too narrow by chance: so much wider is each.
@@ -73,7 +73,7 @@ pub struct RareShare {
     /// Its 95 % confidence interval, from what fails if errors help to what fails if they harm; unknown (NaN) where
     /// methods contradict one another.
     pub interval: [f64; 2],
-    /// By what it was found.
+    /// The method that found it.
     pub method: RareMethod,
     /// Samples that this took.
     pub samples: usize,

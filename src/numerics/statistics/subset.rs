@@ -94,7 +94,7 @@ fn chains(
     (points, values)
 }
 
-/// What has no value fails.
+/// The values with −∞ in place of NaN, so that unknown values fail.
 fn known(values: Vec<f64>) -> Vec<f64> {
     values.into_iter().map(|value| if value.is_nan() { f64::NEG_INFINITY } else { value }).collect()
 }
