@@ -15,7 +15,7 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let found = &outcome.result.bands[output][..rows];
         let is_sampled = method.about().is_sampled;
-        // What is proven needs no samples. (It may miss them by the rounding of the steps' equations.)
+        // A proven band needs no samples. (It may miss them by the rounding of the steps' equations.)
         let widened = |(range, simulated): (&Range, &Range)| if is_sampled { range.with(*simulated) } else { *range };
         let ranges: Vec<Range> = found.iter().zip(&simulated).map(widened).collect();
         let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);

@@ -1,4 +1,4 @@
-//! A model's subsystems, reduced to what is simulated and compiled.
+//! A model's subsystems, reduced to the parts that are simulated, and compiled.
 
 use symdiff::Formula;
 

@@ -1,4 +1,4 @@
-//! Schedules that resolve what they can, and the samples that tell the error of their steps.
+//! Schedules that resolve as much as they can, and the samples that measure the error of their steps.
 
 use super::ensemble::Progress;
 use super::single::{Study, problem, simulation_error, validation_summary};
