@@ -114,7 +114,7 @@ impl SetArgs {
     /// What is said of models; every parameter is set at most once.
     ///
     /// # Errors
-    /// For the first that is set twice, and for what is wrong with a file.
+    /// For the first that is set twice, and for errors of a file.
     pub fn given(&self) -> Result<Given, Failure> {
         Ok(Given { overrides: overlaid(&self.with, &self.set)?, root: self.files.root.clone() })
     }
@@ -123,7 +123,7 @@ impl SetArgs {
 /// What files and settings set; settings go before.
 ///
 /// # Errors
-/// For the first parameter that is set twice, and for what is wrong with a file.
+/// For the first parameter that is set twice, and for errors of a file.
 pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec<Override>, Failure> {
     let mut laid: Vec<Override> = Vec::new();
     for path in with {
