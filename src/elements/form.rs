@@ -10,17 +10,17 @@ use crate::grammar::{Mesh, PointRef, Rotation};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "shape", rename_all = "snake_case")]
 pub enum Form<T> {
-    /// A box about the origin, and what is within a radius of it.
+    /// A box about the origin, and all points within a radius of it.
     Box { size: [T; 3], radius: T },
     /// A cylinder about an axis through the origin.
     Cylinder { axis: [T; 3], length: T, radius: T },
     /// A ball about the origin.
     Sphere { radius: T },
-    /// What is within a radius of a line.
+    /// All points within a radius of a line.
     Capsule { ends: [[T; 3]; 2], radius: T },
-    /// What is within a radius of the convex hull of points.
+    /// All points within a radius of the convex hull of points.
     Hull { points: Vec<[T; 3]>, radius: T },
-    /// A line in x and y, or the plate inside of it where it is closed, and what is within a radius of them.
+    /// A line in x and y, or the plate inside of it where it is closed, and all points within a radius of them.
     Outline { points: Vec<Bend<T>>, is_closed: bool, thickness: T, radius: T },
     /// The wall of a hole about an axis.
     Bore { axis: [T; 3], radius: T },

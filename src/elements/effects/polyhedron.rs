@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Two convex polyhedra are nearest at a corner of one of them or where two edges cross. Where faces lie on one another
-//! these are the corners of what both faces share. Distances of edges have no sign: crossing edges may be as deep as ρ +
-//! r. Each push is the gradient of an energy of its own distance, so that the sum keeps energy, also while a corner
+//! these are the corners of what both faces share. Distances of edges have no sign: crossing edges may be as deep as
+//! ρ + r. Each push is the gradient of an energy of its own distance, so that the sum keeps energy, also while a corner
 //! passes over an edge.
 
 use std::rc::Rc;
