@@ -33,7 +33,7 @@ impl<'d> AtomicFiles<'d> {
     /// replaced.
     ///
     /// # Errors
-    /// As [`prepare_folder`], or where what was left cannot be replaced.
+    /// As [`prepare_folder`], or if the files left there cannot be replaced.
     pub fn in_folder(dir: &'d Path) -> Result<Self, ExportError> {
         prepare_folder(dir)?;
         let folder = fs::File::open(dir).ok();
@@ -50,7 +50,7 @@ impl<'d> AtomicFiles<'d> {
     /// Writes a file to the disk, not yet under its name.
     ///
     /// # Errors
-    /// If it cannot be written; what was written is deleted with `self`.
+    /// If it cannot be written; files already written are deleted with `self`.
     pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), ExportError> {
         let written = self.replacement.add(name, contents);
         written.map_err(|source| ExportError::Write { path: self.dir.join(name), source: plain(source) })?;

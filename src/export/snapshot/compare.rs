@@ -91,7 +91,7 @@ fn ends(times: &[String]) -> String {
     }
 }
 
-/// The time at which a curve moved most, relative to the allowance; `None` if it did not. `what` is left empty.
+/// The time at which a curve moved most, relative to the allowance; `None` if it did not. The field `what` stays empty.
 fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)]) -> Option<Moved> {
     let earlier = then.curve(&curve.method, curve.kind)?;
     let mut worst: Option<(f64, Moved)> = None;
