@@ -206,7 +206,8 @@ impl Balanced {
     }
 }
 
-/// The vector that A − μ makes smallest, as real equations, of twice the size where μ is not real; its largest part is 1.
+/// The vector that A − μ makes smallest, as real equations, of twice the size where μ is not real; its largest
+/// part is 1.
 fn inverse_iteration(matrix: &DMatrix<f64>, near: Complex<f64>, begin: &[f64]) -> Option<Vec<Complex<f64>>> {
     let size = matrix.nrows();
     let parts = if near.im == 0.0 { 1 } else { 2 };
