@@ -26,8 +26,8 @@ fn top(bounds: &Bounds, from: f64, to: f64) -> f64 {
     curve(bounds, "height")[row(bounds, from)..row(bounds, to)].iter().copied().fold(0.0, f64::max)
 }
 
-/// A ball on a Hertzian floor that takes nothing: the energy is m g h throughout, the depth δ with K δ^2.5/2.5 = m g (h +
-/// δ), the force the weight where it stays.
+/// A ball on a Hertzian floor that takes nothing: the energy is m g h throughout, the depth δ with K δ^2.5/2.5 = m g
+/// (h + δ), the force the weight where it stays.
 #[test]
 fn an_elastic_ball_keeps_its_energy() {
     let description = ball("{ stiffness: 1e6 }");

@@ -221,8 +221,8 @@ fn sticks_and_slips(coulomb: f64, fading: f64, output_step: f64, rows: usize) ->
     dormand_prince(law, [0.0, BELT], output_step, rows, 1e-12).iter().map(|y| y[0]).collect()
 }
 
-/// It sticks until the spring pulls by F_s, then slides to and fro about F_k/k: with an amplitude of √((F_s − F_k)²/k² +
-/// (v/ω)²), where the excess fades at once.
+/// It sticks until the spring pulls by F_s, then slides to and fro about F_k/k: with an amplitude of
+/// √((F_s − F_k)²/k² + (v/ω)²), where the excess fades at once.
 #[test]
 fn a_mass_on_a_belt_sticks_and_slips_as_far_as_it_should() {
     let excess = COULOMB * (BREAKAWAY - 1.0) / STIFFNESS;
