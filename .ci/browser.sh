@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Reports in a browser: their scripts' types, then tests in Chromium. `.ci/browser.sh pictures` makes the book's pictures of
-# reports again instead. Needs node and npm; Chromium and two packages of npm are installed where they are missing.
-# MBINT is the program (target/debug/mbint, built here, by default), CHROMIUM the browser.
+# Reports in a browser: their scripts' types, then tests in Chromium. `.ci/browser.sh pictures` makes the book's
+# pictures of reports again instead. Needs node and npm; Chromium and two packages of npm are installed where they are
+# missing. MBINT is the program (target/debug/mbint, built here, by default), CHROMIUM the browser.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs Debian's packages where commands are missing, as root or by sudo. Where that cannot be, it says what is missing and why.
+# Installs Debian's packages where commands are missing, as root or by sudo. Where that cannot be, it says what is
+# missing and why.
 #
 #   .ci/install.sh "COMMAND..." PACKAGE...
 set -uo pipefail

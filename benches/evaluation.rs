@@ -1,5 +1,5 @@
-//! The slider crank's tapes over tiles of every width. Divan's items are operations times samples, so that the reciprocal
-//! of the throughput is the time of an operation for a sample.
+//! The slider crank's tapes over tiles of every width. Divan's items are operations times samples, so that the
+//! reciprocal of the throughput is the time of an operation for a sample.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 

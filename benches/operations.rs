@@ -1,4 +1,5 @@
-//! The operations of a step by kind, of every shipped model: `cargo bench -p mbint-benches --bench operations`. They do not depend on the machine.
+//! The operations of a step by kind, of every shipped model: `cargo bench -p mbint-benches --bench operations`. They do
+//! not depend on the machine.
 
 mod models;
 

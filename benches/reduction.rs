@@ -1,5 +1,5 @@
-//! What is not asked for costs nothing: a model with ten more bodies and a scene that leaves effects out against the bare one, and
-//! islands apart against the same in one.
+//! What is not asked for costs nothing: a model with ten more bodies and a scene that leaves effects out against the
+//! bare one, and islands apart against the same in one.
 //!
 //! The median of the pairs' ratios is printed, with the quartiles.
 

@@ -1,4 +1,5 @@
-//! What this package's own binary, tests and benches use of the rooms. Not part of the library: it may change with any version.
+//! What this package's own binary, tests and benches use of the rooms. Not part of the library: it may change with any
+//! version.
 
 pub mod assemble {
     pub use crate::assemble::{build, in_absolute_coordinates, in_joint_coordinates};

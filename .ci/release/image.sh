@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# That a static program needs nothing beside it: it is alone in a root of its own, and in an image, where something here builds images.
+# That a static program needs nothing beside it: it is alone in a root of its own, and in an image, where something here
+# builds images.
 #
 #   .ci/release/image.sh PROGRAM
 set -euo pipefail

@@ -3,7 +3,8 @@
 #
 #   curl --proto '=https' --tlsv1.2 -LsSf https://github.com/mbint/mbint/releases/latest/download/install.sh | sh
 #
-# MBINT_INSTALL_DIR is the folder of the program [~/.local/bin], MBINT_VERSION the version [the latest], MBINT_DOWNLOAD where archives are.
+# MBINT_INSTALL_DIR is the folder of the program [~/.local/bin], MBINT_VERSION the version [the latest], MBINT_DOWNLOAD
+# where archives are.
 set -eu
 
 folder=${MBINT_INSTALL_DIR:-$HOME/.local/bin}

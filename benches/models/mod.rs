@@ -16,8 +16,8 @@ pub fn slider_crank() -> Description {
     read("slider_crank.yaml", include_str!("../../models/slider_crank.yaml"))
 }
 
-/// The IFToMM benchmark's chain of four-bar loops: 2N+1 uniform bars of 1 m and 1 kg, the upper end of the first moving at
-/// 1 m/s, under gravity.
+/// The IFToMM benchmark's chain of four-bar loops: 2N+1 uniform bars of 1 m and 1 kg, the upper end of the first moving
+/// at 1 m/s, under gravity.
 pub fn four_bar(loops: usize) -> Description {
     read("four_bar.yaml", &four_bar_yaml(loops))
 }

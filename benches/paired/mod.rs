@@ -1,5 +1,5 @@
-//! Two runs compared on a machine that does other things too: in turn, each first as often as the other. A model against itself
-//! shows what the clock knows.
+//! Two runs compared on a machine that does other things too: in turn, each first as often as the other. A model
+//! against itself shows what the clock knows.
 
 use std::time::Instant;
 

@@ -1,4 +1,5 @@
-//! The same scheme as anyone would write it: one sample, residual and Newton matrix by hand, full Newton with nalgebra's LU.
+//! The same scheme as anyone would write it: one sample, residual and Newton matrix by hand, full Newton with
+//! nalgebra's LU.
 //!
 //! M w₊ + Φ_qᵀ λ₊ − Q = 0,  Φ / (βh²(1+α)) = 0,  as in `crates/engine/src/compile/newton_matrix.rs`.
 

@@ -6,8 +6,8 @@ use super::{Error, Model, Value};
 /// Sections in the order in which they are written.
 const SECTIONS: [&str; 7] = ["parameters", "bodies", "joints", "effects", "initial", "guess", "outputs"];
 
-/// A model in the making. Keys and values are those of a model file, so that every kind of joint, effect and bounds can be
-/// used, and [`build`](Self::build) makes the same checks, with the same messages, as reading a file.
+/// A model in the making. Keys and values are those of a model file, so that every kind of joint, effect and bounds can
+/// be used, and [`build`](Self::build) makes the same checks, with the same messages, as reading a file.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
     name: String,

@@ -34,7 +34,8 @@ impl Model {
         Self::read(Origin::File { path: path.as_ref().to_owned(), root: None }, Vec::new(), None)
     }
 
-    /// Like [`Model::from_file`], where the model may also name files of another folder or below: robots, tables, meshes, included files.
+    /// Like [`Model::from_file`], where the model may also name files of another folder or below: robots, tables,
+    /// meshes, included files.
     ///
     /// # Errors
     /// [`Error::Model`]: everything that is wrong with the files.

@@ -45,7 +45,8 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// The smallest and largest values on a grid with so many points a parameter: points^k simulations, always too narrow.
+    /// The smallest and largest values on a grid with so many points a parameter: points^k simulations, always too
+    /// narrow.
     #[must_use]
     pub fn scan(mut self, points: usize) -> Self {
         let request = Scan::of_points(points, self.parameters());
@@ -115,7 +116,8 @@ impl<'a> Study<'a> {
     /// see [`StudyResult::failure`].
     ///
     /// # Errors
-    /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, or a method would need too many simulations.
+    /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, or a method would need too many
+    /// simulations.
     pub fn run(self) -> Result<StudyResult, Error> {
         let (bounds, summary) = run(&self.description, self.options)?;
         Ok(StudyResult::new(bounds, summary))

@@ -118,7 +118,8 @@ pub(super) struct RunArgs {
     #[arg(long)]
     pub overwrite: bool,
 
-    /// Text for people, or one JSON array with an object for each model and scene, its summary in it; all else goes to standard error.
+    /// Text for people, or one JSON array with an object for each model and scene, its summary in it; all else goes to
+    /// standard error.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 
@@ -257,7 +258,8 @@ quarters and along the three axes. Uncertain lengths of bodies have their tolera
 
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {
-    /// The model's name, with folders before it if wanted, which are made; writes NAME.yaml and never overwrites a file.
+    /// The model's name, with folders before it if wanted, which are made; writes NAME.yaml and never overwrites a
+    /// file.
     #[arg(value_name = "NAME")]
     pub name: PathBuf,
 }

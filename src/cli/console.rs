@@ -1,7 +1,8 @@
 //! Standard output and standard error: text for people, JSON, errors.
 //!
-//! This is the one way to the terminal. Texts hold names from files, which could hold what a terminal obeys; they are made harmless here.
-//! Styles are therefore not in a text as the terminal's own sequences but as marks, which become those afterwards.
+//! This is the one way to the terminal. Texts hold names from files, which could hold what a terminal obeys; they are
+//! made harmless here. Styles are therefore not in a text as the terminal's own sequences but as marks, which become
+//! those afterwards.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;

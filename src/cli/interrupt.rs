@@ -1,5 +1,5 @@
-//! Ctrl-C, and the signals of a system that ends a program: while there are results to keep, the first asks a run to keep them and end,
-//! and the second ends the program at once; before, as while a model is compiled, the first does.
+//! Ctrl-C, and the signals of a system that ends a program: while there are results to keep, the first asks a run to
+//! keep them and end, and the second ends the program at once; before, as while a model is compiled, the first does.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

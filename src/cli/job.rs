@@ -44,7 +44,8 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     done
 }
 
-/// A model's bounds, with a bar of the progress meanwhile. What takes too long is [`Failure::Wrong`], and was not begun.
+/// A model's bounds, with a bar of the progress meanwhile. What takes too long is [`Failure::Wrong`], and was not
+/// begun.
 pub(super) fn bounds(
     model: &Description,
     settings: &Settings,

@@ -59,7 +59,8 @@ impl KeptRun {
         format!("{} in {} ({})", count(parts, "part", "parts"), self.folder.display(), HumanBytes(bytes))
     }
 
-    /// Notes what a job left to shards: of which model, and of which scene of it. Whether its results are complete and to be written.
+    /// Notes what a job left to shards: of which model, and of which scene of it. Whether its results are complete and
+    /// to be written.
     pub fn close(&self, (model, scene): (usize, Option<&str>), store: &PartStore) -> bool {
         let deferred = store.deferred();
         self.shards.borrow_mut().extend(Shard::of(model, scene, &deferred, self.shard_seconds));

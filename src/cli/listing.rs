@@ -1,4 +1,5 @@
-//! `mbint explain --units`, `--functions`, `--outputs`, `--exit-codes`: what the language offers, from the tables of the code.
+//! `mbint explain --units`, `--functions`, `--outputs`, `--exit-codes`: what the language offers, from the tables of
+//! the code.
 
 use super::Failure;
 use super::console::to_json;

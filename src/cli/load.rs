@@ -43,8 +43,8 @@ pub(super) struct Model {
     pub texts: Rc<[(String, String)]>,
 }
 
-/// Reads all models and chooses their scenes: those of these names, or all. If any model has errors, the errors of all models
-/// are reported and there is no result.
+/// Reads all models and chooses their scenes: those of these names, or all. If any model has errors, the errors of all
+/// models are reported and there is no result.
 ///
 /// # Errors
 /// For a name that is no scene of a model.

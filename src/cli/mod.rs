@@ -1,4 +1,5 @@
-//! The command line: `args` reads the arguments, and one file a command checks and executes them. `status` has the exit codes.
+//! The command line: `args` reads the arguments, and one file a command checks and executes them. `status` has the exit
+//! codes.
 
 mod allocate;
 mod args;

@@ -3,7 +3,8 @@
 use super::Status;
 use crate::results::{Bounds, OutputBounds, ReducedSummary, Summary};
 
-/// Whether everything that was asked is answered: every output at every time by some method, every reduced output, and every statistic.
+/// Whether everything that was asked is answered: every output at every time by some method, every reduced output, and
+/// every statistic.
 pub(super) fn resolution(bounds: &Bounds, summary: &Summary) -> Status {
     // One reliable method is enough.
     let answered = |output: &OutputBounds| {

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use crate::grammar::JointCoordinate;
 use crate::model::{Description, ParameterValue, TreeJoint, TreeLink};
 
-/// A line a link: the joint that leads to it, its mass, and the uncertain values of both. Empty where there is no robot.
+/// A line a link: the joint that leads to it, its mass, and the uncertain values of both. Empty where there is no
+/// robot.
 pub(super) fn of(model: &Description) -> String {
     let Some(robot) = &model.robot else { return String::new() };
     let mut text = String::new();

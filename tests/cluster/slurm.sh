@@ -3,8 +3,9 @@
 #
 #   tests/cluster/slurm.sh PROGRAM
 #
-# A shard's process is killed, the node is lost for ten seconds, and a job array is cancelled and submitted again; each time the merged
-# results have to be those of `mbint run`, byte for byte. Needs Debian's slurm-wlm and munge, and root. Takes about a minute.
+# A shard's process is killed, the node is lost for ten seconds, and a job array is cancelled and submitted again; each
+# time the merged results have to be those of `mbint run`, byte for byte. Needs Debian's slurm-wlm and munge, and root.
+# Takes about a minute.
 set -euo pipefail
 
 program=$(realpath "$1")

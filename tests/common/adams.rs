@@ -11,15 +11,17 @@ use super::{Findings, Vary, curve, largest, nominal, read, row, rows, third_part
 pub struct Case {
     /// Folder and beginning of the files.
     pub name: &'static str,
-    /// The files with its velocities. Adams' velocities on the spherical joint differ by 2.6e-3 m/s at the end from those on the
-    /// revolute one, where the body moves alike and with which mbint agrees to 1.5e-4: those stand for both.
+    /// The files with its velocities. Adams' velocities on the spherical joint differ by 2.6e-3 m/s at the end from
+    /// those on the revolute one, where the body moves alike and with which mbint agrees to 1.5e-4: those stand for
+    /// both.
     pub velocities: &'static str,
     pub text: &'static str,
     /// The row at 1 s: position, Euler parameters, force on the body, angular velocity.
     pub at_one: [f64; 13],
 }
 
-/// Outputs, the file that has them, its sign, and how far they may be off: absolutely, and relative to the curve's size.
+/// Outputs, the file that has them, its sign, and how far they may be off: absolutely, and relative to the curve's
+/// size.
 const OBSERVED: [(&str, [&str; 3], f64, f64, f64); 6] = [
     ("Pos", ["a.x", "a.y", "a.z"], 1.0, 1e-3, 0.0),
     ("Vel", ["a.vx", "a.vy", "a.vz"], 1.0, 1e-3, 0.0),

@@ -1,6 +1,8 @@
-//! Another method for truths with events: Dormand and Prince's pair of orders 5 and 4, whose steps fall until kinks are passed.
+//! Another method for truths with events: Dormand and Prince's pair of orders 5 and 4, whose steps fall until kinks are
+//! passed.
 
-/// Stages' times and weights (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I* (1993), table II.5.2).
+/// Stages' times and weights (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I* (1993), table
+/// II.5.2).
 const TIMES: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
 const WEIGHTS: [&[f64]; 7] = [
     &[],
@@ -14,8 +16,8 @@ const WEIGHTS: [&[f64]; 7] = [
 const ERROR: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
 
-/// The solution of y' = f(t, y) at whole multiples of `output_step`; each step's error is below `tolerance`, relative to 1 or
-/// y where that is larger.
+/// The solution of y' = f(t, y) at whole multiples of `output_step`; each step's error is below `tolerance`, relative
+/// to 1 or y where that is larger.
 pub fn dormand_prince<const N: usize>(
     f: impl Fn(f64, [f64; N]) -> [f64; N],
     start: [f64; N],

@@ -36,7 +36,8 @@ impl Beam {
         let h = self.length / elements as f64;
         for element in 0..elements {
             let first = OF_NODE * element;
-            // Axial and torsional: two coordinates; bending about z: y and its slope θ_z; about y: z and its slope −θ_y.
+            // Axial and torsional: two coordinates; bending about z: y and its slope θ_z; about y: z and its slope
+            // −θ_y.
             for (coordinate, k, m) in [(0, self.axial, self.mass), (3, self.torsional, self.turning)] {
                 for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                     let place = (first + OF_NODE * i + coordinate, first + OF_NODE * j + coordinate);

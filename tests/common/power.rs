@@ -2,7 +2,8 @@
 
 use super::{Vary, curve, largest, nominal, order, read};
 
-/// Two bodies of the plane, thrown, with points off their centres of mass; lines of `joints`, `effects` and `initial` are added.
+/// Two bodies of the plane, thrown, with points off their centres of mass; lines of `joints`, `effects` and `initial`
+/// are added.
 pub fn pair(joints: &str, effects: &str, initial: &str) -> String {
     format!(
         "
@@ -69,8 +70,8 @@ pub const APART_IN_SPACE: &str = "  b.x: 0.9\n  b.y: 0.5\n  b.z: -0.2\n  b.orien
 
 const RUN: &str = "outputs: { energy: energy }\nsimulation: { duration: 0.5, step: 1e-3, output_step: 1e-3 }\n";
 
-/// Asserts that kinetic energy and what is stored change by the work of `power`, a formula in W, to second order in the step, and
-/// that energy flows at all.
+/// Asserts that kinetic energy and what is stored change by the work of `power`, a formula in W, to second order in the
+/// step, and that energy flows at all.
 #[track_caller]
 pub fn assert_balance(text: &str, power: &str) {
     // From here on the errors have faded that the start leaves in reactions.

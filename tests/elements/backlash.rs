@@ -3,7 +3,8 @@
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{curve, distance_from, nominal, read, row};
 
-/// Two wheels of one inertia with play between: the first turns through half the play, and then the second has its speed.
+/// Two wheels of one inertia with play between: the first turns through half the play, and then the second has its
+/// speed.
 #[test]
 fn a_gear_takes_up_its_play() {
     let bounds = nominal(&read(

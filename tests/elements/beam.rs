@@ -6,7 +6,8 @@ use mbint::inner::results::Bounds;
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{curve, nominal, order, read};
 
-/// A cantilever of N elements along x, of length 1, EI = 1, mass and rotational inertia lumped at its nodes; `load` acts at its tip.
+/// A cantilever of N elements along x, of length 1, EI = 1, mass and rotational inertia lumped at its nodes; `load`
+/// acts at its tip.
 fn cantilever(elements: usize, mass: f64, tip_mass: f64, damping: f64, load: &str, run: &str) -> Description {
     let h = 1.0 / elements as f64;
     let (mut bodies, mut beams, mut start) = (String::new(), String::new(), String::new());
@@ -80,7 +81,8 @@ fn period(bounds: &Bounds) -> f64 {
     (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
 }
 
-/// ω = √(3 EI/(m L³)) with a mass at its tip, and 3.516 √(EI/(ρA L⁴)) with its own mass, to which lumps converge with order two.
+/// ω = √(3 EI/(m L³)) with a mass at its tip, and 3.516 √(EI/(ρA L⁴)) with its own mass, to which lumps converge with
+/// order two.
 #[test]
 fn a_cantilever_has_its_natural_frequency() {
     let load = |elements: usize| format!("{{ force: {{ on: n{elements}, value: [0, -1e-3] }} }}");

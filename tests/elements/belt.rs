@@ -3,8 +3,8 @@
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{curve, nominal, read, row};
 
-/// A pulley turned at a constant speed drives another against a brake, until nothing changes any more: its speed and the tensions
-/// of the strand that pulls against the first pulley and of the other.
+/// A pulley turned at a constant speed drives another against a brake, until nothing changes any more: its speed and
+/// the tensions of the strand that pulls against the first pulley and of the other.
 fn driven(run: &str) -> [f64; 3] {
     let description = read(&format!(
         "

@@ -26,8 +26,8 @@ fn top(bounds: &Bounds, from: f64, to: f64) -> f64 {
     curve(bounds, "height")[row(bounds, from)..row(bounds, to)].iter().copied().fold(0.0, f64::max)
 }
 
-/// A ball on a Hertzian floor that takes nothing: the energy is m g h throughout, the depth δ with K δ^2.5/2.5 = m g (h + δ),
-/// the force the weight where it stays.
+/// A ball on a Hertzian floor that takes nothing: the energy is m g h throughout, the depth δ with K δ^2.5/2.5 = m g
+/// (h + δ), the force the weight where it stays.
 #[test]
 fn an_elastic_ball_keeps_its_energy() {
     let description = ball("{ stiffness: 1e6 }");
@@ -84,7 +84,8 @@ simulation: {{ duration: 0.2, step: 1e-4, output_step: 0.01 }}
     }
 }
 
-/// Where no law of the literature is named, an impact at that speed leaves the restitution itself, whatever the exponent.
+/// Where no law of the literature is named, an impact at that speed leaves the restitution itself, whatever the
+/// exponent.
 #[test]
 fn an_impact_leaves_its_restitution() {
     for (restitution, keys) in [(1.0, ""), (0.9, ""), (0.8, ", exponent: 1"), (0.5, ", exponent: 2"), (0.15, "")] {
@@ -221,8 +222,8 @@ simulation: {{ duration: 1.4186, step: 2e-4, output_step: 0.0002 }}
     }
 }
 
-/// Step control passes through impacts: it takes small steps in them, keeps the energy better than its tolerance asks for at
-/// large ones, and converges as the tolerance falls.
+/// Step control passes through impacts: it takes small steps in them, keeps the energy better than its tolerance asks
+/// for at large ones, and converges as the tolerance falls.
 #[test]
 fn step_control_resolves_impacts() {
     let description = ball("{ stiffness: 1e6 }").rows_every(1e-2);

@@ -26,7 +26,8 @@ fn assert_same(a: &Bounds, b: &Bounds, names: &[&str]) {
     for name in names {
         let [one, other] = [a, b].map(|bounds| curve(bounds, name));
         let size = largest(other.iter().copied()).max(1.0);
-        // Of a force 1e-6 is what 1e-10 m make, which is as far as Newton's iteration goes; a bore's wall is 5e-9 of its clearance off.
+        // Of a force 1e-6 is what 1e-10 m make, which is as far as Newton's iteration goes; a bore's wall is 5e-9 of
+        // its clearance off.
         let allowed = if matches!(*name, "force" | "friction") { 5e-5 } else { 2e-6 };
         assert!(distance(one, other) < allowed * size, "{name}: {:e} of {size}", distance(one, other));
     }

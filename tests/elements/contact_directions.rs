@@ -22,7 +22,8 @@ simulation: {{ duration: 0.25, step: 1e-4, output_step: 0.01 }}
 
 const FRICTION: &str = "friction: { coefficient: 0.6, transition_velocity: 1e-3 }";
 
-/// A sliding point has dv₁/dt : dv₂/dt = μ₁ v₁ : μ₂ v₂ along the axes, so that v₂/v₂₀ = (v₁/v₁₀)^(μ₂/μ₁) wherever it goes.
+/// A sliding point has dv₁/dt : dv₂/dt = μ₁ v₁ : μ₂ v₂ along the axes, so that v₂/v₂₀ = (v₁/v₁₀)^(μ₂/μ₁) wherever it
+/// goes.
 #[test]
 fn a_puck_turns_towards_the_smooth_direction() {
     let friction = format!("{FRICTION}, friction_along: {{ direction: x, coefficient: 0.2 }}");

@@ -33,7 +33,8 @@ fn assert_same(a: &Bounds, b: &Bounds) {
     assert!(curve(b, "force").iter().any(|force| *force > 1.0), "no contact");
 }
 
-/// An edge from (−1, 0) to (1, 0), drawn either way, alone, as a side of a polygon, and as another path has it, is the same surface.
+/// An edge from (−1, 0) to (1, 0), drawn either way, alone, as a side of a polygon, and as another path has it, is the
+/// same surface.
 #[track_caller]
 fn assert_drawn_alike(path: &str, start: [f64; 4], wanted: &Bounds) {
     for edges in [
@@ -75,8 +76,8 @@ fn both_sides_of_a_groove_push() {
     assert!(largest(curve(&bounds, "x").iter().copied()) < 1e-9);
 }
 
-/// A billiard: without loss or friction the speed across a corner's normal stays, that along it is turned about. While they touch the
-/// normal turns, by what the ball goes in that time over the radii: as K^−0.4.
+/// A billiard: without loss or friction the speed across a corner's normal stays, that along it is turned about. While
+/// they touch the normal turns, by what the ball goes in that time over the radii: as K^−0.4.
 #[test]
 fn a_corner_reflects() {
     // The normal is 30° from the vertical: the ball leaves at 60°.

@@ -82,7 +82,8 @@ fn what_stands_over_an_edge_tips_beyond_its_middle() {
     }
 }
 
-/// A box on a face carries its weight on four corners, as on a plane; flush with what it stands on, on the corners of both and on all edges that end there.
+/// A box on a face carries its weight on four corners, as on a plane; flush with what it stands on, on the corners of
+/// both and on all edges that end there.
 #[test]
 fn a_box_stands_on_a_face() {
     let cube = "box: [0.196, 0.196, 0.196], radius: 2 mm";
@@ -153,8 +154,8 @@ simulation: {{ duration: 0.4, step: 1e-3, output_step: 0.1 }}
     assert!(last(&bounds, "w").abs() < 1e-3, "{}", last(&bounds, "w"));
 }
 
-/// What flies into a surface at rest along a normal through its middle flies back as fast, and does not turn: an edge on an edge across it, a
-/// corner on the side of a cylinder, a corner on a corner, a box on a bar and on a ball.
+/// What flies into a surface at rest along a normal through its middle flies back as fast, and does not turn: an edge
+/// on an edge across it, a corner on the side of a cylinder, a corner on a corner, a box on a bar and on a ball.
 #[test]
 fn central_impacts_reverse_the_speed() {
     let cube = "box: [0.2, 0.2, 0.2], radius: 5 mm";

@@ -1,5 +1,5 @@
-//! Ground by its height, as a formula or a table, moving too: against the exact distance of a hollow, minimal coordinates, and a plane that a
-//! motor moves.
+//! Ground by its height, as a formula or a table, moving too: against the exact distance of a hollow, minimal
+//! coordinates, and a plane that a motor moves.
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{curve, distance, largest, nominal, read};
@@ -94,7 +94,8 @@ joints:
         for name in ["x", "y", "spin", "force", "rate"] {
             let [a, b] = [&by_motor, &by_height].map(|bounds| curve(bounds, name));
             let size = largest(a.iter().copied()).max(1.0);
-            // Of a force 1e-7 is what 1e-10 m make, which is as far as Newton's iteration goes; a motor's velocity is off by h².
+            // Of a force 1e-7 is what 1e-10 m make, which is as far as Newton's iteration goes; a motor's velocity is
+            // off by h².
             let allowed = if slope.is_empty() && !matches!(name, "force" | "rate") { 1e-7 } else { 1e-6 };
             assert!(distance(a, b) < allowed * size, "{slope} {name}: {:e} of {size}", distance(a, b));
         }

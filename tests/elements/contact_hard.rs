@@ -3,8 +3,8 @@
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{curve, largest, nominal, read, row};
 
-/// Housner's block (*Bull. Seismol. Soc. Am.* 53 (1963) 403): about a corner 4/3 m R² θ̈ = −m g R sin(α − θ); what lands on the other corner without
-/// rebound goes on with 1 − 3/2 sin² α of its angular velocity.
+/// Housner's block (*Bull. Seismol. Soc. Am.* 53 (1963) 403): about a corner 4/3 m R² θ̈ = −m g R sin(α − θ); what
+/// lands on the other corner without rebound goes on with 1 − 3/2 sin² α of its angular velocity.
 #[test]
 fn a_block_rocks_on_its_corners() {
     let (half_width, half_height, g) = (0.1_f64, 0.4_f64, 9.81);
@@ -90,7 +90,8 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05 }}
     assert!(largest(curve(&bounds, "vy")[half..].iter().copied()) < 1e-7);
 }
 
-/// A ball that passes a post just beside it goes straight on; one that touches it a little is turned little, and as fast as before.
+/// A ball that passes a post just beside it goes straight on; one that touches it a little is turned little, and as
+/// fast as before.
 #[test]
 fn a_ball_grazes_a_post() {
     let thrown = |depth: f64| {
@@ -115,7 +116,8 @@ simulation: {{ duration: 0.4, step: 1e-5, output_step: 0.01 }}
         // No loss: it leaves at the speed with which it came.
         assert!((vx.hypot(vy) - 3.0).abs() < 1e-6, "{depth:e}: {}", vx.hypot(vy));
         assert!(vy > before && vy < 0.2, "{depth:e}: {vy:e}");
-        // While it hardly yields, depth over the way is d − x²/2(R + r), and the push ∫ k (d − x²/0.6) dx/v = 4/3 k d √(0.6 d)/v.
+        // While it hardly yields, depth over the way is d − x²/2(R + r), and the push ∫ k (d − x²/0.6) dx/v = 4/3 k d
+        // √(0.6 d)/v.
         let push = 4.0 / 3.0 * 1e6 * depth * (0.6 * depth).sqrt() / 3.0;
         if depth < 2e-6 {
             assert!((vy / push - 1.0).abs() < 0.05, "{depth:e}: {vy:e}, not {push:e}");

@@ -14,8 +14,8 @@ fn minus(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// Distance from a triangle, by the barycentric coordinates of the nearest of its points: those of its plane where all are positive, else
-/// the nearest of its sides.
+/// Distance from a triangle, by the barycentric coordinates of the nearest of its points: those of its plane where all
+/// are positive, else the nearest of its sides.
 fn from_triangle(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     let from_side = |a: Point, b: Point| {
         let (way, from) = (minus(b, a), minus(p, a));

@@ -149,7 +149,8 @@ simulation: { duration: 1, step: 5e-4, output_step: 0.05 }
     assert!((of("z") - (0.13 - 2.0 * 9.81 / 1e5)).abs() < 1e-7 && (of("a") - of("b")).abs() < 1e-9 && of("x").abs() < 1e-9);
 }
 
-/// An edge against an edge, which corners alone do not find: a ridge that falls across another one bounces as a ball does.
+/// An edge against an edge, which corners alone do not find: a ridge that falls across another one bounces as a ball
+/// does.
 #[test]
 fn an_edge_meets_an_edge() {
     let bounds = nominal(&read(
@@ -178,8 +179,8 @@ simulation: { duration: 0.012, step: 2e-6, output_step: 1e-3 }
     assert!((of("energy") - 0.5).abs() < 1e-6);
 }
 
-/// Two crossed bars hit beside their middles: the normal velocity of the places that touch is reversed, by an impulse of
-/// 2 v/(1/m₁ + 1/m₂ + a²/I₁ + b²/I₂).
+/// Two crossed bars hit beside their middles: the normal velocity of the places that touch is reversed, by an impulse
+/// of 2 v/(1/m₁ + 1/m₂ + a²/I₁ + b²/I₂).
 #[test]
 fn crossed_bars_impact_as_billiard_balls() {
     let bounds = nominal(&read(

@@ -1,5 +1,6 @@
-//! Every pair of shapes that may touch, in poses at random: the gap is the distance that an algorithm finds which knows no more of a body than
-//! its farthest point in a direction (Gilbert, Johnson & Keerthi, IEEE J. Robot. Autom. 4 (1988) 193).
+//! Every pair of shapes that may touch, in poses at random: the gap is the distance that an algorithm finds which knows
+//! no more of a body than its farthest point in a direction (Gilbert, Johnson & Keerthi, IEEE J. Robot. Autom. 4 (1988)
+//! 193).
 
 use crate::common::{curve, nominal, read};
 
@@ -69,8 +70,8 @@ fn nearest_of(points: &[Point]) -> (Point, Vec<Point>) {
     (place, chosen)
 }
 
-/// How far two bodies are apart, of which the second is turned and displaced; zero where they meet. A lower and an upper bound of it agree
-/// to a nanometre.
+/// How far two bodies are apart, of which the second is turned and displaced; zero where they meet. A lower and an
+/// upper bound of it agree to a nanometre.
 fn apart(first: &Body, second: &Body, rotation: [Point; 3], position: Point) -> f64 {
     let farthest = |direction: Point| {
         let local = rotation.map(|axis| dot(axis, direction));

@@ -116,7 +116,8 @@ simulation: {{ duration: 2, step: 1e-4, output_step: 1e-3 }}
     assert!(off < 1e-4, "{off:e}");
 }
 
-/// A ball beside, over and about the rim of a cylinder: the gap is the least distance by brute force, the side and the face as they are.
+/// A ball beside, over and about the rim of a cylinder: the gap is the least distance by brute force, the side and the
+/// face as they are.
 #[test]
 fn gaps_to_a_ball_are_least_distances() {
     let bounds = nominal(&read(&format!(
@@ -178,7 +179,8 @@ simulation: {{ duration: 0.1, step: 2e-5, output_step: 0.01 }}
     }
 }
 
-/// A ball and the side of a cylinder reflect as two balls of the same masses: along the common normal through both centres.
+/// A ball and the side of a cylinder reflect as two balls of the same masses: along the common normal through both
+/// centres.
 #[test]
 fn a_cylinder_and_a_ball_exchange_their_velocities() {
     let bounds = nominal(&read(&format!(

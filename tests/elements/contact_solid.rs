@@ -121,7 +121,8 @@ fn corners_are_spheres() {
     assert!(curve(&block, "force")[..beside].iter().any(|force| *force > 1.0), "no contact");
 }
 
-/// From within a block the nearest face pushes; all of K δⁿ⁺¹/(n + 1) becomes speed, wherever the centre is, also in the middle of a cube.
+/// From within a block the nearest face pushes; all of K δⁿ⁺¹/(n + 1) becomes speed, wherever the centre is, also in
+/// the middle of a cube.
 #[test]
 fn a_centre_inside_is_pushed_out() {
     for (place, depth) in [([0.05, 0.02, 0.12], 0.08), ([0.0, 0.0, 0.0], 0.2), ([-0.15, 0.0, 0.0], 0.05), ([0.1, 0.1, 0.0], 0.1)] {

@@ -39,7 +39,8 @@ fn a_motor_starts_as_scipy_says() {
     }
 }
 
-/// Without inductance: ω = U/(k N) (1 − e^(−t/T)) with T = J R/(k N)², so that its bounds are those of k; and a limit of 6 V.
+/// Without inductance: ω = U/(k N) (1 − e^(−t/T)) with T = J R/(k N)², so that its bounds are those of k; and a limit
+/// of 6 V.
 #[test]
 fn without_inductance_it_is_a_lag() {
     for (motor, volts) in [("", 12.0), ("limit: 6", 6.0)] {

@@ -25,7 +25,8 @@ fn off(bounds: &Bounds, name: &str, from: f64, wanted: impl Fn(f64) -> f64) -> f
     largest(rows.map(|(&t, value)| value - wanted(t)))
 }
 
-/// A sine of x = ω T is met to n! (n−1)!/((2n)! (2n−1)!) x²ⁿ, the first term of the error of Padé's approximation, once it has settled.
+/// A sine of x = ω T is met to n! (n−1)!/((2n)! (2n−1)!) x²ⁿ, the first term of the error of Padé's approximation, once
+/// it has settled.
 #[test]
 fn sines_come_late() {
     for (simulation, allowed) in [("step: 2e-4", 1e-6), ("scheme: explicit, tolerance: 1e-10", 1e-9)] {
@@ -54,8 +55,8 @@ fn bounds_of_a_ramp_are_those_of_its_delay() {
     }
 }
 
-/// ẋ = −k x(t − T) with x = 1 before: Σ (−k)ʲ (t − (j − 1) T)ʲ/j! over j with t > (j − 1) T. Here x jumps in its rates, at which a rational
-/// law rings: less, the more states it has.
+/// ẋ = −k x(t − T) with x = 1 before: Σ (−k)ʲ (t − (j − 1) T)ʲ/j! over j with t > (j − 1) T. Here x jumps in its rates,
+/// at which a rational law rings: less, the more states it has.
 #[test]
 fn a_loop_with_a_delay_moves_by_the_method_of_steps() {
     let exact = |t: f64| {

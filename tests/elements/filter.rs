@@ -64,7 +64,8 @@ fn bounds_are_those_of_the_time_constant() {
     }
 }
 
-/// A Butterworth filter of order four with its corner at 5 rad/s; SciPy 1.17, `signal.tf2ss` and `solve_ivp`, DOP853, rtol 1e-13.
+/// A Butterworth filter of order four with its corner at 5 rad/s; SciPy 1.17, `signal.tf2ss` and `solve_ivp`, DOP853,
+/// rtol 1e-13.
 #[test]
 fn a_filter_of_order_four_is_that_of_scipy() {
     let effects = "smooth: { filter: { input: 0.3 + sin(4*t), numerator: [625],
@@ -79,8 +80,8 @@ fn a_filter_of_order_four_is_that_of_scipy() {
     }
 }
 
-/// A spring that feels where the mass was: the filter begins settled at the mass's place. SciPy as above, with the filter in another
-/// form (a chain of rates, the output their sum).
+/// A spring that feels where the mass was: the filter begins settled at the mass's place. SciPy as above, with the
+/// filter in another form (a chain of rates, the output their sum).
 #[test]
 fn a_filter_within_the_loop_moves_as_scipy_says() {
     let effects = "felt: { filter: { input: m.x, numerator: [0.05 s, 1], denominator: [0.01 s^2, 0.14 s, 1], initial: 0.5 m } },

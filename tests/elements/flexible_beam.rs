@@ -82,8 +82,8 @@ outputs: {{ y: rod.end.y, angle: rod.end.angle }}
     }
 }
 
-/// x, y and angle of the tip of the elastica under P L²/EI, stretched by ε = N/EA: θ'' = P (1 + ε) cos θ, θ(0) = 0, θ'(1) = 0 by
-/// shooting.
+/// x, y and angle of the tip of the elastica under P L²/EI, stretched by ε = N/EA: θ'' = P (1 + ε) cos θ, θ(0) = 0,
+/// θ'(1) = 0 by shooting.
 fn elastica(load: f64, axial: f64) -> [f64; 3] {
     let along = |slope: f64| {
         let law = |[_, _, angle, bend]: [f64; 4]| {
@@ -138,7 +138,8 @@ fn a_moment_bends_a_cantilever_to_a_circle() {
     assert!(order(errors[1], errors[2]) > 3.8 && errors[2] < 1e-5, "{errors:?}");
 }
 
-/// Circular frequencies of a beam of length 1, EI = 1, μ = 1, from M and K of the straight beam; `held` coordinates do not move.
+/// Circular frequencies of a beam of length 1, EI = 1, μ = 1, from M and K of the straight beam; `held` coordinates do
+/// not move.
 fn frequencies(elements: usize, held: &[&str]) -> Vec<f64> {
     let description = read(&format!(
         "
@@ -285,9 +286,9 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.01 }
     assert!((speed - expected).abs() < 1e-6);
 }
 
-/// Kane, Ryan & Banerjee's and Simo & Vu-Quoc's manoeuvre (J. Appl. Mech. 53 (1986) 849): a beam is turned about its end from rest to
-/// 6 rad/s within 15 s. Its tip lags by 0.574 m (0.58 in their plots), then swings about its place; the centrifugal force stretches it by
-/// tan(kL)/k − L, k = ω √(μ/EA): 5.14e-4 m.
+/// Kane, Ryan & Banerjee's and Simo & Vu-Quoc's manoeuvre (J. Appl. Mech. 53 (1986) 849): a beam is turned about its
+/// end from rest to 6 rad/s within 15 s. Its tip lags by 0.574 m (0.58 in their plots), then swings about its place;
+/// the centrifugal force stretches it by tan(kL)/k − L, k = ω √(μ/EA): 5.14e-4 m.
 #[test]
 fn a_beam_is_spun_up() {
     let (length, mass, axial, omega) = (10.0, 1.2, 2.8e7_f64, 6.0);
@@ -376,8 +377,8 @@ fn instructions_grow_with_the_elements() {
     assert!(large - middle < 2 * (middle - small) + 100, "{instructions:?}");
 }
 
-/// A beam between two clamps: the start's conditions and the constraints say the same of it, and it swings with 4.730² √(EI/μL⁴).
-/// Clamps that are too near to one another are reported.
+/// A beam between two clamps: the start's conditions and the constraints say the same of it, and it swings with 4.730²
+/// √(EI/μL⁴). Clamps that are too near to one another are reported.
 #[test]
 fn a_beam_starts_straight_or_says_why_not() {
     let clamped = |apart: f64| {

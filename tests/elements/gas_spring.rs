@@ -97,8 +97,8 @@ simulation: { duration: 0.3, step: 1e-3, output_step: 0.02 }
     assert!(largest(angle.iter().map(|angle| angle - 0.2)) > 0.05, "it moves");
 }
 
-/// Bodies whose coordinates start at zero in general position: there the gas has no volume, and a logarithm no value. Accelerations are
-/// those of the force at the start.
+/// Bodies whose coordinates start at zero in general position: there the gas has no volume, and a logarithm no value.
+/// Accelerations are those of the force at the start.
 #[test]
 fn a_start_beyond_which_forces_have_no_number_is_a_start() {
     let area = std::f64::consts::FRAC_PI_4 * 0.015_f64.powi(2);

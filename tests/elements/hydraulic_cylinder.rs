@@ -71,8 +71,8 @@ simulation: {{ duration: 0.5, output_step: 0.025, {simulation} }}
     }
 }
 
-/// With its valve closed, oil is a spring: p = p₀ − E ln(V/V₀) in either chamber, whatever the motion is, and oscillations about the
-/// middle have ω² = E (A₁²/V₁ + A₂²/V₂)/m.
+/// With its valve closed, oil is a spring: p = p₀ − E ln(V/V₀) in either chamber, whatever the motion is, and
+/// oscillations about the middle have ω² = E (A₁²/V₁ + A₂²/V₂)/m.
 #[test]
 fn sealed_oil_is_a_spring() {
     let cylinder = "rod: 25 mm, valve: 0, supply: 160 bar, piston_pressure: 50 bar, rod_pressure: 60 bar, modulus: 1 GPa";
@@ -106,7 +106,8 @@ fn sealed_oil_is_a_spring() {
     assert!(off < 5e-3, "{off}");
 }
 
-/// Without rod and load, half of the supply's pressure falls at either edge: v = K x √(p_S/2)/A, of which the bore decides.
+/// Without rod and load, half of the supply's pressure falls at either edge: v = K x √(p_S/2)/A, of which the bore
+/// decides.
 #[test]
 fn an_open_valve_gives_a_steady_speed() {
     let cylinder = "valve: 0.3, supply: 70 bar, piston_pressure: 35 bar, rod_pressure: 35 bar";

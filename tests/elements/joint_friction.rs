@@ -120,8 +120,8 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 0.01 }}
     assert!(distance_from(&bounds.times, curve(&bounds, "load"), |_| 2.0 * force * arm / length) < 1e-6);
 }
 
-/// A sleeve that slides and turns on a horizontal shaft: friction opposes the velocity of its surface, so with J = m r² that
-/// velocity keeps its direction and falls by μ g.
+/// A sleeve that slides and turns on a horizontal shaft: friction opposes the velocity of its surface, so with J = m r²
+/// that velocity keeps its direction and falls by μ g.
 #[test]
 fn a_sleeve_slides_and_turns_against_one_friction() {
     let (r, mu, v, w) = (0.05, 0.15, 0.8, 12.0);
@@ -152,8 +152,8 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 0.01 }}
     findings.none();
 }
 
-/// The friction itself uncertain: expanded coordinates, with the load from the closure, and Taylor's polynomials agree with a
-/// scan.
+/// The friction itself uncertain: expanded coordinates, with the load from the closure, and Taylor's polynomials agree
+/// with a scan.
 #[test]
 fn uncertain_friction_is_bounded_by_all_methods() {
     let bounds = run(&read(

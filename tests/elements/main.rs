@@ -1,4 +1,5 @@
-//! Every effect and joint against closed forms, balances of power and published results: a file an element, called by its keyword.
+//! Every effect and joint against closed forms, balances of power and published results: a file an element, called by
+//! its keyword.
 //!
 //! A new file is found by itself.
 

@@ -76,7 +76,8 @@ fn motors_follow_their_profiles() {
         let speed = distance_from(&bounds.times, curve(&bounds, "speed"), at(1));
         findings.check(speed < 5e-3, format_args!("{name}: speed off by {speed:e}"));
         if name != "trapezoidal" {
-            // Where the jerk jumps (to 2 · 60 rad/s³ at most), a step's acceleration is off by as much as a step changes it.
+            // Where the jerk jumps (to 2 · 60 rad/s³ at most), a step's acceleration is off by as much as a step
+            // changes it.
             let torque = distance_from(&bounds.times, curve(&bounds, "torque"), |t| 0.02 * at(2)(t));
             findings.check(torque < 0.02 * 120.0 * 1e-3, format_args!("{name}: torque off by {torque:e}"));
         }

@@ -91,7 +91,8 @@ fn bounds_over_the_lag_are_those_of_the_closed_form() {
     }
 }
 
-/// A speed by the way that is left: θ̇ = 3 (1.2 − θ), in the plane and in space, and one by a state that feels where it is.
+/// A speed by the way that is left: θ̇ = 3 (1.2 − θ), in the plane and in space, and one by a state that feels where it
+/// is.
 #[test]
 fn a_speed_may_follow_positions() {
     for (space, formulation) in [("", "absolute"), ("", "joint"), (", z: 0", "absolute")] {
@@ -155,7 +156,8 @@ bounds: {{ chebyshev: {{ order: 4 }}, taylor: {{ order: 4 }} }}
     )
 }
 
-/// A crank that a lagging command turns is the same as one whose speed is prescribed as the command is: another constraint, of positions.
+/// A crank that a lagging command turns is the same as one whose speed is prescribed as the command is: another
+/// constraint, of positions.
 #[test]
 fn a_slider_crank_follows_a_command_as_if_it_were_prescribed() {
     let filter = "command: { filter: { input: 12 rad/s, numerator: [1], denominator: [0.1 s, 1] } }";
@@ -191,8 +193,9 @@ fn a_motor_gives_the_power_for_a_ramp() {
     assert_balance(&spatial_pair(joints, lever, ""), "drive.torque*j.angular_velocity");
 }
 
-/// Two motors on joints with one axis: where both follow one state one of them is redundant, and they share the torque; where each follows its own, nothing can
-/// fulfil both, though they begin alike; nor can a motor's position and a state's speed.
+/// Two motors on joints with one axis: where both follow one state one of them is redundant, and they share the torque;
+/// where each follows its own, nothing can fulfil both, though they begin alike; nor can a motor's position and a
+/// state's speed.
 #[test]
 fn two_motors_agree_or_contradict() {
     let text = |other: &str| {

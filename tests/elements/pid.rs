@@ -18,8 +18,8 @@ simulation: {{ duration: 3, output_step: 0.5, {simulation} }}
     )
 }
 
-/// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: angle, rate, integral and filtered rate of the error; with T_t = k_p/k_i the limit of
-/// 6 N m makes it overshoot by a fifth, with 0.1 s hardly.
+/// SciPy 1.17, `solve_ivp`, DOP853, rtol 1e-12: angle, rate, integral and filtered rate of the error; with T_t =
+/// k_p/k_i the limit of 6 N m makes it overshoot by a fifth, with 0.1 s hardly.
 #[test]
 fn a_limited_controller_moves_as_scipy_says() {
     let own = [

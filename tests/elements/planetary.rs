@@ -41,8 +41,9 @@ fn run(members: &[&str]) -> Bounds {
     nominal(&read(&text(members, &joints, &format!("{{ {}, ratio: 60/20 }}", set.join(", ")))))
 }
 
-/// With the ring held the carrier turns 1 + ρ times slower than the sun; with the carrier held the ring turns backwards; with the sun
-/// held the carrier turns with the ring. What is driven feels the other's inertia by the square of the ratio.
+/// With the ring held the carrier turns 1 + ρ times slower than the sun; with the carrier held the ring turns
+/// backwards; with the sun held the carrier turns with the ring. What is driven feels the other's inertia by the square
+/// of the ratio.
 #[test]
 fn two_members_turn_in_a_ratio() {
     for (members, ratio) in [
@@ -60,8 +61,8 @@ fn two_members_turn_in_a_ratio() {
     }
 }
 
-/// Planets that spin: a body with an angle alone, by an equation. With ρ = 3 they have as many teeth as the sun, so that
-/// ω_p = 2 ω_c − ω_s = −ω_s/2 where the ring is held.
+/// Planets that spin: a body with an angle alone, by an equation. With ρ = 3 they have as many teeth as the sun, so
+/// that ω_p = 2 ω_c − ω_s = −ω_s/2 where the ring is held.
 #[test]
 fn spinning_planets_are_a_body_of_their_own() {
     let of_planets = 0.09;

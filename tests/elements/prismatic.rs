@@ -59,8 +59,8 @@ fn its_reactions_do_no_work() {
     assert_balance(&spatial_pair("  j: { prismatic: { between: [a.P, b.P], axis: [1, 2, -0.5], angle: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
 }
 
-/// A named displacement is a coordinate without inertia: every placement of the joint starts in absolute coordinates, and
-/// moves as in joint coordinates.
+/// A named displacement is a coordinate without inertia: every placement of the joint starts in absolute coordinates,
+/// and moves as in joint coordinates.
 #[test]
 fn a_named_displacement_starts_with_dampers_and_drag() {
     let acting = [

@@ -45,7 +45,8 @@ fn a_step_becomes_a_ramp() {
     assert!(off(0.95, &band.lower) < 1e-4 && off(1.05, &band.upper) < 1e-4);
 }
 
-/// In loop with a state that depends on it: a position drive whose command cannot jump; the same written out by `states`.
+/// In loop with a state that depends on it: a position drive whose command cannot jump; the same written out by
+/// `states`.
 #[test]
 fn it_is_what_states_write_out() {
     let own = follower("input: (2 - cart.x)/(1 m), lag: 20 ms", "step: 1e-3");

@@ -44,8 +44,8 @@ bounds: { chebyshev: { order: 5 } }
     }
 }
 
-/// A plank of 3 kg is pulled by 5 N from under a solid cylinder of 2 kg: the plank has the acceleration F/(M + m/3), the cylinder's centre a
-/// third of it.
+/// A plank of 3 kg is pulled by 5 N from under a solid cylinder of 2 kg: the plank has the acceleration F/(M + m/3),
+/// the cylinder's centre a third of it.
 #[test]
 fn a_plank_takes_a_cylinder_with_it() {
     let bounds = nominal(&read(

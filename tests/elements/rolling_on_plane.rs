@@ -100,8 +100,8 @@ bounds: {{ chebyshev: {{ order: 6 }} }}
     }
 }
 
-/// A coin of mass 0.2 and radius 0.1 with its axle at an angle from upright, that turns with ω₁ about the horizontal of its plane, ω₂ about the
-/// steepest line of it and ω₃ about its axle.
+/// A coin of mass 0.2 and radius 0.1 with its axle at an angle from upright, that turns with ω₁ about the horizontal of
+/// its plane, ω₂ about the steepest line of it and ω₃ about its axle.
 fn coin(tilt: f64, [omega_1, omega_2, omega_3]: [f64; 3], simulation: &str) -> Description {
     let (s, c) = tilt.sin_cos();
     let omega = [omega_3 * s - omega_2 * c, omega_1, omega_2 * s + omega_3 * c];
@@ -121,7 +121,8 @@ simulation: {{ duration: 2, output_step: 0.05, {simulation} }}
     ))
 }
 
-/// The same by the Newton–Euler equations in axes that follow the steepest line of the coin: tilt, ω₁, ω₂, ω₃, heading, x, y.
+/// The same by the Newton–Euler equations in axes that follow the steepest line of the coin: tilt, ω₁, ω₂, ω₃, heading,
+/// x, y.
 fn rolling_coin(tilt: f64, omega: [f64; 3], rows: usize) -> Vec<[f64; 7]> {
     let (m, r, across, along) = (0.2, 0.1, 5e-4, 1e-3);
     let law = |_: f64, [tilt, w1, w2, w3, heading, _, _]: [f64; 7]| {
@@ -177,8 +178,8 @@ fn a_coin_runs_in_a_circle() {
     assert!(off < 1e-6, "{off:e}");
 }
 
-/// Upright, a thin disc is stable where it rolls faster than ω² = g/(3 r): one that leans by ε comes as far as (2 κ/(κ − 1) − 1) ε, where κ is
-/// the ratio of ω² to that.
+/// Upright, a thin disc is stable where it rolls faster than ω² = g/(3 r): one that leans by ε comes as far as (2 κ/(κ
+/// − 1) − 1) ε, where κ is the ratio of ω² to that.
 #[test]
 fn a_coin_falls_over_where_it_rolls_too_slowly() {
     let lean = 1e-4;
@@ -264,7 +265,8 @@ initial: { cart.x: 0, cart.y: 0, cart.orientation: { rpy: [0, 0, 0] }, axle_left
 outputs: { x: cart.x, y: cart.y, omega: cart.omega.z }
 simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 ";
-    // The midpoint of the axle moves along the cart; its centre of mass is d before it (Chaplygin's sleigh, with wheels that turn).
+    // The midpoint of the axle moves along the cart; its centre of mass is d before it (Chaplygin's sleigh, with wheels
+    // that turn).
     let (mass, inertia, before) = (5.0 + 2.0 * 0.25, 0.3 + 0.16 + 2.0 * (0.5 * 0.0625 + 1.25e-3) + 0.5 * 0.0625, 4.0 * 0.2);
     let law = |_: f64, [u, omega, heading, ..]: [f64; 5]| {
         let (sin, cos) = heading.sin_cos();

@@ -44,8 +44,8 @@ fn motion(gain: f64, time: f64) -> [f64; 3] {
     [x, v, force]
 }
 
-/// Whatever the steps: they end at the instants, also where these are no multiples of theirs, and constant accelerations are integrated
-/// exactly. Rows at instants come after the change.
+/// Whatever the steps: they end at the instants, also where these are no multiples of theirs, and constant
+/// accelerations are integrated exactly. Rows at instants come after the change.
 #[test]
 fn a_held_force_moves_a_mass_by_its_difference_equation() {
     for (simulation, allowed) in [
@@ -88,7 +88,8 @@ fn bounds_are_those_of_the_difference_equation() {
     }
 }
 
-/// With the gains m/T² and 3 m/(2 T) a double integrator is at rest after two periods (Åström & Wittenmark, example 4.4).
+/// With the gains m/T² and 3 m/(2 T) a double integrator is at rest after two periods (Åström & Wittenmark, example
+/// 4.4).
 #[test]
 fn deadbeat_control_brings_a_mass_to_rest_in_two_periods() {
     let command = "input: -(2 kg)/(50 ms)^2*m.x - 1.5*(2 kg)/(50 ms)*m.vx";
@@ -168,7 +169,8 @@ bounds: {{ taylor: {{ order: 1 }} }}
     }
 }
 
-/// Samples that meet a stop at times of their own take steps of their own, and go on from the instants as all others do.
+/// Samples that meet a stop at times of their own take steps of their own, and go on from the instants as all others
+/// do.
 #[test]
 fn samples_that_step_alone_change_with_the_others() {
     let effects = "

@@ -71,7 +71,8 @@ fn its_power_is_torque_times_rate() {
     assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { servo: { on: j, target: 0.5, proportional: 40, derivative: 1.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "(40*(0.5 - j.angle) - 1.2*j.angular_velocity)*j.angular_velocity");
 }
 
-/// A target may be a state: an arm that follows a lagging command is what `states` and a torque write out, with a gain that is uncertain.
+/// A target may be a state: an arm that follows a lagging command is what `states` and a torque write out, with a gain
+/// that is uncertain.
 #[test]
 fn a_target_may_follow_a_state() {
     let text = |drive: &str| {

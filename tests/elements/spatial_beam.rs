@@ -1,4 +1,5 @@
-//! Beams in space against the textbook, against rods that are integrated along their length, and against the literature.
+//! Beams in space against the textbook, against rods that are integrated along their length, and against the
+//! literature.
 
 use std::f64::consts::PI;
 
@@ -76,8 +77,8 @@ fn a_cantilever_bends_and_twists_by_the_textbook() {
     }
 }
 
-/// The tip of a rod of length s under a dead force at its end, whose line has the curvature κ₀ about z without load: equilibrium
-/// integrated along it, the moment at the clamp found by shooting while the force grows.
+/// The tip of a rod of length s under a dead force at its end, whose line has the curvature κ₀ about z without load:
+/// equilibrium integrated along it, the moment at the clamp found by shooting while the force grows.
 fn rod(stiffness: Stiffness, length: f64, bend: f64, force: [f64; 3]) -> [f64; 3] {
     let compliance = Vector3::new(1.0 / stiffness.torsional, 1.0 / stiffness.bending[0], 1.0 / stiffness.bending[1]);
     let shear = stiffness.shear.map_or(0.0, |shear| 1.0 / shear);
@@ -133,7 +134,8 @@ fn a_round_cantilever_bends_far_like_the_elastica() {
     assert!(order(errors[1], errors[2]) > 3.5 && errors[2] < 1e-5, "{errors:?}");
 }
 
-/// As in the experiments at Princeton (Dowell & Traybar, AMRDL TR 75-71): a blade that is soft one way, loaded askew, twists.
+/// As in the experiments at Princeton (Dowell & Traybar, AMRDL TR 75-71): a blade that is soft one way, loaded askew,
+/// twists.
 #[test]
 fn a_blade_that_is_loaded_askew_twists() {
     for shear in [None, Some(50.0)] {
@@ -158,9 +160,10 @@ fn a_moment_rolls_a_cantilever_up() {
     assert!(order > 3.8 && off[1] < 5e-5, "{off:?}");
 }
 
-/// A cantilever whose line is an arc of 45°, of radius 100, in eight straight pieces, under a force across its plane. Bathe and
-/// Bolourchi (Int. J. Num. Meth. Eng. 14 (1979) 961) have the tip at (22.5, 59.2, 39.5) and (15.9, 47.2, 53.4), Simo and Vu-Quoc (Comput.
-/// Methods Appl. Mech. Eng. 58 (1986) 79) at (22.33, 58.84, 40.08) and (15.79, 47.23, 53.37), each with eight elements.
+/// A cantilever whose line is an arc of 45°, of radius 100, in eight straight pieces, under a force across its plane.
+/// Bathe and Bolourchi (Int. J. Num. Meth. Eng. 14 (1979) 961) have the tip at (22.5, 59.2, 39.5) and (15.9, 47.2,
+/// 53.4), Simo and Vu-Quoc (Comput. Methods Appl. Mech. Eng. 58 (1986) 79) at (22.33, 58.84, 40.08) and (15.79, 47.23,
+/// 53.37), each with eight elements.
 #[test]
 fn an_arc_bends_out_of_its_plane() {
     let stiffness = Stiffness { axial: 1e7, torsional: 5e6 / 6.0, bending: [1e7 / 12.0; 2], shear: Some(5e6) };
@@ -203,8 +206,8 @@ outputs: {{ x: node_8.x, y: node_8.y, z: node_8.z }}
     }
 }
 
-/// Loaded along its stiff axis, a cantilever falls aside above P = 4.013 √(EI GJ)/L² (Timoshenko & Gere, *Theory of Elastic Stability*
-/// (1961), § 6.3).
+/// Loaded along its stiff axis, a cantilever falls aside above P = 4.013 √(EI GJ)/L² (Timoshenko & Gere, *Theory of
+/// Elastic Stability* (1961), § 6.3).
 #[test]
 fn a_blade_buckles_sideways() {
     let stiffness = Stiffness { axial: 1e5, torsional: 1.0, bending: [1e3, 1.0], shear: None };
@@ -242,8 +245,8 @@ outputs: { y: rod.end.y, z: rod.end.z, roll: rod.end.p1 }
     }
 }
 
-/// A free beam that is hit, after Simo and Vu-Quoc (Comput. Methods Appl. Mech. Eng. 66 (1988) 125): its centre moves by the momentum,
-/// and once nothing acts its energy stays.
+/// A free beam that is hit, after Simo and Vu-Quoc (Comput. Methods Appl. Mech. Eng. 66 (1988) 125): its centre moves
+/// by the momentum, and once nothing acts its energy stays.
 #[test]
 fn a_beam_flies_with_its_momentum_and_energy() {
     let bounds = nominal(&read(
@@ -281,7 +284,8 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.1, alpha: -0.02 }
     assert!(largest(curve(&bounds, "bend").iter().copied()) > 1.0, "it bends");
 }
 
-/// The block of `models/spatial_slider_crank_flexible.yaml` is where a rigid rod has it, but for what the bent one is shorter.
+/// The block of `models/spatial_slider_crank_flexible.yaml` is where a rigid rod has it, but for what the bent one is
+/// shorter.
 #[test]
 fn a_rod_that_bends_little_moves_its_block_as_a_rigid_one() {
     let bounds = nominal(&common::model("spatial_slider_crank_flexible"));

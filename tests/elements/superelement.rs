@@ -1,4 +1,5 @@
-//! Flexible bodies by matrices of finite elements: statics, frequencies, weights and motions against the textbook and against beams.
+//! Flexible bodies by matrices of finite elements: statics, frequencies, weights and motions against the textbook and
+//! against beams.
 
 use std::path::Path;
 
@@ -134,7 +135,8 @@ simulation: {{ duration: 0.4, step: 1e-4, output_step: 0.04 }}
     assert!(drift < 1e-5 * kinetic[0], "{drift} of {}", kinetic[0]);
 }
 
-/// An arm that a torque swings to and fro, against one that is a beam of eight elements: the tip is off the rigid arm's line.
+/// An arm that a torque swings to and fro, against one that is a beam of eight elements: the tip is off the rigid arm's
+/// line.
 #[test]
 fn an_arm_by_matrices_moves_like_a_beam() {
     let soft = Beam { length: 0.9, axial: 1e6, bending: [200.0, 200.0], torsional: 1.0, mass: 1.4, turning: 1e-5 };
@@ -238,8 +240,8 @@ simulation: {{ duration: 0.2, step: 2e-4, output_step: 0.01 }}
     assert!((longer - exact).abs() < 3.0 * exact / 0.8 * exact + 1e-3 * exact, "{longer} {exact}");
 }
 
-/// The coupler of a slow slider crank bends under the acceleration across it, which is linear along it: at the middle by
-/// 5 μ (a_A + a_B)/2 l⁴/384 EI of a beam on two pins.
+/// The coupler of a slow slider crank bends under the acceleration across it, which is linear along it: at the middle
+/// by 5 μ (a_A + a_B)/2 l⁴/384 EI of a beam on two pins.
 #[test]
 fn a_coupler_bends_under_its_own_inertia() {
     let coupler = Beam { length: 0.5, axial: 1e6, bending: [1500.0, 1500.0], torsional: 10.0, mass: 1.0, turning: 1e-4 };
@@ -279,7 +281,8 @@ simulation: {{ duration: 0.7, step: 1e-3, output_step: 0.02 }}
     let closed = |time: f64| {
         let (l, at) = (0.5_f64, radius * (speed * time).sin() / 0.5);
         let rod = -at.asin();
-        // The pin at the crank has −r ω² (cos, sin), the slider moves along x alone: across the rod by sin and cos of its angle.
+        // The pin at the crank has −r ω² (cos, sin), the slider moves along x alone: across the rod by sin and cos of
+        // its angle.
         let rate = -radius * speed * (speed * time).cos() / (l * rod.cos());
         let gain = (radius * speed * speed * (speed * time).sin() + l * rate * rate * rod.sin()) / (l * rod.cos());
         let across = -radius * speed * speed * (-(speed * time).cos() * rod.sin() + (speed * time).sin() * rod.cos());

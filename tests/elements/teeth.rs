@@ -28,8 +28,8 @@ fn degrees(angle: f64) -> f64 {
     angle.to_radians()
 }
 
-/// A pinion of 40 mm drives a wheel of 100 mm against a brake, in a frame that lies askew; the second bearing may be listed
-/// backwards, and its axis may point the other way.
+/// A pinion of 40 mm drives a wheel of 100 mm against a brake, in a frame that lies askew; the second bearing may be
+/// listed backwards, and its axis may point the other way.
 fn helical(backwards: bool, against: bool, torque: f64, hand: f64) -> String {
     let (pair, axis) = (if backwards { "[b, housing.B]" } else { "[housing.B, b]" }, if against { "[0, 0, -1]" } else { "z" });
     // ψ̇₂ = −0.4 ψ̇₁ about the first axis.
@@ -74,7 +74,8 @@ fn helical_gears_push_on_their_bearings() {
             let transmitted: f64 = torque / 0.04;
             let apart = transmitted.abs() * degrees(20.0).tan() / degrees(hand).cos();
             let thrust = transmitted * degrees(hand).tan();
-            // The wheel's teeth, at +y of the pinion, push it back along +x and away along −y; the bearing has the opposites.
+            // The wheel's teeth, at +y of the pinion, push it back along +x and away along −y; the bearing has the
+            // opposites.
             let expected = [
                 ("push", transmitted.abs() / (degrees(20.0).cos() * degrees(hand).cos())),
                 ("a_x", -transmitted),
@@ -152,7 +153,8 @@ outputs: {{ px: p.force.x, py: p.force.y, rx: r.force.x, ry: r.force.y, push: me
 simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01 }}
 "
         );
-        // Radii 30 and 120 mm touch at x = 120 mm; the ring holds the pinion back along −y, and the bearing pushes it on.
+        // Radii 30 and 120 mm touch at x = 120 mm; the ring holds the pinion back along −y, and the bearing pushes it
+        // on.
         let (transmitted, apart) = (200.0, 200.0 * degrees(20.0).tan());
         let push = 200.0 / degrees(20.0).cos();
         let expected = [("py", transmitted), ("px", apart), ("ry", -transmitted), ("rx", -apart), ("push", push)];
@@ -224,8 +226,8 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01 }}
     }
 }
 
-/// Bevel gears at a right angle, 2 : 1: F_r = F_t tan α cos δ, F_a = F_t tan α sin δ of the pinion, and the other way round of the
-/// wheel.
+/// Bevel gears at a right angle, 2 : 1: F_r = F_t tan α cos δ, F_a = F_t tan α sin δ of the pinion, and the other way
+/// round of the wheel.
 #[test]
 fn bevel_gears_push_along_their_axes() {
     let text = "
@@ -248,8 +250,8 @@ simulation: { duration: 0.01, step: 1e-3, output_step: 0.01 }
     let delta = 0.5f64.atan();
     let transmitted = 10.0 / (0.1 * delta.sin());
     let (across, along) = (transmitted * 0.36397023426620234 * delta.cos(), transmitted * 0.36397023426620234 * delta.sin());
-    // Teeth press the pinion away from the apex and towards its axis (−y); its bearing has the opposites. They touch at +y of
-    // the pinion, whose teeth move along +z there.
+    // Teeth press the pinion away from the apex and towards its axis (−y); its bearing has the opposites. They touch at
+    // +y of the pinion, whose teeth move along +z there.
     let expected =
         [("ax", -along), ("ay", across), ("az", transmitted), ("bx", along), ("by", -across), ("bz", -transmitted)];
     assert_loads(text, &expected, 1e-8);

@@ -1,4 +1,5 @@
-//! Friction between teeth that roll: what is lost is a share of what is transmitted, whichever drives. (That of worms is in `worm`.)
+//! Friction between teeth that roll: what is lost is a share of what is transmitted, whichever drives. (That of worms
+//! is in `worm`.)
 
 use mbint::inner::results::Bounds;
 
@@ -76,8 +77,8 @@ joints:
     }
 }
 
-/// With the ring held, the sun gives the carrier (1 + ρ η)/(1 + ρ) of its power, since only what rolls against the carrier is lost; and
-/// the carrier gives the sun (1 + ρ)/(1 + ρ/η) (Müller).
+/// With the ring held, the sun gives the carrier (1 + ρ η)/(1 + ρ) of its power, since only what rolls against the
+/// carrier is lost; and the carrier gives the sun (1 + ρ)/(1 + ρ/η) (Müller).
 #[test]
 fn planets_lose_what_rolls_against_the_carrier() {
     let parts = "

@@ -22,8 +22,8 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.1{more} }}
     )))
 }
 
-/// SciPy 1.17: `CubicSpline(t, x, bc_type=((1, 0), (1, 0)))`, `BPoly.from_derivatives` of values and rates, and of values, rates and
-/// accelerations 0.
+/// SciPy 1.17: `CubicSpline(t, x, bc_type=((1, 0), (1, 0)))`, `BPoly.from_derivatives` of values and rates, and of
+/// values, rates and accelerations 0.
 #[test]
 fn polynomials_and_splines_are_those_of_scipy() {
     let spline = [

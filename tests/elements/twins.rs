@@ -1,4 +1,5 @@
-//! Every element of the registries in an assembly: twins that are turned, mirrored, or carried along steadily move as the original does.
+//! Every element of the registries in an assembly: twins that are turned, mirrored, or carried along steadily move as
+//! the original does.
 
 use mbint::inner::elements::JointKind;
 use mbint::inner::model::{Description, EffectKind, load_str};
@@ -7,7 +8,8 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 use crate::common::{curve, nominal};
 
-/// What the examples name: of effects as in `explain --effects`, of joints as in their own test. Bodies that only turn are left out in space.
+/// What the examples name: of effects as in `explain --effects`, of joints as in their own test. Bodies that only turn
+/// are left out in space.
 struct Mechanism {
     ground: &'static str,
     bodies: &'static [&'static str],
@@ -92,7 +94,8 @@ impl Mechanism {
             _ => effects += &it,
         }
         let starts = if self.starts.is_empty() {
-            // What a start is nearest to weighs angles against lengths of the model's size, so that the wheel's angle is given.
+            // What a start is nearest to weighs angles against lengths of the model's size, so that the wheel's angle
+            // is given.
             let wheel = if spatial { "" } else { "wheel.angle: 0" };
             let place = if spatial { ["0.5, bob.z: 0", "0, follower.z: 0"] } else { ["0.5", "0.03"] };
             format!("initial: {{ {} }}\n    guess: {{ bob.y: 0, bob.x: {}, follower.x: 0, follower.y: {} }}", wheel, place[0], place[1])

@@ -1,4 +1,5 @@
-//! Tyres: their characteristics with published coefficients, a single-track car against its linear solution and scipy, and images.
+//! Tyres: their characteristics with published coefficients, a single-track car against its linear solution and scipy,
+//! and images.
 
 use mbint::inner::results::Method;
 
@@ -22,8 +23,8 @@ simulation: {{ duration: 1, step: 1e-2, output_step: 0.02 }}
     )))
 }
 
-/// Of a radial tyre under 4 kN (Bakker, Nyborg & Pacejka 1987, table 1): D = a₁ F² + a₂ F, BCD = a₃ sin(a₄ atan(a₅ F)), E = a₆ F² + a₇ F + a₈, in
-/// kN, N and degrees; a = −22.1, 1011, 1078, 1.82, 0.208, 0, −0.354, 0.707, C = 1.3.
+/// Of a radial tyre under 4 kN (Bakker, Nyborg & Pacejka 1987, table 1): D = a₁ F² + a₂ F, BCD = a₃ sin(a₄ atan(a₅ F)),
+/// E = a₆ F² + a₇ F + a₈, in kN, N and degrees; a = −22.1, 1011, 1078, 1.82, 0.208, 0, −0.354, 0.707, C = 1.3.
 #[test]
 fn the_magic_formula_has_its_published_values() {
     let load = 4.0_f64;
@@ -102,8 +103,8 @@ fn a_slalom_is_that_of_scipy() {
     }
 }
 
-/// Yaw rate of a single-track car that is steered little: v δ/(l + m (l_r C_r − l_f C_f)/(l C_f C_r) v²) (Rajamani, *Vehicle Dynamics and
-/// Control*, 2nd ed. (2012), sec. 3.3), so that its bounds are those of the front's stiffness.
+/// Yaw rate of a single-track car that is steered little: v δ/(l + m (l_r C_r − l_f C_f)/(l C_f C_r) v²) (Rajamani,
+/// *Vehicle Dynamics and Control*, 2nd ed. (2012), sec. 3.3), so that its bounds are those of the front's stiffness.
 #[test]
 fn a_car_understeers() {
     let bounds = run(&read(&car("rest_speed: 0.01", "1e-3", "duration: 3, step: 2e-3")));
@@ -146,8 +147,9 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.1 }}
     }
 }
 
-/// A wheel that is too heavy to be driven slips from −100 to 100 %; Bakker, Nyborg & Pacejka 1987, table 1 for braking: D = a₁ F² + a₂ F, BCD =
-/// (a₃ F² + a₄ F)/exp(a₅ F), E = a₆ F² + a₇ F + a₈, in kN, N and per cent; a = −21.3, 1144, 49.6, 226, 0.069, −0.006, 0.056, 0.486, C = 1.65.
+/// A wheel that is too heavy to be driven slips from −100 to 100 %; Bakker, Nyborg & Pacejka 1987, table 1 for braking:
+/// D = a₁ F² + a₂ F, BCD = (a₃ F² + a₄ F)/exp(a₅ F), E = a₆ F² + a₇ F + a₈, in kN, N and per cent; a = −21.3, 1144,
+/// 49.6, 226, 0.069, −0.006, 0.056, 0.486, C = 1.65.
 #[test]
 fn along_the_heading_the_magic_formula_has_its_published_values() {
     let load = 4.0_f64;
@@ -228,7 +230,8 @@ fn a_car_is_braked_by_closed_forms() {
     assert!((slips[10] / slip(rate) - 1.0).abs() < 2e-4, "{}, not {}", slips[10], slip(rate));
 }
 
-/// Forces along and across lie within the ellipse of both limits, and on it where the wheel slides, with or without the magic formula.
+/// Forces along and across lie within the ellipse of both limits, and on it where the wheel slides, with or without the
+/// magic formula.
 #[test]
 fn forces_of_both_directions_share_the_slip() {
     for shape in ["", ", shape: 1"] {

@@ -41,7 +41,8 @@ fn run(text: &str) -> Bounds {
     nominal(&read(text))
 }
 
-/// A right-handed worm that turns about x pushes the teeth beside it along −x. The wheel's axis is at y > 0, so it turns about −z.
+/// A right-handed worm that turns about x pushes the teeth beside it along −x. The wheel's axis is at y > 0, so it
+/// turns about −z.
 #[test]
 fn the_hand_decides_which_way_the_wheel_turns() {
     let acceleration = 0.2 / (INERTIA[0] + RATIO * RATIO * INERTIA[1]);
@@ -92,7 +93,8 @@ fn with_friction(lead: f64, start: f64, torques: [f64; 2], transition: f64, rest
     run(&text(lead, start, torques, &friction, ", lost: rubbing.loss", rest))
 }
 
-/// tan ρ = μ/cos α. The worm that drives gives tan γ/tan(γ + ρ) of its power, and the wheel that drives tan(γ − ρ)/tan γ.
+/// tan ρ = μ/cos α. The worm that drives gives tan γ/tan(γ + ρ) of its power, and the wheel that drives tan(γ − ρ)/tan
+/// γ.
 #[test]
 fn a_worms_efficiency_is_that_of_its_thread() {
     let (lead, pressure) = (LEAD.to_radians(), PRESSURE.to_radians());
@@ -114,8 +116,8 @@ fn a_worms_efficiency_is_that_of_its_thread() {
     }
 }
 
-/// Below the angle of friction the wheel cannot drive, whatever its torque: the worm creeps at the speed at which the smooth law of friction bears
-/// tan γ/tan ρ of itself.
+/// Below the angle of friction the wheel cannot drive, whatever its torque: the worm creeps at the speed at which the
+/// smooth law of friction bears tan γ/tan ρ of itself.
 #[test]
 fn a_worm_of_little_lead_locks() {
     let lead = 3.0_f64.to_radians();

@@ -1,14 +1,14 @@
-//! Tries to prove stated errors wrong: mechanisms, boxes, steps, orders and outputs are drawn at random from families whose
-//! motion is known without mbint, and every band is compared with the true range, row by row.
+//! Tries to prove stated errors wrong: mechanisms, boxes, steps, orders and outputs are drawn at random from families
+//! whose motion is known without mbint, and every band is compared with the true range, row by row.
 //!
 //! ```sh
 //! cargo test --test falsify -- --ignored --nocapture           # the gate's draws
 //! MBINT_FALSIFY_DRAWS=5000 MBINT_FALSIFY_SEED=1 cargo test --test falsify -- --ignored --nocapture
 //! ```
 //!
-//! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that number,
-//! `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600` begins no draw after ten minutes,
-//! `MBINT_FALSIFY_PATIENCE=300` waits five minutes for one (60 s), as a busy machine needs.
+//! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that
+//! number, `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600` begins no draw after ten
+//! minutes, `MBINT_FALSIFY_PATIENCE=300` waits five minutes for one (60 s), as a busy machine needs.
 //! `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and method simple and prints them as models;
 //! `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.
 
@@ -192,7 +192,8 @@ fn questioned(draws: u64, ask: fn(u64, u64) -> questions::Tally) -> questions::T
     tally
 }
 
-/// Intervals of 95 % miss one in twenty: here at most as many as chance allows in one of a thousand runs, or as are known.
+/// Intervals of 95 % miss one in twenty: here at most as many as chance allows in one of a thousand runs, or as are
+/// known.
 #[test]
 #[ignore = "half a minute"]
 fn shares_that_fail_are_honest() {

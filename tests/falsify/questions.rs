@@ -62,7 +62,8 @@ fn solve(f: impl Fn(f64) -> f64, value: f64, mut lower: f64, mut upper: f64) -> 
     0.5 * (lower + upper)
 }
 
-/// A set that surrounds the middle: outside of a sphere, beyond two planes, or outside of a box, in up to twenty directions.
+/// A set that surrounds the middle: outside of a sphere, beyond two planes, or outside of a box, in up to twenty
+/// directions.
 fn share(random: &mut Random) -> Share {
     let wanted = random.scale(1e-8, 3e-3);
     let kind = random.whole(0, 2);
@@ -241,7 +242,8 @@ bounds: {{ chebyshev: {{ order: 5 }} }}
     }
 }
 
-/// Of what is dearer than the cheapest by this share, less is not a fault: tolerances have four digits and margins errors.
+/// Of what is dearer than the cheapest by this share, less is not a fault: tolerances have four digits and margins
+/// errors.
 const DEARER: f64 = 0.02;
 
 /// Allocations with worst cases inside of the box: numbers, that meet the requirement, as cheap as can be.

@@ -1,5 +1,6 @@
-//! The range of a term's channels over its box: a dense grid, and from its best points a local search. For closed forms the
-//! search evaluates them; for what is integrated it evaluates polynomials through the grid's points. Nothing here is mbint's.
+//! The range of a term's channels over its box: a dense grid, and from its best points a local search. For closed forms
+//! the search evaluates them; for what is integrated it evaluates polynomials through the grid's points. Nothing here
+//! is mbint's.
 
 use crate::draw::{Parameter, Term};
 use crate::truth::Range;

@@ -1,4 +1,5 @@
-//! The true range of an output: of every term over its own parameters, and of what a formula makes of independent ranges.
+//! The true range of an output: of every term over its own parameters, and of what a formula makes of independent
+//! ranges.
 
 use crate::draw::{Combine, Draw, Output, Wrap};
 use crate::search;

@@ -140,7 +140,8 @@ fn judge(draw: &Draw, result: &StudyResult, truth: &[Vec<Range>], unsure: &[Vec<
     verdicts
 }
 
-/// Whether a row without a flag leaves out the nominal motion, or an end of another method's that is not flagged either.
+/// Whether a row without a flag leaves out the nominal motion, or an end of another method's that is not flagged
+/// either.
 fn is_contradicted(band: Band, all: &[Band], nominal: f64, row: usize, rounding: f64) -> bool {
     let apart = |a: f64, b: f64, error: f64| (a - b).abs() > error + rounding;
     let (lower, upper, error) = (band.lower()[row], band.upper()[row], band.errors()[row]);

@@ -1,8 +1,8 @@
 //! Models and formulas as no one would write them: whatever stands in a file, the answer is a result or an error.
 //!
 //! `cargo test --test fuzz` changes the models of `models/` and `tests/bad_models/` at random;
-//! `MBINT_FUZZ_INPUTS=1000000` tries so many inputs, and `cargo test --test fuzz -- --ignored` as many as the gate does. Guided by coverage, and with limits of time and memory, the same targets
-//! run with cargo-fuzz:
+//! `MBINT_FUZZ_INPUTS=1000000` tries so many inputs, and `cargo test --test fuzz -- --ignored` as many as the gate
+//! does. Guided by coverage, and with limits of time and memory, the same targets run with cargo-fuzz:
 //!
 //! ```sh
 //! cargo +nightly fuzz run model corpus models tests/bad_models -- -rss_limit_mb=1024 -timeout=10 -max_len=20000

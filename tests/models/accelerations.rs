@@ -1,5 +1,6 @@
-//! Accelerations and reactions at rows of output: of order two down to rounding with fixed steps, and they converge with the
-//! tolerance where steps are controlled. Constraints leave ε/h² in those of the steps, and each change of h disturbs them.
+//! Accelerations and reactions at rows of output: of order two down to rounding with fixed steps, and they converge
+//! with the tolerance where steps are controlled. Constraints leave ε/h² in those of the steps, and each change of h
+//! disturbs them.
 
 use mbint::inner::model::Description;
 use mbint::inner::results::Method;

@@ -1,4 +1,5 @@
-//! Inconsistent initial velocities name the joint they are inconsistent with. (Positions that do not: `tests/program/faults/infeasible.rs`.)
+//! Inconsistent initial velocities name the joint they are inconsistent with. (Positions that do not:
+//! `tests/program/faults/infeasible.rs`.)
 
 use mbint::inner::study::{self, Options};
 

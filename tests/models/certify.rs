@@ -136,8 +136,8 @@ fn what_cannot_be_certified_is_refused() {
     assert!(message.starts_with("certified bounds enclose HHT-I3 itself with a fixed `step`"), "{message}");
 }
 
-/// An effect without an enclosure is named; one with friction proportional to its reaction has one, and a stop as long as the
-/// whole box is away from it.
+/// An effect without an enclosure is named; one with friction proportional to its reaction has one, and a stop as long
+/// as the whole box is away from it.
 #[test]
 fn an_effect_that_has_no_enclosure_is_named() {
     let text = |effect: &str| {
@@ -170,8 +170,8 @@ simulation: {{ duration: 0.02, step: 1e-3 }}
     }
 }
 
-/// A mechanism that a motor moves has no degree of freedom: its frame has no slow directions, and its start nothing to solve for
-/// where positions are given.
+/// A mechanism that a motor moves has no degree of freedom: its frame has no slow directions, and its start nothing to
+/// solve for where positions are given.
 #[test]
 fn a_mechanism_without_degrees_of_freedom_is_certified() {
     let crank = read(
@@ -228,7 +228,8 @@ fn shipped_models_without_degrees_of_freedom_are_certified() {
             let known = certified.lower.iter().take_while(|value| value.is_finite()).count();
             let says_why =
                 failure.as_ref().is_some_and(|why| why.contains("certified bounds are unknown from there on"));
-            // The size of a force that passes zero has no finite derivative there: its enclosure is unknown, and marked so.
+            // The size of a force that passes zero has no finite derivative there: its enclosure is unknown, and marked
+            // so.
             let is_marked = (known..rows).all(|row| certified.error.unresolved[row]);
             assert!(says_why || is_marked, "{name}: {} from row {known} of {rows}: {failure:?}", output.name);
             all += usize::from(known == rows);

@@ -27,9 +27,9 @@ fn against_scan(output: &OutputBounds) -> (f64, f64) {
     (ours.iter().sum::<f64>() / true_width.iter().sum::<f64>(), outside.fold(f64::NEG_INFINITY, f64::max))
 }
 
-/// The crank's length ± 1 % over 10 s: the crank's angle then spreads over several turns, which no polynomial of order 5
-/// in the slider's own position can follow (it misses the true range by up to 44 % of its width). Measured here: 1.0004
-/// of the scan's mean width, and 0.7 % outside at the worst time.
+/// The crank's length ± 1 % over 10 s: the crank's angle then spreads over several turns, which no polynomial of order
+/// 5 in the slider's own position can follow (it misses the true range by up to 44 % of its width). Measured here:
+/// 1.0004 of the scan's mean width, and 0.7 % outside at the worst time.
 #[test]
 #[ignore = "20 s: ten seconds of motion"]
 fn ten_seconds_of_the_slider_crank_are_bounded_within_a_percent() {

@@ -103,9 +103,10 @@ fn damping_of_the_scheme_does_not_change_its_order() {
 
 #[test]
 fn reactions_have_an_error_of_first_order_in_the_first_steps() {
-    // Known of schemes that constrain positions only (Arnold, Cardona & Brüls on order reduction): they want velocities with
-    // Φ_q v + Φ_t = C h², and a start with zero makes that residual, and reactions by O(h), oscillate; each step multiplies
-    // it by about (1 + α)/(1 − α) = 0.82. Measured at h = 1e-3: 0.033 N of 28.8 N after five steps, 9e-6 N after eighty.
+    // Known of schemes that constrain positions only (Arnold, Cardona & Brüls on order reduction): they want velocities
+    // with Φ_q v + Φ_t = C h², and a start with zero makes that residual, and reactions by O(h), oscillate; each step
+    // multiplies it by about (1 + α)/(1 − α) = 0.82. Measured at h = 1e-3: 0.033 N of 28.8 N after five steps, 9e-6 N
+    // after eighty.
     let description = read(
         "
 bodies: { rod: { mass: 2, inertia: 0.1, points: { hinge: [-0.4, 0] } } }

@@ -1,5 +1,6 @@
-//! Deep trees in joint coordinates: their equations are eliminated link by link, in instructions in proportion to the links, and move
-//! as the same equations eliminated as a whole, as absolute coordinates, and as an independent program say.
+//! Deep trees in joint coordinates: their equations are eliminated link by link, in instructions in proportion to the
+//! links, and move as the same equations eliminated as a whole, as absolute coordinates, and as an independent program
+//! say.
 
 use std::fmt::Write;
 
@@ -20,7 +21,8 @@ fn within(mut description: Description, formulation: Formulation) -> Description
 /// Axes of the joints, in turn.
 const AXES: [[f64; 3]; 5] = [[1.0, 2.0, -0.5], [0.0, 1.0, 0.25], [-0.5, 0.25, 1.0], [0.2, -1.0, 0.5], [1.0, 0.0, 1.0]];
 
-/// Bars of 0.3 m, each hanging from the one before by a sprung and damped pin: about [`AXES`], or all about z in the plane.
+/// Bars of 0.3 m, each hanging from the one before by a sprung and damped pin: about [`AXES`], or all about z in the
+/// plane.
 fn chain(links: usize, spatial: bool) -> String {
     let [mut bodies, mut joints, mut effects, mut initial] = [const { String::new() }; 4];
     for i in 0..links {
@@ -44,8 +46,8 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: joint
     )
 }
 
-/// A trunk of ten links with a branch of eight from its fifth, a motor in the branch, joints with friction, sliders, and a spring with a
-/// damper between the ends.
+/// A trunk of ten links with a branch of eight from its fifth, a motor in the branch, joints with friction, sliders,
+/// and a spring with a damper between the ends.
 fn branched() -> Description {
     let [mut bodies, mut joints, mut effects] = [const { String::new() }; 3];
     for i in 0..18 {
@@ -116,7 +118,8 @@ fn chains_of_160_links_cost_four_times_as_much_as_of_40() {
     }
 }
 
-/// A chain in space whose links bend and twist in turn: the torque about an axis of twist is the same sum for two links.
+/// A chain in space whose links bend and twist in turn: the torque about an axis of twist is the same sum for two
+/// links.
 fn twisting_chain(links: usize) -> String {
     AXES.iter().enumerate().fold(chain(links, true), |text, (place, axis)| {
         let other = ["[0, 1, 0]", "[1, 0, 0]"][place % 2];
@@ -165,7 +168,8 @@ fn a_branched_tree_moves_as_in_absolute_coordinates() {
     }
 }
 
-/// Against Pinocchio 4.1: its articulated-body algorithm at the start, and under DOP853 of SciPy (tolerances 1e-12) until 0.2 s.
+/// Against Pinocchio 4.1: its articulated-body algorithm at the start, and under DOP853 of SciPy (tolerances 1e-12)
+/// until 0.2 s.
 #[test]
 fn a_chain_of_twenty_moves_as_pinocchio_says() {
     let places = [0, 7, 13, 19];

@@ -1,4 +1,5 @@
-//! The explicit method of order 8: against references that other methods computed, closed forms, and what it is not for.
+//! The explicit method of order 8: against references that other methods computed, closed forms, and what it is not
+//! for.
 
 use mbint::inner::methods::Taylor;
 use mbint::inner::model::{Description, SchemeChoice};
@@ -36,7 +37,8 @@ fn the_slider_crank_is_within_its_tolerance() {
     }
 }
 
-/// The pendulum in Cartesian coordinates: positions by Jacobi's elliptic functions, the tension by energy. Rows lie between steps.
+/// The pendulum in Cartesian coordinates: positions by Jacobi's elliptic functions, the tension by energy. Rows lie
+/// between steps.
 #[test]
 fn dense_rows_reactions_and_constraints_are_those_of_the_pendulum() {
     let rows = reference("iftomm/pendulum.csv");
@@ -189,8 +191,8 @@ bounds: { scan: { points: 2 } }
     assert!(off <= stated + 1e-14 && stated < allowed, "{off:e}, stated {stated:e}");
 }
 
-/// A mass flies between two springs: it meets each at v and leaves it half a period later at −v. Where its force jumps, it moves by
-/// parabolas.
+/// A mass flies between two springs: it meets each at v and leaves it half a period later at −v. Where its force jumps,
+/// it moves by parabolas.
 #[test]
 fn steps_end_where_equations_switch() {
     let half = std::f64::consts::PI / 20.0;

@@ -39,8 +39,8 @@ fn each_level_gains_an_order() {
     }
 }
 
-/// The pendulum from the horizontal, in Cartesian coordinates with a multiplier: positions by Jacobi's elliptic functions, the rod's
-/// tension 3 m g |y|/L by energy and the centripetal acceleration.
+/// The pendulum from the horizontal, in Cartesian coordinates with a multiplier: positions by Jacobi's elliptic
+/// functions, the rod's tension 3 m g |y|/L by energy and the centripetal acceleration.
 #[test]
 fn reactions_and_accelerations_are_extrapolated_too() {
     let rows = reference("iftomm/pendulum.csv");

@@ -45,8 +45,8 @@ fn instructions(simulator: &Simulator, active: bool) -> usize {
         .sum()
 }
 
-/// Bare, and then a few instructions for each contact: its gap and the greatest of the gaps, when the matrix is factorised and
-/// in each iteration.
+/// Bare, and then a few instructions for each contact: its gap and the greatest of the gaps, when the matrix is
+/// factorised and in each iteration.
 #[test]
 fn a_far_contact_is_its_gap() {
     let bare = prepare(&slider_crank("", "")).unwrap();

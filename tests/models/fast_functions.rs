@@ -1,5 +1,5 @@
-//! Forces that change very fast with the time, under a tolerance: they are resolved where that is possible, and otherwise
-//! refused in words and at once.
+//! Forces that change very fast with the time, under a tolerance: they are resolved where that is possible, and
+//! otherwise refused in words and at once.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

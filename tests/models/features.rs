@@ -1,5 +1,5 @@
-//! Forces that act in one place only, which a step may jump over. The truth: a body that passes a place of no length loses the
-//! work that is done there, and has that speed from then on.
+//! Forces that act in one place only, which a step may jump over. The truth: a body that passes a place of no length
+//! loses the work that is done there, and has that speed from then on.
 
 use std::f64::consts::PI;
 
@@ -35,8 +35,8 @@ fn truth(work: f64, t: f64) -> [f64; 2] {
     positions.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], x| [lower.min(x), upper.max(x)])
 }
 
-/// How many rows of all bands are not flagged; at these both ends of the true band are within the stated error, and within
-/// `slack`, which is what the brake's own length makes.
+/// How many rows of all bands are not flagged; at these both ends of the true band are within the stated error, and
+/// within `slack`, which is what the brake's own length makes.
 fn covered(text: &str, work: f64, slack: f64) -> usize {
     let result = Model::from_yaml_str("thrown", text).unwrap().study().run().unwrap();
     let mut counted = 0;
@@ -85,8 +85,8 @@ fn quotients_and_pairs_of_edges_are_found() {
     }
 }
 
-/// A table whose knots lie within a step: a natural cubic spline of 6000 N at 0.83 m, and of nothing at knots beside it, ever further
-/// apart. Its work is what scipy's `CubicSpline` integrates.
+/// A table whose knots lie within a step: a natural cubic spline of 6000 N at 0.83 m, and of nothing at knots beside
+/// it, ever further apart. Its work is what scipy's `CubicSpline` integrates.
 #[test]
 fn a_table_within_a_step_is_found() {
     let beside: Vec<f64> = (0..26)

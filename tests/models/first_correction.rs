@@ -6,7 +6,8 @@ use mbint::inner::study;
 
 use crate::common::{load, model_files};
 
-/// Over the first steps of every model, at w and λ off by 0.1 of their sizes: conditional effects are active in some and not in others.
+/// Over the first steps of every model, at w and λ off by 0.1 of their sizes: conditional effects are active in some
+/// and not in others.
 #[test]
 fn a_first_correction_is_a_correction() {
     let mut shorter = 0;

@@ -1,5 +1,5 @@
-//! Joint and absolute coordinates are two ways to write down one motion: at the start they agree to rounding, in positions,
-//! velocities, accelerations and reactions, and later to the scheme's error.
+//! Joint and absolute coordinates are two ways to write down one motion: at the start they agree to rounding, in
+//! positions, velocities, accelerations and reactions, and later to the scheme's error.
 
 use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
@@ -44,8 +44,8 @@ fn differences(description: &Description, h: f64) -> Vec<(String, f64, f64)> {
         .collect()
 }
 
-/// A tree of bodies with every joint that can carry one, frames that stand askew, and bodies that are a joint's first as
-/// well as its second; on the ground or floating.
+/// A tree of bodies with every joint that can carry one, frames that stand askew, and bodies that are a joint's first
+/// as well as its second; on the ground or floating.
 fn tree(floating: bool) -> String {
     let base = if floating { "" } else { "  hold: { fixed: [ground.O, base] }\n" };
     let thrown = if floating {
@@ -254,8 +254,8 @@ fn a_program_is_given_up_beyond_its_limit_and_not_before() {
     assert_eq!(instructions(&free), instructions(&limited));
 }
 
-/// What the model leaves open of the start is nearest to rest in joint coordinates: the formulation, and what is observed,
-/// change nothing.
+/// What the model leaves open of the start is nearest to rest in joint coordinates: the formulation, and what is
+/// observed, change nothing.
 #[test]
 fn the_start_depends_neither_on_the_formulation_nor_on_what_is_observed() {
     let planar = "

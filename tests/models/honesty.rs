@@ -1,6 +1,6 @@
 //! Whether the reported errors are honest: they cover the true ones at 99 % of the output times, and are on average not
-//! more than ten times as large. The truths are closed forms, references, and other equations (minimal coordinates) solved by
-//! another method (Runge and Kutta's), over dense grids of the parameters.
+//! more than ten times as large. The truths are closed forms, references, and other equations (minimal coordinates)
+//! solved by another method (Runge and Kutta's), over dense grids of the parameters.
 
 use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
 use mbint::inner::model::Description;
@@ -25,8 +25,8 @@ fn all_methods(mut description: Description, order: usize) -> Description {
     description
 }
 
-/// Share of rows in which the reported error covers both ends' true ones, and the mean of the reported over the mean of the
-/// true.
+/// Share of rows in which the reported error covers both ends' true ones, and the mean of the reported over the mean of
+/// the true.
 fn honesty(output: &OutputBounds, method: Method, truth: &Truth) -> (f64, f64) {
     let band = band(output, method);
     let mut covered = 0;
@@ -52,8 +52,9 @@ struct Settings {
 }
 
 impl Settings {
-    /// Whether all are covered, and stated errors not more than ten times as large on average. (One may be: where both ends are
-    /// validation samples, which the band holds, it is far better than the surrogate of a low order is elsewhere.)
+    /// Whether all are covered, and stated errors not more than ten times as large on average. (One may be: where both
+    /// ends are validation samples, which the band holds, it is far better than the surrogate of a low order is
+    /// elsewhere.)
     fn are_honest(mut self) {
         let mean = self.ratios.iter().sum::<f64>() / self.ratios.len() as f64;
         println!("{mean:.2} times on average");

@@ -1,6 +1,6 @@
-//! Whether bounds to a tolerance are honest where samples that are chosen beforehand say little: bumps beside them, one corner of
-//! many, motions that bend over the box; and whether whatever a run has simulated lies within its bands. The truths are closed forms, or
-//! another method's motions over dense grids.
+//! Whether bounds to a tolerance are honest where samples that are chosen beforehand say little: bumps beside them, one
+//! corner of many, motions that bend over the box; and whether whatever a run has simulated lies within its bands. The
+//! truths are closed forms, or another method's motions over dense grids.
 
 use mbint::inner::results::{Bounds, Method};
 
@@ -112,7 +112,8 @@ bounds: { chebyshev: { order: 4 }, scan: { points: 25 } }";
     assert_honest(&bounds, "x", Method::Chebyshev, softened_range((1.0, 1.5)));
 }
 
-/// The peak of a motion that is at rest where the parameters are nominal, of which a polynomial makes less than nothing or more.
+/// The peak of a motion that is at rest where the parameters are nominal, of which a polynomial makes less than nothing
+/// or more.
 #[test]
 fn simulated_values_of_reduced_outputs_are_within_their_bands() {
     let (_, summary) = run_methods(

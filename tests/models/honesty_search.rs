@@ -1,5 +1,6 @@
-//! Whether bounds are honest where their range is hard to find: bands full of turns, sums of independent oscillators, peaks that are
-//! narrow, responses with kinks and jumps. The truths are closed forms, ranged over dense samples or by hand.
+//! Whether bounds are honest where their range is hard to find: bands full of turns, sums of independent oscillators,
+//! peaks that are narrow, responses with kinks and jumps. The truths are closed forms, ranged over dense samples or by
+//! hand.
 //!
 //! A row counts unless its band is flagged; both ends have to be within the stated error in 99 % of those that count.
 
@@ -11,7 +12,8 @@ use mbint::inner::results::{Bounds, Method};
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Vary, band, output, read, run};
 
-/// Rows that are not flagged, the share of them that is covered, and the mean of the stated over the mean of the true errors.
+/// Rows that are not flagged, the share of them that is covered, and the mean of the stated over the mean of the true
+/// errors.
 fn honesty(bounds: &Bounds, name: &str, method: Method, truth: impl Fn(f64) -> (f64, f64)) -> (usize, f64, f64) {
     let band = band(output(bounds, name), method);
     let (mut counted, mut covered, mut stated, mut errors) = (0, 0, 0.0, 0.0);
@@ -203,8 +205,8 @@ fn kinks_are_covered() {
     }
 }
 
-/// The difference of two motions changes its sign in a corner of the box only: elsewhere its magnitude is a sum of functions of one
-/// parameter each.
+/// The difference of two motions changes its sign in a corner of the box only: elsewhere its magnitude is a sum of
+/// functions of one parameter each.
 #[test]
 fn a_kink_in_a_corner_is_covered() {
     let parts = [(0.32, 1.21, 9.0), (0.11, 2.3, 5.0)];

@@ -1,5 +1,5 @@
-//! `humanoid.yaml` against its equations in minimal coordinates, written by hand: the hips' place and nine absolute angles. A
-//! point of a segment is p + Σ aⱼ u(θⱼ) + b n(θ), with u along and n across a segment.
+//! `humanoid.yaml` against its equations in minimal coordinates, written by hand: the hips' place and nine absolute
+//! angles. A point of a segment is p + Σ aⱼ u(θⱼ) + b n(θ), with u along and n across a segment.
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::{Vary, curve, distance, model, nominal, order};

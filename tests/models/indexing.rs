@@ -20,7 +20,8 @@ fn list(points: impl IntoIterator<Item = [f64; 2]>) -> String {
 /// Distance of the centres, m.
 const CENTRES: f64 = 0.1;
 
-/// Four slots between the centres of a crank with a pin and a wheel, and a disc of the crank with 260° that holds the wheel by its horns.
+/// Four slots between the centres of a crank with a pin and a wheel, and a disc of the crank with 260° that holds the
+/// wheel by its horns.
 fn geneva() -> Bounds {
     let (crank, pin, rounding, play) = (CENTRES * FRAC_PI_4.cos(), 5e-3, 1e-4, 1e-4);
     let (half, depth, tip) = (pin + rounding + play, CENTRES - crank - pin - 2e-3, 5e-4);
@@ -70,8 +71,8 @@ simulation: {{ duration: 1, step: 5e-5, output_step: 0.01 }}
     )))
 }
 
-/// While the pin is in a slot the wheel turns by 45° + atan(a sin φ/(c − a cos φ)) backwards, within the play; then the disc holds it at a quarter,
-/// against a load of either sign.
+/// While the pin is in a slot the wheel turns by 45° + atan(a sin φ/(c − a cos φ)) backwards, within the play; then the
+/// disc holds it at a quarter, against a load of either sign.
 #[test]
 fn a_geneva_wheel_with_slots_that_end_turns_by_a_quarter() {
     let bounds = geneva();

@@ -92,7 +92,8 @@ fn conservative_models_keep_their_energy() {
 
 #[test]
 fn what_the_motor_gives_is_stored_or_lost() {
-    // The slider crank: energy = −work of the damper + work of the torque. The damper's work is integrated by Simpson's rule.
+    // The slider crank: energy = −work of the damper + work of the torque. The damper's work is integrated by Simpson's
+    // rule.
     let formulas = ["energy", "tau*crank.angle", "-c*slider.vx^2"];
     let bounds = nominal(&model("slider_crank").observing(&formulas).step(1e-4).rows_every(1e-3));
     let [energy, given, power] = [0, 1, 2].map(|place| &bounds.outputs[place].nominal);

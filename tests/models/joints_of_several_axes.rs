@@ -1,5 +1,5 @@
-//! Spherical, universal and planar joints that carry bodies in joint coordinates: the same motions and reactions as in absolute coordinates,
-//! and those of closed forms and invariants.
+//! Spherical, universal and planar joints that carry bodies in joint coordinates: the same motions and reactions as in
+//! absolute coordinates, and those of closed forms and invariants.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -35,7 +35,8 @@ fn coordinates(simulator: &Simulator) -> Vec<&str> {
     simulator.system.coordinates.iter().map(|coordinate| coordinate.name.as_str()).collect()
 }
 
-/// Three bodies in a row on two joints and a pin, with frames that stand askew, driven by a spring, a torque and their weight.
+/// Three bodies in a row on two joints and a pin, with frames that stand askew, driven by a spring, a torque and their
+/// weight.
 fn row_of_three(first: &str, second: &str, initial: &str) -> Description {
     let text = format!(
         "
@@ -230,8 +231,8 @@ fn chains_on_balls_are_eliminated_link_by_link() {
     assert!(twenty < 2.2 * ten, "{ten} {twenty}");
 }
 
-/// Two universal joints in line, the forks of the shaft between them in one plane: the first turns it unevenly, ω cos β/(1 − sin² β cos² φ), and
-/// the second evenly again.
+/// Two universal joints in line, the forks of the shaft between them in one plane: the first turns it unevenly, ω cos
+/// β/(1 − sin² β cos² φ), and the second evenly again.
 #[test]
 fn a_double_cardan_shaft_turns_evenly() {
     let bend = 25_f64.to_radians();
@@ -314,7 +315,8 @@ simulation: {{ duration: 1, step: 1e-2, output_step: 0.1 }}
     }
 }
 
-/// The angle of a planar joint is a coordinate like another: a spring on it makes it swing with √(k/J), in both formulations.
+/// The angle of a planar joint is a coordinate like another: a spring on it makes it swing with √(k/J), in both
+/// formulations.
 #[test]
 fn the_angle_of_a_planar_joint_has_a_name() {
     for formulation in BOTH {

@@ -51,8 +51,8 @@ fn at(mut description: Description, values: &[f64]) -> Description {
 const SAMPLES: [[f64; 3]; 4] =
     [[0.12, -0.6, 0.015], [0.1224, -0.618, 0.021], [0.1181, -0.594, 0.01], [0.1213, -0.585, 0.0175]];
 
-/// Values are those of simulations with the same steps, or where a tolerance chose them with much shorter ones, within the stated error
-/// and the tolerance.
+/// Values are those of simulations with the same steps, or where a tolerance chose them with much shorter ones, within
+/// the stated error and the tolerance.
 fn agrees(text: &str, tolerance: f64) {
     let description = read(text);
     let kept = kept(&description, 2);

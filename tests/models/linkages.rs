@@ -1,5 +1,5 @@
-//! Linkages whose positions are trigonometry: the loops must close as the closed forms say, to Newton's tolerance, and the
-//! velocities follow to second order.
+//! Linkages whose positions are trigonometry: the loops must close as the closed forms say, to Newton's tolerance, and
+//! the velocities follow to second order.
 
 use crate::common::{Vary, curve, distance_from, largest, model, nominal, order, read, reference, row};
 use std::f64::consts::{PI, TAU};

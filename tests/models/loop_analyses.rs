@@ -1,4 +1,5 @@
-//! Loops in joint coordinates beyond plain motions: redundant constraints, equilibria, small vibrations, the explicit method, enclosures.
+//! Loops in joint coordinates beyond plain motions: redundant constraints, equilibria, small vibrations, the explicit
+//! method, enclosures.
 
 use mbint::inner::model::{Description, Formulation, SchemeChoice};
 use mbint::inner::results::{Bounds, Method};

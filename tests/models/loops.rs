@@ -1,4 +1,5 @@
-//! Loops in joint coordinates: where a loop can branch off, the row of its closure vanishes, and rounding is all that is left of it.
+//! Loops in joint coordinates: where a loop can branch off, the row of its closure vanishes, and rounding is all that
+//! is left of it.
 
 use mbint::inner::model::{Description, Formulation};
 use mbint::inner::results::Method;
@@ -132,8 +133,8 @@ fn a_kite_and_linkages_near_a_change_point_move_alike() {
     }
 }
 
-/// A box of lengths with the parallelogram in it: on its two sides linkages move differently. Joint coordinates bound what absolute ones
-/// bound, and say so where they cannot.
+/// A box of lengths with the parallelogram in it: on its two sides linkages move differently. Joint coordinates bound
+/// what absolute ones bound, and say so where they cannot.
 #[test]
 fn a_box_across_a_change_point_is_bounded_as_in_absolute_coordinates() {
     let text = four_bar([1.0, 1.0, 1.0, 1.0], [1.2, 0.0, 1.2], 1.0);
@@ -150,7 +151,8 @@ fn a_box_across_a_change_point_is_bounded_as_in_absolute_coordinates() {
     }
 }
 
-/// Where the model leaves the formulation open, loops are closed in the branch that absolute coordinates find, also without guesses.
+/// Where the model leaves the formulation open, loops are closed in the branch that absolute coordinates find, also
+/// without guesses.
 #[test]
 fn auto_closes_loops_in_the_branch_of_absolute_coordinates() {
     for (lengths, angle) in [([0.4, 0.1, 0.35, 0.3], 0.5), ([0.4, 0.1, 0.35, 0.3], -2.0), ([1.0, 0.8, 0.9, 0.7], 2.0)] {

@@ -1,5 +1,5 @@
-//! What bounds must not depend on, by any method: where the origin is, the order of the parameters, the units, and which way round the
-//! mechanism is built.
+//! What bounds must not depend on, by any method: where the origin is, the order of the parameters, the units, and
+//! which way round the mechanism is built.
 
 use mbint::inner::model::Description;
 use mbint::inner::results::{Bounds, Method};
@@ -34,9 +34,9 @@ fn larger(found: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     found.fold([0.0; 2], |most, found| [f64::max(most[0], found[0]), f64::max(most[1], found[1])])
 }
 
-/// Samples between nodes are elsewhere in a box that is turned or mirrored. With a degree and steps that follow from a tolerance they
-/// decide on these, and bounds agree within their errors; others hold their values, and agree within a small part of them. Where
-/// samples are the same, so are bounds.
+/// Samples between nodes are elsewhere in a box that is turned or mirrored. With a degree and steps that follow from a
+/// tolerance they decide on these, and bounds agree within their errors; others hold their values, and agree within a
+/// small part of them. Where samples are the same, so are bounds.
 fn assert_same(bounds: &str, what: &str, [of_width, of_errors]: [f64; 2], least: f64) {
     println!("{bounds}, {what}: {of_width:.1e} of the width, {of_errors:.1e} of the errors");
     let same = match (bounds.contains("tolerance"), what) {
@@ -93,8 +93,8 @@ fn of_oscillators_with_bands_full_of_turns() {
     }
 }
 
-/// A slider crank on a spring, whose bearing is at `origin`: lengths times `scale`, parameters in this order, seen from behind where
-/// `side` is −1.
+/// A slider crank on a spring, whose bearing is at `origin`: lengths times `scale`, parameters in this order, seen from
+/// behind where `side` is −1.
 fn slider_crank(origin: (f64, f64), scale: f64, side: f64, parameters: [usize; 2], bounds: &str) -> Description {
     let uncertain = [
         format!("  l1: {{ value: {}, unit: m, tolerance: 2% }}\n", 0.17 * scale),

@@ -1,7 +1,7 @@
 //! Robots from MJCF, against MuJoCo and closed forms.
 //!
-//! The CSV files were made by `tests/reference/mjcf/motion.py NAME.xml [ACTUATOR=CONTROL …]`: MuJoCo 4.0, implicitfast at 1e-5 s,
-//! the error of first order in the step extrapolated away.
+//! The CSV files were made by `tests/reference/mjcf/motion.py NAME.xml [ACTUATOR=CONTROL …]`: MuJoCo 4.0, implicitfast
+//! at 1e-5 s, the error of first order in the step extrapolated away.
 
 use std::path::{Path, PathBuf};
 
@@ -170,7 +170,8 @@ fn the_model_gives_points_to_bodies() {
     assert!(distance(curve(&bounds, "mark"), &expected(0.1, 0.0)[0]) < 1e-12);
 }
 
-/// MuJoCo 4.0.0, `implicitfast` at 1e-5 s, contacts off: joints and the crate's floor after each second; it is of order one.
+/// MuJoCo 4.0.0, `implicitfast` at 1e-5 s, contacts off: joints and the crate's floor after each second; it is of order
+/// one.
 #[test]
 fn a_crane_moves_as_mujoco_says() {
     let bounds = nominal(&crate::common::model("crane"));

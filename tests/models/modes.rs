@@ -247,7 +247,8 @@ outputs: { x1: a.x, x2: b.x, x3: c.x }
 
 #[test]
 fn a_plate_in_space_with_any_damping_vibrates_as_another_solver_says() {
-    // Six springs and dampers that are not stretched: K = Σ k a aᵀ and C = Σ c a aᵀ with a = (n, r × n), M = diag(m, m, m, J).
+    // Six springs and dampers that are not stretched: K = Σ k a aᵀ and C = Σ c a aᵀ with a = (n, r × n), M = diag(m, m,
+    // m, J).
     let text = "
 analysis: modes
 bodies:
@@ -284,7 +285,8 @@ outputs: { z: plate.z }
 
 #[test]
 fn modes_that_veer_stay_on_their_branches() {
-    // Two oscillators with a weak spring between them: equal at k = 50, where their frequencies come near and part again.
+    // Two oscillators with a weak spring between them: equal at k = 50, where their frequencies come near and part
+    // again.
     let text = "
 analysis: modes
 parameters: { k: { value: 50, interval: [30, 70] } }

@@ -1,4 +1,5 @@
-//! Modes of mechanisms with controllers: against roots of characteristic polynomials, poles of filters, limits of stability, and scipy.
+//! Modes of mechanisms with controllers: against roots of characteristic polynomials, poles of filters, limits of
+//! stability, and scipy.
 
 use mbint::inner::results::{Bounds, Method};
 use mbint::inner::study::{self, Options};
@@ -165,7 +166,8 @@ outputs: {{ current: drive.current, angle: rotor.angle }}
 
 #[test]
 fn a_filter_has_its_poles_whatever_it_listens_to() {
-    // A Butterworth filter of order 4 at 3 Hz, and one that is its double: repeated poles keep their accuracy, since neither depends on the other.
+    // A Butterworth filter of order 4 at 3 Hz, and one that is its double: repeated poles keep their accuracy, since
+    // neither depends on the other.
     let w = TAU * 3.0;
     let b = [1.0, 2.613_125_929_752_753, 3.414_213_562_373_095, 2.613_125_929_752_753, 1.0];
     let denominator: Vec<String> =
@@ -200,7 +202,8 @@ outputs: {{ x: m.x, felt: felt, again: again }}
 
 #[test]
 fn a_delayed_loop_becomes_unstable_where_the_delay_says() {
-    // ẏ = −k y(t − T) vibrates without damping at k T = π/2, with a period of 4 T; Padé's approximation of order 8 is that to rounding there.
+    // ẏ = −k y(t − T) vibrates without damping at k T = π/2, with a period of 4 T; Padé's approximation of order 8 is
+    // that to rounding there.
     let text = |gain: f64| {
         format!(
             "
@@ -225,7 +228,8 @@ outputs: {{ y: y }}
 
 #[test]
 fn an_arm_under_two_controllers_vibrates_as_scipy_says() {
-    // scipy.linalg.eigvals of the 8 × 8 matrix of angles, rates, integrals and filtered rates, with M(θ₂) and ∂²V/∂θ² written out by hand.
+    // scipy.linalg.eigvals of the 8 × 8 matrix of angles, rates, integrals and filtered rates, with M(θ₂) and ∂²V/∂θ²
+    // written out by hand.
     let wanted = [
         Complex::new(-2.801_687_372_373_063_8, 0.0),
         Complex::new(-4.128_185_741_622_606, 0.272_048_618_925_988_64),
@@ -257,7 +261,8 @@ simulation: {{ duration: 1, formulation: {formulation} }}
     }
 }
 
-/// J s² + K under a torque that follows 30 (0.6 − θ) − 0.6 ω with a lag of 50 ms: J, K and the equilibrium by mpmath, from the crank's angle alone.
+/// J s² + K under a torque that follows 30 (0.6 − θ) − 0.6 ω with a lag of 50 ms: J, K and the equilibrium by mpmath,
+/// from the crank's angle alone.
 #[test]
 fn a_slider_crank_under_a_lagging_servo_grows_as_its_one_equation_says() {
     let text = "
@@ -429,7 +434,8 @@ simulation: { duration: 0.4, step: 1e-3, output_step: 0.1 }
 #[test]
 fn the_example_of_the_guide_is_stable_with_every_load() {
     let bounds = run(&example("stability.yaml"));
-    // (J s² + K)(T s + 1) s + k_p (T s + 1) s + k_i (T s + 1) + k_d s² = 0, J = 0.05 + m 0.4², K = −m g 0.4 sin 0.5, T = 0.02.
+    // (J s² + K)(T s + 1) s + k_p (T s + 1) s + k_i (T s + 1) + k_d s² = 0, J = 0.05 + m 0.4², K = −m g 0.4 sin 0.5, T
+    // = 0.02.
     let own = |load: f64, integral: f64| {
         let (inertia, stiffness) = (0.05 + load * 0.16, 60.0 - load * 9.81 * 0.4 * 0.5_f64.sin());
         let lag = 0.02;

@@ -157,8 +157,9 @@ fn the_platforms_legs_carry_and_turn_it() {
     assert!(errors[1] < 2e-6 && (order(errors[0], errors[1]) - 2.0).abs() < 0.3, "{errors:?}");
 }
 
-/// What Pinocchio 4.1.0's articulated-body algorithm and SciPy's DOP853 (tolerances 1e-11 and 1e-13) give for `arm.urdf` with the payload,
-/// the controllers and friction v/√(v² + 0.05²): time, tool's x and z, shoulder, upper arm, forearm, second wrist.
+/// What Pinocchio 4.1.0's articulated-body algorithm and SciPy's DOP853 (tolerances 1e-11 and 1e-13) give for
+/// `arm.urdf` with the payload, the controllers and friction v/√(v² + 0.05²): time, tool's x and z, shoulder, upper
+/// arm, forearm, second wrist.
 const ARM: [[f64; 7]; 5] = [
     [0.0, 0.5906262788, 1.0897074732, 0.0, 0.2, 0.6, 0.5],
     [0.1, 0.6952160138, 0.9866335245, 0.1604655101, 0.3020245948, 0.7180706927, 0.3212762578],

@@ -1,4 +1,5 @@
-//! Only what is asked for is simulated: parts that no output needs change nothing, subsystems are models of their own, welded bodies are one.
+//! Only what is asked for is simulated: parts that no output needs change nothing, subsystems are models of their own,
+//! welded bodies are one.
 
 use std::fmt::Write as _;
 
@@ -357,7 +358,8 @@ bounds: {{ scan: {{ points: 3 }} }}
     }
 }
 
-/// Sliders between linear springs and dampers: nothing of the Newton matrix changes with the motion, so nothing of it is factorised in a step.
+/// Sliders between linear springs and dampers: nothing of the Newton matrix changes with the motion, so nothing of it
+/// is factorised in a step.
 #[test]
 fn what_is_constant_is_eliminated_before_the_steps() {
     let sliders = |inertia: &str| {
@@ -414,7 +416,8 @@ fn every_decision_is_explained_with_what_it_saves() {
         find("c moves on its own, simulated once").why,
         "nothing but the ground connects it to the rest; no uncertain parameter reaches it"
     );
-    // 125 nodes and 125 points of three parameters, against 5 and 5 of one; each pendulum's instructions are counted alone.
+    // 125 nodes and 125 points of three parameters, against 5 and 5 of one; each pendulum's instructions are counted
+    // alone.
     let alone = |one: &Sections| -> usize { instructions(&one.model())[2..6].iter().sum() };
     assert_eq!(saves("a moves on its own"), (251 - 11) * alone(&a) as i64);
     assert_eq!(saves("c moves on its own"), (251 - 1) * alone(&c) as i64);

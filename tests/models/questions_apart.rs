@@ -1,4 +1,5 @@
-//! Reduced outputs and requirements of parts that move on their own: each part is simulated alone, with its own parameters.
+//! Reduced outputs and requirements of parts that move on their own: each part is simulated alone, with its own
+//! parameters.
 
 use mbint::inner::model::Description;
 use mbint::inner::results::{Summary, Verdict};
@@ -153,8 +154,8 @@ fn yields_of_parts_are_those_of_the_whole() {
     assert!(product < 0.99 && (together.share - product).abs() < 2e-3, "{} {product}", together.share);
 }
 
-/// The program of a step is the same with and without questions, and so are the bounds of what is observed; statistics of laws within their
-/// intervals take no simulation.
+/// The program of a step is the same with and without questions, and so are the bounds of what is observed; statistics
+/// of laws within their intervals take no simulation.
 #[test]
 fn who_does_not_ask_does_not_pay() {
     let text = |more: &str, asked: &str| {

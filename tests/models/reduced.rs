@@ -16,7 +16,8 @@ fn reduced<'s>(summary: &'s Summary, name: &str) -> &'s ReducedSummary {
     summary.reduced.iter().find(|own| own.name == name).unwrap()
 }
 
-/// The bounds of a reduced output by Chebyshev are those of a closed form, within the stated error, which is at most `error`.
+/// The bounds of a reduced output by Chebyshev are those of a closed form, within the stated error, which is at most
+/// `error`.
 #[track_caller]
 fn check(summary: &Summary, name: &str, [lower, upper]: [f64; 2], error: f64) {
     let band: &ReducedBand = &reduced(summary, name).bands[0];
@@ -215,8 +216,8 @@ fn an_undecided_requirement_raises_the_order() {
     assert!(summary.methods.iter().any(|method| method.method.contains("earlier")), "{:?}", summary.methods);
 }
 
-/// A slider that drifts either way is farthest from the middle at one end of the time or the other: its margin has a kink where it
-/// stands still, and its bounds in the rows have none.
+/// A slider that drifts either way is farthest from the middle at one end of the time or the other: its margin has a
+/// kink where it stands still, and its bounds in the rows have none.
 #[test]
 fn a_margin_that_changes_place_in_time_is_decided_by_rows() {
     let model = "
@@ -250,7 +251,8 @@ fn what_is_not_asked_for_is_not_there() {
     assert!(largest(&with.outputs[0].bands[0].upper, &bounds.outputs[0].bands[0].upper) < 1e-9);
 }
 
-/// The tutorial's drawing: half a degree is missed with its tolerances, and met with the two that matter most tightened.
+/// The tutorial's drawing: half a degree is missed with its tolerances, and met with the two that matter most
+/// tightened.
 #[test]
 fn the_tutorials_four_bar_is_decided() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples/four_bar_drawing.yaml");
@@ -318,7 +320,8 @@ bounds: { chebyshev: { order: 5 } }
     }
 }
 
-/// The page's slider crank: the stroke is 2 r, |ẍ| at the dead centre r ω² (1 + r/l), and x = r cos φ + √(l² − r² sin² φ).
+/// The page's slider crank: the stroke is 2 r, |ẍ| at the dead centre r ω² (1 + r/l), and x = r cos φ + √(l² − r² sin²
+/// φ).
 #[test]
 fn the_pages_slider_crank_is_that_of_its_closed_forms() {
     let example = include_str!("../../docs/examples/requirements.yaml");
@@ -347,8 +350,8 @@ fn the_pages_slider_crank_is_that_of_its_closed_forms() {
     }
 }
 
-/// What is conserved does not move, and a band without width has no error that is small beside it: its limits are met by margin and
-/// error, in the first round.
+/// What is conserved does not move, and a band without width has no error that is small beside it: its limits are met
+/// by margin and error, in the first round.
 #[test]
 fn what_is_conserved_is_decided_at_once() {
     let text = "

@@ -68,7 +68,8 @@ fn closed(name: &str, a: f64, w: f64) -> f64 {
         "time_of_min" => 0.5 * PI / w,
         "when" => down(-0.031),
         "last_when" => 2.0 * PI / w - down(-0.031),
-        // Outside of [-0.02, 0.06] until it falls below 0.06, and outside again from -0.02 on: it has not settled at 0.4 s.
+        // Outside of [-0.02, 0.06] until it falls below 0.06, and outside again from -0.02 on: it has not settled at
+        // 0.4 s.
         "settling" => f64::NAN,
         "overshoot" => 0.02 + a,
         // From rest to v(0.62) > 0, of which the maximum comes later or earlier.
@@ -107,7 +108,8 @@ fn every_reduction_is_that_of_its_closed_form() {
         println!("{}: [{lower}, {upper}], off by {off:.1e}, stated {:.1e}", own.name, band.error);
         assert!(off <= band.error + 1e-9, "{}: [{lower}, {upper}] {band:?}", own.name);
         assert!(band.error <= 1e-3 * (1e-3 + upper.abs().max(lower.abs())), "{}: {band:?}", own.name);
-        // The worst cases are simulated samples: their values are those of their parameters, near the ends of the bounds.
+        // The worst cases are simulated samples: their values are those of their parameters, near the ends of the
+        // bounds.
         let [least, greatest] = own.worst.as_ref().unwrap();
         for case in [least, greatest] {
             let [a, k] = case.parameters[..] else { panic!("{case:?}") };
@@ -128,7 +130,8 @@ fn instructions(description: &Description) -> Vec<usize> {
     tapes.map(|tape| tape.len()).to_vec()
 }
 
-/// Sections that ask for nothing, and requests that were taken out again, leave bytes, instructions and simulations as they were.
+/// Sections that ask for nothing, and requests that were taken out again, leave bytes, instructions and simulations as
+/// they were.
 #[test]
 fn what_asks_for_nothing_pays_nothing() {
     let plain = [OSCILLATOR, SIMULATION].concat();

@@ -57,7 +57,8 @@ fn errors(description: &Description, scheme: Scheme, h: f64, exact: &[(usize, us
     [coarse, fine, limit].map(|courses| largest(exact.iter().map(|&(row, output, value)| courses[output][row] - value)))
 }
 
-/// The two first outputs of a reference's rows that are so many seconds apart, with the number of the row and of the output.
+/// The two first outputs of a reference's rows that are so many seconds apart, with the number of the row and of the
+/// output.
 fn every(interval: f64, reference: &[Vec<f64>]) -> Vec<(usize, usize, f64)> {
     let row = |line: &Vec<f64>| {
         let row = (line[0] / interval).round();
@@ -280,8 +281,9 @@ fn redundancy_and_singular_positions_are_passed_by_every_scheme() {
             let [coarse, fine, _] = errors(description, scheme, 2.5e-4, exact);
             let order = order(coarse, fine);
             println!("{scheme:?}, {name}: {coarse:.2e}, {fine:.2e}, order {order:.3}");
-            // Some steps bring the trapezoidal rule so near to the singular position that the energy jumps, by up to 1e-4 J of
-            // 36 J, and its order is lost: measured 2.5e-6 m at h = 2.5e-4, 9.0e-5 m at half of it, 5.0e-5 m at a quarter.
+            // Some steps bring the trapezoidal rule so near to the singular position that the energy jumps, by up to
+            // 1e-4 J of 36 J, and its order is lost: measured 2.5e-6 m at h = 2.5e-4, 9.0e-5 m at half of it, 5.0e-5 m
+            // at a quarter.
             let jumps = scheme == Scheme::TrapezoidalIndex2 && name == "loops";
             let passed = if jumps { coarse.max(fine) < 2e-4 } else { (order - 2.0).abs() < 0.2 };
             assert!(passed, "{scheme:?}, {name}: order {order}");

@@ -59,8 +59,8 @@ fn a_redundant_constraint_is_named_and_the_motion_is_that_of_one_crank() {
     let exact = one_crank(3.0, 0.5, 0.0);
     assert!((end - exact).abs() < 5e-6, "{end} instead of {exact}");
     assert!(curve(&bounds, "gap").iter().all(|gap| gap.abs() < 1e-11));
-    // A reaction that equilibrium does not determine must not wander: after three flat positions, in which it is infinite,
-    // all methods still agree on it. (Second order against third: 1e-4 of a newton.)
+    // A reaction that equilibrium does not determine must not wander: after three flat positions, in which it is
+    // infinite, all methods still agree on it. (Second order against third: 1e-4 of a newton.)
     let last = output(&bounds, "last");
     let (chebyshev, taylor) = (band(last, Method::Chebyshev), band(last, Method::Taylor));
     let apart = (chebyshev.upper.last().unwrap() - taylor.upper.last().unwrap()).abs();

@@ -1,6 +1,8 @@
-//! The paper's slider crank against its own reference: minimal coordinates, DOP853 at 1e-11 and tighter (error below 1e-8).
+//! The paper's slider crank against its own reference: minimal coordinates, DOP853 at 1e-11 and tighter (error below
+//! 1e-8).
 //!
-//! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), which is what the tolerances below are made of.
+//! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), which is what the tolerances below are
+//! made of.
 
 use mbint::inner::methods::Taylor;
 use mbint::inner::model::Description;
@@ -65,8 +67,8 @@ fn nominal_motion_is_the_references() {
 
 #[test]
 fn nominal_motion_extrapolates_to_the_references() {
-    // Without its h² term the error is of third order. Were the scheme's start or any force off by O(h), or the equations
-    // other than the reference's, nothing would fall.
+    // Without its h² term the error is of third order. Were the scheme's start or any force off by O(h), or the
+    // equations other than the reference's, nothing would fall.
     let runs = [4e-4, 2e-4, 1e-4].map(|h| nominal(&slider_crank().step(h).rows_every(0.05)));
     let errors = [0, 1].map(|place| {
         let limit = richardson(curve(&runs[place], "slider.x"), curve(&runs[place + 1], "slider.x"));
@@ -124,7 +126,8 @@ fn the_papers_interval_range_is_a_tenth_too_wide() {
 
 #[test]
 fn two_uncertain_parameters_are_bounded_tightly() {
-    // Measured with exact solves: over 2 s Σ|c| is on average 1.24 times the true width, the polynomial's own range 1.000.
+    // Measured with exact solves: over 2 s Σ|c| is on average 1.24 times the true width, the polynomial's own range
+    // 1.000.
     let of = |description: Description, method| {
         let bounds = run(&description.observing(&["slider.x"]));
         let band = band(&bounds.outputs[0], method);

@@ -1,5 +1,5 @@
-//! Starts that name what is no coordinate of the equations: points, bodies in joint coordinates, parts of angular velocities;
-//! and values that depend on t where they are prescribed. All against trigonometry or another method.
+//! Starts that name what is no coordinate of the equations: points, bodies in joint coordinates, parts of angular
+//! velocities; and values that depend on t where they are prescribed. All against trigonometry or another method.
 
 use mbint::inner::study::{self, Options};
 
@@ -25,7 +25,8 @@ simulation: {{ duration: 0.2, step: 1e-3, output_step: 0.1, formulation: {formul
     )
 }
 
-/// Angles of both bars against the ground where the tip is at (x, y), the elbow being on the left of the way to the tip.
+/// Angles of both bars against the ground where the tip is at (x, y), the elbow being on the left of the way to the
+/// tip.
 fn bars_to(x: f64, y: f64) -> [f64; 2] {
     let (a, b) = (0.7, 0.5);
     let square = x * x + y * y;

@@ -51,7 +51,8 @@ fn an_integral_rests_where_it_holds_the_weight() {
     }
 }
 
-/// Without an integral the arm sags until the torque, which follows it through a filter and a motor, holds it: found by bisection.
+/// Without an integral the arm sags until the torque, which follows it through a filter and a motor, holds it: found by
+/// bisection.
 #[test]
 fn a_drive_rests_where_the_arm_sags() {
     let effects = "felt: { filter: { input: elbow.angle, numerator: [1], denominator: [0.01 s^2, 0.14 s, 1] } }
@@ -84,7 +85,8 @@ fn a_drive_rests_where_the_arm_sags() {
     }
 }
 
-/// A motion that starts there stays there, whatever the sample: by steps, by the explicit method, by jets, with digital controllers.
+/// A motion that starts there stays there, whatever the sample: by steps, by the explicit method, by jets, with digital
+/// controllers.
 #[test]
 fn a_motion_that_starts_at_an_equilibrium_stays_there() {
     let digital = "integral: { sampled: { input: integral + 10 ms*(target - elbow.angle), period: 10 ms } }

@@ -224,8 +224,8 @@ fn an_equilibrium_meets_requirements_with_their_closed_forms_margin() {
     assert!((nearest.margin - (-0.35 - angle_of(33.0))).abs() < 1e-9, "{}", nearest.margin);
 }
 
-/// Many parameters of what rests, or is moved by motors, take as few simulations as those of a motion. The ends of a sum are the sums of
-/// ends; of the product, in logarithms, too.
+/// Many parameters of what rests, or is moved by motors, take as few simulations as those of a motion. The ends of a
+/// sum are the sums of ends; of the product, in logarithms, too.
 #[test]
 fn many_parameters_of_other_analyses_take_few_simulations() {
     let count = 12;

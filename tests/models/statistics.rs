@@ -1,5 +1,5 @@
-//! Statistics beside the bounds, against closed forms (linear, quadratic, product of normals) and against direct Monte Carlo of the
-//! simulation.
+//! Statistics beside the bounds, against closed forms (linear, quadratic, product of normals) and against direct Monte
+//! Carlo of the simulation.
 
 use mbint::inner::model::{self, Description, Override, ParameterValue};
 use mbint::inner::results::{OutputStatistics, Summary, Uncertain};

@@ -1,5 +1,5 @@
-//! Steps from a tolerance where the equations switch: every sample of the box keeps the tolerance, and no step jumps over an
-//! event. Truths are closed forms of flights and oscillations between events.
+//! Steps from a tolerance where the equations switch: every sample of the box keeps the tolerance, and no step jumps
+//! over an event. Truths are closed forms of flights and oscillations between events.
 
 use std::f64::consts::PI;
 
@@ -74,8 +74,9 @@ fn no_sample_of_a_bouncing_ball_gains_energy() {
     }
 }
 
-/// A brake that holds one sample of the scan, and none of those that decide the steps: at rest its force jumps in every step,
-/// so that the tolerance takes more steps than a sample may have. What is true there is known; what is stated is flagged.
+/// A brake that holds one sample of the scan, and none of those that decide the steps: at rest its force jumps in every
+/// step, so that the tolerance takes more steps than a sample may have. What is true there is known; what is stated is
+/// flagged.
 #[test]
 fn a_sample_beyond_the_tolerance_flags_what_follows() {
     let result = Model::from_yaml_str("brake", include_str!("../common/brake.yaml")).unwrap().study().run().unwrap();
@@ -214,7 +215,8 @@ fn a_post_that_no_sample_meets_flags_what_follows() {
     assert_eq!(flagged_from(&run(&read(&throw(above, settings)))), None);
 }
 
-/// A throw that all validation samples pass but one, which only grazes the post: between it and the next, throws are stopped.
+/// A throw that all validation samples pass but one, which only grazes the post: between it and the next, throws are
+/// stopped.
 #[test]
 fn a_post_that_a_sample_only_grazes_flags_what_follows() {
     let text = "

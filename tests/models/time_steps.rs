@@ -1,5 +1,5 @@
-//! The error of the time steps where halving them alone does not show it: what happens between steps, at their own period, or faster
-//! than they are. Truths are closed forms over dense grids of the parameters.
+//! The error of the time steps where halving them alone does not show it: what happens between steps, at their own
+//! period, or faster than they are. Truths are closed forms over dense grids of the parameters.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,9 +8,9 @@ use mbint::inner::results::{Bounds, Method, Summary};
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Findings, band, output, read, run_methods};
 
-/// Bounds of an output against the range of its closed form (of a parameter in [−1, 1] and the time): at 99 % of the rows that are not
-/// flagged both ends are within the stated error, which is not more than `most` times the true one. Returns the share of rows
-/// that are flagged.
+/// Bounds of an output against the range of its closed form (of a parameter in [−1, 1] and the time): at 99 % of the
+/// rows that are not flagged both ends are within the stated error, which is not more than `most` times the true one.
+/// Returns the share of rows that are flagged.
 fn check(findings: &mut Findings, bounds: &Bounds, name: &str, most: f64, exact: impl Fn(f64, f64) -> f64) -> f64 {
     let output = output(bounds, name);
     let mut flagged = 0.0_f64;
@@ -169,8 +169,9 @@ fn smooth_forces_leave_the_steps_alone() {
     }
 }
 
-/// Two carts on springs in proportion to their masses, κ = 9 1/s² ± 2 %, with a stiff spring between them: they swing together slowly, and
-/// against each other at 116 Hz, which steps of 5 ms and of 2.5 ms damp within the first rows alike.
+/// Two carts on springs in proportion to their masses, κ = 9 1/s² ± 2 %, with a stiff spring between them: they swing
+/// together slowly, and against each other at 116 Hz, which steps of 5 ms and of 2.5 ms damp within the first rows
+/// alike.
 #[test]
 fn a_mode_that_the_steps_damp_counts_as_error() {
     let mut findings = Findings::default();
@@ -267,8 +268,8 @@ bounds: { chebyshev: { order: 6 } }
     findings.none();
 }
 
-/// A heavy top about a fixed point, at steps that are long for its spin: what halving changes is zero now and then, where the error is
-/// not.
+/// A heavy top about a fixed point, at steps that are long for its spin: what halving changes is zero now and then,
+/// where the error is not.
 #[test]
 fn errors_of_a_fast_top_are_honest() {
     let (height, moment, spin_moment, weight): (f64, f64, f64, f64) =

@@ -47,9 +47,9 @@ fn the_tolerance_is_met() {
     }
 }
 
-/// Over two seconds cranks turn six times, and part by a quarter of a turn. Their angles took polynomials of degree 34 and 411
-/// simulations, held against 17 samples; compared with the course of one of them, they took degree 12, and 324 simulations where each
-/// surrogate is held against new samples.
+/// Over two seconds cranks turn six times, and part by a quarter of a turn. Their angles took polynomials of degree 34
+/// and 411 simulations, held against 17 samples; compared with the course of one of them, they took degree 12, and 324
+/// simulations where each surrogate is held against new samples.
 #[test]
 fn what_turns_takes_few_simulations() {
     let mut description = within(model("slider_crank").observing(&["slider.x"]), 1e-5, 400);
@@ -70,8 +70,8 @@ fn what_turns_takes_few_simulations() {
     }
 }
 
-/// Eight parameters, at the time when some cranks have just passed their dead point: x is least with the fastest of them, after
-/// rows in which it was with the slowest. No sample of the surrogate is near that corner.
+/// Eight parameters, at the time when some cranks have just passed their dead point: x is least with the fastest of
+/// them, after rows in which it was with the slowest. No sample of the surrogate is near that corner.
 #[test]
 fn an_end_that_moves_to_another_corner_is_followed() {
     let text = "
@@ -156,7 +156,8 @@ fn chaos_is_flagged_from_where_it_begins() {
     }
 }
 
-/// The slider crank in its one degree of freedom: l1, l2, m1, m2, m3, c, k, tau → x3 at whole multiples of `output_step`.
+/// The slider crank in its one degree of freedom: l1, l2, m1, m2, m3, c, k, tau → x3 at whole multiples of
+/// `output_step`.
 fn slider_crank([l1, l2, m1, m2, m3, c, k, tau]: [f64; 8], output_step: f64, rows: usize) -> Vec<f64> {
     // Derivatives by the crank's angle of: x3, the rod's angle, its centre.
     let place = |angle: f64| {
@@ -238,8 +239,8 @@ fn truth(row: usize, sign: f64) -> f64 {
     sign * best
 }
 
-/// Eight uncertain parameters: bounds within 1 % of the true width from at most 500 simulations, where a tensor of order 5
-/// needs 1.7 million.
+/// Eight uncertain parameters: bounds within 1 % of the true width from at most 500 simulations, where a tensor of
+/// order 5 needs 1.7 million.
 #[test]
 #[ignore = "30 s: eight parameters against an optimisation from many starts"]
 fn eight_parameters_take_five_hundred_simulations() {
@@ -346,7 +347,8 @@ fn every_model_is_bounded_to_a_per_cent() {
     }
 }
 
-/// A bob between three equal springs stays where it is. What rounding makes of that is no motion that bounds could miss.
+/// A bob between three equal springs stays where it is. What rounding makes of that is no motion that bounds could
+/// miss.
 #[test]
 fn what_moves_by_rounding_alone_is_at_rest() {
     let spring = |name: &str| {

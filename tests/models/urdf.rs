@@ -338,8 +338,8 @@ fn friction_is_there_only_where_the_file_has_it() {
         .map(|effect| (effect.name.as_str(), matches!(effect.kind, EffectKind::JointFriction(_))))
         .collect();
     assert_eq!(names, [("hinge.friction", true)]);
-    // ω̇ = −(f/J) ω/s, s = √(ω² + v₀²): s − v₀ log((v₀ + s)/ω) falls by f/J a second. What is left is the scheme's own error
-    // of a spin, of second order.
+    // ω̇ = −(f/J) ω/s, s = √(ω² + v₀²): s − v₀ log((v₀ + s)/ω) falls by f/J a second. What is left is the scheme's own
+    // error of a spin, of second order.
     let of_speed = |omega: f64| {
         let slow = 0.05;
         let s = omega.hypot(slow);

@@ -1,5 +1,5 @@
-//! `wiper.yaml` against geometry and power: pins are where circles meet, and the motor gives what the glass takes and the
-//! swinging masses gain.
+//! `wiper.yaml` against geometry and power: pins are where circles meet, and the motor gives what the glass takes and
+//! the swinging masses gain.
 
 use std::f64::consts::TAU;
 

@@ -81,7 +81,8 @@ fn worst_cases_of_a_stack_are_lagranges() {
     assert!(fs::read_to_string(place.path().join("out/allocation.svg")).unwrap().contains("allocated"));
 }
 
-/// The optimum under normal laws of which the tolerance is three standard deviations: min Σ c t⁰/t under Σ s² t² = (3 L/z)², t ~ ∛(c t⁰/s²).
+/// The optimum under normal laws of which the tolerance is three standard deviations: min Σ c t⁰/t under Σ s² t² = (3
+/// L/z)², t ~ ∛(c t⁰/s²).
 #[test]
 fn yields_of_a_stack_are_lagranges_to_a_thousandth() {
     let place = Place::new();

@@ -1,5 +1,6 @@
 //! Every file in `tests/bad_models` says at its top what is wrong with it: `# error: 13:13 unknown body `crnk``, each
-//! perhaps with `# help: …`, in a URDF or MJCF `<!-- error: … -->`. Message and place must both be found, and nothing else.
+//! perhaps with `# help: …`, in a URDF or MJCF `<!-- error: … -->`. Message and place must both be found, and nothing
+//! else.
 //!
 //! `{effects}` stands for the list of all effects, which grows.
 //!

@@ -264,8 +264,8 @@ fn a_full_disk_is_a_failure() {
     assert!(errors.starts_with("error: cannot write to standard output: "), "{errors}");
 }
 
-/// One sample of the scan is held by a brake that no other sample feels: at rest its force jumps in every step, and the tolerance takes
-/// more steps than a sample may have.
+/// One sample of the scan is held by a brake that no other sample feels: at rest its force jumps in every step, and the
+/// tolerance takes more steps than a sample may have.
 #[test]
 fn a_sample_beyond_the_tolerance_ends_with_3() {
     let place = Place::new();

@@ -1,4 +1,5 @@
-//! `mbint cost` on a small model: errors fall with order, points and step as they must, and too wide is distinguished from too narrow.
+//! `mbint cost` on a small model: errors fall with order, points and step as they must, and too wide is distinguished
+//! from too narrow.
 
 use std::collections::HashMap;
 use std::fs;
@@ -10,8 +11,8 @@ use mbint::inner::model::load_str;
 use mbint::inner::results::CostStudy;
 use mbint::inner::study::{CostOptions, cost};
 
-/// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so that
-/// bounds are reached at inner points of the interval.
+/// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so
+/// that bounds are reached at inner points of the interval.
 const OSCILLATOR: &str = "
 model: oscillator
 parameters:
@@ -74,8 +75,8 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
     let mut reader = csv::Reader::from_path(place.path().join("results/oscillator/cost.csv")).unwrap();
     let all: Rows = reader.deserialize().collect::<Result<_, _>>().unwrap();
     let (rows, trajectories): (Rows, Rows) = all.into_iter().partition(|row| row["of"] == "bounds");
-    // 3 × 4 orders of Chebyshev, 3 of Taylor, 3 scans; five schemes; six steps each. Then 4 orders of extrapolated steps and of the
-    // explicit method, which has 4 tolerances; 2, 3 and 4 levels.
+    // 3 × 4 orders of Chebyshev, 3 of Taylor, 3 scans; five schemes; six steps each. Then 4 orders of extrapolated
+    // steps and of the explicit method, which has 4 tolerances; 2, 3 and 4 levels.
     assert_eq!((rows.len(), trajectories.len()), (18 * 6 + 4 * (6 + 4), 5 * 6 + 3 * 6 + 4));
     let finest = 800;
     let error = |method, count, steps| number(row(&rows, method, count, steps), "error");
@@ -84,7 +85,8 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
         [number(row, "over_width"), number(row, "under_coverage")]
     };
 
-    // With fine steps the order is what counts: each is at least twice as good as the one before, down to what the steps leave.
+    // With fine steps the order is what counts: each is at least twice as good as the one before, down to what the
+    // steps leave.
     for (method, least) in [("chebyshev.coordinates", 7e-4), ("chebyshev.tight", 7e-4)] {
         let errors = ["2", "3", "5", "8"].map(|order| error(method, order, finest));
         assert!(errors.windows(2).all(|pair| pair[1] < 0.5 * pair[0] || pair[1] < least), "{method}: {errors:?}");
@@ -97,15 +99,16 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
     // The paper's Σ|c| is too wide by a third of the band, however high the order, and leaves nothing out.
     let [wide, narrow] = sides("chebyshev.interval", "8");
     assert!((wide - 0.36).abs() < 0.02 && narrow < 1e-3, "{wide}, {narrow}");
-    // A scan leaves out what is between its points and the validation samples, which its band holds too, and is never too wide; denser
-    // ones leave out less.
+    // A scan leaves out what is between its points and the validation samples, which its band holds too, and is never
+    // too wide; denser ones leave out less.
     let scans = ["5", "10", "30"].map(|points| sides("scan", points));
     assert!(scans.iter().all(|[wide, narrow]| *wide < 1e-4 && narrow > wide), "{scans:?}");
     assert!(scans.windows(2).all(|pair| pair[1][1] < pair[0][1]), "{scans:?}");
     // Taylor's series about the middle does not get here.
     assert!(["1", "2", "3"].iter().all(|order| error("taylor", order, finest) > 0.1));
 
-    // Every scheme is of second order on the nominal trajectory; the trapezoidal rule, with nothing damped, is the best.
+    // Every scheme is of second order on the nominal trajectory; the trapezoidal rule, with nothing damped, is the
+    // best.
     let off = |method: &str, steps| number(row(&trajectories, method, "", steps), "error");
     let schemes =
         ["hht(-0.1)", "generalised_alpha(0.5)", "generalised_alpha(0.8)", "generalised_alpha(0.9)", "trapezoidal"];

@@ -1,4 +1,5 @@
-//! Units that a model declares hold in all that people read: tables, messages, reports and legends. Files for programs stay in SI.
+//! Units that a model declares hold in all that people read: tables, messages, reports and legends. Files for programs
+//! stay in SI.
 
 use std::fs;
 

@@ -1,4 +1,5 @@
-//! Parameters set on the command line, models from standard input, numbers that agree between commands, and what results say of themselves.
+//! Parameters set on the command line, models from standard input, numbers that agree between commands, and what
+//! results say of themselves.
 
 use std::fs;
 use std::io::Write;

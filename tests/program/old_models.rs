@@ -1,4 +1,5 @@
-//! Models that were written for an older version of the language go on as they are; those of a version are never changed.
+//! Models that were written for an older version of the language go on as they are; those of a version are never
+//! changed.
 
 use std::fs;
 use std::path::Path;

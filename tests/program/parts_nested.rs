@@ -44,7 +44,8 @@ simulation: { duration: 0.3, step: 1e-3, output_step: 0.05 }
 bounds: { chebyshev: { order: 3 } }
 ";
 
-/// A suspension of the plane that uses all that an assembly may say: its own coordinates, directions, and what effects measure.
+/// A suspension of the plane that uses all that an assembly may say: its own coordinates, directions, and what effects
+/// measure.
 const CORNER: &str = r#"
 assemblies:
   corner:
@@ -91,7 +92,8 @@ impl Planar {
     }
 }
 
-/// A corner by hand, mirrored across its y where it is, with the lines of bodies, points of the ground, joints, effects and starts.
+/// A corner by hand, mirrored across its y where it is, with the lines of bodies, points of the ground, joints, effects
+/// and starts.
 fn corner(name: &str, at: Planar) -> [String; 5] {
     let s = at.a.determinant().round();
     let phi = at.a[(1, 0)].atan2(at.a[(0, 0)]);
@@ -176,7 +178,8 @@ fn outputs(names: [&str; 4], part: impl Fn(&str, &str) -> String) -> String {
     names.iter().enumerate().map(of).collect()
 }
 
-/// Axles of two corners, one the other's image, in a train that is mirrored as a whole: left corners of the axle behind are mirrored twice.
+/// Axles of two corners, one the other's image, in a train that is mirrored as a whole: left corners of the axle behind
+/// are mirrored twice.
 #[test]
 fn three_levels_are_the_mechanism_written_by_hand() {
     let nested = format!(

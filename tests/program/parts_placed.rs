@@ -305,8 +305,8 @@ outputs: {{ {}, {} }}
     }
 }
 
-/// Drives that follow targets by their rates, through rate limits and in a computer's time, and a wheel on the other side of its rail. What
-/// formulas of an instance refer to is what it is in the instance.
+/// Drives that follow targets by their rates, through rate limits and in a computer's time, and a wheel on the other
+/// side of its rail. What formulas of an instance refer to is what it is in the instance.
 #[test]
 fn the_image_of_a_controller_and_of_a_wheel() {
     let cart = "

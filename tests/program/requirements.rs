@@ -117,7 +117,8 @@ bounds: { chebyshev: { order: 1, expand: output }, budget: { solves: 40 } }
     assert!(output.contains("holds") && output.contains("earlier round"), "{output}");
 }
 
-/// A mass on a spring, thrown from rest at v, is at most v/√k away: proven where certified bounds see every step, or the row that is asked for.
+/// A mass on a spring, thrown from rest at v, is at most v/√k away: proven where certified bounds see every step, or
+/// the row that is asked for.
 #[test]
 fn certified_bounds_prove_what_they_see() {
     let place = Place::new();

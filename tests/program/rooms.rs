@@ -1,5 +1,5 @@
-//! The order of the source: rooms of a crate import only earlier ones, files form no circles, and no file is long. The order of
-//! crates is the compiler's to hold.
+//! The order of the source: rooms of a crate import only earlier ones, files form no circles, and no file is long. The
+//! order of crates is the compiler's to hold.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -76,8 +76,8 @@ fn compiled(mut explanation: serde_json::Value) -> serde_json::Value {
     explanation
 }
 
-/// The proof that a scene pays for nothing but its own: one that leaves every effect out compiles to the very instructions of a
-/// model that never had any, and gives the same bytes.
+/// The proof that a scene pays for nothing but its own: one that leaves every effect out compiles to the very
+/// instructions of a model that never had any, and gives the same bytes.
 #[test]
 fn a_scene_without_effects_is_the_bare_model() {
     let place = Place::new();

@@ -1,7 +1,7 @@
 //! The committed JSON Schema is that of the grammar, and the models keep to it.
 //!
-//! `MBINT_UPDATE_SCHEMA=1 cargo test --test program schema` writes it, and `tests/program/only_semantics.txt`: the bad models of
-//! which the schema cannot see what is wrong.
+//! `MBINT_UPDATE_SCHEMA=1 cargo test --test program schema` writes it, and `tests/program/only_semantics.txt`: the bad
+//! models of which the schema cannot see what is wrong.
 
 use std::fs;
 use std::path::{Path, PathBuf};

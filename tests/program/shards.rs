@@ -1,4 +1,5 @@
-//! `mbint plan`, `shard`, `status`, `merge` and `run --store`: whatever is cut, lost or damaged, the results are those of `mbint run`.
+//! `mbint plan`, `shard`, `status`, `merge` and `run --store`: whatever is cut, lost or damaged, the results are those
+//! of `mbint run`.
 
 use std::fs;
 use std::path::Path;

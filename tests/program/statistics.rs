@@ -160,7 +160,8 @@ fn a_stack_has_worst_case_root_sum_square_and_statistics_side_by_side() {
     fs::write(place.path().join("stack.yaml"), STACK).unwrap();
     // One box may be too small, and is.
     let (printed, _) = place.run("run stack.yaml -o out", 4);
-    // By hand: Σ t = 0.34 mm, √Σ t² = 0.166733 mm; variances t²/9 (normal), t²/3 (uniform), t²/6 (triangular): 0.0686375 mm.
+    // By hand: Σ t = 0.34 mm, √Σ t² = 0.166733 mm; variances t²/9 (normal), t²/3 (uniform), t²/6 (triangular):
+    // 0.0686375 mm.
     for word in ["[-0.04000, 0.64000]", "± 0.34000", "± 0.16673", "0.30000 ±", "0.06864 ±", "  mm\n"] {
         assert!(printed.contains(word), "{word}: {printed}");
     }

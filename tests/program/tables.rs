@@ -1,5 +1,5 @@
-//! Tables of sweeps, allocations and statistics as they were when they were last looked at: `snapshots/tables/`, in four digits, without
-//! errors.
+//! Tables of sweeps, allocations and statistics as they were when they were last looked at: `snapshots/tables/`, in
+//! four digits, without errors.
 //!
 //! `INSTA_UPDATE=always cargo test --test program tables` takes changes over.
 

@@ -1,4 +1,5 @@
-//! One notation of tolerances, wherever a number may have one: in one piece, in the long form, of a robot's number, on the command line.
+//! One notation of tolerances, wherever a number may have one: in one piece, in the long form, of a robot's number, on
+//! the command line.
 
 use mbint::inner::model::{self, Description, Override, ParameterValue};
 

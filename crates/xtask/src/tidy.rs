@@ -1,7 +1,7 @@
 //! Rules about text that neither rustfmt nor clippy checks.
 //!
-//! A rule counts its violations in the tracked files and has a limit. Where a limit is above zero, it is the number that
-//! was there when the rule was written: it may fall, never rise.
+//! A rule counts its violations in the tracked files and has a limit. Where a limit is above zero, it is the number
+//! that was there when the rule was written: it may fall, never rise.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -24,7 +24,7 @@ const RULES: [Rule; 4] = [
 ];
 
 /// Limits of the first three rules.
-const LIMITS: [usize; 3] = [1182, 314, 125];
+const LIMITS: [usize; 3] = [22, 256, 125];
 
 /// Endings of files that programs leave behind.
 const STRAY: [&str; 6] = [".orig", ".rej", ".log", ".LOG.TXT", "_LOG.TXT", ".snap.new"];

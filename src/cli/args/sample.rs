@@ -38,8 +38,8 @@ pub(in crate::cli) struct SampleArgs {
 /// At which parameters samples are simulated.
 #[derive(Clone, Debug, Default, Args)]
 pub(in crate::cli) struct PointArgs {
-    /// Simulate at the points of this table: a column for each parameter, in SI units, under its name; parameters without a column
-    /// are nominal.
+    /// Simulate at the points of this table: a column for each parameter, in SI units, under its name; parameters
+    /// without a column are nominal.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub points: Option<PathBuf>,
 

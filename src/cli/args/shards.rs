@@ -23,7 +23,8 @@ pub(in crate::cli) struct PlanArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 
-    /// Leave simulations to shards that take longer than this on one core; what takes less is done by `plan` and `merge`.
+    /// Leave simulations to shards that take longer than this on one core; what takes less is done by `plan` and
+    /// `merge`.
     #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value_t = 10.0)]
     pub at_once: f64,
 

@@ -63,12 +63,13 @@ pub(in crate::cli) struct AskedArgs {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub scene: Vec<String>,
 
-    /// Exclude parameter values with which the mechanism cannot be assembled or does not reach the end of the simulation;
-    /// the column `covered` has the share that is left.
+    /// Exclude parameter values with which the mechanism cannot be assembled or does not reach the end of the
+    /// simulation; the column `covered` has the share that is left.
     #[arg(long)]
     pub skip_infeasible: bool,
 
-    /// Also simulate every sample with halved steps, to estimate the time error of every bound [default: a few samples].
+    /// Also simulate every sample with halved steps, to estimate the time error of every bound [default: a few
+    /// samples].
     #[arg(long)]
     pub certify_time: bool,
 }
@@ -87,7 +88,8 @@ impl AskedArgs {
 /// Which files models may name.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct RootArgs {
-    /// Let models name files of this folder or below, too: tables, robots, meshes, included files [default: of the model's folder].
+    /// Let models name files of this folder or below, too: tables, robots, meshes, included files [default: of the
+    /// model's folder].
     #[arg(long, value_name = "DIR")]
     pub root: Option<PathBuf>,
 }
@@ -99,7 +101,8 @@ pub(in crate::cli) struct SetArgs {
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
     set: Vec<Override>,
 
-    /// Set the parameters of this YAML file (`parameters: { l1: 0.16 ± 2% }`), as `mbint allocate` writes it; `--set` goes before.
+    /// Set the parameters of this YAML file (`parameters: { l1: 0.16 ± 2% }`), as `mbint allocate` writes it; `--set`
+    /// goes before.
     #[arg(long, value_name = "FILE")]
     with: Vec<PathBuf>,
 
@@ -111,7 +114,7 @@ impl SetArgs {
     /// What is said of models; every parameter is set at most once.
     ///
     /// # Errors
-    /// For the first that is set twice, and for what is wrong with a file.
+    /// For the first that is set twice, and for errors of a file.
     pub fn given(&self) -> Result<Given, Failure> {
         Ok(Given { overrides: overlaid(&self.with, &self.set)?, root: self.files.root.clone() })
     }
@@ -120,7 +123,7 @@ impl SetArgs {
 /// What files and settings set; settings go before.
 ///
 /// # Errors
-/// For the first parameter that is set twice, and for what is wrong with a file.
+/// For the first parameter that is set twice, and for errors of a file.
 pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec<Override>, Failure> {
     let mut laid: Vec<Override> = Vec::new();
     for path in with {

@@ -17,8 +17,8 @@ pub(in crate::cli) struct SweepArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Sweep a parameter, as `l1=0.1..0.2:11`, `l1=100..200:11 mm` or `l1=0.1..0.2:11 ± 1%`, or set one, as `l2=0.3`; one or two
-    /// may be swept.
+    /// Sweep a parameter, as `l1=0.1..0.2:11`, `l1=100..200:11 mm` or `l1=0.1..0.2:11 ± 1%`, or set one, as `l2=0.3`;
+    /// one or two may be swept.
     #[arg(short, long, value_name = "NAME=FROM..TO:VALUES", required = true)]
     pub set: Vec<String>,
 

@@ -1,4 +1,5 @@
-//! Mechanisms with joints whose motion is known: a rotor under a constant torque, and linkages driven at constant speed.
+//! Mechanisms with joints whose motion is known: a rotor under a constant torque, and linkages driven at constant
+//! speed.
 
 use std::f64::consts::TAU;
 

@@ -156,8 +156,8 @@ pub fn draw(seed: u64, number: u64, only: Option<&str>) -> Draw {
     draw
 }
 
-/// Gives one to four parameters an interval, at least one of every term but those that have none to give; wide ones, and as many
-/// as there are terms, where a surrogate is to find its own degree.
+/// Gives one to four parameters an interval, at least one of every term but those that have none to give; wide ones,
+/// and as many as there are terms, where a surrogate is to find its own degree.
 fn make_uncertain(random: &mut Random, terms: &mut [Term], is_adaptive: bool) {
     let wanted = random.pick(&[1, 1, 1, 1, 1, 2, 2, 2, 3, 4]);
     let wide = is_adaptive || random.chance(0.5);

@@ -7,7 +7,8 @@ use super::{Scale, closed_form, lines, named, parameter, removable};
 use crate::draw::Term;
 use crate::random::Random;
 
-/// Shape of a pulse: formula of time with centre `T#` and half width `D#`, value at s = (t − T)/D, and where it has kinks.
+/// Shape of a pulse: formula of time with centre `T#` and half width `D#`, value at s = (t − T)/D, and where it has
+/// kinks.
 struct Shape {
     formula: &'static str,
     value: fn(f64) -> f64,

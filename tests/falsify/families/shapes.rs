@@ -1,5 +1,5 @@
-//! Oscillators that see many parameters through one number: bumps, ridges, corners, rings and sums. That number's range over
-//! the box is known exactly, whatever the number of parameters.
+//! Oscillators that see many parameters through one number: bumps, ridges, corners, rings and sums. That number's range
+//! over the box is known exactly, whatever the number of parameters.
 
 use std::sync::Arc;
 
@@ -213,7 +213,8 @@ mod tests {
     use crate::families::Scale;
     use crate::random::Random;
 
-    /// What lies anywhere in the box is in the hidden range, and its ends are met: by a search of corners, faces and inner points.
+    /// What lies anywhere in the box is in the hidden range, and its ends are met: by a search of corners, faces and
+    /// inner points.
     #[test]
     fn hidden_ranges_are_those_of_the_boxes() {
         for (number, family) in [bump, ridge, corner, ring, stack].into_iter().cycle().take(40).enumerate() {

@@ -165,9 +165,9 @@ fn every_benchmark_converges_with_order_two() {
     findings.none();
 }
 
-/// Halved down to where round-off shows, or patience ends: 2 minutes. Singular positions amplify rounding: two loops are
-/// passed to 6e-8 m at best, with steps of 8e-6 s to 1.6e-5 s, others below 1e-9 m.
-/// Forty loops meet a flat position to 1e-6 s with steps of 1.25e-4 s.
+/// Halved down to where round-off shows, or patience ends: 2 minutes. Singular positions amplify rounding: two loops
+/// are passed to 6e-8 m at best, with steps of 8e-6 s to 1.6e-5 s, others below 1e-9 m. Forty loops meet a flat
+/// position to 1e-6 s with steps of 1.25e-4 s.
 #[test]
 #[ignore = "2 minutes: every benchmark with ever smaller steps"]
 fn order_two_down_to_round_off() {

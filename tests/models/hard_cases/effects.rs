@@ -1,5 +1,5 @@
-//! Stiff and non-smooth effects: impacts, sticking, a loose pin, a brake. The references are closed forms, and the same laws
-//! in minimal coordinates solved by another method whose steps fall at events.
+//! Stiff and non-smooth effects: impacts, sticking, a loose pin, a brake. The references are closed forms, and the same
+//! laws in minimal coordinates solved by another method whose steps fall at events.
 
 use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan};
 use mbint::inner::model::Description;
@@ -49,8 +49,8 @@ fn settles_at_order_two(errors: &[f64]) {
     assert!(late[2] < 0.1 * errors[0], "{errors:?}");
 }
 
-/// Bounds by Chebyshev polynomials and by a scan hold what some samples of the truth do, within the errors that they report.
-/// `allowed` is how far ends may be off, relative to the widest range.
+/// Bounds by Chebyshev polynomials and by a scan hold what some samples of the truth do, within the errors that they
+/// report. `allowed` is how far ends may be off, relative to the widest range.
 fn bounds_hold(mut description: Description, name: &str, truths: &[Vec<f64>], allowed: f64) {
     let k = uncertain_count(&description);
     description.bounds = BoundsRequest {
@@ -221,8 +221,8 @@ fn sticks_and_slips(coulomb: f64, fading: f64, output_step: f64, rows: usize) ->
     dormand_prince(law, [0.0, BELT], output_step, rows, 1e-12).iter().map(|y| y[0]).collect()
 }
 
-/// It sticks until the spring pulls by F_s, then slides to and fro about F_k/k: with an amplitude of √((F_s − F_k)²/k² + (v/ω)²),
-/// where the excess fades at once.
+/// It sticks until the spring pulls by F_s, then slides to and fro about F_k/k: with an amplitude of
+/// √((F_s − F_k)²/k² + (v/ω)²), where the excess fades at once.
 #[test]
 fn a_mass_on_a_belt_sticks_and_slips_as_far_as_it_should() {
     let excess = COULOMB * (BREAKAWAY - 1.0) / STIFFNESS;
@@ -463,8 +463,8 @@ fn mean_errors(case: impl Fn(f64) -> (Description, f64), steps: &[f64]) -> Vec<f
     errors
 }
 
-/// Forces that jump leave order one: a step that they fall into takes them for all of it or for none. Forces with a kink, as of a
-/// linear stop, leave order two.
+/// Forces that jump leave order one: a step that they fall into takes them for all of it or for none. Forces with a
+/// kink, as of a linear stop, leave order two.
 #[test]
 fn what_order_remains_at_events() {
     let jump = |phase: f64| {

@@ -1,5 +1,5 @@
-//! Steps from a tolerance through events: stiff stops, friction that reverses, a force that jumps; and runs that end with a
-//! diagnosis where no step is small enough.
+//! Steps from a tolerance through events: stiff stops, friction that reverses, a force that jumps; and runs that end
+//! with a diagnosis where no step is small enough.
 
 use std::f64::consts::PI;
 

@@ -5,7 +5,8 @@ use mbint::inner::study::{self, Options};
 
 use crate::common::{Vary, curve, largest, nominal, order, read, run_methods};
 
-/// A four-bar linkage with a driven crank of `crank` m, on a base of 0.4 m, with coupler and rocker of 0.2 m and 0.25 m.
+/// A four-bar linkage with a driven crank of `crank` m, on a base of 0.4 m, with coupler and rocker of 0.2 m and 0.25
+/// m.
 fn driven(crank: f64, stepping: &str) -> String {
     format!(
         "parameters: {{ omega: {{ value: 1, unit: rad/s }} }}
@@ -53,8 +54,8 @@ fn a_crank_that_can_turn_does_not_lock() {
     assert_eq!(summary.failure, None);
 }
 
-/// A slider crank whose rod is as long as its crank: where both stand upright the slider is at O, a change point, and the
-/// crank may take the slider with it or leave it there.
+/// A slider crank whose rod is as long as its crank: where both stand upright the slider is at O, a change point, and
+/// the crank may take the slider with it or leave it there.
 fn change_point(crank: f64) -> String {
     format!(
         "bodies:
@@ -103,8 +104,8 @@ fn near_a_change_point_nothing_is_singular() {
     assert!(largest(energy.iter().map(|value| value - energy[0])) < 1e-2 * energy[0]);
 }
 
-/// A toggle: two links, the end of the second on a slider against a spring, pushed through their stretched position by the
-/// weight at the knee; x = 2 L cos θ, so that the height of the knee follows from energy alone.
+/// A toggle: two links, the end of the second on a slider against a spring, pushed through their stretched position by
+/// the weight at the knee; x = 2 L cos θ, so that the height of the knee follows from energy alone.
 #[test]
 fn a_toggle_snaps_through() {
     let text = "bodies:
@@ -135,8 +136,8 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.01 }
     assert!(drifts[1] < 1e-4 && order(drifts[0], drifts[1]) > 1.8, "{drifts:?}");
 }
 
-/// Two parallelograms of bars of 1 m, so far from the origin, that pass a flat position. Where constraints hold to ε times
-/// that distance, the angles of a bar 1e-3 rad before it are known to a thousand times as much only.
+/// Two parallelograms of bars of 1 m, so far from the origin, that pass a flat position. Where constraints hold to ε
+/// times that distance, the angles of a bar 1e-3 rad before it are known to a thousand times as much only.
 fn parallelograms(place: f64) -> String {
     format!(
         "parameters: {{ X: {place} }}
@@ -164,7 +165,8 @@ simulation: {{ duration: 1, step: 1e-4, output_step: 0.05 }}
     )
 }
 
-/// Measured at 100 m, 10 km and 100 km: angles 9.9e-10, 1.4e-9 and 7.6e-8 rad off, bars 1e-13, 3e-11 and 1e-10 rad apart.
+/// Measured at 100 m, 10 km and 100 km: angles 9.9e-10, 1.4e-9 and 7.6e-8 rad off, bars 1e-13, 3e-11 and 1e-10 rad
+/// apart.
 #[test]
 fn flat_positions_are_passed_far_from_the_origin() {
     let [near, far @ ..] = [0.0, 1e2, 1e4, 1e5].map(|place| nominal(&read(&parallelograms(place))));

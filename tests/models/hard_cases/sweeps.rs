@@ -1,5 +1,5 @@
-//! One number varied over many decades: steps, the scheme's damping, stiffness, masses, lengths, units, the number of steps and of
-//! bodies.
+//! One number varied over many decades: steps, the scheme's damping, stiffness, masses, lengths, units, the number of
+//! steps and of bodies.
 
 use std::fmt::Write as _;
 
@@ -11,8 +11,8 @@ use nalgebra::DMatrix;
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Vary, curve, distance, largest, model, nominal, order, read, row};
 
-/// A pendulum's angle from the horizontal, and its rate, at t: θ̈ = −(g/L) cos θ, by Runge and Kutta's fourth-order method
-/// with so many steps.
+/// A pendulum's angle from the horizontal, and its rate, at t: θ̈ = −(g/L) cos θ, by Runge and Kutta's fourth-order
+/// method with so many steps.
 fn swing(gravity_by_length: f64, t: f64, steps: usize) -> [f64; 2] {
     let slope = |[angle, rate]: [f64; 2]| [rate, -gravity_by_length * angle.cos()];
     runge_kutta(slope, [0.0, 0.0], t, 2, steps)[1]
@@ -31,8 +31,8 @@ fn small_steps(h: f64, steps: f64) -> (f64, [f64; 2]) {
     (duration, [largest(errors[..2].iter().copied()), largest(errors[2..].iter().copied())])
 }
 
-/// The scheme's own error of second order, then what rounding leaves: velocities are differences of positions, so they have a
-/// rounding error of ε/h.
+/// The scheme's own error of second order, then what rounding leaves: velocities are differences of positions, so they
+/// have a rounding error of ε/h.
 fn check_small_steps(count: f64, smallest: i32) {
     for exponent in 2..=smallest {
         let h = 10.0_f64.powi(-exponent);
@@ -304,8 +304,8 @@ fn laguerre(n: usize, x: f64) -> (Vec<f64>, f64) {
     (values, slope)
 }
 
-/// A chain of equal point masses on rods of 1 m that hangs, and swings a little in its slowest mode: masses counted from the
-/// free end are displaced as L_k(x), with ω² = (g/l) x, L_n(x) = 0 (small displacements; exact for these).
+/// A chain of equal point masses on rods of 1 m that hangs, and swings a little in its slowest mode: masses counted
+/// from the free end are displaced as L_k(x), with ω² = (g/l) x, L_n(x) = 0 (small displacements; exact for these).
 fn chain(n: usize, steps: f64) {
     // Near the zero of Bessel's J0, of which the hanging rope's mode is made.
     let mut x = 2.404825557695773_f64.powi(2) / (4.0 * n as f64 + 2.0);

@@ -1,5 +1,5 @@
-//! Laws of mechanics, held by mechanisms that no one has drawn: chains, trees and loops of random bodies, springs and torques,
-//! in the plane and in space.
+//! Laws of mechanics, held by mechanisms that no one has drawn: chains, trees and loops of random bodies, springs and
+//! torques, in the plane and in space.
 //!
 //! `PROPTEST_CASES=1000 cargo test --test models random` tries more of them.
 

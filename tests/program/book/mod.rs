@@ -1,4 +1,5 @@
-//! What the book shows is so: commands print what pages say, generated pages are current, and the examples can be assembled.
+//! What the book shows is so: commands print what pages say, generated pages are current, and the examples can be
+//! assembled.
 //!
 //! `MBINT_UPDATE_DOCS=1 cargo test --test program book` writes the pages anew.
 
@@ -47,7 +48,8 @@ fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
     }
 }
 
-/// Figures of pages with commands that are no results: of definitions, of laws, and of other runs, which are said to be others.
+/// Figures of pages with commands that are no results: of definitions, of laws, and of other runs, which are said to be
+/// others.
 const NO_RESULTS: [(&str, &[&str]); 5] = [
     // Lengths that are mixed up.
     ("guides/check.md", &["150", "150"]),

@@ -1,8 +1,9 @@
 //! What pages show: commands with what they print, and the figures of their text.
 //!
-//! A block `console` has commands, each after `$ `, and what they print; a line `…` stands for any lines. Commands run in a folder of the
-//! page, with the repository's `docs` and `models` in it; a block `yaml` that begins with `# NAME.yaml` is a file there. Numbers are compared
-//! with a tolerance, since a page shows what the program computes and not its last digits.
+//! A block `console` has commands, each after `$ `, and what they print; a line `…` stands for any lines. Commands run
+//! in a folder of the page, with the repository's `docs` and `models` in it; a block `yaml` that begins with
+//! `# NAME.yaml` is a file there. Numbers are compared with a tolerance, since a page shows what the program computes
+//! and not its last digits.
 
 use std::path::Path;
 use std::process::Command;
@@ -78,7 +79,8 @@ fn is_shown(block: &str, printed: &str) -> bool {
     true
 }
 
-/// Whether two lines say the same: words by words, without the seconds at their end, which are the only numbers with three decimals there.
+/// Whether two lines say the same: words by words, without the seconds at their end, which are the only numbers with
+/// three decimals there.
 fn is_same(shown: &str, line: &str) -> bool {
     let words = |text: &str| -> Vec<String> {
         let mut words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
@@ -146,7 +148,8 @@ fn pieces(word: &str) -> Vec<Piece> {
     pieces
 }
 
-/// Figures of a page's text, of three digits or more, that none of its blocks has, rounded: what a page concludes is from what it shows.
+/// Figures of a page's text, of three digits or more, that none of its blocks has, rounded: what a page concludes is
+/// from what it shows.
 pub fn unfounded(page: &str) -> Vec<String> {
     let mut founded: Vec<f64> = Vec::new();
     let mut text = String::new();

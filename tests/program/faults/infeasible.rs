@@ -19,8 +19,8 @@ fn band(bounds: &Bounds, method: Method) -> &Band {
     bounds.outputs[0].bands.iter().find(|band| band.method == method).unwrap()
 }
 
-/// A crank of 0.1 m, upright, whose end is √(0.3² + 0.1²) m from the rocker's pivot: coupler and rocker together are at least
-/// as long. Further parameters do not matter.
+/// A crank of 0.1 m, upright, whose end is √(0.3² + 0.1²) m from the rocker's pivot: coupler and rocker together are at
+/// least as long. Further parameters do not matter.
 fn four_bar(coupler: &str, further: &str) -> Description {
     read(&format!(
         "
@@ -60,7 +60,8 @@ fn a_coupler_that_is_too_long_is_reported() {
     let message = run(&four_bar("value: 0.71", FURTHER), false).unwrap_err();
     println!("{message}");
     assert!(message.contains("cannot be closed"), "{message}");
-    // The coupler spans from the crank to the rocker; what cannot be closed is one of the loop's joints, by its part of 190 mm.
+    // The coupler spans from the crank to the rocker; what cannot be closed is one of the loop's joints, by its part of
+    // 190 mm.
     let joint = ["`A`", "`B`", "`C`", "`D`"].iter().any(|joint| message.contains(joint));
     assert!(joint, "{message}");
     let residual = message.split(" mm remain in").next().and_then(|rest| rest.rsplit(' ').next()).unwrap();
@@ -121,8 +122,8 @@ fn the_rest_is_bounded_and_says_how_much_it_is() {
     assert!(table.lines().next().unwrap().ends_with(",unresolved,covered"));
     assert!(table.lines().skip(1).all(|row| row.ends_with(&format!(",{covered}"))), "{table}");
 
-    // The rocker's angle closes the triangle of coupler, rocker and the line from the crank's end: the law of cosines. It
-    // falls with l, so that its range is known.
+    // The rocker's angle closes the triangle of coupler, rocker and the line from the crank's end: the law of cosines.
+    // It falls with l, so that its range is known.
     let angle = |l: f64| {
         let base = 0.1_f64.hypot(0.3);
         let cosine = (base * base + 0.2 * 0.2 - l * l) / (2.0 * base * 0.2);
@@ -246,7 +247,8 @@ bounds: {{ scan: {{ points: 12 }} }}
     let last = bounds.times.len() - 1;
     assert_eq!(bounds.times, alone.times);
     let (with, without) = (band(&bounds, Method::Scan), band(&alone, Method::Scan));
-    // Points of another interval are the same but for rounding; its validation samples, which the band holds too, are not.
+    // Points of another interval are the same but for rounding; its validation samples, which the band holds too, are
+    // not.
     let off = (with.lower[last] - without.lower[last]).abs().max((with.upper[last] - without.upper[last]).abs());
     assert!(off <= without.error.total[last], "{off:e}, {:e}", without.error.total[last]);
     assert!(with.error.unresolved[last] && with.error.total[last].is_nan());

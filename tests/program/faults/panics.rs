@@ -65,8 +65,8 @@ fn a_panic_before_the_methods_costs_one_subsystem_of_them() {
     assert!(bounds.outputs.iter().all(|output| output.nominal.iter().all(|value| value.is_finite())));
 }
 
-/// A crank whose rod is a beam, in steps that are much too long: its loop opens in the run. The start's conditions of the beam are
-/// no constraints then.
+/// A crank whose rod is a beam, in steps that are much too long: its loop opens in the run. The start's conditions of
+/// the beam are no constraints then.
 #[test]
 fn a_constraint_that_opens_beside_a_beam_is_named() {
     let place = Place::new();

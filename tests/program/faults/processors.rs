@@ -1,4 +1,5 @@
-//! The same bytes on a processor that cannot fuse a multiplication with an addition: there, the C library takes other functions.
+//! The same bytes on a processor that cannot fuse a multiplication with an addition: there, the C library takes other
+//! functions.
 
 #![cfg(all(target_os = "linux", target_env = "gnu"))]
 

@@ -60,7 +60,7 @@ pub struct AppliedForces<'g> {
     pub room: Option<Scalar<'g>>,
     /// The gap of its surfaces, and how deep they may overlap.
     pub overlap: Option<(Scalar<'g>, Scalar<'g>)>,
-    /// The condition of what is added now, if it has one.
+    /// The condition of the terms that are added now, if they have one.
     guard: Option<Guard<'g>>,
     /// What acts under conditions.
     guarded: Vec<Guarded<'g>>,

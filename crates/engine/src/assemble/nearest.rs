@@ -1,4 +1,5 @@
-//! What the start is nearest to where the model leaves it open: the coordinates of the inboard joints, at zero, or where `guess` has them or their bodies.
+//! What the start is nearest to where the model leaves it open: the coordinates of the inboard joints, at zero, or
+//! where `guess` has them or their bodies.
 //!
 //! These are the inboard joints of joint coordinates, so that the start does not depend on the formulation, nor on the
 //! outputs. A root stays near the place where assembly begins to look, and so does a body behind a joint whose
@@ -84,7 +85,8 @@ impl<'g> Mechanism<'g, '_> {
         Ok(distances)
     }
 
-    /// Where `guess` has the coordinate of the inboard joint of a body: it names the joint's, or the body where joints place it.
+    /// Where `guess` has the coordinate of the inboard joint of a body: it names the joint's, or the body where joints
+    /// place it.
     fn guessed(
         &self,
         description: &Description,

@@ -1,16 +1,16 @@
 //! Flexible bodies by their matrices: inertia.
 //!
-//! R is the orientation of the first node, Ω its angular velocity and a = Rᵀ r̈_1 its acceleration in its own axes. u are the displacements of
-//! [`crate::elements::effects::superelement`], y = (Ω × d_i, 0, 0) what the frame's rotation adds to the nodes' rates, and m, S_0, J_0, a_k, b_k, c_k those
-//! of [`crate::elements::effects::Carried`]:
+//! R is the orientation of the first node, Ω its angular velocity and a = Rᵀ r̈_1 its acceleration in its own axes. u
+//! are the displacements of [`crate::elements::effects::superelement`], y = (Ω × d_i, 0, 0) what the frame's rotation
+//! adds to the nodes' rates, and m, S_0, J_0, a_k, b_k, c_k those of [`crate::elements::effects::Carried`]:
 //!
 //! ```text
 //! S = S_0 + Σ a_k u_k,   J = J_0 + 2 Σ c_k u_k,   z = u̇ + y,   π = M z
 //! T = ½ m V·V + V·(Ω × S) + ½ Ω·J Ω + Σ (V·a_k + Ω·b_k) u̇_k + ½ zᵀ M z,   V = Rᵀ ṙ_1          J
 //! ```
 //!
-//! is the kinetic energy of ρ |V + Ω × (x + N u) + N u̇|²/2, but for the square of Ω × N u between the nodes. From Lagrange's equations, d/dt ∂T/∂v − ∂T/∂q
-//! (Shabana, *Dynamics of Multibody Systems* (2013), ch. 5), follow
+//! is the kinetic energy of ρ |V + Ω × (x + N u) + N u̇|²/2, but for the square of Ω × N u between the nodes. From
+//! Lagrange's equations, d/dt ∂T/∂v − ∂T/∂q (Shabana, *Dynamics of Multibody Systems* (2013), ch. 5), follow
 //!
 //! ```text
 //! f_k = a_k·a + b_k·Ω̇ − Ω·c_k Ω + π̇_k, on displacements + Ω × π_i          on each coordinate of u

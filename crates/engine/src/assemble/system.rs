@@ -111,7 +111,7 @@ pub struct EffectInfo {
     pub enclosed: bool,
     /// The distance of two points along which it acts, where it does.
     pub length: Option<Expr>,
-    /// How much room it has, m: none at a start outside of what it is in.
+    /// How much room it has, m: none at a start outside of its enclosure.
     pub room: Option<Expr>,
     /// How deep its surfaces may overlap, where that has a limit.
     pub overlap: Option<Overlap>,

@@ -12,8 +12,8 @@
 //! ```
 //!
 //! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊:
-//! q₊ = q̂ + b x and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration. The
-//! constraint is divided by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has
+//! q₊ = q̂ + b x and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration.
+//! The constraint is divided by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has
 //! Φ̇(q₊,v₊,t₊)/c = 0 in its place. Velocity constraints are Ψ(q₊,v₊,t₊)/c = 0 in each of them.
 
 use rustc_hash::FxHashMap;

@@ -12,8 +12,8 @@ use super::start::{Assembly, allowed_residual, free_columns};
 use crate::assemble::{CoordinateId, System};
 use crate::compile::{StartProgram, Tapes, compile_start};
 
-/// Weight of an angle as dependent coordinate against a position. Angles are preferred as independent: they grow without
-/// bound, so that they determine the configuration over whole turns.
+/// Weight of an angle as dependent coordinate against a position. Angles are preferred as independent: they grow
+/// without bound, so that they determine the configuration over whole turns.
 const ANGLES_STAY: f64 = 0.3;
 
 /// Most lanes evaluated at once.

@@ -65,7 +65,7 @@ pub enum SimulationError {
         /// Its residual, with its unit.
         remain: String,
     },
-    /// Something begins outside of what it is in.
+    /// Something begins outside of its enclosure.
     #[error(
         "`{effect}` starts with the centre of its journal {distance:.3e} m outside of the bearing: give its bodies a start or a `guess` inside"
     )]

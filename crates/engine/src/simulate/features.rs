@@ -1,8 +1,8 @@
-//! Features of the forces in space: functions of the positions, bounded as a whole, that a step may pass over from one side to the
-//! other. The ends of a step that jumps over a bump show nothing of it, and those of its halves neither.
+//! Features of the forces in space: functions of the positions, bounded as a whole, that a step may pass over from one
+//! side to the other. The ends of a step that jumps over a bump show nothing of it, and those of its halves neither.
 //!
-//! Every such function is enclosed over all positions between the ends of a step. Functions of the time alone are enclosed before
-//! the run (`time_functions`).
+//! Every such function is enclosed over all positions between the ends of a step. Functions of the time alone are
+//! enclosed before the run (`time_functions`).
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Interval, Node, Ranges, Unary};

@@ -1,8 +1,8 @@
-//! Fast modes that the start or something later excites and that the scheme damps: with steps of any size that are long for them, it damps them alike, so that
-//! halving the steps does not show this damping.
+//! Fast modes that the start or something later excites and that the scheme damps: with steps of any size that are long
+//! for them, it damps them alike, so that halving the steps does not show this damping.
 //!
-//! About the nominal start the equations of motion are M δẅ + C δv + K δq + Φ_qᵀ δλ = 0 with Φ_q δq = 0. A mode φ (φᵀMφ = 1, frequency ω)
-//! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): slow modes have hardly any part in φᵀMw/ω².
+//! About the nominal start the equations of motion are M δẅ + C δv + K δq + Φ_qᵀ δλ = 0 with Φ_q δq = 0. A mode φ (φᵀMφ
+//! = 1, frequency ω) has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): slow modes have hardly any part in φᵀMw/ω².
 
 use nalgebra::{Complex, DMatrix, DVector, Dyn, Matrix3, SVD, SymmetricEigen, Vector3};
 use symdiff::{Expr, math, slopes};
@@ -41,8 +41,8 @@ pub struct ExcitedMode {
 }
 
 impl ExcitedMode {
-    /// Amplitude in an output lost by damping of the steps up to a time, relative to the rest, that halving them does not show
-    /// (halving shows 4/3 of the difference).
+    /// Amplitude in an output lost by damping of the steps up to a time, relative to the rest, that halving them does
+    /// not show (halving shows 4/3 of the difference).
     pub fn lost(&self, output: usize, time: f64) -> f64 {
         let of_one = |excitation: &Excitation| {
             let since = time - excitation.time;
@@ -55,7 +55,8 @@ impl ExcitedMode {
     }
 }
 
-/// The modes of a mechanism about its nominal start that the steps of a schedule damp, the fastest last, with what excites them.
+/// The modes of a mechanism about its nominal start that the steps of a schedule damp, the fastest last, with what
+/// excites them.
 pub fn excited_modes(simulator: &Simulator, schedule: &Schedule) -> Vec<ExcitedMode> {
     let n = simulator.system.q.len();
     if n > MOST_COORDINATES {
@@ -263,8 +264,8 @@ fn by_scheme(h: f64, frequency: f64, coefficients: Coefficients) -> [f64; 2] {
     [h, 0.5 * h].map(|h| decay_by_scheme(coefficients, h * frequency) / h)
 }
 
-/// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`: from the spectral
-/// radius of its matrix in (q, v, a), since w = −q.
+/// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`: from
+/// the spectral radius of its matrix in (q, v, a), since w = −q.
 fn decay_by_scheme(coefficients: Coefficients, step: f64) -> f64 {
     let Coefficients { beta, gamma, .. } = coefficients;
     let (of_new, of_old, of_algorithmic) =

@@ -56,7 +56,8 @@ impl<'s> SampleRun<'s> {
         }
     }
 
-    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
+    /// stopped.
     pub fn reduced(&mut self) -> Vec<f64> {
         match self {
             Self::Plain(run) => run.reduced(),

@@ -1,7 +1,7 @@
 //! States that change at instants, as those of digital controllers do.
 //!
-//! Steps end at the instants. There the states take their new values, and accelerations and multipliers those that follow: the next
-//! step begins with what acts after the jump, so jumps cost no order.
+//! Steps end at the instants. There the states take their new values, and accelerations and multipliers those that
+//! follow: the next step begins with what acts after the jump, so jumps cost no order.
 
 use symdiff::Tile;
 

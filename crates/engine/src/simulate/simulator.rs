@@ -55,7 +55,8 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Assembles for steps of `h`, with a limit on the number of operations that the start may take. The system keeps the limit.
+    /// Assembles for steps of `h`, with a limit on the number of operations that the start may take. The system keeps
+    /// the limit.
     ///
     /// # Errors
     /// Where no consistent start exists, the equations are singular there, or the limit is exceeded.
@@ -315,9 +316,9 @@ impl Simulator {
         Ok((assembly, open))
     }
 
-    /// A tile of samples assembled from the nominal one, and the residuals of those that cannot be assembled. A sample far
-    /// from the nominal one is reached by small changes of the parameters (continuation), which keeps it on the same branch
-    /// of the linkage.
+    /// A tile of samples assembled from the nominal one, and the residuals of those that cannot be assembled. A sample
+    /// far from the nominal one is reached by small changes of the parameters (continuation), which keeps it on the
+    /// same branch of the linkage.
     pub(super) fn assembly(&self, samples: &[Sample]) -> (Assembly<'_>, Vec<ConstraintResidual>) {
         let at = |share: f64| {
             move |parameter: usize, lane: usize| {
@@ -347,8 +348,8 @@ impl Simulator {
         (assembly, open)
     }
 
-    /// Whether rows of output solve for their accelerations and multipliers: outputs depend on them, and constraints disturb
-    /// those of the steps.
+    /// Whether rows of output solve for their accelerations and multipliers: outputs depend on them, and constraints
+    /// disturb those of the steps.
     pub(super) fn solves_row_accelerations(&self) -> bool {
         !self.system.lambda.is_empty() && self.system.observes_accelerations()
     }

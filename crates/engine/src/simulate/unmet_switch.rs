@@ -1,9 +1,10 @@
 //! Switches that some parameter values meet and no sample does: a post that only some throws hit, a stop that only the
 //! fastest reach.
 //!
-//! The motions of samples at Chebyshev nodes are polynomials in the parameters, row by row, and cubics in time between rows. Over both
-//! the values of the switches are ranged: where one can change its sign and no sample's does, that place is simulated itself. If it
-//! does switch, what the samples say holds no more from there on. Of many parameters only samples spread over the box are looked at.
+//! The motions of samples at Chebyshev nodes are polynomials in the parameters, row by row, and cubics in time between
+//! rows. Over both the values of the switches are ranged: where one can change its sign and no sample's does, that
+//! place is simulated itself. If it does switch, what the samples say holds no more from there on. Of many parameters
+//! only samples spread over the box are looked at.
 //!
 //! The same samples show from when on steps have switches inside them.
 
@@ -49,8 +50,8 @@ const BLOCK: usize = 64;
 /// How far a switch went below and above zero since the row before.
 type Depths = [f64; 2];
 
-/// Largest ratio of penetration depths for which a validation sample counts as evidence: one that only grazes a post says little of those
-/// that hit it.
+/// Largest ratio of penetration depths for which a validation sample counts as evidence: one that only grazes a post
+/// says little of those that hit it.
 const AS_DEEP: f64 = 2.0;
 
 /// A sign that samples have by less than this share of the other is looked for further on.
@@ -70,7 +71,8 @@ struct Suspect {
 /// Known behaviour of the switches in a box.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SwitchSearch {
-    /// The first row before which a switch changes its sign for some parameter values and for none of the samples that are held out.
+    /// The first row before which a switch changes its sign for some parameter values and for none of the samples that
+    /// are held out.
     pub unmet_from: Option<usize>,
     /// The first row before which one changes its sign for any.
     pub switched_from: Option<usize>,
@@ -80,7 +82,8 @@ pub struct SwitchSearch {
     pub counters: Counters,
 }
 
-/// Searches a box for switches that other samples than those `held_out` meet. `None` where there is no switch or nothing uncertain.
+/// Searches a box for switches that other samples than those `held_out` meet. `None` where there is no switch or
+/// nothing uncertain.
 ///
 /// # Errors
 /// Where a sample cannot be assembled.
@@ -144,7 +147,8 @@ pub fn unmet_switch(
     }))
 }
 
-/// Switches whose rates are known and that had one sign only, or the other one by little, with that other one: 0 below zero, 1 above.
+/// Switches whose rates are known and that had one sign only, or the other one by little, with that other one: 0 below
+/// zero, 1 above.
 fn one_sided(program: &SwitchProgram, met: &[Depths]) -> Vec<(usize, usize)> {
     let other = |(switch, met): (usize, &Depths)| {
         let side = usize::from(met[0] > met[1]);
@@ -192,8 +196,8 @@ struct Observing<'a> {
 }
 
 impl Observing<'_> {
-    /// Simulates samples as far as all of them get; `look` is given each row, the motions (2n lines) there, and how far switches
-    /// went since the row before. The first `split` samples are kept apart from the others.
+    /// Simulates samples as far as all of them get; `look` is given each row, the motions (2n lines) there, and how far
+    /// switches went since the row before. The first `split` samples are kept apart from the others.
     fn run(
         &self,
         xi: &[Vec<f64>],
@@ -241,7 +245,8 @@ impl Observing<'_> {
     }
 }
 
-/// How far least and largest values go, of which less than `zero` is nothing. (Nothing has been seen before the first step.)
+/// How far least and largest values go, of which less than `zero` is nothing. (Nothing has been seen before the first
+/// step.)
 fn depths(low: &[f64], high: &[f64], zero: f64) -> Depths {
     let deepest = |values: &mut dyn Iterator<Item = f64>| {
         values.filter(|value| *value > zero && value.is_finite()).fold(0.0, f64::max)
@@ -258,8 +263,8 @@ struct Between<'a> {
 }
 
 impl Between<'_> {
-    /// Places where switches, each with a side of zero, may lie on that side between the row before and this one, given the motions'
-    /// coefficients in both.
+    /// Places where switches, each with a side of zero, may lie on that side between the row before and this one, given
+    /// the motions' coefficients in both.
     fn suspects(
         &self,
         row: usize,

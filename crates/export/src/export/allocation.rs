@@ -1,4 +1,5 @@
-//! An allocation's files: `allocation.csv`, the overlay `allocation.yaml` and the plot `allocation.svg` of cost against margin.
+//! An allocation's files: `allocation.csv`, the overlay `allocation.yaml` and the plot `allocation.svg` of cost against
+//! margin.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
-//! `statics.csv`, `modes.csv`, `response.csv`: a line for each output of one configuration, or for each frequency; and plots of responses.
+//! `statics.csv`, `modes.csv`, `response.csv`: a line for each output of one configuration, or for each frequency; and
+//! plots of responses.
 
 use csv::WriterBuilder;
 
@@ -68,7 +69,8 @@ pub fn response_contributions_csv(times: &[f64], points: &[ResponsePoint]) -> Re
     writer.into_inner().map_err(|e| e.into_error().into())
 }
 
-/// Amplitude and phase of every response over the frequency, with bounds: the name of each, `drive` and `drive.phase`, and its document.
+/// Amplitude and phase of every response over the frequency, with bounds: the name of each, `drive` and `drive.phase`,
+/// and its document.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

@@ -1,4 +1,5 @@
-//! `columns.json` and `contributions.columns.json`: what the columns of `bounds.csv` and `contributions.csv` are, and their units.
+//! `columns.json` and `contributions.columns.json`: what the columns of `bounds.csv` and `contributions.csv` are, and
+//! their units.
 
 use serde::Serialize;
 
@@ -23,8 +24,9 @@ struct Column {
     method: Option<&'static str>,
 }
 
-/// The columns of `bounds.csv`, left to right, as a JSON array with an object for each: `column`, `quantity`, `unit` and, where they have
-/// one, `display` (the unit in which people see it, and what one of that is in SI), `output` and `method`.
+/// The columns of `bounds.csv`, left to right, as a JSON array with an object for each: `column`, `quantity`, `unit`
+/// and, where they have one, `display` (the unit in which people see it, and what one of that is in SI), `output` and
+/// `method`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -57,8 +59,8 @@ pub fn columns_json(bounds: &Bounds) -> Result<Vec<u8>, serde_json::Error> {
     Ok(json)
 }
 
-/// The columns of `contributions.csv` likewise: the shares `main` and `total` of an output's variance, and `width_without`, in the
-/// output's unit, each of an `output` and a `parameter`.
+/// The columns of `contributions.csv` likewise: the shares `main` and `total` of an output's variance, and
+/// `width_without`, in the output's unit, each of an `output` and a `parameter`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

@@ -15,9 +15,9 @@ use crate::results::{Bounds, Contribution};
 
 /// The table of all contributions as CSV.
 ///
-/// Columns: `t`, then for each output and parameter `x3.l1.main` and `.total`, the parameter's share of the output's variance
-/// alone and with others, and `.width_without`, how wide the output's range would be if the parameter were at its nominal
-/// value. Unknown values are `NaN`.
+/// Columns: `t`, then for each output and parameter `x3.l1.main` and `.total`, the parameter's share of the output's
+/// variance alone and with others, and `.width_without`, how wide the output's range would be if the parameter were at
+/// its nominal value. Unknown values are `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -62,8 +62,8 @@ struct Layer {
     share: Vec<f64>,
 }
 
-/// The parameters' shares of one output's variance over time, one upon the other, the largest lowest, and the legend beside them in
-/// the same order.
+/// The parameters' shares of one output's variance over time, one upon the other, the largest lowest, and the legend
+/// beside them in the same order.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

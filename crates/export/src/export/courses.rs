@@ -1,7 +1,7 @@
 //! The figure of bounds over time, for one run or several.
 //!
-//! Two panels share the time axis. The upper panel shows the output: nominal courses and bands. Tolerances of a per cent make
-//! bands as thin as a line there, so the lower panel shows each band minus its own nominal course.
+//! Two panels share the time axis. The upper panel shows the output: nominal courses and bands. Tolerances of a per
+//! cent make bands as thin as a line there, so the lower panel shows each band minus its own nominal course.
 
 use svg::Document;
 

@@ -6,10 +6,10 @@ use crate::results::{Band, Bounds};
 
 /// The table of all bounds as CSV, RFC 4180 with `\n` line ends.
 ///
-/// Columns: `t`, then for each output `x3.nominal`, and for each of its bands `x3.chebyshev.lower`, `.upper` and `.error`;
-/// last `unresolved`, the names of the bands that are unreliable in the row (`x3.chebyshev x3.taylor`), if there are bands, and
-/// `covered`, the share of the box that the row covers, if that may be less than all. Numbers are the shortest decimals that
-/// read back as the same `f64`; unknown values are `NaN`.
+/// Columns: `t`, then for each output `x3.nominal`, and for each of its bands `x3.chebyshev.lower`, `.upper` and
+/// `.error`; last `unresolved`, the names of the bands that are unreliable in the row (`x3.chebyshev x3.taylor`), if
+/// there are bands, and `covered`, the share of the box that the row covers, if that may be less than all. Numbers are
+/// the shortest decimals that read back as the same `f64`; unknown values are `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

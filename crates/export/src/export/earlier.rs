@@ -1,4 +1,4 @@
-//! What is in a folder of an older run.
+//! Contents of a folder of an older run.
 
 use std::path::Path;
 

@@ -19,8 +19,8 @@ use crate::export::{
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};
 
-/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, what a report needs where
-/// there is to be one, and `summary.json` into `dir`, which is created if it does not exist.
+/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known,
+/// what a report needs where there is to be one, and `summary.json` into `dir`, which is created if it does not exist.
 ///
 /// The files appear when all are written, `summary.json` last: where it exists, the others do. It lists them, and files
 /// that an older run wrote and this run does not write are removed. Returns the files written, in that order.

@@ -14,7 +14,8 @@ use super::replacing::{self, Replacement};
 /// and of two runs into one folder, the files of one remain, not a mixture. None is open but that which is being
 /// written.
 ///
-/// The folder is locked meanwhile: temporary files that are there already are those of a run that was killed, and are removed.
+/// The folder is locked meanwhile: temporary files that are there already are those of a run that was killed, and are
+/// removed.
 pub(super) struct AtomicFiles<'d> {
     dir: &'d Path,
     replacement: Replacement,
@@ -32,7 +33,7 @@ impl<'d> AtomicFiles<'d> {
     /// replaced.
     ///
     /// # Errors
-    /// As [`prepare_folder`], or where what was left cannot be replaced.
+    /// As [`prepare_folder`], or if the files left there cannot be replaced.
     pub fn in_folder(dir: &'d Path) -> Result<Self, ExportError> {
         prepare_folder(dir)?;
         let folder = fs::File::open(dir).ok();
@@ -49,7 +50,7 @@ impl<'d> AtomicFiles<'d> {
     /// Writes a file to the disk, not yet under its name.
     ///
     /// # Errors
-    /// If it cannot be written; what was written is deleted with `self`.
+    /// If it cannot be written; files already written are deleted with `self`.
     pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), ExportError> {
         let written = self.replacement.add(name, contents);
         written.map_err(|source| ExportError::Write { path: self.dir.join(name), source: plain(source) })?;
@@ -132,7 +133,8 @@ pub fn write_pages(dir: &Path, pages: &[(String, String)]) -> Result<Vec<PathBuf
     files.put_in_place()
 }
 
-/// Creates `dir` if it does not exist, and tests whether a file can be created in it, before a long run rather than after it.
+/// Creates `dir` if it does not exist, and tests whether a file can be created in it, before a long run rather than
+/// after it.
 ///
 /// # Errors
 /// If either fails.

@@ -20,8 +20,8 @@ pub struct SceneBounds<'a> {
 /// Lengths of dashes and gaps, px: scenes differ in them beside their colours.
 const DASHES: [&[f64]; 5] = [&[], &[9.0, 3.0], &[3.0, 2.0], &[9.0, 3.0, 2.0, 3.0], &[16.0, 4.0]];
 
-/// The bands of one output in several scenes as an SVG document: for each scene the edges of the first method that is reliable to
-/// the end.
+/// The bands of one output in several scenes as an SVG document: for each scene the edges of the first method that is
+/// reliable to the end.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

@@ -70,7 +70,7 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
     HEXLOWER.encode(&Sha256::digest(bytes))
 }
 
-/// A file of results. What is no regular file is none: a pipe may never end.
+/// A file of results: a regular file only, since a pipe may never end.
 ///
 /// # Errors
 /// Where it cannot be read.

@@ -33,8 +33,8 @@ pub struct Beside<'a> {
     pub statistics: Option<&'a StatisticsResult>,
 }
 
-/// The plot of one output as an SVG document, with the constant limits that requirements set for it, and its quantiles. The same data give the
-/// same bytes.
+/// The plot of one output as an SVG document, with the constant limits that requirements set for it, and its quantiles.
+/// The same data give the same bytes.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

@@ -3,8 +3,8 @@
 use super::csv::number;
 use crate::results::ReducedSummary;
 
-/// The table of reduced outputs as CSV: name, unit, nominal, method, lower, upper, error, unresolved. Without any method, one row with
-/// the nominal value.
+/// The table of reduced outputs as CSV: name, unit, nominal, method, lower, upper, error, unresolved. Without any
+/// method, one row with the nominal value.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

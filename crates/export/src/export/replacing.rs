@@ -2,8 +2,8 @@
 //!
 //! What is new is complete in a folder of its own before anything changes, and this folder then takes the name
 //! [`JOURNAL`]: from here on the replacement is decided. Older files are set aside in the journal, what says that they
-//! are complete first; then the new ones take their names, in their order. Whoever finds a journal does what is left of
-//! it ([`finish`]). Where an older file cannot be set aside, all go back.
+//! are complete first; then the new ones take their names, in their order. Whoever finds a journal completes the rest
+//! of it ([`finish`]). Where an older file cannot be set aside, all go back.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -18,7 +18,7 @@ use super::owned::{SCENES, SUMMARY, read};
 /// A replacement that was decided, in the folder whose files are replaced.
 const JOURNAL: &str = ".mbint-replacing";
 
-/// In the journal: the new files under their names, the older ones under numbers, and what is to be done.
+/// In the journal: the new files under their names, the older ones under numbers, and the work to be done.
 const NEW: &str = "new";
 const OLD: &str = "old";
 const PLAN: &str = "plan.json";
@@ -115,7 +115,7 @@ impl Step {
     }
 }
 
-/// What is left to do in a folder: older files that are set aside, and new ones that take their names.
+/// The remaining work in a folder: older files that are set aside, and new ones that take their names.
 fn steps(dir: &Path, plan: &Plan) -> [Vec<Step>; 2] {
     let journal = dir.join(JOURNAL);
     let new = |name: &str| Step { from: journal.join(NEW).join(name), to: dir.join(name) };
@@ -138,7 +138,7 @@ fn is_within(path: &str) -> bool {
     (1..=2).contains(&parts.len()) && parts.iter().all(|part| matches!(part, Component::Normal(_)))
 }
 
-/// Does what is left of a replacement that was decided, if there is one.
+/// Completes a replacement that was decided, if there is one.
 ///
 /// # Errors
 /// Where an older file cannot be set aside: all are then as they were. Where a new one cannot take its name,

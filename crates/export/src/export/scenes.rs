@@ -17,9 +17,9 @@ use crate::results::OutputBounds;
 
 /// All scenes' bounds in one table as CSV, in long form: a row for each scene, output, method and time.
 ///
-/// Columns: `scene`, `output`, `unit`, `method`, `t`, `nominal`, `lower`, `upper`, `error`, `unresolved` (`true` where the row is
-/// unreliable) and, if some scene covers a part of its box only, `covered`, the share of the box that the row covers. An output
-/// without bands has one row for each time, without a method. Numbers are as in `bounds.csv`.
+/// Columns: `scene`, `output`, `unit`, `method`, `t`, `nominal`, `lower`, `upper`, `error`, `unresolved` (`true` where
+/// the row is unreliable) and, if some scene covers a part of its box only, `covered`, the share of the box that the
+/// row covers. An output without bands has one row for each time, without a method. Numbers are as in `bounds.csv`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -49,9 +49,10 @@ pub fn scenes_csv(scenes: &[SceneBounds]) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// Writes an SVG of each output that more than one of the scenes has, `scenes.csv`, and `scenes.json`, which lists them, into `dir`.
-/// Files of an older run that this one does not write are removed, and so are results of scenes that are not among `all` that the model has.
-/// With `report`, one page shows all scenes whose results are there. Returns the files written.
+/// Writes an SVG of each output that more than one of the scenes has, `scenes.csv`, and `scenes.json`, which lists
+/// them, into `dir`. Files of an older run that this one does not write are removed, and so are results of scenes that
+/// are not among `all` that the model has. With `report`, one page shows all scenes whose results are there. Returns
+/// the files written.
 ///
 /// # Errors
 /// As [`write_results`](super::write_results).

@@ -24,9 +24,10 @@ pub fn reduced_statistics_csv(statistics: &StatisticsResult) -> Result<Vec<u8>, 
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// The table of all statistics as CSV. Columns: `t`, then for each output `x3.mean`, `x3.deviation`, `x3.q0.00135`, … each followed by its error
-/// (`x3.mean.error`: half the 95 % confidence interval, and what surrogate and steps may add), `x3.linear` and `x3.rss`, and last
-/// `unresolved`, the outputs whose numbers are unreliable in the row. Unknown values are `NaN`.
+/// The table of all statistics as CSV. Columns: `t`, then for each output `x3.mean`, `x3.deviation`, `x3.q0.00135`, …
+/// each followed by its error (`x3.mean.error`: half the 95 % confidence interval, and what surrogate and steps may
+/// add), `x3.linear` and `x3.rss`, and last `unresolved`, the outputs whose numbers are unreliable in the row. Unknown
+/// values are `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.

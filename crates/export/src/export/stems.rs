@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-/// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the rest
-/// becomes `_`.
+/// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the
+/// rest becomes `_`.
 pub fn file_stem(name: &str) -> String {
     /// Names of devices on Windows, whatever their extension.
     const RESERVED: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];

@@ -96,7 +96,8 @@ pub struct TradeMark<'a> {
 /// Size on the page, px.
 const SIZE: (f64, f64) = (700.0, 460.0);
 
-/// What one quantity costs of another as an SVG document: a line through points that ascend in x, and points with names.
+/// What one quantity costs of another as an SVG document: a line through points that ascend in x, and points with
+/// names.
 pub fn trade_svg(
     caption: Caption,
     title: &str,

@@ -69,8 +69,8 @@ pub fn write_sweep(dir: &Path, sweep: &Sweep) -> Result<Vec<PathBuf>, ExportErro
     files.put_in_place()
 }
 
-/// Columns: the parameters; of each reduced output nominal, lower, upper, error and method; of each requirement margin, error and
-/// verdict.
+/// Columns: the parameters; of each reduced output nominal, lower, upper, error and method; of each requirement margin,
+/// error and verdict.
 fn table(sweep: &Sweep) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
     let mut headings: Vec<String> = sweep.axes.iter().map(|axis| axis.name.clone()).collect();

@@ -102,7 +102,7 @@ pub trait Checked: Sized {
 
 /// What can stand behind a key: a formula, a point, a mapping.
 pub trait Value: Sized {
-    /// What it is to a mirror.
+    /// Its image in a mirror.
     const IMAGE: Image = Image::Same;
 
     /// Reads it; `at` is the key's place. `None` where an error was reported.

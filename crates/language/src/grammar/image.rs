@@ -1,6 +1,7 @@
 //! What values of keys are to an instance that is mirrored or turned.
 //!
-//! The type of a key says it ([`super::Value::IMAGE`]), or the key itself: `#[key(image = Turning)]`. So a new element has its images by its struct.
+//! The type of a key says it ([`super::Value::IMAGE`]), or the key itself: `#[key(image = Turning)]`. So a new element
+//! has its images by its struct.
 
 /// What a value is to a mirror.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +28,7 @@ pub enum Image {
     SixRows,
     /// A mapping with keys of its own.
     Keys(fn() -> Vec<KeyImage>),
-    /// Nobody says what it is.
+    /// Not declared.
     Unknown,
 }
 

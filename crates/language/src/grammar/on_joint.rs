@@ -9,7 +9,8 @@ use super::reader::{Fields, Reader};
 use super::symbols::{JointCoordinate, OnJoint, Reference, SymbolTable};
 use crate::syntax::yaml::Node;
 
-/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an angle.
+/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an
+/// angle.
 impl Group for OnJoint {
     fn key_names() -> Vec<&'static str> {
         vec!["on", "coordinate"]

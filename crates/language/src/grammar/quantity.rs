@@ -175,7 +175,7 @@ impl Dimension {
         }
     }
 
-    /// Whether what it measures has a name.
+    /// Whether the measured quantity has a name.
     pub fn is_named(self) -> bool {
         self.named().is_some()
     }

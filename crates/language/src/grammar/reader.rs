@@ -56,7 +56,7 @@ pub struct Reader<'d, S> {
     pub idle: HashSet<String>,
     /// Parameters whose interval has no width.
     pub certain: HashSet<String>,
-    /// Words of units that the model has as names, of what was read last.
+    /// Words of units that the model has as names, of the value read last.
     pub like_names: Vec<LikeName>,
     /// Lengths of which some may be in another unit.
     pub lengths: Lengths,

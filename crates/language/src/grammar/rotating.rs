@@ -1,4 +1,4 @@
-//! What has an angle, by index.
+//! Things with an angle, by index.
 
 /// Something with an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,5 @@
-//! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m beside others of millimetres, an
-//! interval that is a difference.
+//! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m beside others of millimetres,
+//! an interval that is a difference.
 
 use std::f64::consts::TAU;
 

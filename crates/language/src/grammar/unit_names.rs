@@ -26,13 +26,14 @@ impl<S: SymbolTable> Reader<'_, S> {
         words.into_iter().filter_map(like).collect()
     }
 
-    /// What to do where what was read last does not fit: a unit is called like something of the model, or stands behind a fraction.
+    /// What to do where the value read last does not fit: a unit is called like something of the model, or stands
+    /// behind a fraction.
     pub(super) fn other_reading(&self, node: &Node) -> Option<String> {
         let like = self.like_names.last().map(LikeName::help);
         like.or_else(|| Some(of_fraction(&node.scalar()?.text)?.help()))
     }
 
-    /// Reports a unit of what was read last that the model's own of that name would fit as well.
+    /// Reports a unit of the value read last that the model's own of that name would fit as well.
     pub(super) fn refuse_ambiguous(&mut self, node: &Node) {
         let is_alike = |like: &&LikeName| {
             let own =
@@ -44,7 +45,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// Reports a unit of what was read last that is called like something of the model, where no dimension is asked for.
+    /// Reports a unit of the value read last that is called like something of the model, where no dimension is asked
+    /// for.
     pub fn refuse_like_names(&mut self, node: &Node) {
         if let Some(like) = self.like_names.first().cloned() {
             self.report(node, &like);

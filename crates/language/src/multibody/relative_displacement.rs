@@ -43,7 +43,8 @@ impl<'g> RelativeDisplacement<'g> {
         [inward * moving, turning + 0.5 * turning.cross(self.rotation) + along * self.rotation]
     }
 
-    /// d̈ and ρ̈, from the angular velocities of both bodies and the accelerations of both origins and bodies, in the ground's axes.
+    /// d̈ and ρ̈, from the angular velocities of both bodies and the accelerations of both origins and bodies, in the
+    /// ground's axes.
     pub fn second_rates(
         &self,
         pair: &Pair<'g>,

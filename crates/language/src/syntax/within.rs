@@ -21,8 +21,8 @@ impl Within {
         Self { folder: model.parent().unwrap_or(Path::new("")).to_owned(), root: root.map(Path::to_owned) }
     }
 
-    /// The path, seen from the model's folder, of a file that is named from a folder, which is seen from there too. What is there is
-    /// not looked at where the model may not name it.
+    /// The path, seen from the model's folder, of a file that is named from a folder, which is seen from there too.
+    /// What is there is not looked at where the model may not name it.
     ///
     /// # Errors
     /// Where the model may not name it.

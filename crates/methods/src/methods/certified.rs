@@ -14,8 +14,8 @@ use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
 /// Most uncertain parameters: pieces and coefficients grow with powers of their number.
 const MOST_PARAMETERS: usize = 2;
 
-/// Order of the polynomials, by the number of parameters. (Slider crank, ±1 % of one: 8, 12 and 16 reach 0.51, 0.71 and 0.72 s in one
-/// piece.)
+/// Order of the polynomials, by the number of parameters. (Slider crank, ±1 % of one: 8, 12 and 16 reach 0.51, 0.71 and
+/// 0.72 s in one piece.)
 const ORDER: [usize; MOST_PARAMETERS + 1] = [0, 12, 6];
 
 /// Most pieces that are enclosed at last.
@@ -62,7 +62,7 @@ impl BoundingMethod for Certified {
     }
 }
 
-/// What is known of a piece: ranges row by row, output by output, as far as they go.
+/// Ranges of a piece, row by row, output by output, as far as they go.
 struct Enclosed {
     piece: ParameterBox,
     ranges: Vec<Range>,
@@ -154,7 +154,8 @@ fn longest_axis(piece: &ParameterBox, whole: &ParameterBox) -> usize {
 fn range_of(range: &mut TaylorRange, model: &[f64]) -> Range {
     let (coefficients, radius) = model.split_at(model.len() - 1);
     let found = range.range(coefficients);
-    // The powers' conversion to Chebyshev polynomials and the sum with the constant: fewer than 100 operations a coefficient.
+    // The powers' conversion to Chebyshev polynomials and the sum with the constant: fewer than 100 operations a
+    // coefficient.
     let size: f64 = coefficients.iter().map(|c| c.abs()).sum();
     let varies = coefficients[1..].iter().any(|&c| c != 0.0);
     let margin = up(if varies { 100.0 * f64::EPSILON * size } else { 0.0 } + radius[0]);

@@ -1,7 +1,7 @@
-//! What is bounded, as methods see it: outputs over time as functions of the uncertain parameters.
+//! Outputs over time as functions of the uncertain parameters: the quantities that methods bound.
 //!
-//! A method asks an [`Ensemble`] for samples, a jet or an enclosure. It knows neither the mechanism behind it nor its steps, nor which
-//! other methods run.
+//! A method asks an [`Ensemble`] for samples, a jet or an enclosure. It knows neither the mechanism behind it nor its
+//! steps, nor which other methods run.
 
 use std::ops::Range as Rows;
 
@@ -196,8 +196,8 @@ pub trait Ensemble: Sync {
     /// Whether an output's formula jumps.
     fn jumps(&self, output: usize) -> bool;
 
-    /// From the least to the largest value of an output in a row that has been simulated so far, by whatever asked for it; empty where
-    /// that is not noted.
+    /// From the least to the largest value of an output in a row that has been simulated so far, by whatever asked for
+    /// it; empty where that is not noted.
     fn seen(&self, _row: usize, _output: usize) -> Range {
         EMPTY
     }
@@ -205,8 +205,8 @@ pub trait Ensemble: Sync {
     /// Whether what has been found so far is enough.
     fn is_interrupted(&self) -> bool;
 
-    /// Simulates samples block by block; `reduce` gets the rows of a block and their values (row, line, sample). Ends as
-    /// `sampling` says, or at an interruption.
+    /// Simulates samples block by block; `reduce` gets the rows of a block and their values (row, line, sample). Ends
+    /// as `sampling` says, or at an interruption.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -217,8 +217,8 @@ pub trait Ensemble: Sync {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError>;
 
-    /// Motions of samples at times that are dense enough to tell what lies between them: the times, and positions and velocities (2n
-    /// lines) in each, line by line, sample by sample. `None` where steps are too coarse for that.
+    /// Motions of samples at times that are dense enough to tell what lies between them: the times, and positions and
+    /// velocities (2n lines) in each, line by line, sample by sample. `None` where steps are too coarse for that.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -235,8 +235,8 @@ pub trait Ensemble: Sync {
         scan(self, grid, |samples, sampling, reduce| self.simulate(samples, sampling, reduce))
     }
 
-    /// Taylor coefficients of the outputs about the middle of the box, in scaled parameters; `reduce` gets the rows of a block
-    /// and their coefficients (row, output, monomial).
+    /// Taylor coefficients of the outputs about the middle of the box, in scaled parameters; `reduce` gets the rows of
+    /// a block and their coefficients (row, output, monomial).
     ///
     /// # Errors
     /// Where the middle of the box cannot be assembled.
@@ -245,8 +245,8 @@ pub trait Ensemble: Sync {
     /// What prevents an enclosure, if something does.
     fn obstacle_to_enclosure(&self) -> Option<String>;
 
-    /// Encloses the outputs over a piece of the box; `row` gets the Taylor models of one row after the other. Returns why it
-    /// ended early; at an interruption it just ends.
+    /// Encloses the outputs over a piece of the box; `row` gets the Taylor models of one row after the other. Returns
+    /// why it ended early; at an interruption it just ends.
     fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<Lost>;
 
     /// Scale of every coordinate (n).
@@ -262,8 +262,8 @@ pub trait Ensemble: Sync {
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError>;
 }
 
-/// Bounds of the outputs over a scan's grid, by simulations of its shards. A part of the grid bounds nothing: after an interruption
-/// all rows are missing.
+/// Bounds of the outputs over a scan's grid, by simulations of its shards. A part of the grid bounds nothing: after an
+/// interruption all rows are missing.
 ///
 /// # Errors
 /// The simulations' own.
@@ -315,7 +315,7 @@ pub trait Closure: Sync {
     /// Whether the outputs depend on velocities.
     fn needs_velocities(&self) -> bool;
 
-    /// Outputs (output, point) at `count` points, given their parameters (parameter, point) and motions (2n lines, point); NaN
-    /// where there is no solution near a motion.
+    /// Outputs (output, point) at `count` points, given their parameters (parameter, point) and motions (2n lines,
+    /// point); NaN where there is no solution near a motion.
     fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64>;
 }

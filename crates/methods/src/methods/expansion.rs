@@ -37,7 +37,8 @@ pub(super) struct Expansion<'r> {
     pub coefficients: &'r [f64],
     /// Least and largest of each of the 2n lines over the samples.
     pub extent: &'r [(f64, f64)],
-    /// Coordinates that are expanded as the times at which their courses are there, and their velocities as rates of those.
+    /// Coordinates that are expanded as the times at which their courses are there, and their velocities as rates of
+    /// those.
     pub phases: &'r [(usize, Phase<'r>)],
 }
 

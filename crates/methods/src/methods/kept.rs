@@ -1,7 +1,9 @@
-//! A surrogate that is kept after the run, to be evaluated at any point of the box: for statistics, verdicts and pictures.
+//! A surrogate that is kept after the run, to be evaluated at any point of the box: for statistics, verdicts and
+//! pictures.
 //!
-//! It is data: coefficients row by row, for each sub-box that the box was split into. An output is the polynomial through its own samples,
-//! or follows from the expanded coordinates through a loop closure, which whoever evaluates it has compiled.
+//! It is data: coefficients row by row, for each sub-box that the box was split into. An output is the polynomial
+//! through its own samples, or follows from the expanded coordinates through a loop closure, which whoever evaluates it
+//! has compiled.
 
 use super::ensemble::Closure;
 use super::expansion::{Expansion, Moves};
@@ -86,19 +88,21 @@ impl KeptSurrogate {
         found
     }
 
-    /// Whether an output is the same polynomial of the parameters over the whole box in a row, so that no closure is needed.
+    /// Whether an output is the same polynomial of the parameters over the whole box in a row, so that no closure is
+    /// needed.
     pub fn is_polynomial(&self, row: usize, output: usize) -> bool {
         self.boxes.len() == 1 && self.boxes[0].rows[row].own[output]
     }
 
-    /// The polynomial through an output's own samples in a row: its terms, and the coefficients before them. Where the box was not split.
+    /// The polynomial through an output's own samples in a row: its terms, and the coefficients before them. Where the
+    /// box was not split.
     pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
         let [part] = self.boxes.as_slice() else { return None };
         Some((&part.basis, part.rows[row].of_output(output, part.basis.len())))
     }
 
-    /// Values of the polynomials through outputs' own samples in one row, at samples of the box, output by output. `None` where the box was
-    /// split.
+    /// Values of the polynomials through outputs' own samples in one row, at samples of the box, output by output.
+    /// `None` where the box was split.
     pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Option<Vec<f64>> {
         let [part] = self.boxes.as_slice() else { return None };
         let points: Vec<Vec<f64>> = samples.iter().map(|sample| part.xi(sample.as_ref())).collect();
@@ -110,8 +114,8 @@ impl KeptSurrogate {
         Some(values)
     }
 
-    /// Outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN where a closure has no solution.
-    /// `closures` has one for every choice of [`independent`](Self::independent).
+    /// Outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN where
+    /// a closure has no solution. `closures` has one for every choice of [`independent`](Self::independent).
     pub fn values<'c, P: AsRef<[f64]>>(
         &self,
         row: usize,
@@ -142,7 +146,7 @@ impl KeptBox {
         sample.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
     }
 
-    /// ξ of a sample; 0 along what has no width.
+    /// ξ of a sample; 0 along parameters without width.
     fn xi(&self, sample: &[f64]) -> Vec<f64> {
         let along = |axis: usize| match self.domain.half_width(axis) {
             half if half > 0.0 => (sample[axis] - self.domain.midpoint(axis)) / half,

@@ -1,8 +1,8 @@
 //! Bounding methods: what the outputs of an ensemble can be over a box of parameters.
 //!
-//! Each method is one file (what can be asked of it, how it bounds, its label and colour) and one line below, from which follow the
-//! names on the command line, the order of bands in files, the legend of plots and `mbint explain --methods`. A method sees an
-//! [`Ensemble`] and knows neither mechanics nor who runs it.
+//! Each method is one file (what can be asked of it, how it bounds, its label and colour) and one line below, from
+//! which follow the names on the command line, the order of bands in files, the legend of plots and
+//! `mbint explain --methods`. A method sees an [`Ensemble`] and knows neither mechanics nor who runs it.
 
 mod ensemble;
 mod expansion;
@@ -31,7 +31,8 @@ pub use scan::Scan;
 pub use taylor::Taylor;
 pub use validation::{Ensembles, Validation};
 
-/// Least and largest counts that can be asked for, by the keys of the file: definition in the schema, key, least, largest.
+/// Least and largest counts that can be asked for, by the keys of the file: definition in the schema, key, least,
+/// largest.
 pub const COUNTS: [(&str, &str, usize, usize); 5] = [
     ("Chebyshev", "order", 1, chebyshev::MOST_ORDER),
     ("Chebyshev", "nodes", 2, chebyshev::MOST_NODES),

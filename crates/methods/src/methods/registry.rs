@@ -90,8 +90,8 @@ pub struct About {
     pub fill: f64,
     /// Lengths of dash and gap of the band's edges, px: where bands coincide, an earlier method shows through the gaps.
     pub dashes: Option<[f64; 2]>,
-    /// Whether it bounds from simulations of samples. Such a method has the steps' error, and of a deterministic mechanism its
-    /// bounds are the nominal motion.
+    /// Whether it bounds from simulations of samples. Such a method has the steps' error, and of a deterministic
+    /// mechanism its bounds are the nominal motion.
     pub is_sampled: bool,
     /// Whether it finds sensitivities.
     pub has_sensitivities: bool,
@@ -134,12 +134,13 @@ pub trait BoundingMethod: Debug {
         self.samples().map_or(budget.simulations, |samples| samples as usize)
     }
 
-    /// Highest degree in a parameter of its surrogate; 0 where it has none, or where the degree follows from the response.
+    /// Highest degree in a parameter of its surrogate; 0 where it has none, or where the degree follows from the
+    /// response.
     fn degree(&self) -> usize {
         0
     }
 
-    /// What it needs to know of the validation samples.
+    /// The knowledge of the validation samples that it needs.
     fn observes(&self, _problem: &Problem) -> Observed {
         Observed::Outputs
     }
@@ -268,8 +269,9 @@ macro_rules! keys {
             crate::grammar::mapping::grammar! {
                 /// Which bounds to compute; a method that is not named is not run.
                 Bounds is "`bounds`" {
-                    /// Error allowed of every bound, relative to how far its output ranges over the run. Chebyshev's degree (where it has no
-                    /// `order`) and the steps are then chosen to meet it; what misses it is flagged.
+                    /// Error allowed of every bound, relative to how far its output ranges over the run. Chebyshev's
+                    /// degree (where it has no `order`) and the steps are then chosen to meet it; what misses it is
+                    /// flagged.
                     tolerance: Option<Number>,
                     /// What may be spent on the tolerance.
                     budget: Option<request::keys::Budget>,

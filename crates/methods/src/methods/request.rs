@@ -1,4 +1,4 @@
-//! What is common to the methods' requests: their tolerance and budget, and keys that several of them have.
+//! Common parts of the methods' requests: their tolerance and budget, and keys that several of them have.
 
 use std::collections::HashMap;
 

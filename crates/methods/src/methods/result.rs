@@ -7,8 +7,8 @@ use super::kept::KeptSurrogate;
 use super::validation::Validation;
 use crate::numerics::{Range, largest, surrogate_error};
 
-/// How much further a polynomial may be from a function with a kink than it is at validation samples: it is worst at the kink, and
-/// there they need not be.
+/// How much further a polynomial may be from a function with a kink than it is at validation samples: it is worst at
+/// the kink, and there they need not be.
 pub(super) const BETWEEN_KINKS: f64 = 3.0;
 
 /// How an output's spread in one row comes about.
@@ -22,7 +22,7 @@ pub struct Sensitivity {
     pub width_without: Vec<f64>,
 }
 
-/// A method's bands of all outputs, their errors, and what they took.
+/// A method's bands of all outputs, their errors, and their cost.
 #[derive(Clone, Debug, Default)]
 pub struct MethodResult {
     /// By output and row.
@@ -51,7 +51,7 @@ pub struct MethodResult {
     pub kept: Option<KeptSurrogate>,
 }
 
-/// What is estimated of one output in one row.
+/// Estimates of one output in one row.
 #[derive(Clone, Debug)]
 pub struct Estimate {
     /// The range.
@@ -68,8 +68,8 @@ pub struct Estimate {
     pub is_own: bool,
 }
 
-/// An output's polynomial in a row: its range, how much too wide that may be, how large the terms are that it lacks, as far as they are
-/// known, and its values at the validation samples.
+/// An output's polynomial in a row: its range, how much too wide that may be, how large the terms are that it lacks, as
+/// far as they are known, and its values at the validation samples.
 pub(super) struct PolynomialEstimate {
     pub range: Range,
     pub excess: f64,
@@ -117,7 +117,8 @@ impl BandBuilder {
         self.expanded[output] |= estimate.is_expanded;
     }
 
-    /// Sets ranges of polynomials, row by row, output by output; `kinks` says which outputs have kinks between validation samples.
+    /// Sets ranges of polynomials, row by row, output by output; `kinks` says which outputs have kinks between
+    /// validation samples.
     pub(super) fn set_polynomials(
         &mut self,
         rows: Rows<usize>,

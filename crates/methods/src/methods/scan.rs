@@ -1,5 +1,5 @@
-//! Scanning bounds: least and largest values over a full grid of samples. They are inner bounds; the error says how far the outputs may
-//! go beyond them between the samples.
+//! Scanning bounds: least and largest values over a full grid of samples. They are inner bounds; the error says how far
+//! the outputs may go beyond them between the samples.
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError};

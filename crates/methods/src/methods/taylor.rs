@@ -1,4 +1,5 @@
-//! Taylor bounds: the scheme in jet arithmetic gives the Taylor polynomial about the middle of the box, to any order, from one simulation.
+//! Taylor bounds: the scheme in jet arithmetic gives the Taylor polynomial about the middle of the box, to any order,
+//! from one simulation.
 
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;

@@ -1,4 +1,5 @@
-//! Validation samples: held out from every surrogate, simulated with the steps as they are and some with each step halved.
+//! Validation samples: held out from every surrogate, simulated with the steps as they are and some with each step
+//! halved.
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
@@ -73,7 +74,8 @@ impl ValidationTable {
         &self.motion(row)[line * self.samples..][..self.samples]
     }
 
-    /// What of a coordinate's error, by the first of the samples with halved steps, is a shift in time in this row; none where that cannot be told.
+    /// What of a coordinate's error, by the first of the samples with halved steps, is a shift in time in this row;
+    /// none where that cannot be told.
     pub fn time_shift(&self, halved: &Self, row: usize, coordinate: usize) -> Option<TimeShift> {
         let velocity = self.motions / 2 + coordinate;
         let window = TimeShift::window(row, self.rows().min(halved.rows()));
@@ -90,7 +92,8 @@ impl ValidationTable {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
-    /// Width of an output's range over all rows and samples; zero where that is less than `least`, or than rounding of the values.
+    /// Width of an output's range over all rows and samples; zero where that is less than `least`, or than rounding of
+    /// the values.
     fn span(&self, output: usize, least: f64) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
         let lines = lines.skip(self.motions + output).step_by(self.motions + self.outputs);
@@ -190,8 +193,8 @@ impl Validation {
         Ok(Self { points, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
-    /// Where nothing is uncertain: the nominal motion, of which so many rows are known, is the only sample, and is simulated with each
-    /// step halved.
+    /// Where nothing is uncertain: the nominal motion, of which so many rows are known, is the only sample, and is
+    /// simulated with each step halved.
     ///
     /// # Errors
     /// Where it cannot be assembled.
@@ -222,8 +225,8 @@ impl Validation {
         ledger.note(0, (motions + outputs, *samples), values);
     }
 
-    /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2, or since from some row
-    /// on the equations switch inside steps.
+    /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2, or since
+    /// from some row on the equations switch inside steps.
     pub fn corrections(&self, output: usize, rows: usize, switched_from: Option<usize>) -> Vec<Correction> {
         let of_row = |row: usize| {
             let (direct, halved) = (self.direct.at(row, output), self.halved.at(row, output));
@@ -252,7 +255,7 @@ impl Validation {
         BandError::new(&ranges, &vec![0.0; rows], &time, self.spans[output], None).total
     }
 
-    /// The largest of the outputs' time errors, relative to what is allowed: a share of each output's range.
+    /// The largest of the outputs' time errors, relative to the allowed error: a share of each output's range.
     pub fn worst_share(&self, allowed: f64, rows: usize) -> f64 {
         let share = |output: usize| {
             let span = self.spans[output];

@@ -10,7 +10,7 @@ use crate::grammar::{Mesh, PointRef, Rotation};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "shape", rename_all = "snake_case")]
 pub enum Form<T> {
-    /// A box about the origin, and what is within a radius of it.
+    /// A box about the origin, and all points within a radius of it.
     Box {
         /// Edges along x, y and z, m.
         size: [T; 3],
@@ -31,21 +31,21 @@ pub enum Form<T> {
         /// Radius, m.
         radius: T,
     },
-    /// What is within a radius of a line.
+    /// All points within a radius of a line.
     Capsule {
         /// Ends of the line, m.
         ends: [[T; 3]; 2],
         /// Radius, m.
         radius: T,
     },
-    /// What is within a radius of the convex hull of points.
+    /// All points within a radius of the convex hull of points.
     Hull {
         /// Its points, m.
         points: Vec<[T; 3]>,
         /// Rounding of edges and corners, m.
         radius: T,
     },
-    /// A line in x and y, or the plate inside of it where it is closed, and what is within a radius of them.
+    /// A line in x and y, or the plate inside of it where it is closed, and all points within a radius of them.
     Outline {
         /// Its points, m.
         points: Vec<Bend<T>>,

@@ -14,8 +14,8 @@ pub enum Member {
     Joint(OnJoint),
 }
 
-/// A rim of teeth: its members, each with the radius ∂u/∂q̇ of the rim's speed u, in the unit of the constraint. What acts on the rim
-/// along its speed acts on each member by that radius.
+/// A rim of teeth: its members, each with the radius ∂u/∂q̇ of the rim's speed u, in the unit of the constraint. What
+/// acts on the rim along its speed acts on each member by that radius.
 pub type Rim<'g> = Vec<(Member, Scalar<'g>)>;
 
 /// How teeth rub.

@@ -10,8 +10,9 @@
 //!              v₀ = vₙ = 0
 //! ```
 //!
-//! Rate and acceleration are its derivatives. Pieces are guarded by their times, so that steps end there as at every switch, and none
-//! is computed but that of the time. Biagiotti & Melchiorri, *Trajectory Planning for Automatic Machines and Robots* (2008), ch. 2 to 4.
+//! Rate and acceleration are its derivatives. Pieces are guarded by their times, so that steps end there as at every
+//! switch, and none is computed but that of the time. Biagiotti & Melchiorri, *Trajectory Planning for Automatic
+//! Machines and Robots* (2008), ch. 2 to 4.
 
 use symdiff::{Formula, Scalar};
 
@@ -144,8 +145,8 @@ fn trapezoidal<'g>(pieces: &mut Vec<Piece<'g>>, u: Scalar<'g>, r: Option<Scalar<
     pieces.push((end, next - d * (left * left / twice)));
 }
 
-/// Rates between the ends by which accelerations are continuous: Gaussian elimination of a matrix of three diagonals that are
-/// dominant, so that it needs no pivots.
+/// Rates between the ends by which accelerations are continuous: Gaussian elimination of a matrix of three diagonals
+/// that are dominant, so that it needs no pivots.
 fn set_spline_rates(knots: &mut [Knot]) {
     let last = knots.len() - 1;
     let widths: Vec<Scalar> = (0..last).map(|place| knots[place + 1][0] - knots[place][0]).collect();

@@ -107,8 +107,8 @@ pub struct Places {
 /// In how many dimensions a mechanism moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Space {
-    /// Whether a body has six degrees of freedom unless it declares its coordinates, and joints constrain all six. A planar
-    /// mechanism has z = 0 everywhere and turns about z only.
+    /// Whether a body has six degrees of freedom unless it declares its coordinates, and joints constrain all six. A
+    /// planar mechanism has z = 0 everywhere and turns about z only.
     pub spatial: bool,
     /// For people: what leaves the plane, or that nothing does.
     pub why: String,
@@ -157,7 +157,8 @@ pub struct Joint {
     pub kind: JointKind,
     /// Whether both bodies move as one, so that there is no reaction between them; of a weld, and set by `reduce`.
     pub merged: bool,
-    /// Whether it closes a loop in joint coordinates, though a body could move with it; set where the cut of loops is chosen.
+    /// Whether it closes a loop in joint coordinates, though a body could move with it; set where the cut of loops is
+    /// chosen.
     pub cut: bool,
 }
 

@@ -55,8 +55,8 @@ pub struct UnknownScene {
 }
 
 impl Reading {
-    /// Scenes by their names, in the file's order, each with its name; all where none is named. A model without scenes is itself
-    /// what is asked for, under no name.
+    /// Scenes by their names, in the file's order, each with its name; all where none is named. A model without scenes
+    /// is itself what is asked for, under no name.
     ///
     /// # Errors
     /// For a name that no scene has.
@@ -105,8 +105,8 @@ pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Like [`load`], with the warnings of a model that can be used. The path `-` is standard input, whose model is called `stdin` if it does
-/// not say otherwise, and finds other files from the working directory.
+/// Like [`load`], with the warnings of a model that can be used. The path `-` is standard input, whose model is called
+/// `stdin` if it does not say otherwise, and finds other files from the working directory.
 pub fn read(path: &Path, overrides: &[Override]) -> Reading {
     read_rooted(path, overrides, None)
 }
@@ -242,7 +242,8 @@ fn blank<'d>(origin: &Origin, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
     }
 }
 
-/// Reads every section, what others refer to before what refers to it; the warnings are of parameters that are used nowhere.
+/// Reads every section, what others refer to before what refers to it; the warnings are of parameters that are used
+/// nowhere.
 fn describe(
     origin: &Origin,
     variant: &Variant,

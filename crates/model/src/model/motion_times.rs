@@ -8,8 +8,8 @@ use crate::syntax::yaml::{Entry, Value};
 /// Relative rounding of times that are meant to be the same.
 const ROUNDING: f64 = 1e-12;
 
-/// Reports reduced outputs and requirements of times that the motion does not reach. A window may end after the motion: it then ends
-/// with it.
+/// Reports reduced outputs and requirements of times that the motion does not reach. A window may end after the motion:
+/// it then ends with it.
 pub fn check(reader: &mut Reader, outputs: &[Entry], requirements: &[Entry]) {
     let end = reader.model.simulation.duration;
     // An analysis without a motion says so elsewhere.

@@ -6,8 +6,8 @@ use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
-/// The fields `value`, `tolerance`, `interval`, `plus` and `minus` that a number in one piece stands for. What cannot be read is
-/// the `value`, of which it is reported.
+/// The fields `value`, `tolerance`, `interval`, `plus` and `minus` that a number in one piece stands for. What cannot
+/// be read is the `value`, of which it is reported.
 pub fn fields(node: &Node) -> Vec<Entry> {
     let Ok(Toleranced { value, deviation }) = tolerance::read(node) else { return vec![field("value", node.clone())] };
     let mut fields: Vec<Entry> = value.into_iter().map(|value| field("value", value)).collect();

@@ -5,8 +5,8 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Scalar, Value};
 
-/// A parameter's new value, which replaces the file's value and tolerance; or a new tolerance of the file's value. Bare numbers are
-/// in the unit that the file gives.
+/// A parameter's new value, which replaces the file's value and tolerance; or a new tolerance of the file's value. Bare
+/// numbers are in the unit that the file gives.
 #[derive(Clone, Debug)]
 pub struct Override {
     /// The parameter's name.

@@ -166,8 +166,8 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-/// The outputs that stand for `body.omega` (`NAME_x`, `NAME_y`, `NAME_z`), `body.alpha` and `body.orientation` (`NAME_roll`, …);
-/// nothing where the value is another.
+/// The outputs that stand for `body.omega` (`NAME_x`, `NAME_y`, `NAME_z`), `body.alpha` and `body.orientation`
+/// (`NAME_roll`, …); nothing where the value is another.
 fn parts(reader: &Reader, entry: &Entry) -> Option<Vec<Output>> {
     let text = entry.value.scalar()?.text.trim();
     let (owner, vector) = text.rsplit_once('.')?;

@@ -192,7 +192,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')))
 }
 
-/// The unit that the model declares for the first output of what is limited, where the margin has its dimension.
+/// The unit that the model declares for the first output of the limited quantity, where the margin has its dimension.
 fn declared(reader: &Reader, of: &str, dimension: Option<Dimension>) -> Option<DisplayUnit> {
     let unit = words(of).find_map(|word| reader.model.display.get(word))?;
     dimension.is_none_or(|dimension| unit.dimension().fits(dimension)).then(|| unit.clone())

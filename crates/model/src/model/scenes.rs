@@ -1,7 +1,7 @@
 //! `scenes:`, named variants of a model, and `without:`, omitted parts of a model.
 //!
-//! A scene is the model's tree with the scene's changes laid over it, read as a model of its own: an absent part was never
-//! there, and every node keeps its place in the file.
+//! A scene is the model's tree with the scene's changes laid over it, read as a model of its own: an absent part was
+//! never there, and every node keeps its place in the file.
 
 pub mod draft;
 

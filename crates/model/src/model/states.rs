@@ -14,7 +14,8 @@ use crate::syntax::yaml::{Entry, Node};
 /// How often units are looked for that follow from one another.
 const MOST_PASSES: usize = 8;
 
-/// Makes the names of states known, which everything may speak of: those of the section, and of effects that are states.
+/// Makes the names of states known, which everything may speak of: those of the section, and of effects that are
+/// states.
 pub fn declare(reader: &mut Reader, entries: &[Entry], effects: &[Entry]) {
     entries.iter().for_each(|entry| reader.declared.add(&entry.key));
     for entry in effects {

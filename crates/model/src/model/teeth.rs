@@ -10,8 +10,8 @@ use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
 
-/// Reports outputs and effects that take the reaction of a bearing on which the teeth of a gear or rack push. Couplings that are
-/// not among `joints` have no teeth: a robot's mimicking joints.
+/// Reports outputs and effects that take the reaction of a bearing on which the teeth of a gear or rack push. Couplings
+/// that are not among `joints` have no teeth: a robot's mimicking joints.
 pub fn check(reader: &mut Reader, joints: &[Entry], effects: &[Entry], outputs: &[Entry]) {
     let bearings = bearings(reader, joints);
     if bearings.is_empty() {

@@ -14,12 +14,13 @@ pub(super) struct Along<'a> {
     pub count: usize,
 }
 
-/// Second differences may grow so much from one sample to the next where the response is smooth, and so much more where those before
-/// grow, as far as that goes.
+/// Second differences may grow so much from one sample to the next where the response is smooth, and so much more where
+/// those before grow, as far as that goes.
 const GROWTH: f64 = 1.5;
 const MOST_GROWTH: f64 = 8.0;
 
-/// The slope at the first of a row of samples is known to this share of their second difference, or better; and so is the second difference of three.
+/// The slope at the first of a row of samples is known to this share of their second difference, or better; and so is
+/// the second difference of three.
 const UNSURE: f64 = 0.25;
 
 impl Along<'_> {
@@ -46,8 +47,9 @@ impl Along<'_> {
         Some([if lowest { height } else { 0.0 }, if highest { height } else { 0.0 }])
     }
 
-    /// How far below and above a sample at the axis' end a response may go that bends back between it and its neighbour: the parabola through it
-    /// and the two next to it, as far as that may turn within the uncertainty of its slope.
+    /// How far below and above a sample at the axis' end a response may go that bends back between it and its
+    /// neighbour: the parabola through it and the two next to it, as far as that may turn within the uncertainty of its
+    /// slope.
     pub fn bending_back(&self) -> [f64; 2] {
         let side = match self.at {
             0 => 1,
@@ -68,7 +70,8 @@ impl Along<'_> {
         if bend > 0.0 { [depth, 0.0] } else { [0.0, depth] }
     }
 
-    /// How far below and above the sample and its neighbour on one side a response that is not smooth between them may go.
+    /// How far below and above the sample and its neighbour on one side a response that is not smooth between them may
+    /// go.
     pub fn irregular(&self, side: isize) -> [f64; 2] {
         let (Some(here), Some(there)) = (self.value(0), self.value(side)) else { return [0.0; 2] };
         let excess = |away: isize, others: [isize; 2]| {
@@ -101,8 +104,8 @@ impl Along<'_> {
         }
     }
 
-    /// The largest second difference `away` from here that a smooth response has, by those beyond, from number `outer` on; of the same
-    /// sign, since one that changes it is too short a wave to tell.
+    /// The largest second difference `away` from here that a smooth response has, by those beyond, from number `outer`
+    /// on; of the same sign, since one that changes it is too short a wave to tell.
     fn expected(&self, bend: f64, away: isize, outer: isize) -> Option<f64> {
         let (beside, beyond) = (self.bend(outer)?, self.bend(outer + (outer - away).signum())?);
         let growth = (beside / beyond).abs().clamp(1.0, MOST_GROWTH);

@@ -2,8 +2,8 @@
 //!
 //! On a box, a polynomial lies between the least and the largest of its Bernstein coefficients, and takes the values of
 //! those at the corners. Halving the box (de Casteljau) brings both together quadratically. Unsplit, the form is often
-//! worse than Σ|c|; it is the splitting that makes it tight. The box with the highest bound is split first, so at any time
-//! that bound holds for the whole, and the largest corner seen is attained.
+//! worse than Σ|c|; it is the splitting that makes it tight. The box with the highest bound is split first, so at any
+//! time that bound holds for the whole, and the largest corner seen is attained.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,7 +1,9 @@
-//! The cheapest sizes under linearised constraints: min Σ cᵢ/fᵢ subject to gⱼ + Σᵢ hⱼᵢ (fᵢᵖ − aᵢᵖ) ≥ 0 and leastᵢ ≤ fᵢ ≤ mostᵢ.
+//! The cheapest sizes under linearised constraints: min Σ cᵢ/fᵢ subject to gⱼ + Σᵢ hⱼᵢ (fᵢᵖ − aᵢᵖ) ≥ 0 and leastᵢ ≤ fᵢ
+//! ≤ mostᵢ.
 //!
-//! The problem is convex and separable, so that its dual is a concave function of one multiplier for each constraint, whose minimisers
-//! follow from closed forms (C. Fleury, Structural weight optimization by dual methods of convex programming, Int. J. Numer. Meth. Eng. 14 (1979) 1761).
+//! The problem is convex and separable, so that its dual is a concave function of one multiplier for each constraint,
+//! whose minimisers follow from closed forms (C. Fleury, Structural weight optimization by dual methods of convex
+//! programming, Int. J. Numer. Meth. Eng. 14 (1979) 1761).
 
 use symdiff::math;
 
@@ -9,8 +11,8 @@ use symdiff::math;
 const ROUNDS: usize = 400;
 const SETTLED: f64 = 1e-10;
 
-/// Halvings of the logarithm of a multiplier; how far below the first guess it is looked for, and how far above that at which the constraint
-/// alone makes all sizes as small as they may be.
+/// Halvings of the logarithm of a multiplier; how far below the first guess it is looked for, and how far above that at
+/// which the constraint alone makes all sizes as small as they may be.
 const HALVINGS: usize = 80;
 const SMALLEST: f64 = 1e-12;
 const LARGEST: f64 = 1e6;
@@ -18,7 +20,7 @@ const LARGEST: f64 = 1e6;
 /// A constraint about the sizes at which it was linearised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linear {
-    /// Its value there; what is negative is not fulfilled.
+    /// Its value there; a negative one is not fulfilled.
     pub value: f64,
     /// Derivatives with respect to the p-th powers of the sizes.
     pub slopes: Vec<f64>,
@@ -106,7 +108,8 @@ pub fn cheapest(
     sizes(&multipliers)
 }
 
-/// The multiplier up to `most` at which a constraint is just fulfilled; its value does not decrease with the multiplier.
+/// The multiplier up to `most` at which a constraint is just fulfilled; its value does not decrease with the
+/// multiplier.
 fn root(with: &mut dyn FnMut(f64) -> f64, before: f64, most: f64) -> f64 {
     let guess = if before > 0.0 { before } else { most.min(1.0) };
     let (mut low, mut high) = (guess, guess);
@@ -159,7 +162,7 @@ mod tests {
         assert!((found[0] - 0.25).abs() < 1e-8 && (found[1] - 0.75).abs() < 1e-8, "{found:?}");
         let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &constraints), (&[0.01; 2], &[10.0, 0.5]));
         assert!((found[0] - 0.25).abs() < 1e-8 && found[1] == 0.5, "{found:?}");
-        // What sizes do not change, and what they change hardly at all, leaves the others as they are.
+        // A constraint that sizes do not change, or hardly change, leaves the others as they are.
         for slope in [0.0, -0.0, -1e-300] {
             let with_flat = [constraints[0].clone(), Linear { value: -1.0, slopes: vec![slope; 2] }];
             let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &with_flat), (&[0.01; 2], &[10.0, 0.5]));

@@ -1,12 +1,13 @@
-//! One sample's course of a coordinate through time, as a measure of where others are: a coordinate that turns is q = V(s), with s the
-//! time at which this sample is there.
+//! One sample's course of a coordinate through time, as a measure of where others are: a coordinate that turns is q =
+//! V(s), with s the time at which this sample is there.
 //!
-//! A crank's angle ripples over time, once or twice a turn, and where samples are some turns apart it ripples over their box too, which
-//! takes polynomials of high degree. All of them ripple at the same places, so that s does not.
+//! A crank's angle ripples over time, once or twice a turn, and where samples are some turns apart it ripples over
+//! their box too, which takes polynomials of high degree. All of them ripple at the same places, so that s does not.
 
 use super::range::Range;
 
-/// Least rate on the way, as a share of the mean where samples are: where the course all but rests, times tell no places.
+/// Least rate on the way, as a share of the mean where samples are: where the course all but rests, times tell no
+/// places.
 const SLOWEST: f64 = 0.05;
 /// Fewest rows of a way.
 const ROWS: usize = 4;
@@ -115,7 +116,8 @@ impl Course {
         Some((begin, end))
     }
 
-    /// The part about the places of some samples, and as much again beside it as far as the course rises there; `None` where the course does not pass all of them, rests, or turns back.
+    /// The part about the places of some samples, and as much again beside it as far as the course rises there; `None`
+    /// where the course does not pass all of them, rests, or turns back.
     pub fn over(&self, range: Range) -> Option<Phase<'_>> {
         let (a, b) = (self.sign * range.lower, self.sign * range.upper);
         let (low, high) = (a.min(b), a.max(b));

@@ -1,8 +1,8 @@
 //! What a polynomial lacks, by how its coefficients decay.
 //!
-//! Chebyshev coefficients of an analytic response fall as ρ^−j. What they have fallen to from the middle degree to the highest tells ρ,
-//! and what is missing beyond is the rest of the geometric series. Where they do not fall, as at a narrow resonance, it is large,
-//! whatever the samples between the nodes say.
+//! Chebyshev coefficients of an analytic response fall as ρ^−j. Their fall from the middle degree to the highest gives
+//! ρ, and the missing terms beyond are the rest of the geometric series. Where they do not fall, as at a narrow
+//! resonance, it is large, whatever the samples between the nodes say.
 
 use symdiff::math;
 
@@ -15,9 +15,10 @@ const SLOWEST: f64 = 0.99;
 
 /// Size of the terms beyond those of a polynomial; zero where degrees are too low to tell.
 ///
-/// A tensor's lack higher degrees along each axis. Those of a sparse set lack what lies beyond its front: a term there is as large as
-/// follows from the terms before it as for a power of a weighted sum of the parameters, the least of what the axes say. Terms of all the front, and those beyond them, add up by their
-/// squares, as what may have either sign does.
+/// A tensor's lack higher degrees along each axis. Those of a sparse set lack what lies beyond its front: a term there
+/// is as large as follows from the terms before it as for a power of a weighted sum of the parameters, the least of
+/// what the axes say. Terms of all the front, and those beyond them, add up by their squares, as what may have either
+/// sign does.
 pub fn truncation(basis: &SparseBasis, coefficients: &[f64]) -> f64 {
     let tails = (0..basis.dimension()).map(|axis| Tail::along(basis, coefficients, axis));
     if basis.is_tensor() {
@@ -61,7 +62,8 @@ impl Tail {
         for (term, c) in coefficients.iter().enumerate() {
             let degrees = basis.degrees(term);
             let degree = usize::from(degrees[axis]);
-            // The higher a degree of a sparse set, the fewer terms have it: those of one parameter alone can be compared.
+            // The higher a degree of a sparse set, the fewer terms have it: those of one parameter alone can be
+            // compared.
             if !is_tensor && degrees.iter().map(|&degree| usize::from(degree)).sum::<usize>() > degree {
                 continue;
             }
@@ -71,8 +73,8 @@ impl Tail {
         if envelope[n - 1] == 0.0 {
             return None;
         }
-        // Even or odd ones may be missing, so that pairs are compared. Falling ever faster, they tell less than over all higher degrees;
-        // in waves they may stand still.
+        // Even or odd ones may be missing, so that pairs are compared. Falling ever faster, they tell less than over
+        // all higher degrees; in waves they may stand still.
         let fall = |from: usize| math::pow(envelope[n - 1] / envelope[from], 1.0 / (n - 1 - from) as f64);
         let overall = fall(n / 2);
         let rate = fall(n - 3).clamp(CAUTION * overall, overall).min(SLOWEST);

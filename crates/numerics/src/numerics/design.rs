@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-/// Primitive polynomials (with both ends' bits) and initial direction numbers of the axes after the first: S. Joe & F. Y. Kuo, Constructing
-/// Sobol sequences with better two-dimensional projections, SIAM J. Sci. Comput. 30 (2008) 2635 (`new-joe-kuo-6.21201`).
+/// Primitive polynomials (with both ends' bits) and initial direction numbers of the axes after the first: S. Joe & F.
+/// Y. Kuo, Constructing Sobol sequences with better two-dimensional projections, SIAM J. Sci. Comput. 30 (2008) 2635
+/// (`new-joe-kuo-6.21201`).
 #[rustfmt::skip]
 const DIRECTIONS: [(u32, &[u32]); 63] = [
     (3, &[1]),
@@ -82,7 +83,8 @@ pub const MOST_AXES: usize = DIRECTIONS.len() + 1;
 pub enum Design {
     /// Sobol's sequence from its first point on, without scrambling; up to 2³² points along up to [`MOST_AXES`] axes.
     Sobol,
-    /// A Latin hypercube: each axis is cut into as many cells as there are points, and each cell has one, anywhere in it.
+    /// A Latin hypercube: each axis is cut into as many cells as there are points, and each cell has one, anywhere in
+    /// it.
     LatinHypercube {
         /// Another number makes another hypercube.
         seed: u64,
@@ -154,8 +156,9 @@ fn uniform(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Where a random permutation of 0 … count − 1 has a number, without a table: a Feistel network on the next even power of two, walked until it
-/// is back among the numbers (J. Black & P. Rogaway, Ciphers with arbitrary finite domains, 2002).
+/// Where a random permutation of 0 … count − 1 has a number, without a table: a Feistel network on the next even power
+/// of two, walked until it is back among the numbers (J. Black & P. Rogaway, Ciphers with arbitrary finite domains,
+/// 2002).
 fn permuted(number: u64, count: u64, key: u64) -> u64 {
     let half = (u64::BITS - count.saturating_sub(1).leading_zeros()).div_ceil(2).max(1);
     let mask = (1 << half) - 1;

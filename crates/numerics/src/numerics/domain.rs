@@ -86,7 +86,7 @@ impl ParameterBox {
         xi.iter().enumerate().map(|(parameter, &xi)| self.value(parameter, xi)).collect()
     }
 
-    /// ξ of a sample; 0 along what has no width.
+    /// ξ of a sample; 0 along parameters without width.
     pub fn xi(&self, sample: &Sample) -> Vec<f64> {
         let along = |axis: usize| match self.half_width(axis) {
             half if half > 0.0 => (sample[axis] - self.midpoint(axis)) / half,

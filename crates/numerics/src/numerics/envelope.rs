@@ -4,9 +4,9 @@ use symdiff::math;
 
 /// Estimates of an error, in the order of time, none below the line from the peak before it to the one after it.
 ///
-/// An estimate by halved steps is zero where both curves cross, where the error need not be. Between peaks the line is geometric, so
-/// that an error which grows or decays over decades is not taken for the larger of its ends. After the last peak it is held
-/// for as long as the last two are apart.
+/// An estimate by halved steps is zero where both curves cross, where the error need not be. Between peaks the line is
+/// geometric, so that an error which grows or decays over decades is not taken for the larger of its ends. After the
+/// last peak it is held for as long as the last two are apart.
 pub fn envelope(estimates: &[f64]) -> Vec<f64> {
     let at = |row: usize| estimates[row];
     let is_peak = |row: &usize| {

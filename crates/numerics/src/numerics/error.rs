@@ -3,12 +3,12 @@
 //! *Surrogate.* At validation samples the surrogate is compared with the simulation itself; its error is the largest
 //! difference. A scan's is what its own points say of the space between them.
 //!
-//! *Time.* Some of them are simulated with halved steps too. The scheme is of second order, so that a value at step h is off by
-//! 4/3 of what halving changes (Richardson). What counts for an end of a band are the validation samples that carry it: those whose
-//! values lie near it.
+//! *Time.* Some of them are simulated with halved steps too. The scheme is of second order, so that a value at step h
+//! is off by 4/3 of what halving changes (Richardson). What counts for an end of a band are the validation samples that
+//! carry it: those whose values lie near it.
 //!
-//! Both differences change sign now and then, where they say nothing of the error beside; each error is therefore held up by
-//! its neighbours and by a share of the largest so far, and that of the steps by the peaks before and after it.
+//! Both differences change sign now and then, where they say nothing of the error beside; each error is therefore held
+//! up by its neighbours and by a share of the largest so far, and that of the steps by the peaks before and after it.
 
 use super::envelope::envelope;
 use super::range::Range;
@@ -54,11 +54,12 @@ pub struct BandError {
     pub time: f64,
     /// Rows whose bounds cannot be relied on.
     pub unresolved: Vec<bool>,
-    /// Rows that are so for nothing but the size of their error, which is known: large beside the band, or beside what is asked for.
+    /// Rows that are so only for the size of their error, which is known: large relative to the band or to the
+    /// tolerance asked for.
     pub coarse: Vec<bool>,
 }
 
-/// Largest difference between what a surrogate says of the validation samples and what they do; unknown where either is.
+/// Largest difference between a surrogate and the validation samples; unknown where either value is.
 pub fn surrogate_error(surrogate: &[f64], direct: &[f64]) -> f64 {
     largest(surrogate.iter().zip(direct).map(|(surrogate, direct)| surrogate - direct))
 }
@@ -68,8 +69,8 @@ pub fn step_error(direct: &[f64], halved: &[f64]) -> f64 {
     largest(direct.iter().zip(halved).map(|(direct, halved)| RICHARDSON * (halved - direct)))
 }
 
-/// Error of a band's ends from its validation samples' values, with the steps as they are and halved: the worse end's. Samples without
-/// halved steps, after the others, do not count.
+/// Error of a band's ends from its validation samples' values, with the steps as they are and halved: the worse end's.
+/// Samples without halved steps, after the others, do not count.
 pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
     let direct = &direct[..halved.len()];
     let reach = CARRIES * range.width();
@@ -94,9 +95,9 @@ pub fn time_error_certified(range: Range, halved: Range) -> f64 {
 }
 
 impl BandError {
-    /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, which is how
-    /// far the output ranges at all, zero where it is at rest; what exceeds it is not resolved. Without one, a band is lost from where its surrogate no
-    /// longer follows the response.
+    /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, which
+    /// is how far the output ranges at all, zero where it is at rest; what exceeds it is not resolved. Without one, a
+    /// band is lost from where its surrogate no longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE);
         let time = held_up(&envelope(time), SAFETY_OF_STEPS);
@@ -117,14 +118,14 @@ impl BandError {
                 }
             });
         }
-        // Of what has no number nothing is known.
+        // An error that is not finite has no known size.
         let coarse =
             unresolved.iter().zip(&total).map(|(&unresolved, total)| unresolved && total.is_finite()).collect();
         Self { total, surrogate: largest(surrogate), time: largest(time), unresolved, coarse }
     }
 
-    /// Rows whose range and error leave out a value that was simulated, given from the least to the largest of these: one of the two
-    /// is wrong. What is outside by rounding only is added to the error.
+    /// Rows whose range and error leave out a value that was simulated, given from the least to the largest of these:
+    /// one of the two is wrong. An excess by rounding only is added to the error.
     pub fn contradicted(&mut self, ranges: &[Range], simulated: &[Range]) -> Vec<bool> {
         let mut contradicted = vec![false; ranges.len()];
         for (row, (range, simulated)) in ranges.iter().zip(simulated).enumerate() {
@@ -147,7 +148,8 @@ impl BandError {
         self.coarse[rows].fill(false);
     }
 
-    /// What the error of a row counts for, where something is decided by it: nothing that is not believed, and twice where it is large.
+    /// What the error of a row counts for, where something is decided by it: nothing that is not believed, and twice
+    /// where it is large.
     pub fn decisive(&self, row: usize) -> Option<f64> {
         match (self.unresolved[row], self.coarse[row]) {
             (false, _) => Some(self.total[row]),
@@ -220,7 +222,7 @@ mod tests {
         let ranges = vec![Range { lower: 0.3, upper: 0.3 }; 2];
         assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[2e-3; 2], 1.0, None).unresolved, [false; 2]);
         assert_eq!(BandError::new(&ranges, &[1e-2; 2], &[2e-3; 2], 1.0, None).unresolved, [true; 2]);
-        // What was never seen has no span, and no error either.
+        // An output that was never seen has no span, and no error either.
         assert_eq!(BandError::new(&ranges, &[0.0; 2], &[f64::NAN; 2], 0.0, None).unresolved, [true; 2]);
         // At rest, to rounding.
         assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[1e-16; 2], 0.0, None).unresolved, [false; 2]);

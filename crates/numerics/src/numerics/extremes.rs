@@ -1,9 +1,11 @@
-//! The extremes of functions of few parameters: local extremes on a lattice over the box, and then the peaks beside them.
+//! The extremes of functions of few parameters: local extremes on a lattice over the box, and then the peaks beside
+//! them.
 //!
-//! The lattice is as dense as the functions ask for: where a value is not what those beside it tell, by some share of the function's
-//! range, the lattice is made finer along that axis. Every local extreme from which the best may be within reach is refined. Points of
-//! a low-discrepancy sequence, which have nothing to do with the lattice, check the result: a value beyond it makes the lattice
-//! finer, and where that cannot be, it is an error. Nothing depends on the functions' size or sign.
+//! The lattice is as dense as the functions ask for: where a value is not what those beside it tell, by some share of
+//! the function's range, the lattice is made finer along that axis. Every local extreme from which the best may be
+//! within reach is refined. Points of a low-discrepancy sequence, which have nothing to do with the lattice, check the
+//! result: a value beyond it makes the lattice finer, and where that cannot be, it is an error. Nothing depends on the
+//! functions' size or sign.
 
 use rustc_hash::FxHashMap;
 
@@ -24,8 +26,8 @@ const STAYS: f64 = 1e-9;
 const FINEST: f64 = 1e-5;
 /// Most steps of the search for an end.
 const ROUNDS: usize = 16;
-/// A lattice is too coarse along an axis where a value is further than this share of the range from what those beside it tell: fewer
-/// than eight points to a wave.
+/// A lattice is too coarse along an axis where a value is further than this share of the range from what those beside
+/// it tell: fewer than eight points to a wave.
 const COARSE: f64 = 0.03;
 /// What a check may find beyond the range, as a share of it, before the lattice is made finer.
 const BEYOND: f64 = 1e-4;
@@ -34,16 +36,16 @@ const CHECKS: usize = 4;
 const LEAST_CHECKS: usize = 8;
 /// Local extremes that are refined at once for each end.
 const CANDIDATES: usize = 6;
-/// How often more of them are, where one that is left may reach beyond the best by this share of the range's width: a range that is full of turns
-/// has many alike.
+/// How often more of them are, where one that is left may reach beyond the best by this share of the range's width: a
+/// range that is full of turns has many alike.
 const MORE: usize = 10;
 const LEFT: f64 = 1e-5;
 /// Most points of a lattice by the number of parameters.
 const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
 
-/// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The first lattice has
-/// `intervals` ≥ 2 along each axis, one for each. What is not more than `least`, a number for each function, is not looked for: at least
-/// their rounding. Unknown where a value on a lattice is NaN.
+/// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The
+/// first lattice has `intervals` ≥ 2 along each axis, one for each. What is not more than `least`, a number for each
+/// function, is not looked for: at least their rounding. Unknown where a value on a lattice is NaN.
 pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     let mut lattice = Lattice::new(intervals);
     let mut intervals = intervals.to_vec();
@@ -93,7 +95,8 @@ fn has_room(intervals: &[usize]) -> bool {
     points <= MOST_POINTS[intervals.len().clamp(1, MOST_POINTS.len()) - 1]
 }
 
-/// Intervals of a lattice that is finer along the axes along which some function is not resolved, as far as there is room.
+/// Intervals of a lattice that is finer along the axes along which some function is not resolved, as far as there is
+/// room.
 fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])], least: &[f64]) -> Vec<usize> {
     let mut worst = vec![0.0_f64; intervals.len()];
     for ((values, _), &least) in lines.iter().zip(least) {
@@ -121,7 +124,8 @@ pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64
     search_near(known, false, evaluate)
 }
 
-/// Extremes of functions of which some places near them are known. Those that are known at corners of the box are believed.
+/// Extremes of functions of which some places near them are known. Those that are known at corners of the box are
+/// believed.
 pub fn extremes_from(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     search_near(known, true, evaluate)
 }
@@ -152,8 +156,8 @@ struct Search {
     /// Number of the function, and its negligible difference.
     output: usize,
     settled: f64,
-    /// Local extremes that are not refined, the highest last: their places on the lattice, and how low and how high they may be; the
-    /// former negative.
+    /// Local extremes that are not refined, the highest last: their places on the lattice, and how low and how high
+    /// they may be; the former negative.
     omitted: [Vec<(usize, f64)>; 2],
 }
 

@@ -3,7 +3,8 @@
 /// Grades of the table.
 const GRADES: std::ops::RangeInclusive<u8> = 5..=12;
 
-/// Widths of tolerance zones in µm for IT5 to IT12: sizes up to and including so many mm, above those of the row before (ISO 286-1:2010, table 1).
+/// Widths of tolerance zones in µm for IT5 to IT12: sizes up to and including so many mm, above those of the row before
+/// (ISO 286-1:2010, table 1).
 const TABLE: [(f64, [u16; 8]); 21] = [
     (3.0, [4, 6, 10, 14, 25, 40, 60, 100]),
     (6.0, [5, 8, 12, 18, 30, 48, 75, 120]),
@@ -40,15 +41,17 @@ pub fn tolerance(grade: u8, size: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Multiples of the tolerance factor for IT5 to IT12, and the factor in µm: i = 0.45 ∛D + 0.001 D up to 500 mm, I = 0.004 D + 2.1 above, where
-    /// D is the geometric mean of the ends of the range of sizes, of that up to 3 mm √3 (ISO 286-1:1988, annex A).
+    /// Multiples of the tolerance factor for IT5 to IT12, and the factor in µm: i = 0.45 ∛D + 0.001 D up to 500 mm, I =
+    /// 0.004 D + 2.1 above, where D is the geometric mean of the ends of the range of sizes, of that up to 3 mm √3 (ISO
+    /// 286-1:1988, annex A).
     fn by_formula(grade: u8, above: f64, most: f64) -> f64 {
         let mean = if above == 0.0 { 3.0_f64.sqrt() } else { (above * most).sqrt() };
         let factor = if most <= 500.0 { 0.45 * mean.cbrt() + 0.001 * mean } else { 0.004 * mean + 2.1 };
         [7.0, 10.0, 16.0, 25.0, 40.0, 64.0, 100.0, 160.0][usize::from(grade) - 5] * factor
     }
 
-    /// Sizes up to so many mm, grades and widths in µm where the standard's table leaves its formulas by more than rounding.
+    /// Sizes up to so many mm, grades and widths in µm where the standard's table leaves its formulas by more than
+    /// rounding.
     const FURTHER: [(f64, u8, f64); 7] = [
         (3.0, 7, 10.0),
         (3.0, 9, 25.0),

@@ -1,6 +1,7 @@
 //! A lattice of Chebyshev extrema, ξᵢ = −cos(π l/Nᵢ), and what the values on it say of the function between its points.
 //!
-//! In θ, ξ = cos θ, the lattice is even, and a function is even and periodic: differences need no exception at the box's faces.
+//! In θ, ξ = cos θ, the lattice is even, and a function is even and periodic: differences need no exception at the
+//! box's faces.
 
 use std::f64::consts::PI;
 
@@ -37,8 +38,8 @@ impl Lattice {
         self.grid.sample(place)
     }
 
-    /// Distances to the neighbours of a point along each axis, the larger of both; near a face not less than some share of that in the
-    /// middle.
+    /// Distances to the neighbours of a point along each axis, the larger of both; near a face not less than some share
+    /// of that in the middle.
     pub(super) fn spacing(&self, place: usize) -> Vec<f64> {
         let of_axis = |axis: usize, at: usize| {
             let points = &self.axes[axis];
@@ -54,8 +55,8 @@ impl Lattice {
         self.strides.iter().zip(&self.intervals).map(move |(stride, count)| place / stride % (count + 1))
     }
 
-    /// The values at a point and at those one and two further along an axis, mirrored at the faces: two before, before, here, after,
-    /// two after.
+    /// The values at a point and at those one and two further along an axis, mirrored at the faces: two before, before,
+    /// here, after, two after.
     fn along(&self, values: &[f64], place: usize, (axis, at): (usize, usize)) -> [f64; 5] {
         let count = self.intervals[axis] as isize;
         let stride = self.strides[axis];
@@ -77,7 +78,8 @@ impl Lattice {
         residuals
     }
 
-    /// Points that are at least as high as their neighbours along each axis, and how high the function may be beside each.
+    /// Points that are at least as high as their neighbours along each axis, and how high the function may be beside
+    /// each.
     pub(super) fn peaks(&self, values: &[f64], sign: f64) -> Vec<(usize, f64)> {
         let mut peaks = Vec::new();
         for place in 0..values.len() {

@@ -1,4 +1,5 @@
-//! The least and the largest value of every output in every row, over all samples that a run has simulated under one schedule.
+//! The least and the largest value of every output in every row, over all samples that a run has simulated under one
+//! schedule.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -18,8 +19,8 @@ impl Ledger {
         Self { outputs, ends: Mutex::new(vec![EMPTY; rows * outputs]) }
     }
 
-    /// Takes in consecutive rows' values, line by line, sample by sample; the outputs are the last of `lines` lines. NaN, of
-    /// samples that stopped, does not count, nor what is infinite.
+    /// Takes in consecutive rows' values, line by line, sample by sample; the outputs are the last of `lines` lines.
+    /// NaN, of samples that stopped, does not count, nor do infinite values.
     pub fn note(&self, first: usize, (lines, samples): (usize, usize), values: &[f64]) {
         let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
         let known = ends.chunks_exact_mut(self.outputs.max(1)).skip(first);

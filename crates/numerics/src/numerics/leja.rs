@@ -1,12 +1,13 @@
 //! Nested nodes, one more a degree, and interpolation on them level by level.
 //!
-//! Level l has the first l + 1 nodes of one sequence, and its polynomials those up to degree l. The sequence is Leja's (each
-//! node where the product of the distances to those before is largest), taken from the extrema of Chebyshev polynomials of
-//! degree 2, 4, 8, … one after the other, so that the first 3, 5, 9, 17, … nodes are Chebyshev–Lobatto's. One node a
-//! degree, and not as many as there were, is what keeps sets of many parameters small.
+//! Level l has the first l + 1 nodes of one sequence, and its polynomials those up to degree l. The sequence is Leja's
+//! (each node where the product of the distances to those before is largest), taken from the extrema of Chebyshev
+//! polynomials of degree 2, 4, 8, … one after the other, so that the first 3, 5, 9, 17, … nodes are
+//! Chebyshev–Lobatto's. One node a degree, and not as many as there were, is what keeps sets of many parameters small.
 //!
-//! Values become coefficients in two steps, each triangular in levels: a new node's *surplus* is its value less what the level
-//! before predicts there; and f = Σ surplus · (polynomial of the node's level that is 1 there and 0 at the nodes before).
+//! Values become coefficients in two steps, each triangular in levels: a new node's *surplus* is its value less what
+//! the level before predicts there; and f = Σ surplus · (polynomial of the node's level that is 1 there and 0 at the
+//! nodes before).
 
 use std::sync::OnceLock;
 

@@ -1,7 +1,8 @@
 //! The order at which three steps of different length agree: what the error by halving is worth.
 //!
-//! With an error C hᵠ, steps h, h/2 and r h give differences in the ratio ρ = (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ). Where q is not near 2, the error is not
-//! what a second-order scheme's would be: steps are too long for what they resolve, or the motion is not smooth.
+//! With an error C hᵠ, steps h, h/2 and r h give differences in the ratio ρ = (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ). Where q is not near
+//! 2, the error is not that of a second-order scheme: steps are too long for the motion that they resolve, or the
+//! motion is not smooth.
 
 use symdiff::math;
 
@@ -53,8 +54,9 @@ impl Correction {
     }
 }
 
-/// Corrections of every row from the differences in all of them; `ratio` is r < 1/2. From row `switched_from` on, steps have switches of
-/// the equations inside them: where in a step they lie is a matter of chance, so that the order is that of a single such step, 1.
+/// Corrections of every row from the differences in all of them; `ratio` is r < 1/2. From row `switched_from` on, steps
+/// have switches of the equations inside them: where in a step they lie is a matter of chance, so that the order is
+/// that of a single such step, 1.
 pub fn corrections(rows: &[Differences], ratio: f64, switched_from: Option<usize>) -> Vec<Correction> {
     let pick = |pick: fn(&Differences) -> f64| envelope(&rows.iter().map(pick).collect::<Vec<f64>>());
     let (halved, finer, all) = (pick(|row| row.halved), pick(|row| row.finer), pick(|row| row.all));
@@ -76,7 +78,8 @@ pub fn corrections(rows: &[Differences], ratio: f64, switched_from: Option<usize
     (0..rows.len()).map(of_row).collect()
 }
 
-/// The order q at which (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ) is `found`, which falls with q; between 0 and 8, NaN where it is not known.
+/// The order q at which (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ) is `found`, which falls with q; between 0 and 8, NaN where it is not
+/// known.
 fn order(found: f64, ratio: f64) -> f64 {
     if found.is_nan() {
         return f64::NAN;

@@ -1,5 +1,5 @@
-//! From the best point of a grid to the peak beside it: by the quadratic through a point and its neighbours, as far as those
-//! reach.
+//! From the best point of a grid to the peak beside it: by the quadratic through a point and its neighbours, as far as
+//! those reach.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -84,8 +84,8 @@ impl Peak {
         xi.map(|((center, spacing), step)| (center + step * spacing).clamp(-1.0, 1.0)).collect()
     }
 
-    /// Where, no further away than the neighbours, the quadratic through the values at its [neighbours](Self::neighbours) is best. `sign` is 1 for a
-    /// largest value, −1 for a least.
+    /// Where, no further away than the neighbours, the quadratic through the values at its
+    /// [neighbours](Self::neighbours) is best. `sign` is 1 for a largest value, −1 for a least.
     pub fn vertex(&self, values: &[f64], sign: f64) -> Vec<f64> {
         let k = self.center.len();
         let along = |axis: usize| (values[1 + 2 * axis], values[2 + 2 * axis]);
@@ -133,8 +133,8 @@ fn best_of_faces(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
     best.1.as_slice()[..k].to_vec()
 }
 
-/// Climbs from the middle, from face to face (an active-set method): the best where B is positive definite, else a local peak. Where a free
-/// direction bends upwards, it is followed to the next face.
+/// Climbs from the middle, from face to face (an active-set method): the best where B is positive definite, else a
+/// local peak. Where a free direction bends upwards, it is followed to the next face.
 fn along_faces(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
     let k = slope.len();
     let mut step = DVector::zeros(k);

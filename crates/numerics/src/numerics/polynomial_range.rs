@@ -5,10 +5,10 @@
 //! two enclosures from the polynomial's least and largest value on the grid θᵢ = π l/Nᵢ of Chebyshev extrema,
 //! Nᵢ ≥ 16 nᵢ. With q(θ) = p(cos θ₁, …, cos θ_k) and δᵢ = π/(2Nᵢ), the largest distance to a grid line:
 //!
-//! - *Ehlich & Zeller (1964).* A polynomial of degree n has max|p| ≤ max over the grid of |p| / cos(n δ). Applied to one
-//!   variable after the other, where each is a polynomial while the others are held: max|p| ≤ max over the tensor
-//!   grid of |p| · Π 1/cos(nᵢ δᵢ). This bounds |p|, so it is applied to p − m, where m is the middle of the range
-//!   [m − h, m + h] on the grid, and |p − m| ≤ h on the grid: no value lies outside m ± h Π 1/cos(nᵢ δᵢ). (At most 0.49 %
+//! - *Ehlich & Zeller (1964).* A polynomial of degree n has max|p| ≤ max over the grid of |p| / cos(n δ). Applied to
+//!   one variable after the other, where each is a polynomial while the others are held: max|p| ≤ max over the tensor
+//!   grid of |p| · Π 1/cos(nᵢ δᵢ). This bounds |p|, so it is applied to p − m, where m is the middle of the range [m −
+//!   h, m + h] on the grid, and |p − m| ≤ h on the grid: no value lies outside m ± h Π 1/cos(nᵢ δᵢ). (At most 0.49 %
 //!   wider for each parameter, as cos(π/32) = 1/1.0048.)
 //! - *Taylor at the extremum.* q is even and periodic in each θᵢ, hence smooth on all of ℝ^k, and its largest value is
 //!   taken where its gradient is zero, at the edges of the box too. Some grid point is at most δ away, and along the
@@ -215,7 +215,8 @@ mod tests {
 
     #[test]
     fn equation_18_by_hand() {
-        // 3 + 2 cos θ − cos 2θ: term by term 3 ± 3. With x = cos θ it is 4 + 2x − 2x²: from 0 at x = −1 to 4.5 at x = ½.
+        // 3 + 2 cos θ − cos 2θ: term by term 3 ± 3. With x = cos θ it is 4 + 2x − 2x²: from 0 at x = −1 to 4.5 at x =
+        // ½.
         let c = [3.0, 2.0, -1.0];
         assert_eq!(range(&[2], RangeKind::Interval, &c), Range { lower: 0.0, upper: 6.0 });
         let tight = range(&[2], RangeKind::Tight, &c);

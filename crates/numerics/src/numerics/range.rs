@@ -32,7 +32,8 @@ impl Range {
         if self.contains(value) { 0.0 } else { (self.lower - value).max(value - self.upper) }
     }
 
-    /// Widened to values from the least to the largest of others; what is unknown stays so, and of none nothing follows.
+    /// Widened to values from the least to the largest of others; an unknown range stays unknown, and an empty one
+    /// changes nothing.
     pub fn with(self, others: Self) -> Self {
         if self.lower.is_nan() || others == EMPTY {
             return self;
@@ -40,7 +41,8 @@ impl Range {
         Self { lower: self.lower.min(others.lower), upper: self.upper.max(others.upper) }
     }
 
-    /// How far values from the least to the largest of others lie outside; zero where there are none, NaN of the unknown.
+    /// How far values from the least to the largest of others lie outside; zero where there are none, NaN of the
+    /// unknown.
     pub fn misses(self, others: Self) -> f64 {
         if others == EMPTY { 0.0 } else { self.distance(others.lower).max(self.distance(others.upper)) }
     }
@@ -76,7 +78,8 @@ impl Enclosed {
 /// Of no part yet.
 pub const EMPTY: Range = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
 
-/// The range of two parts together. Its error is how far its ends may lie from the true ones, given those of the parts'.
+/// The range of two parts together. Its error is how far its ends may lie from the true ones, given those of the
+/// parts'.
 pub fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
     if a == EMPTY || b.lower.is_nan() {
         return (b, of_b);

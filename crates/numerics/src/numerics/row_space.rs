@@ -1,7 +1,7 @@
 //! The space that the rows of a small matrix span, and its orthogonal complement.
 //!
-//! Modified Gram–Schmidt with pivoting, each vector orthogonalised twice ("twice is enough": Giraud, Langou, Rozložník & van den Eshof,
-//! Numer. Math. 101 (2005) 87). Plain loops, so that results are the same bits on every processor.
+//! Modified Gram–Schmidt with pivoting, each vector orthogonalised twice ("twice is enough": Giraud, Langou, Rozložník
+//! & van den Eshof, Numer. Math. 101 (2005) 87). Plain loops, so that results are the same bits on every processor.
 
 /// Rows of which less than this share is left are dependent.
 const DEPENDENT: f64 = 1e-9;

@@ -1,11 +1,12 @@
 //! Least and largest values over a grid of samples, as they come.
 //!
-//! Between two samples a response can go beyond both. Past an extreme along an axis, a smooth one by at most an eighth of the second
-//! difference (that of the parabola through it and its neighbours); past an extreme at an axis' end, if it bends back before it gets
-//! there. Where second differences stand out against those beside them,
-//! it is not smooth there: at a kink between two samples it goes as far as the lines from both sides lead, at most a quarter of what
-//! their second differences have too much; beside a jump, where these have either sign, half of the jump. The furthest that any sample
-//! leads to in this way is the error stated of a scan. Where a sample is NaN, the others are bounded, and the error is NaN.
+//! Between two samples a response can go beyond both. Past an extreme along an axis, a smooth one by at most an eighth
+//! of the second difference (that of the parabola through it and its neighbours); past an extreme at an axis' end, if
+//! it bends back before it gets there. Where second differences stand out against those beside them, it is not smooth
+//! there: at a kink between two samples it goes as far as the lines from both sides lead, at most a quarter of what
+//! their second differences have too much; beside a jump, where these have either sign, half of the jump. The furthest
+//! that any sample leads to in this way is the error stated of a scan. Where a sample is NaN, the others are bounded,
+//! and the error is NaN.
 
 use std::ops::Range as Rows;
 
@@ -127,7 +128,8 @@ impl Line<'_> {
         }
     }
 
-    /// More than [`beyond`](Self::beyond) can be anywhere: along each axis that is at most the largest second difference.
+    /// More than [`beyond`](Self::beyond) can be anywhere: along each axis that is at most the largest second
+    /// difference.
     fn most_beyond(&self) -> f64 {
         let (mut sum, mut largest, mut stride) = (0.0, 0.0_f64, 1);
         for &count in self.points.iter().rev() {
@@ -145,8 +147,8 @@ impl Line<'_> {
         1.001 * (sum + self.points.len() as f64 * largest)
     }
 
-    /// How far the response may go below and above the sample at `place`, between it and its neighbours along each axis. Along an axis
-    /// whose neighbours are in another part of the scan, as far as along the others.
+    /// How far the response may go below and above the sample at `place`, between it and its neighbours along each
+    /// axis. Along an axis whose neighbours are in another part of the scan, as far as along the others.
     fn beyond(&self, place: usize) -> [f64; 2] {
         let Self { first, values, .. } = *self;
         let (mut known, mut largest, mut unknown) = ([0.0; 2], 0.0_f64, 0.0);

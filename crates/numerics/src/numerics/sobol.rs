@@ -1,8 +1,9 @@
 //! Which parameter matters: shares in the variance of a polynomial, every parameter spread evenly over its interval.
 //!
-//! In products of orthonormal Legendre polynomials the variance is the sum of the squares of all coefficients but the constant's,
-//! and the terms in which a parameter occurs, alone or with others, are its part (Sobol 1993; Sudret 2008). Chebyshev polynomials
-//! are turned into Legendre's along one axis after the other, exactly: degrees only go down, so terms suffice.
+//! In products of orthonormal Legendre polynomials the variance is the sum of the squares of all coefficients but the
+//! constant's, and the terms in which a parameter occurs, alone or with others, are its part (Sobol 1993; Sudret 2008).
+//! Chebyshev polynomials are turned into Legendre's along one axis after the other, exactly: degrees only go down, so
+//! terms suffice.
 
 use super::sparse_basis::SparseBasis;
 use super::tensor::Matrix;
@@ -32,7 +33,8 @@ impl SobolDecomposition {
         Self { basis: basis.clone(), conversion: from_chebyshev(highest.into()) }
     }
 
-    /// SobolIndices in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or NaN.
+    /// SobolIndices in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or
+    /// NaN.
     pub fn indices(&self, coefficients: &[f64]) -> Option<SobolIndices> {
         assert_eq!(coefficients.len(), self.basis.len(), "coefficients of another shape");
         let k = self.basis.dimension();

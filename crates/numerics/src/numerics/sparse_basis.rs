@@ -25,7 +25,8 @@ pub struct SparseBasis {
     /// Highest degree along each axis.
     orders: Vec<u8>,
     fibres: Vec<Fibres>,
-    /// Indices just beyond the terms of a set that is no tensor, where degrees are high enough to tell what is missing.
+    /// Indices just beyond the terms of a set that is no tensor, where degrees are high enough to estimate the missing
+    /// terms.
     front: Vec<Vec<Before>>,
 }
 
@@ -49,8 +50,8 @@ struct Factor {
     polynomial: u32,
 }
 
-/// Terms that differ only in their degree along one axis, in the order of that degree, which starts with 0; where there are
-/// at least two.
+/// Terms that differ only in their degree along one axis, in the order of that degree, which starts with 0; where there
+/// are at least two.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fibres {
     terms: Vec<u32>,
@@ -138,8 +139,8 @@ impl SparseBasis {
         is_tensor(&self.orders, self.len())
     }
 
-    /// Indices just beyond the terms: with one of them these stay closed. Only those along axes of a degree that tells what is missing;
-    /// none of a tensor.
+    /// Indices just beyond the terms: with one of them these stay closed. Only those along axes of a degree that is
+    /// high enough to estimate the missing terms; none of a tensor.
     pub(super) fn front(&self) -> impl Iterator<Item = &[Before]> {
         self.front.iter().map(Vec::as_slice)
     }
@@ -190,7 +191,7 @@ fn is_tensor(orders: &[u8], terms: usize) -> bool {
     orders.iter().fold(1_usize, |count, &n| count.saturating_mul(usize::from(n) + 1)) == terms
 }
 
-/// The indices just beyond some terms, each with what it follows.
+/// The indices just beyond some terms, each with its predecessors.
 fn front(degrees: &[u8], orders: &[u8], places: &FxHashMap<&[u8], u32>) -> Vec<Vec<Before>> {
     let tells = |axis: usize| usize::from(orders[axis]) >= LEAST_DEGREE;
     let (mut seen, mut front) = (FxHashSet::default(), Vec::new());

@@ -6,8 +6,9 @@ use rustc_hash::FxHashSet;
 
 use super::leja::{MAX_LEVEL, node};
 
-/// Nested nodes for a downward-closed set of *indices*: a level for each parameter, and with it every index that is nowhere
-/// higher. Each index brings one node and one term, the product of Chebyshev polynomials of its levels' degrees.
+/// Nested nodes for a downward-closed set of *indices*: a level for each parameter, and with it every index that is
+/// nowhere higher. Each index brings one node and one term, the product of Chebyshev polynomials of its levels'
+/// degrees.
 ///
 /// Nodes are numbered in the order in which they come, so that values at earlier ones keep their places while the set
 /// grows. Node 0 is the middle of the box.

@@ -2,10 +2,10 @@
 //!
 //! Along one axis this is a product of two matrices, triangular in levels: values → surpluses → coefficients
 //! (`leja.rs`). For tensor products of those, restricted to a downward-closed set, the restriction of a product is the
-//! product of the restrictions as long as all of the first kind are applied before any of the second: every intermediate
-//! multi-index is below one of the set. So surpluses are formed along one axis after the other, and then coefficients,
-//! each along the lines of nodes that the set has; the nodes with few active axes, which are most, cost next to
-//! nothing. (It is the sum of the combination technique's tensor interpolants, without their cancellation.)
+//! product of the restrictions as long as all of the first kind are applied before any of the second: every
+//! intermediate multi-index is below one of the set. So surpluses are formed along one axis after the other, and then
+//! coefficients, each along the lines of nodes that the set has; the nodes with few active axes, which are most, cost
+//! next to nothing. (It is the sum of the combination technique's tensor interpolants, without their cancellation.)
 
 use symdiff::{Vectorise, vectorised};
 

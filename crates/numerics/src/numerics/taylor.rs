@@ -6,8 +6,8 @@ use super::polynomial_range::{PolynomialRange, RangeKind};
 use super::range::{Enclosed, Range};
 use super::tensor::{Matrix, Separable, Work};
 
-/// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term, and how much
-/// too wide it is is unknown.
+/// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term, and how
+/// much too wide it is is unknown.
 const MAX_TENSOR: usize = 1 << 16;
 
 /// Bounds polynomials of total degree N in k variables, given by coefficients in the order of [`Monomials`], which is

@@ -1,15 +1,16 @@
-//! What of the steps' error of a coordinate is a shift in time, and what is not.
+//! Splits the steps' error of a coordinate into a shift in time and a remainder.
 //!
-//! Steps that are too long for an oscillation change its frequency before they change its amplitude: after many turns the coordinate is
-//! too early or too late by a time s, and its error is s v + r with a small r, v its velocity. At an extreme over the parameters that
-//! is one over time too, v is zero.
+//! Steps that are too long for an oscillation change its frequency before they change its amplitude: after many turns
+//! the coordinate is too early or too late by a time s, and its error is s v + r with a small r, v its velocity. At an
+//! extreme over the parameters that is one over time too, v is zero.
 
 use super::error::{RICHARDSON, largest};
 
 /// Rows before and after the one that is looked at.
 const REACH: usize = 4;
 
-/// The variance of the velocity over these rows, relative to its mean square, from which on a shift can be told from an offset.
+/// The variance of the velocity over these rows, relative to its mean square, from which on a shift can be told from an
+/// offset.
 const TURNS: f64 = 0.25;
 
 /// The steps' error of a coordinate.
@@ -38,10 +39,11 @@ impl TimeShift {
         row.saturating_sub(REACH)..(row + REACH + 1).min(rows)
     }
 
-    /// From every sample's coordinate in a window of rows; none where some sample does not turn in it, so that a shift and an
-    /// offset look alike.
+    /// From every sample's coordinate in a window of rows; none where some sample does not turn in it, so that a shift
+    /// and an offset look alike.
     ///
-    /// The remainder is the largest in the whole window, the offset with it: what is left in a single row may be zero by chance.
+    /// The remainder is the largest in the whole window, the offset with it: the remainder of a single row may be zero
+    /// by chance.
     pub fn of(samples: impl Iterator<Item = Vec<Turning>>) -> Option<Self> {
         let mut found = Self { shift: 0.0, remainder: 0.0 };
         for sample in samples {

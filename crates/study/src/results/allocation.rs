@@ -47,7 +47,8 @@ pub struct AllocatedTolerance {
     /// The same, after.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cost_after: Option<f64>,
-    /// Its share of what takes up the tightest requirement's margin before: of the linearised worst case, or of the variance.
+    /// Its share of what takes up the tightest requirement's margin before: of the linearised worst case, or of the
+    /// variance.
     pub share_before: f64,
     /// The same, after.
     pub share_after: f64,

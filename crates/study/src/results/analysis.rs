@@ -10,7 +10,8 @@ use crate::grammar::display_unit::DisplayUnit;
 pub struct AnalysisSummary {
     /// `motion`, `statics`, `kinematics` or `modes`.
     pub kind: String,
-    /// At an equilibrium: the smallest eigenvalue of its stiffness about its masses, rad²/s²; `null` where nothing can move.
+    /// At an equilibrium: the smallest eigenvalue of its stiffness about its masses, rad²/s²; `null` where nothing can
+    /// move.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<f64>,
     /// Of modes with states: the largest growth of any at the nominal parameters, 1/s; negative where all decay.

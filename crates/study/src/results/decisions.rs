@@ -14,7 +14,8 @@ pub struct Decision {
     pub saves: Option<Saving>,
 }
 
-/// Instructions that need not be run, as compiling with and without the decision counts them; negative where it costs some.
+/// Instructions that need not be run, as compiling with and without the decision counts them; negative where it costs
+/// some.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Saving {
     /// How many.

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-/// Instructions of the parts of a step, or differences of them: without an effect elimination may take another order, and a
-/// part then even becomes longer.
+/// Instructions of the parts of a step, or differences of them: without an effect elimination may take another order,
+/// and a part then even becomes longer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StepInstructions {
     /// Once a step: prediction and values known at its beginning.

@@ -34,8 +34,8 @@ impl Summary {
         }
     }
 
-    /// Of a model that consists of these subsystems. What depends on the whole model's bounds (errors, contributions) and
-    /// names (parameters) is that of the first.
+    /// Of a model that consists of these subsystems. What depends on the whole model's bounds (errors, contributions)
+    /// and names (parameters) is that of the first.
     ///
     /// # Panics
     /// Without any.

@@ -1,11 +1,12 @@
-//! How the bodies of a mechanism move: at the nominal parameters, at samples of the box, and as polynomials in the parameters.
+//! How the bodies of a mechanism move: at the nominal parameters, at samples of the box, and as polynomials in the
+//! parameters.
 
 use super::{Drawing, ParameterSummary};
 
 /// A mechanism's motion at times that were chosen from the rows of a simulation.
 ///
-/// A *pose* has the coordinates of every body but the ground, in the ground's frame and in m: x, y and the angle about z in rad in
-/// the plane; x, y, z and the Euler parameters in space.
+/// A *pose* has the coordinates of every body but the ground, in the ground's frame and in m: x, y and the angle about
+/// z in rad in the plane; x, y, z and the Euler parameters in space.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// The mechanism at its nominal start.
@@ -14,8 +15,8 @@ pub struct Motion {
     pub times: Vec<f64>,
     /// Number of simulated rows that the times were chosen from.
     pub rows: usize,
-    /// How far a point of a body is, at a simulated row, from where straight lines between the chosen poses have it, m: at most, over all
-    /// bodies, samples and rows.
+    /// How far a point of a body is, at a simulated row, from where straight lines between the chosen poses have it, m:
+    /// at most, over all bodies, samples and rows.
     pub between: f64,
     /// Numbers of a body's pose: 3 in the plane, 7 in space.
     pub per_body: usize,
@@ -38,8 +39,8 @@ pub struct Motion {
 pub struct Poses {
     /// (time, coordinate of the pose)
     pub bodies: Vec<f64>,
-    /// (point, 3), m: of each body, the ground first, the points of [`DrawnBody`](super::DrawnBody), then its centre of mass where it
-    /// has one. They do not move in their frames, but depend on parameters.
+    /// (point, 3), m: of each body, the ground first, the points of [`DrawnBody`](super::DrawnBody), then its centre of
+    /// mass where it has one. They do not move in their frames, but depend on parameters.
     pub points: Vec<f64>,
 }
 
@@ -63,8 +64,8 @@ pub struct MovingSample {
     pub poses: Poses,
 }
 
-/// Deviation from the nominal motion: sums of products of Chebyshev polynomials in ξ ∈ [−1, 1], a parameter's place between the
-/// ends of its interval.
+/// Deviation from the nominal motion: sums of products of Chebyshev polynomials in ξ ∈ [−1, 1], a parameter's place
+/// between the ends of its interval.
 #[derive(Clone, Debug)]
 pub struct MotionPolynomials {
     /// (term, parameter)
@@ -73,7 +74,7 @@ pub struct MotionPolynomials {
     pub bodies: Vec<f64>,
     /// (number of the points, term)
     pub points: Vec<f64>,
-    /// How far a point of a body is from its simulated place, m: at most, over all times and samples that the polynomials were not made
-    /// from.
+    /// How far a point of a body is from its simulated place, m: at most, over all times and samples that the
+    /// polynomials were not made from.
     pub error: f64,
 }

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::{Band, Bounds, OutputBounds};
 
-/// How much higher than both ends of an interval a curve may be, relative to the largest second difference around it: twice what a parabola
-/// has.
+/// How much higher than both ends of an interval a curve may be, relative to the largest second difference around it:
+/// twice what a parabola has.
 const BETWEEN: f64 = 0.25;
 
 /// The least and the greatest value of a band over the run.
@@ -23,7 +23,8 @@ pub struct PeakSummary {
     pub greatest: Peak,
 }
 
-/// An extreme over the run: the true one of all times lies within `error` of `value`, as far as the rows show the motion.
+/// An extreme over the run: the true one of all times lies within `error` of `value`, as far as the rows show the
+/// motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Peak {
     /// The row's time, s.
@@ -121,8 +122,8 @@ mod tests {
     }
 
     proptest! {
-        /// A sum of oscillations, of which the faster one has four rows a period: its greatest value on a grid that is a thousand times
-        /// as fine.
+        /// A sum of oscillations, of which the faster one has four rows a period: its greatest value on a grid that is
+        /// a thousand times as fine.
         #[test]
         fn the_true_peak_is_within_the_error(
             phases in prop::array::uniform2(0.0..6.2_f64), share in 0.0..1.0_f64, slow in 0.05..0.9_f64, fast in 0.9..1.55_f64,

@@ -26,7 +26,8 @@ pub struct ReducedSummary {
     /// The simulated sample with the smallest value, and the one with the largest; absent where no sample has a value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worst: Option<[WorstCase; 2]>,
-    /// Set where some of the samples have no value, as of an event that does not occur: how many of those simulated have one.
+    /// Set where some of the samples have no value, as of an event that does not occur: how many of those simulated
+    /// have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub occurs: Option<Occurrence>,
 }

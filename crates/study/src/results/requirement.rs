@@ -43,7 +43,8 @@ pub struct RequirementSummary {
     pub verdict: Verdict,
     /// Whether certified bounds prove the verdict.
     pub certified: bool,
-    /// How far the bounds keep from the limit over the whole box: negative where they pass it. The truth is within `error`.
+    /// How far the bounds keep from the limit over the whole box: negative where they pass it. The truth is within
+    /// `error`.
     pub margin: f64,
     /// The margin in percent of the limit; absent where the limit is zero or no constant.
     #[serde(skip_serializing_if = "Option::is_none")]

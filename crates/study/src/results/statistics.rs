@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use crate::grammar::display_unit::DisplayUnit;
 
-/// An estimate with its error: `sampling` is the half width of the 95 % confidence interval, `error` what the surrogate and the time steps
-/// may add.
+/// An estimate with its error: `sampling` is the half width of the 95 % confidence interval, `error` what the surrogate
+/// and the time steps may add.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Uncertain {
     /// The estimate.
@@ -109,7 +109,8 @@ pub struct StatisticsSummary {
     pub failure: Option<String>,
 }
 
-/// An output's distribution at the time at which its standard deviation is largest: worst case, RSS and statistics side by side. SI.
+/// An output's distribution at the time at which its standard deviation is largest: worst case, RSS and statistics side
+/// by side. SI.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OutputStatisticsSummary {
     /// Name.
@@ -157,14 +158,16 @@ pub struct NumberStatistics {
     pub quantiles: Vec<Uncertain>,
 }
 
-/// The share of the production that fulfils a requirement, by samples of the surrogate of its margin: over the whole motion, between rows too.
+/// The share of the production that fulfils a requirement, by samples of the surrogate of its margin: over the whole
+/// motion, between rows too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct YieldSummary {
     /// Name of the requirement.
     pub requirement: String,
     /// The share that fulfils it.
     pub share: f64,
-    /// Its 95 % confidence interval, widened by what the surrogate's and the steps' error and what lies outside of the surrogate may do.
+    /// Its 95 % confidence interval, widened by what the surrogate's and the steps' error and what lies outside of the
+    /// surrogate may do.
     pub interval: [f64; 2],
     /// Parts per million that do not fulfil it, and the same interval.
     pub ppm: f64,
@@ -173,7 +176,8 @@ pub struct YieldSummary {
     /// Capability at the worst time, (U − L)/(6σ); of a requirement with two limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cp: Option<f64>,
-    /// Capability at the worst time, the mean's distance from the nearer limit over 3σ; that of the margin for a reduced output.
+    /// Capability at the worst time, the mean's distance from the nearer limit over 3σ; that of the margin for a
+    /// reduced output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cpk: Option<f64>,
     /// When that is, s.

@@ -46,8 +46,8 @@ pub struct Summary {
     /// The first surfaces that a contact does not hold apart any more, in any sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub too_deep: Option<TooDeep>,
-    /// How many times the tolerance the local errors of a sample's steps add up to, where that is more than once: rows that need the
-    /// sample are unresolved.
+    /// How many times the tolerance the local errors of a sample's steps add up to, where that is more than once: rows
+    /// that need the sample are unresolved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beyond_tolerance: Option<f64>,
     /// By what the motion was integrated, where that was not HHT-I3 alone.
@@ -182,8 +182,8 @@ pub struct SubsystemSummary {
     pub methods: Vec<MethodSummary>,
 }
 
-/// The largest width and errors of a band over the run, in the output's unit (`null` where unknown), and from which time on it is
-/// not resolved.
+/// The largest width and errors of a band over the run, in the output's unit (`null` where unknown), and from which
+/// time on it is not resolved.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorSummary {
     /// Name of the output.
@@ -208,8 +208,8 @@ pub struct ErrorSummary {
     pub unresolved_from: Option<f64>,
 }
 
-/// A parameter's Sobol indices of an output, first-order and total: means over the run, weighted by the width of the output's
-/// range.
+/// A parameter's Sobol indices of an output, first-order and total: means over the run, weighted by the width of the
+/// output's range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContributionSummary {
     /// Name of the output.

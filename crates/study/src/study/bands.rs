@@ -1,4 +1,5 @@
-//! Bands of an output, with their errors, and what says that they are wrong: values that the run has simulated, and one another.
+//! Bands of an output, with their errors, and what says that they are wrong: values that the run has simulated, and one
+//! another.
 
 use super::outcome::{Outcome, Results};
 use super::single::Study;
@@ -14,7 +15,7 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let found = &outcome.result.bands[output][..rows];
         let is_sampled = method.about().is_sampled;
-        // What is proven needs no samples. (It may miss them by the rounding of the steps' equations.)
+        // A proven band needs no samples. (It may miss them by the rounding of the steps' equations.)
         let widened = |(range, simulated): (&Range, &Range)| if is_sampled { range.with(*simulated) } else { *range };
         let ranges: Vec<Range> = found.iter().zip(&simulated).map(widened).collect();
         let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
@@ -25,8 +26,8 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
             let (direct, halved) = (validation.direct.at(row, output), validation.halved.at(row, output));
             let by_coordinates = outcome.result.steps[output][row];
             let by_samples = time_error(found[row], &direct, &halved);
-            // Either is enough: what the validation samples near the ends show, if there are any, and what the coordinates' errors
-            // do to the ends, which is nothing where a range is saturated. (`min` passes over NaN.)
+            // Either is enough: what the validation samples near the ends show, if there are any, and what the
+            // coordinates' errors do to the ends, which is nothing where a range is saturated. (`min` passes over NaN.)
             if by_coordinates.is_nan() || carries(found[row], &direct[..halved.len()]) {
                 by_samples.min(by_coordinates)
             } else {
@@ -69,7 +70,8 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
     bands
 }
 
-/// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. What is proven is not.
+/// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. What is proven is
+/// not.
 fn flag_exclusions(bands: &mut [Band]) {
     let rows = bands.first().map_or(0, |band| band.lower.len());
     let mut excluded: Vec<(usize, usize)> = Vec::new();
@@ -83,7 +85,8 @@ fn flag_exclusions(bands: &mut [Band]) {
     excluded.into_iter().for_each(|(band, row)| bands[band].error.distrust(row..row + 1));
 }
 
-/// Whether an end of two bands that are relied on in a row cannot be the same. A proven band holds the range, and may be wider.
+/// Whether an end of two bands that are relied on in a row cannot be the same. A proven band holds the range, and may
+/// be wider.
 fn exclude(a: &Band, b: &Band, row: usize) -> bool {
     let proven = [a, b].map(|band| !band.method.about().is_sampled);
     let below = a.lower[row] - b.lower[row];

@@ -2,7 +2,8 @@
 
 use crate::simulate::Simulator;
 
-/// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike: what closures leave.
+/// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike: what
+/// closures leave.
 const ALIKE: f64 = 1e-6;
 
 /// Whether both have the same degrees of freedom and the same outputs at the start.

@@ -51,8 +51,8 @@ impl Study<'_> {
         Ok(self.conclude(results, failure))
     }
 
-    /// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors that are
-    /// allowed for it. How far an error made early is carried is the problem's: the first schedule shows it.
+    /// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors
+    /// that are allowed for it. How far an error made early is carried is the problem's: the first schedule shows it.
     pub(super) fn schedule_within(
         &self,
         tolerance: f64,

@@ -1,5 +1,5 @@
-//! A mechanism that depends on no uncertain parameter: simulated once, and once more with halved steps for its error, whatever
-//! is asked for.
+//! A mechanism that depends on no uncertain parameter: simulated once, and once more with halved steps for its error,
+//! whatever is asked for.
 
 use std::time::Instant;
 

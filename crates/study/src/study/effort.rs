@@ -2,7 +2,8 @@
 
 use crate::simulate::Simulator;
 
-/// Time of an instruction of one sample, s: a processor of today with all its lanes, so that a refused study does take so long.
+/// Time of an instruction of one sample, s: a processor of today with all its lanes, so that a refused study does take
+/// so long.
 pub(super) const INSTRUCTION_SECONDS: f64 = 2e-10;
 
 /// Corrections of a step after the first one.

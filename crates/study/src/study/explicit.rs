@@ -51,7 +51,8 @@ pub(super) enum Obstacle {
 }
 
 impl Study<'_> {
-    /// Whether the explicit method may be taken: where the model asks for it, or under a tolerance where equations do not switch.
+    /// Whether the explicit method may be taken: where the model asks for it, or under a tolerance where equations do
+    /// not switch.
     pub(super) fn may_be_explicit(&self) -> bool {
         let simulation = &self.description.simulation;
         if self.simulator.system.analysis.is_without_steps() {
@@ -73,8 +74,8 @@ impl Study<'_> {
         }
     }
 
-    /// Samples that decide on steps all of them share: those that control other steps, and as many between them as are integrated together.
-    /// What turns at another speed is elsewhere when a step is long.
+    /// Samples that decide on steps all of them share: those that control other steps, and as many between them as are
+    /// integrated together. What turns at another speed is elsewhere when a step is long.
     pub(super) fn explicit_samples(&self) -> Vec<Sample> {
         let mut samples = self.controlling_samples();
         let k = self.domain.dimension();

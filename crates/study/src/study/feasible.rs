@@ -1,9 +1,9 @@
-//! A box in part of which the mechanism cannot be assembled, or does not move to the end: how much of it that is and where,
-//! and bounds of the rest.
+//! A box in part of which the mechanism cannot be assembled, or does not move to the end: how much of it that is and
+//! where, and bounds of the rest.
 //!
-//! The box is cut into pieces, across the parameter that separates failing samples from others best, as long as held-out
-//! samples of a piece fail. Each piece whose samples do not is bounded as if it were the whole; a row's bounds are those of the
-//! pieces that reached it together, and what share of the box these are is said with them.
+//! The box is cut into pieces, across the parameter that separates failing samples from others best, as long as
+//! held-out samples of a piece fail. Each piece whose samples do not is bounded as if it were the whole; a row's bounds
+//! are those of the pieces that reached it together, and what share of the box these are is said with them.
 
 use std::fmt;
 
@@ -171,7 +171,8 @@ fn cut(study: &Study) -> Result<Vec<Piece>, RunError> {
     Ok(pieces)
 }
 
-/// The axis along which samples that fail lie farthest to one side, the wide before the narrow; none where nothing is uncertain.
+/// The axis along which samples that fail lie farthest to one side, the wide before the narrow; none where nothing is
+/// uncertain.
 fn axis_to_cut(whole: &ParameterBox, piece: &ParameterBox, failing: &[Vec<f64>]) -> Option<usize> {
     let score = |axis: usize| {
         let mean = failing.iter().map(|xi| xi[axis]).sum::<f64>() / failing.len().max(1) as f64;

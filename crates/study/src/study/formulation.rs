@@ -1,9 +1,11 @@
 //! By which coordinates a mechanism is simulated: where the model leaves it open, by those whose program is shorter.
 //!
-//! Joint coordinates are few and their matrices dense, or eliminated link by link; absolute ones are many and theirs sparse. What that
-//! comes to in instructions is only known when both are compiled, so both are; but for the longest chains, and not to the end where absolute coordinates turn out to take many times as much. Where joints close loops, absolute coordinates are
-//! assembled first, and joint ones start from there, so that both close the loops in the same branch. A start in a singular
-//! configuration, a motion that passes one, and redundant constraints are left to absolute coordinates.
+//! Joint coordinates are few and their matrices dense, or eliminated link by link; absolute ones are many and theirs
+//! sparse. What that comes to in instructions is only known when both are compiled, so both are; but for the longest
+//! chains, and not to the end where absolute coordinates turn out to take many times as much. Where joints close loops,
+//! absolute coordinates are assembled first, and joint ones start from there, so that both close the loops in the same
+//! branch. A start in a singular configuration, a motion that passes one, and redundant constraints are left to
+//! absolute coordinates.
 
 use crate::assemble::{self, BuildError, FormulationInfo, System};
 use crate::model::{Description, Formulation, Stepping};
@@ -13,8 +15,9 @@ use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularW
 use super::comparison::{instructions, starts_alike};
 use super::{RunError, first_step, loop_cuts, scheme};
 
-/// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the plane and in space. Long planar
-/// chains are as short in absolute coordinates; in space they never are, but deep loops couple all that is between their ends.
+/// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the plane
+/// and in space. Long planar chains are as short in absolute coordinates; in space they never are, but deep loops
+/// couple all that is between their ends.
 const DEEPEST: [usize; 2] = [25, usize::MAX];
 const DEEPEST_OF_LOOPS: [usize; 2] = [25, 50];
 
@@ -22,8 +25,9 @@ const DEEPEST_OF_LOOPS: [usize; 2] = [25, 50];
 /// operations that a step takes in joint coordinates, and more than no one has to wait for.
 const GIVEN_UP: usize = 10;
 
-/// Steps in a spherical joint's Euler parameters err more than those in a body's own, whose inertia is about its centre of mass and not about the joint: of
-/// the same length those of a heavy top by 8 times. With order two that is three times as many steps.
+/// Steps in a spherical joint's Euler parameters err more than those in a body's own, whose inertia is about its centre
+/// of mass and not about the joint: of the same length those of a heavy top by 8 times. With order two that is three
+/// times as many steps.
 const LONGER_STEPS: usize = 3;
 
 /// Operations that are compiled in a moment.
@@ -35,7 +39,8 @@ const MOST: usize = 8_000_000;
 /// The same in joint coordinates where only the start is wanted: in a second or two.
 const MOST_TO_CHECK: usize = 1_000_000;
 
-/// Steps in which the nominal motion is looked at for singular configurations: s, where a tolerance chooses them, and how many at most.
+/// Steps in which the nominal motion is looked at for singular configurations: s, where a tolerance chooses them, and
+/// how many at most.
 const LONGEST_LOOK: f64 = 1e-3;
 const MOST_LOOKS: f64 = 10_000.0;
 
@@ -45,8 +50,8 @@ const ELIMINATIONS: usize = 3;
 /// Most bodies for which a whole model is compiled to be checked; larger models are only assembled.
 const FEW_BODIES: usize = 50;
 
-/// Builds and compiles a model in the formulation that it asks for, or in the shorter one. A formulation that takes too many operations
-/// is given up for the other.
+/// Builds and compiles a model in the formulation that it asks for, or in the shorter one. A formulation that takes too
+/// many operations is given up for the other.
 ///
 /// # Errors
 /// Where the mechanism cannot be built or assembled, or takes too many operations in both formulations.
@@ -149,8 +154,8 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
     };
     match within(joint, enough(&absolute)) {
         Ok(joint) if starts_alike(&absolute, &joint) => {
-            // The nominal motion is looked at only where joint coordinates would be taken, and before other cuts are: of many loops it takes
-            // longer than all else, of few the cuts do.
+            // The nominal motion is looked at only where joint coordinates would be taken, and before other cuts are:
+            // of many loops it takes longer than all else, of few the cuts do.
             let singular = "the nominal motion passes singular configurations";
             let is_first_shorter = is_shorter(&joint, &absolute);
             if is_first_shorter && passes_singular(description, &absolute) {
@@ -174,8 +179,8 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
     }
 }
 
-/// Loops in joint coordinates, where absolute ones have no start: bodies without mass, as between the axes of an MJCF's body, are singular there
-/// where constraints are redundant.
+/// Loops in joint coordinates, where absolute ones have no start: bodies without mass, as between the axes of an MJCF's
+/// body, are singular there where constraints are redundant.
 fn regular_in_joint_coordinates<T>(
     description: &Description,
     of_system: &dyn Fn(System) -> Result<T, SimulationError>,
@@ -184,8 +189,8 @@ fn regular_in_joint_coordinates<T>(
     of_system(because(joint, "absolute coordinates are singular at the start".to_owned())).ok()
 }
 
-/// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates amplify rounding more the
-/// shorter the steps are.
+/// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates
+/// amplify rounding more the shorter the steps are.
 fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
     let simulation = &description.simulation;
     if simulator.system.analysis.is_without_steps() {
@@ -225,7 +230,8 @@ fn enough(simulator: &Simulator) -> usize {
     (GIVEN_UP * instructions(simulator)).clamp(SOON, MOST)
 }
 
-/// Whether joint coordinates take fewer instructions, those in a joint's Euler parameters counted [`LONGER_STEPS`] times.
+/// Whether joint coordinates take fewer instructions, those in a joint's Euler parameters counted [`LONGER_STEPS`]
+/// times.
 fn is_shorter(joint: &Simulator, absolute: &Simulator) -> bool {
     let has_parameters = joint.system.links.iter().any(|link| link.normalisation.is_some());
     let weight = if has_parameters { LONGER_STEPS } else { 1 };
@@ -295,8 +301,8 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
     of_system(because(assemble::in_absolute_coordinates(description)?, why))
 }
 
-/// What a model asks for; where that takes too many operations, the other formulation. Where joint coordinates take more than
-/// `most`, they are not tried.
+/// What a model asks for; where that takes too many operations, the other formulation. Where joint coordinates take
+/// more than `most`, they are not tried.
 fn within_budget<T>(
     description: &Description,
     most: usize,

@@ -52,8 +52,8 @@ impl Study<'_> {
         Some(KeptPart { errors, ..part })
     }
 
-    /// Errors of values anywhere in the box, by output: what the validation samples' differ by and what the method knows of its
-    /// surrogate, and the time steps'.
+    /// Errors of values anywhere in the box, by output: what the validation samples' differ by and what the method
+    /// knows of its surrogate, and the time steps'.
     fn errors_of_values(
         &self,
         part: &KeptPart,

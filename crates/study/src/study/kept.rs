@@ -1,7 +1,8 @@
 //! The surrogates of a run, kept after it: outputs at any point of the box, in any row, without simulation.
 //!
-//! Nothing is kept unless [`run_keeping`](super::run_keeping) is asked. What it keeps are coefficients and the compiled mechanism, from
-//! which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded coordinates.
+//! Nothing is kept unless [`run_keeping`](super::run_keeping) is asked. What it keeps are coefficients and the compiled
+//! mechanism, from which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded
+//! coordinates.
 
 use rayon::prelude::*;
 
@@ -101,7 +102,8 @@ impl Kept {
         &self.times
     }
 
-    /// How far an output's values may be from the truth, in each row, anywhere in the box, and in which rows they cannot be relied on.
+    /// How far an output's values may be from the truth, in each row, anywhere in the box, and in which rows they
+    /// cannot be relied on.
     pub fn error(&self, output: usize) -> &BandError {
         let (part, place) = self.places[output];
         &self.parts[part].part.errors[place]
@@ -112,20 +114,22 @@ impl Kept {
         &self.parts[self.places[output].0].parameters
     }
 
-    /// Whether an output is one polynomial of the parameters over the whole box in a row: then it takes nanoseconds, else a loop closure.
+    /// Whether an output is one polynomial of the parameters over the whole box in a row: then it takes nanoseconds,
+    /// else a loop closure.
     pub fn is_polynomial(&self, row: usize, output: usize) -> bool {
         let (part, place) = self.places[output];
         self.parts[part].part.surrogate.is_polynomial(row, place)
     }
 
-    /// The polynomial through an output's own samples in a row: its terms in ξ ∈ \[−1, 1\] of [`parameters`](Self::parameters), and the
-    /// coefficients before them. `None` where the box was split.
+    /// The polynomial through an output's own samples in a row: its terms in ξ ∈ \[−1, 1\] of
+    /// [`parameters`](Self::parameters), and the coefficients before them. `None` where the box was split.
     pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
         let (part, place) = self.places[output];
         self.parts[part].part.surrogate.polynomial(row, place)
     }
 
-    /// Values of the polynomial through an output's own samples in a row, at samples of the model's box. `None` where the box was split.
+    /// Values of the polynomial through an output's own samples in a row, at samples of the model's box. `None` where
+    /// the box was split.
     pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, output: usize, samples: &[P]) -> Option<Vec<f64>> {
         let (number, place) = self.places[output];
         let Placed { part, parameters, .. } = &self.parts[number];
@@ -168,8 +172,9 @@ impl Kept {
 }
 
 impl Evaluator<'_> {
-    /// Outputs in one row at samples of the model's box (values of all its uncertain parameters, in their units), output by output,
-    /// sample by sample; NaN where a closure has no solution. In parallel, with the same bits for any number of threads.
+    /// Outputs in one row at samples of the model's box (values of all its uncertain parameters, in their units),
+    /// output by output, sample by sample; NaN where a closure has no solution. In parallel, with the same bits for any
+    /// number of threads.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
         let chunks: Vec<Vec<f64>> =
             samples.par_chunks(CHUNK).map(|samples| self.values_of_chunk(row, outputs, samples)).collect();

@@ -1,7 +1,8 @@
 //! Which joints close the loops of a mechanism in joint coordinates: those with which its steps are shortest.
 //!
-//! The number of instructions depends on the cut by a half and more, and is known only when a cut is compiled. From the cut of the
-//! shallowest trees one exchange after the other is compiled, and kept where it is shorter, until none is, or the budget is used up.
+//! The number of instructions depends on the cut by a half and more, and is known only when a cut is compiled. From the
+//! cut of the shallowest trees one exchange after the other is compiled, and kept where it is shorter, until none is,
+//! or the budget is used up.
 
 use std::collections::BTreeSet;
 
@@ -13,9 +14,10 @@ use crate::simulate::Simulator;
 /// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
 const BUDGET: usize = 20_000;
 
-/// The first, or one with another cut and a shorter step that starts alike; `with_roots`, also one in which bodies behind joints of several axes have
-/// coordinates of their own. `compile` makes one of a description that says its cut, and gives
-/// up where it takes many times the operations of the best so far. Redundant constraints and a singular start depend on the cut, and are left with the first.
+/// The first, or one with another cut and a shorter step that starts alike; `with_roots`, also one in which bodies
+/// behind joints of several axes have coordinates of their own. `compile` makes one of a description that says its cut,
+/// and gives up where it takes many times the operations of the best so far. Redundant constraints and a singular start
+/// depend on the cut, and are left with the first.
 pub(super) fn shortest(
     description: &Description,
     first: Simulator,

@@ -26,7 +26,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// What is lacking for all studies of a run, where that is known.
+    /// Memory needed and free, if the studies of a run need more than is free; `None` also where the latter is unknown.
     pub(super) fn lacking(studies: &[Study]) -> Option<Self> {
         let free = free()?;
         let needed = studies.iter().map(Study::least_bytes).fold(0, u64::saturating_add);
@@ -37,7 +37,8 @@ impl Memory {
 }
 
 impl Study<'_> {
-    /// Bytes of what is known of every output in every row: samples that measure errors, bands and sensitivities.
+    /// Least bytes of the results stored for every output in every row: samples that measure errors, bands and
+    /// sensitivities.
     fn least_bytes(&self) -> u64 {
         let (k, methods) = (self.domain.dimension(), self.request.methods().len());
         let found = RANGE + 2 * NUMBER + SENSITIVITIES;

@@ -1,12 +1,13 @@
 //! Runs what a model asks for, on all cores and in bounded memory.
 //!
-//! `subsystems` separates a model into parts that do not interact. A `single` study of each makes the step schedule and runs the requested
-//! methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block of output rows, so that memory does not
-//! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
-//! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
-//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `drawing`
-//! and `motion` show the mechanism, `internal` keeps a panic to what panicked, `keeping` and `kept` keep surrogates for whoever
-//! evaluates them after the run, as `statistics` does, and `allocate`, which looks for tolerances.
+//! `subsystems` separates a model into parts that do not interact. A `single` study of each makes the step schedule and
+//! runs the requested methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block
+//! of output rows, so that memory does not grow with samples × steps; `deterministic` is the case without uncertain
+//! parameters. `conclude` makes bounds and a summary of what the methods found. `feasible` bounds the part of a box in
+//! which there is a motion, `formulation` chooses the coordinates, `cost` runs one model with many settings to find
+//! what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `drawing` and
+//! `motion` show the mechanism, `internal` keeps a panic to what panicked, `keeping` and `kept` keep surrogates for
+//! whoever evaluates them after the run, as `statistics` does, and `allocate`, which looks for tolerances.
 
 mod allocate;
 mod analysis;
@@ -149,8 +150,9 @@ pub enum RunError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs every method asked for. A sample that stops early ends the bounds there that need it: the rows reached are returned, and
-/// the summary's `failure` says what happened. So it does where a method panics: the other methods' bounds are kept.
+/// Runs every method asked for. A sample that stops early ends the bounds there that need it: the rows reached are
+/// returned, and the summary's `failure` says what happened. So it does where a method panics: the other methods'
+/// bounds are kept.
 ///
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped at all.
@@ -167,8 +169,8 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
     Ok(reduced::shown(description, &model, found?))
 }
 
-/// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole box: with
-/// `skip_infeasible`, or where a subsystem's method ended at once.
+/// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole
+/// box: with `skip_infeasible`, or where a subsystem's method ended at once.
 ///
 /// # Errors
 /// As for [`run`].

@@ -1,4 +1,4 @@
-//! A model's subsystems, reduced to what is simulated and compiled.
+//! A model's subsystems, reduced to the parts that are simulated, and compiled.
 
 use symdiff::Formula;
 
@@ -17,7 +17,8 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Compiles. A parameter that the subsystem names, but on which no equation of it depends, nor a requirement, gets its nominal value.
+    /// Compiles. A parameter that the subsystem names, but on which no equation of it depends, nor a requirement, gets
+    /// its nominal value.
     ///
     /// # Errors
     /// Where it cannot be built or assembled.
@@ -57,7 +58,8 @@ pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Re
     Ok((reduction, prepared))
 }
 
-/// Makes something of a subsystem. Joint coordinates that the model asks for may not exist in every one: then it has absolute ones.
+/// Makes something of a subsystem. Joint coordinates that the model asks for may not exist in every one: then it has
+/// absolute ones.
 fn as_far_as_joints_go<T>(
     description: &Description,
     subsystem: Subsystem,

@@ -11,8 +11,8 @@ const MOST_SIMULATIONS: f64 = 20_000.0;
 /// Most time that is spent unasked, s.
 const MOST_SECONDS: f64 = 60.0;
 
-/// Time in which a value of a surrogate is fitted and bounded, s: from 0.6 to 6 µs were measured with 625 to 4913 samples of three to
-/// seven parameters.
+/// Time in which a value of a surrogate is fitted and bounded, s: from 0.6 to 6 µs were measured with 625 to 4913
+/// samples of three to seven parameters.
 const VALUE_SECONDS: f64 = 5e-7;
 
 /// What a run is expected to take.

@@ -1,4 +1,5 @@
-//! Outputs over time at chosen samples, in lockstep, a chunk of samples after the other, so that memory does not grow with their number.
+//! Outputs over time at chosen samples, in lockstep, a chunk of samples after the other, so that memory does not grow
+//! with their number.
 
 use std::ops::Range;
 
@@ -48,7 +49,8 @@ pub struct Trajectories<'t> {
     pub times: Vec<f64>,
 }
 
-/// Compiles a model, chooses its steps as a run does, and gives them to `write`, which asks for the samples by `Trajectories::each`.
+/// Compiles a model, chooses its steps as a run does, and gives them to `write`, which asks for the samples by
+/// `Trajectories::each`.
 ///
 /// # Errors
 /// Where the mechanism cannot be built or stepped, and those of `write`.
@@ -131,8 +133,8 @@ fn columns(
 }
 
 impl Trajectories<'_> {
-    /// Simulates all samples. `keep` gets values (sample, row, output) of consecutive samples; NaN where a sample cannot be assembled, and
-    /// from where it stops. `None` after an interruption.
+    /// Simulates all samples. `keep` gets values (sample, row, output) of consecutive samples; NaN where a sample
+    /// cannot be assembled, and from where it stops. `None` after an interruption.
     ///
     /// # Errors
     /// Where samples cannot be simulated, are deferred to shards, or of `keep`.
@@ -247,8 +249,8 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
 }
 
 impl Study<'_> {
-    /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a tolerance those that a run
-    /// would try first.
+    /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a
+    /// tolerance those that a run would try first.
     fn steps_of_samples(&self) -> Result<(Schedule, Option<Controller>), SimulationError> {
         let simulation = &self.description.simulation;
         let (schedule, controller) = match simulation.stepping {

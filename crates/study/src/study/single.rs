@@ -248,8 +248,8 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and of those that
-    /// panic nothing is known.
+    /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and
+    /// of those that panic nothing is known.
     pub(super) fn bound(
         &self,
         motions: &Motions,

@@ -22,17 +22,17 @@ const MOST_TRIALS: usize = 10;
 /// Steps that would have to be divided into more parts are extrapolated instead: three levels take 7 steps for each.
 const WORTH_LEVELS: f64 = 3.0;
 
-/// The levels that are tried first, and those that are taken where steps under them would still have to be divided into more parts
-/// than [`WORTH_FOURTH`]: a fourth level takes twice the steps.
+/// The levels that are tried first, and those that are taken where steps under them would still have to be divided into
+/// more parts than [`WORTH_FOURTH`]: a fourth level takes twice the steps.
 const LEVELS: usize = 3;
 const WORTH_FOURTH: f64 = 2.0;
 
 /// Extrapolation that divides the error by less than this gains nothing: the motion is not smooth enough, or too stiff.
 const GAIN: f64 = 8.0;
 
-/// Divides or joins a schedule's steps until their error is within its share of the tolerance. The scheme is of second order,
-/// so that the error goes as the step's square; of higher order where steps are extrapolated, which is tried where it would
-/// take fewer.
+/// Divides or joins a schedule's steps until their error is within its share of the tolerance. The scheme is of second
+/// order, so that the error goes as the step's square; of higher order where steps are extrapolated, which is tried
+/// where it would take fewer.
 pub(super) struct StepSearch {
     base: Schedule,
     /// Steps between rows, where they are of equal length; then they can be joined too.

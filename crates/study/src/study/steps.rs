@@ -1,4 +1,4 @@
-//! Schedules that resolve what they can, and the samples that tell the error of their steps.
+//! Schedules that resolve as much as they can, and the samples that measure the error of their steps.
 
 use super::ensemble::Progress;
 use super::single::{Study, problem, simulation_error, validation_summary};
@@ -56,7 +56,8 @@ impl Study<'_> {
         }
     }
 
-    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
+    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is
+    /// one.
     pub(super) fn balance(
         &self,
         schedule: &Schedule,

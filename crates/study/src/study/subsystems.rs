@@ -1,8 +1,8 @@
-//! Subsystems of a model, which do not interact: each is a study of its own, over those parameters on which it depends, and the
-//! results are merged in the model's order.
+//! Subsystems of a model, which do not interact: each is a study of its own, over those parameters on which it depends,
+//! and the results are merged in the model's order.
 //!
-//! Each has its own steps too: a subsystem that needs short ones does not slow down the others. The feasible part of a box is
-//! a part of the whole box: where only that is to be bounded, there is one subsystem.
+//! Each has its own steps too: a subsystem that needs short ones does not slow down the others. The feasible part of a
+//! box is a part of the whole box: where only that is to be bounded, there is one subsystem.
 
 use super::assemblies;
 use super::internal::caught;

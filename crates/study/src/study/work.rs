@@ -23,7 +23,8 @@ impl Study<'_> {
         samples * self.rows() as f64 * self.simulator.system.outputs.len() as f64
     }
 
-    /// Bytes that the simulations take where they are stored. Where a tolerance decides how many there are, as many as the budget allows.
+    /// Bytes that the simulations take where they are stored. Where a tolerance decides how many there are, as many as
+    /// the budget allows.
     pub(super) fn stored_bytes(&self) -> u64 {
         let problem = problem(self.description, &self.simulator);
         let (outputs, rows, methods) = (self.simulator.system.outputs.len(), self.rows(), self.request.methods());

@@ -17,9 +17,9 @@ const BEYOND: f64 = 1e-6;
 
 /// The samples in step, and the step size to try next.
 ///
-/// Where the equations switch in a step (a contact closes), the step is repeated so that it ends there. The local error of that
-/// step, and of the next until it is small enough, is the whole change of acceleration: the part that stiff forces leave of
-/// it says little where a step jumps over their motion.
+/// Where the equations switch in a step (a contact closes), the step is repeated so that it ends there. The local error
+/// of that step, and of the next until it is small enough, is the whole change of acceleration: the part that stiff
+/// forces leave of it says little where a step jumps over their motion.
 #[derive(Clone, Debug)]
 pub struct Adaptive<'s> {
     pub controller: Controller,
@@ -40,7 +40,8 @@ pub struct Attempt {
     /// Its length and its end, s.
     pub step: f64,
     pub end: f64,
-    /// Every lane's error over its share of the tolerance: infinite where it does not converge, 0 where it no longer runs.
+    /// Every lane's error over its share of the tolerance: infinite where it does not converge, 0 where it no longer
+    /// runs.
     pub ratios: Vec<f64>,
     /// Whether the step stands.
     pub accepted: bool,
@@ -144,7 +145,8 @@ impl<'s> Adaptive<'s> {
             let error = self.stepper.local_errors()[lane];
             let size = if self.switched[lane] || crossings[lane].is_some() { error.whole } else { error.size };
             let ratio = self.controller.error_ratio(size, step);
-            // A switch right after another is no new event: equations may switch in every step, as with dry friction at rest.
+            // A switch right after another is no new event: equations may switch in every step, as with dry friction at
+            // rest.
             let event = crossings[lane].filter(|_| !self.switched[lane]);
             let early = event.is_some_and(|crossing| !crossing.is_at_the_end()) && step > self.controller.event();
             match () {

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Step-size control for HHT.
 ///
 /// The local position error δ of a step (Negrut et al. 2007, §5) is of third order. Each step may have its share of the
-/// tolerance, δ ≤ tolerance · h / duration (an error per unit step), so that the error at the end is proportional to the
-/// tolerance. With δ ≤ tolerance for every step, as in the paper, the errors of ever more steps would add up, and the error
-/// at the end would fall with tolerance^(2/3) only.
+/// tolerance, δ ≤ tolerance · h / duration (an error per unit step), so that the error at the end is proportional to
+/// the tolerance. With δ ≤ tolerance for every step, as in the paper, the errors of ever more steps would add up, and
+/// the error at the end would fall with tolerance^(2/3) only.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Controller {
     /// Wanted position error over the duration, relative to max(1, |q|) of each coordinate's scale.

@@ -20,8 +20,8 @@ pub struct Divided {
 }
 
 impl TimeFunctions {
-    /// The same rows, with those steps divided that do not resolve a function of the time. A schedule that resolves all is
-    /// returned as it is.
+    /// The same rows, with those steps divided that do not resolve a function of the time. A schedule that resolves all
+    /// is returned as it is.
     pub fn divided(&self, schedule: &Schedule) -> Divided {
         let mut division = Division { functions: self, schedule, work: Work::default(), unresolved_from: None };
         let mut rows = Vec::new();

@@ -9,7 +9,8 @@ use crate::simulate::sampling::Instants;
 const ROUNDING: f64 = 1e-9;
 
 impl Schedule {
-    /// The same with each step divided at the instants in it, so that all parts of a step that are halved later end there too.
+    /// The same with each step divided at the instants in it, so that all parts of a step that are halved later end
+    /// there too.
     pub(in crate::simulate) fn ending_at(&self, instants: Instants<'_>) -> Cow<'_, Self> {
         let steps = || (1..self.rows).flat_map(|row| self.steps_to(row));
         if instants.is_empty() || steps().all(|(h, end)| instants.between(end - h, end).is_none()) {
@@ -28,8 +29,8 @@ impl Schedule {
         Cow::Owned(divided.taken(self.integration))
     }
 
-    /// An instant, or the time of the row that it is but for rounding, so that the row comes after what changes there; of a schedule of
-    /// this duration and output step, s.
+    /// An instant, or the time of the row that it is but for rounding, so that the row comes after what changes there;
+    /// of a schedule of this duration and output step, s.
     pub(in crate::simulate) fn at_row(instant: f64, (duration, output_step): (f64, f64)) -> f64 {
         let row = (instant / output_step).round();
         let time = Self::time_of(duration, output_step, row as usize);

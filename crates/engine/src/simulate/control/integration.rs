@@ -8,8 +8,8 @@ pub enum Integration {
     /// By the scheme, once.
     #[default]
     Plain,
-    /// By the scheme on several levels, each with the steps of the one before halved, combined so that the leading terms of
-    /// their errors cancel.
+    /// By the scheme on several levels, each with the steps of the one before halved, combined so that the leading
+    /// terms of their errors cancel.
     Extrapolated {
         /// 2, 3 or 4.
         levels: usize,

@@ -1,5 +1,5 @@
-//! The step schedule that all samples share: fixed, or controlled by a tolerance; in both cases divided where functions of the
-//! time ask for it.
+//! The step schedule that all samples share: fixed, or controlled by a tolerance; in both cases divided where functions
+//! of the time ask for it.
 
 mod adaptive;
 mod controller;

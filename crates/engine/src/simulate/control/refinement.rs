@@ -27,7 +27,8 @@ fn divided(times: &[f64], others: usize) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The same for steps of which some ends are kept; `others` says how many there are between two of these instead of so many.
+/// The same for steps of which some ends are kept; `others` says how many there are between two of these instead of so
+/// many.
 fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize) -> Steps {
     let mut divisions = Vec::new();
     let mut still = Vec::with_capacity(kept.len());
@@ -75,8 +76,8 @@ impl Schedule {
         Self { steps, ..*self }
     }
 
-    /// The same rows with between two and three steps for each, none of which ends where a step or half a step does but at the rows, and
-    /// where equations switch.
+    /// The same rows with between two and three steps for each, none of which ends where a step or half a step does but
+    /// at the rows, and where equations switch.
     #[must_use]
     pub fn at_odds(&self) -> Self {
         let steps = match &self.steps {

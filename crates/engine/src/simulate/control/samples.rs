@@ -37,9 +37,9 @@ pub struct ToleranceSchedule {
     pub failure: Option<SimulationError>,
 }
 
-/// The schedule at which every controlling sample keeps its local position errors within their shares of `tolerance`. Rows
-/// are whole multiples of `output_step`, and the end; a step is repeated with a smaller size where the largest error is too large or a
-/// sample does not converge.
+/// The schedule at which every controlling sample keeps its local position errors within their shares of `tolerance`.
+/// Rows are whole multiples of `output_step`, and the end; a step is repeated with a smaller size where the largest
+/// error is too large or a sample does not converge.
 ///
 /// A sample for which no step is small enough is dropped, and the others continue. Where there are too many steps, the
 /// schedule ends; so does it where it is interrupted.

@@ -1,7 +1,7 @@
 //! The step schedule that all samples share: the rows of output and the steps between them.
 //!
-//! The last row is at the end of the run, also where the output step does not divide the duration; then it is nearer to the row before.
-//! Where the step does not divide the time between these two, the last step is shorter.
+//! The last row is at the end of the run, also where the output step does not divide the duration; then it is nearer to
+//! the row before. Where the step does not divide the time between these two, the last step is shorter.
 
 use super::integration::Integration;
 use serde::{Deserialize, Serialize};
@@ -26,8 +26,8 @@ pub(super) enum Steps {
     Fixed { step: f64, per_row: usize, last: LastSteps },
     /// For each row but the first, the times at which the steps before it end; the last is the row's own.
     Listed(Vec<Vec<f64>>),
-    /// The times at which steps end, which pass over rows; the last is the end of the run. Those by these numbers are times at which equations
-    /// switch: all schedules of the motion keep them.
+    /// The times at which steps end, which pass over rows; the last is the end of the run. Those by these numbers are
+    /// times at which equations switch: all schedules of the motion keep them.
     Passing { ends: Vec<f64>, kept: Vec<usize> },
 }
 
@@ -82,8 +82,8 @@ impl Schedule {
         Self { output_step, rows: ends.len() + 1, end, steps: Steps::Listed(ends), integration: Integration::Plain }
     }
 
-    /// Steps that end at the listed times, whatever rows lie between. The ends by the numbers `kept` stay where they are in all schedules
-    /// that are made of this one.
+    /// Steps that end at the listed times, whatever rows lie between. The ends by the numbers `kept` stay where they
+    /// are in all schedules that are made of this one.
     pub fn passing((duration, output_step): (f64, f64), ends: Vec<f64>, kept: Vec<usize>) -> Self {
         let rows = rows(duration, output_step);
         let steps = Steps::Passing { ends, kept };
@@ -236,7 +236,8 @@ mod tests {
         assert_eq!(schedule.steps_before(200), 2000);
     }
 
-    /// Whatever the duration, the steps are as long as they should be, the last is not longer, and they end where the run does.
+    /// Whatever the duration, the steps are as long as they should be, the last is not longer, and they end where the
+    /// run does.
     #[test]
     fn the_last_row_is_at_the_end() {
         for (duration, step, output_step) in [

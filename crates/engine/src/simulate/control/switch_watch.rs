@@ -68,8 +68,8 @@ impl<'s> SwitchWatch<'s> {
         [self.before[place], self.after[place]]
     }
 
-    /// The least and the largest value that a switch has in the step between [`begin`](Self::begin) and [`end`](Self::end), as far as its
-    /// ends and a change of sign between them show.
+    /// The least and the largest value that a switch has in the step between [`begin`](Self::begin) and
+    /// [`end`](Self::end), as far as its ends and a change of sign between them show.
     pub fn extent(&self, switch: usize, lane: usize, h: f64) -> [f64; 2] {
         let [start, end] = self.ends(switch, lane);
         let [low, high] = [start[0].min(end[0]), start[0].max(end[0])];
@@ -116,8 +116,8 @@ impl<'s> SwitchWatch<'s> {
     }
 }
 
-/// Where the cubic through (value, rate) at both ends of a step first changes its sign; the line where rates are unknown.
-/// A value of zero has the sign that follows.
+/// Where the cubic through (value, rate) at both ends of a step first changes its sign; the line where rates are
+/// unknown. A value of zero has the sign that follows.
 fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64) -> Option<Crossing> {
     if !start.is_finite() || !end.is_finite() || start == 0.0 {
         return None;

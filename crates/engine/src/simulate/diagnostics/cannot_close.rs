@@ -17,8 +17,8 @@ pub struct OpenConstraint {
 }
 
 impl Simulator {
-    /// The constraint that cannot be closed at a time wherever positions are sought from `state` (the layout's registers), and
-    /// its residual. `None` where all constraints can be closed.
+    /// The constraint that cannot be closed at a time wherever positions are sought from `state` (the layout's
+    /// registers), and its residual. `None` where all constraints can be closed.
     pub(in crate::simulate) fn open_constraint(&self, state: &[f64], time: f64) -> Option<OpenConstraint> {
         // Of the start only the constraints are kept.
         let mut free = self.system.clone();

@@ -1,5 +1,5 @@
-//! Findings about a mechanism that its motion shows: singular configurations, loops that cannot be closed, terms that are no finite
-//! numbers, undetermined reactions.
+//! Findings about a mechanism that its motion shows: singular configurations, loops that cannot be closed, terms that
+//! are no finite numbers, undetermined reactions.
 
 mod cannot_close;
 mod not_finite;

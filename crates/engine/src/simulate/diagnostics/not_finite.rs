@@ -9,11 +9,12 @@ use crate::simulate::motion_values::motion_values;
 /// Operations of a term that are written out; deeper ones are left out.
 const DEEPEST: usize = 4;
 
-/// A term that is no finite number, and the equation that it is part of: `` `1/t` in the motion of rod.angle ``. `None` where all equations
-/// have finite values. `state` holds the values of the layout's registers.
+/// A term that is no finite number, and the equation that it is part of: `` `1/t` in the motion of rod.angle ``. `None`
+/// where all equations have finite values. `state` holds the values of the layout's registers.
 pub fn not_finite(system: &System, layout: &Layout, state: &[f64], time: f64) -> Option<String> {
     let values = motion_values(system, layout, state, time);
-    // Reactions and accelerations that follow from a term are not finite either; they say nothing of where it comes from.
+    // Reactions and accelerations that follow from a term are not finite either; they say nothing of where it comes
+    // from.
     let value_of = |symbol: Expr| values.get(&symbol).copied().unwrap_or(0.0);
     let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());
     let named = motion.map(|(&expr, coordinate)| (expr, format!("the motion of `{}`", coordinate.name)));

@@ -1,4 +1,4 @@
-//! What begins outside of what it is in: a journal outside of its bearing.
+//! Bodies that begin outside of their enclosure: a journal outside of its bearing.
 
 use symdiff::Expr;
 

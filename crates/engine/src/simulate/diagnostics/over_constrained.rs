@@ -1,7 +1,7 @@
 //! Why a mechanism cannot be assembled, where it has more constraints than coordinates can fulfil.
 //!
-//! The rank of Φ_q is taken off the constraints, at a state in no particular position: there rows depend on others only where the
-//! joints' kinds make them, and not since lengths or a symmetry do.
+//! The rank of Φ_q is taken off the constraints, at a state in no particular position: there rows depend on others only
+//! where the joints' kinds make them, and not since lengths or a symmetry do.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,10 +15,12 @@ const PART: f64 = 1e-6;
 /// Share of the coordinates' scales by which the state is moved off a position of its own.
 const APART: f64 = 0.37;
 
-/// Most constraints of which the joints that fix one another are looked for: the search takes their number to the third power.
+/// Most constraints of which the joints that fix one another are looked for: the search takes their number to the third
+/// power.
 const MOST: usize = 400;
 
-/// Coordinates, constraints, and which of these the others imply, near a state (the layout's registers); `None` where all can hold.
+/// Coordinates, constraints, and which of these the others imply, near a state (the layout's registers); `None` where
+/// all can hold.
 pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> Option<String> {
     let mut state = near.to_vec();
     for (place, register) in start.layout.q.clone().enumerate() {

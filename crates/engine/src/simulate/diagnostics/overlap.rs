@@ -32,7 +32,7 @@ pub struct OverlapWatch<'s> {
 }
 
 impl<'s> OverlapWatch<'s> {
-    /// For the samples of a tile, with the gaps and what is left of the overlaps.
+    /// For the samples of a tile, with the gaps and the remaining overlaps.
     pub fn new(program: &'s SwitchProgram, stepper: &Stepper) -> Self {
         let contacts = program.switches.len() / 2;
         Self { watch: SwitchWatch::new(program, stepper.tile()), contacts, found: None }

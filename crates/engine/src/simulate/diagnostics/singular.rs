@@ -1,17 +1,17 @@
-//! Singular configurations that a motion passes: there, constraints that are independent elsewhere depend on others, and the
-//! mechanism has more degrees of freedom for a moment.
+//! Singular configurations that a motion passes: there, constraints that are independent elsewhere depend on others,
+//! and the mechanism has more degrees of freedom for a moment.
 //!
-//! A step hardly ever ends in one. Where the Newton matrix's pivots are smallest between two steps, the least independent
-//! constraint is therefore sought on positions interpolated between the steps. Its independence vanishes in a singular
-//! configuration, and stays positive where the mechanism only comes near to one.
+//! A step hardly ever ends in one. Where the Newton matrix's pivots are smallest between two steps, the least
+//! independent constraint is therefore sought on positions interpolated between the steps. Its independence vanishes in
+//! a singular configuration, and stays positive where the mechanism only comes near to one.
 
 use crate::assemble::ConstraintId;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::{DEPENDENT, jacobian_rows, row_independence, usual_row_sizes};
 use crate::simulate::step::Stepper;
 
-/// Steps are examined where a pivot has lost this much of the range between its size at the pivot samples (1e-10) and the
-/// smallest that is trusted (1).
+/// Steps are examined where a pivot has lost this much of the range between its size at the pivot samples (1e-10) and
+/// the smallest that is trusted (1).
 const SUSPECT: f64 = 1e-8;
 
 /// A constraint whose independence (scaled) is less than this depends on the others. Interpolated positions are off by
@@ -88,8 +88,8 @@ impl<'s> SingularWatch<'s> {
         }
     }
 
-    /// The moment between the last three steps' ends in which a constraint is least independent, and the constraints that
-    /// depend on others there.
+    /// The moment between the last three steps' ends in which a constraint is least independent, and the constraints
+    /// that depend on others there.
     fn weakest(&self) -> SingularPass {
         let weakness = |time: f64| {
             let independence = self.independence(time);

@@ -1,8 +1,8 @@
 //! Reactions that equilibrium does not determine.
 //!
-//! Where constraints are redundant, Φ_qᵀ λ does not change along null vectors of Φ_qᵀ: reactions may be shifted along them,
-//! and only elasticity, which rigid bodies do not have, would determine the shift. The multipliers of the constraints that
-//! are reported as redundant are set to zero. The motion does not depend on that choice.
+//! Where constraints are redundant, Φ_qᵀ λ does not change along null vectors of Φ_qᵀ: reactions may be shifted along
+//! them, and only elasticity, which rigid bodies do not have, would determine the shift. The multipliers of the
+//! constraints that are reported as redundant are set to zero. The motion does not depend on that choice.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rustc_hash::FxHashMap;

@@ -1,11 +1,11 @@
 //! Frames for the remainder of a state's polynomials; they rotate with ξ.
 //!
-//! A state's remainder d = (δq̂, δv̂, δw) is carried in coordinates z, |zᵢ| ≤ rᵢ, of a frame that each step chooses anew:
-//! boxes in fixed coordinates would grow at every step, because a box must cover its rotated corners (the wrapping effect). The
-//! scheme moves d in two ways. 2f directions are slow: changed independent coordinates and velocities, with all else
-//! consistent. The others are fast: they break the constraints and their derivatives, in velocities by h and in accelerations by h² times
-//! as large as in positions, and fade (by 0.82 a step for α = −0.1). A frame that is not right for every ξ mixes both, a
-//! thousand times a second. So
+//! A state's remainder d = (δq̂, δv̂, δw) is carried in coordinates z, |zᵢ| ≤ rᵢ, of a frame that each step chooses
+//! anew: boxes in fixed coordinates would grow at every step, because a box must cover its rotated corners (the
+//! wrapping effect). The scheme moves d in two ways. 2f directions are slow: changed independent coordinates and
+//! velocities, with all else consistent. The others are fast: they break the constraints and their derivatives, in
+//! velocities by h and in accelerations by h² times as large as in positions, and fade (by 0.82 a step for α = −0.1). A
+//! frame that is not right for every ξ mixes both, a thousand times a second. So
 //!
 //! ```text
 //! d = S(ξ) Q z_s + F(ξ) z_f,     F = [V ⊗ P(ξ), T(ξ) in w],     Φ_q P = I,   Φ_q T = 0
@@ -13,11 +13,11 @@
 //!
 //! S follows the motion exactly, S₊ = B S (W B S)⁻¹ for the step's derivative B(ξ), where W takes the independent
 //! coordinates and velocities out, and the inverse is that at the box's centre: nothing slow becomes fast, and the slow
-//! coordinates are mapped by numbers that do not depend on ξ. Lohner's constant orthogonal Q, the column with the largest
-//! remainder first, is then enough for them. P is the reactions' push M⁻¹Φ_qᵀ(Φ_q M⁻¹ Φ_qᵀ)⁻¹, which is orthogonal to the
-//! motion in the metric of the masses: fast modes fade without becoming slow, up to O(h). It stands in the Newton
-//! matrix's inverse. V brings the map of a gap ν and its derivatives, the same 3 × 3 numbers for every constraint, nearly
-//! to diagonal form, so that absolute values contract too. T is what accelerations have beside.
+//! coordinates are mapped by numbers that do not depend on ξ. Lohner's constant orthogonal Q, the column with the
+//! largest remainder first, is then enough for them. P is the reactions' push M⁻¹Φ_qᵀ(Φ_q M⁻¹ Φ_qᵀ)⁻¹, which is
+//! orthogonal to the motion in the metric of the masses: fast modes fade without becoming slow, up to O(h). It stands
+//! in the Newton matrix's inverse. V brings the map of a gap ν and its derivatives, the same 3 × 3 numbers for every
+//! constraint, nearly to diagonal form, so that absolute values contract too. T is what accelerations have beside.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use symdiff::Interval;
@@ -110,8 +110,9 @@ impl Frame {
         self.coordinates_of(space, &nothing, &[0.0], spread, |_, _| ())
     }
 
-    /// The frame for B z + e, where the first 3n columns of `moved` are B, a step's derivative along this frame's columns; and
-    /// the radii in it of all that `moved` maps from |zᵢ| ≤ `radii`, and of |eᵢ| ≤ `fresh`. `push` is P, n × m, in SI units.
+    /// The frame for B z + e, where the first 3n columns of `moved` are B, a step's derivative along this frame's
+    /// columns; and the radii in it of all that `moved` maps from |zᵢ| ≤ `radii`, and of |eᵢ| ≤ `fresh`. `push` is P, n
+    /// × m, in SI units.
     ///
     /// # Errors
     /// Where the frame degenerates.
@@ -211,7 +212,8 @@ impl Frame {
         Ok(())
     }
 
-    /// Bounds of this frame's coordinates of B z + e, |zᵢ| ≤ `radii`, |eᵢ| ≤ `fresh`; `turn` may choose Q, told what B is in the basis.
+    /// Bounds of this frame's coordinates of B z + e, |zᵢ| ≤ `radii`, |eᵢ| ≤ `fresh`; `turn` may choose Q, told what B
+    /// is in the basis.
     ///
     /// (S F) x = B z + e has x = R (B z + e) + (I − R (S F)) x for R ≈ (S F)⁻¹, and z_s = Qᵀ x_s + (I − QᵀQ) z_s.
     fn coordinates_of(

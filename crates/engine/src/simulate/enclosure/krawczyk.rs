@@ -11,8 +11,8 @@ const ATTEMPTS: usize = 12;
 /// Factor by which the next box is larger than the image of the last one.
 const INFLATION: f64 = 1.25;
 
-/// The operator for a box of corrections |y| ≤ g: a bound of |C times the residual|, and one of |I − C J| with the derivatives J
-/// over the solutions in the box, row by row.
+/// The operator for a box of corrections |y| ≤ g: a bound of |C times the residual|, and one of |I − C J| with the
+/// derivatives J over the solutions in the box, row by row.
 pub(super) struct Image {
     pub missed: Vec<f64>,
     pub contraction: Bounds,

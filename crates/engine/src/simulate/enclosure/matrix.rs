@@ -219,8 +219,8 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// Bounds of the absolute values of a matrix's entries. A matrix without columns has rows: a mechanism without degrees of freedom has
-/// such matrices.
+/// Bounds of the absolute values of a matrix's entries. A matrix without columns has rows: a mechanism without degrees
+/// of freedom has such matrices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bounds {
     rows: usize,

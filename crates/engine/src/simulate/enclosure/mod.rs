@@ -1,7 +1,7 @@
 //! Certified motions: the solution of the scheme's equations, enclosed for a whole box of parameters at once.
 //!
-//! With q̂ and v̂ for the parts of q₊ and v₊ that do not depend on w₊ (`compile/newton_matrix.rs`), a step takes (q̂, v̂, w) to
-//! the next by
+//! With q̂ and v̂ for the parts of q₊ and v₊ that do not depend on w₊ (`compile/newton_matrix.rs`), a step takes (q̂,
+//! v̂, w) to the next by
 //!
 //! ```text
 //! q₊ = q̂ + b x,   v₊ = v̂ + c x,   F(x, λ₊; q̂, v̂, ξ) = 0        F = (M w₊ + Φ_qᵀ λ₊ − Q, Φ/b) at (t₊, q₊, v₊, w₊ = x)
@@ -11,8 +11,8 @@
 //! scheme's coefficients as they stand in `f64`: rounding and Newton's tolerance are bounded, the distance to the
 //! differential equation's solution is not.
 //!
-//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials ([`frame`]). A
-//! step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ), and proves by
+//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials ([`frame`]).
+//! A step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ), and proves by
 //! Krawczyk's operator that for every ξ and z there is a solution x = X + Y z + y with small y:
 //!
 //! ```text
@@ -20,8 +20,8 @@
 //! ```
 //!
 //! Brouwer's theorem gives a solution where the right side maps a box |y| ≤ g into itself, ‖I − C J‖ < 1 that there is
-//! but one. C, X, Y and A need no proof: their errors are in the bounds. The next z contains the z before, transformed into
-//! the next frame, and y.
+//! but one. C, X, Y and A need no proof: their errors are in the bounds. The next z contains the z before, transformed
+//! into the next frame, and y.
 
 mod frame;
 mod krawczyk;
@@ -38,7 +38,8 @@ use crate::compile::{Coefficients, EquationsProgram, Tapes, compile_equations};
 use frame::{Frame, Units};
 use matrix::Models;
 
-/// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder depends on it.
+/// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder depends on
+/// it.
 const MOTION_TIME: f64 = 0.1;
 
 /// Why an enclosure fails.

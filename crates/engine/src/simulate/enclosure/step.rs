@@ -75,7 +75,8 @@ impl<'s> Enclosure<'s> {
         sum
     }
 
-    /// (q̂, v̂, w) and x at the step's end: q₊, v₊, and the next q̂, v̂. The map is linear and serves states and columns.
+    /// (q̂, v̂, w) and x at the step's end: q₊, v₊, and the next q̂, v̂. The map is linear and serves states and
+    /// columns.
     fn advance_coordinate(&self, position: &[f64], velocity: &[f64], w: &[f64], x: &[f64]) -> [Vec<f64>; 4] {
         let gains = &self.gains;
         let q = self.combine(&[(None, position), (Some(gains.b), x)]);
@@ -89,8 +90,8 @@ impl<'s> Enclosure<'s> {
         [q, v, position, velocity]
     }
 
-    /// One step to the time `end`, with its length and that of the step after it. On return the memory holds q₊, v₊, w₊, λ₊ with all
-    /// their radii.
+    /// One step to the time `end`, with its length and that of the step after it. On return the memory holds q₊, v₊,
+    /// w₊, λ₊ with all their radii.
     pub(super) fn step(&mut self, end: f64, (length, next): (f64, f64)) -> Result<(), EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
         self.gains = self.next.gains;

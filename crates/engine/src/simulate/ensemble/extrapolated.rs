@@ -1,7 +1,7 @@
 //! Extrapolation: runs with steps h, h/2, h/4, … combined so that the leading terms of their errors cancel.
 //!
-//! The scheme's error at a time is a h² + b h³ + c h⁴ + …: it is not even in h, since the algorithmic acceleration belongs to a
-//! time beside the step's end. So L levels have the combination
+//! The scheme's error at a time is a h² + b h³ + c h⁴ + …: it is not even in h, since the algorithmic acceleration
+//! belongs to a time beside the step's end. So L levels have the combination
 //!
 //! ```text
 //! T₁(h) = run with h        T_{k+1}(h) = (2^{k+1} T_k(h/2) − T_k(h)) / (2^{k+1} − 1)
@@ -167,7 +167,8 @@ impl<'s> ExtrapolatedRun<'s> {
     }
 }
 
-/// Observed values in rows (row, line, lane), from a motion (row, line, sample) whose samples from `first` on are the lanes.
+/// Observed values in rows (row, line, lane), from a motion (row, line, sample) whose samples from `first` on are the
+/// lanes.
 fn closed(
     closure: &mut RowClosure,
     schedule: &Schedule,

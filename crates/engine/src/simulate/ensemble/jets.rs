@@ -67,8 +67,8 @@ impl<'s> JetRun<'s> {
         self
     }
 
-    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by output,
-    /// coefficient by coefficient. Returns where the run stopped, if it did.
+    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
+    /// output, coefficient by coefficient. Returns where the run stopped, if it did.
     pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         into.clear();
         for row in rows {
@@ -138,8 +138,8 @@ impl<'s> JetRun<'s> {
         }
     }
 
-    /// Appends the outputs. Their accelerations are those of [`super::row_accelerations`]; where these have no jet, those of
-    /// the steps.
+    /// Appends the outputs. Their accelerations are those of [`super::row_accelerations`]; where these have no jet,
+    /// those of the steps.
     fn observe(&mut self, into: &mut Vec<f64>) {
         let layout = &self.simulator.program.layout;
         let unknowns = layout.v.start..layout.lambda.end;
@@ -298,8 +298,8 @@ pub(super) fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Ite
 /// Further corrections of a start that is nearest to rest.
 const LEAST_SQUARES_CORRECTIONS: usize = 10;
 
-/// Makes the jet of the start consistent. Its constant terms are consistent already, and every Newton correction in jets
-/// doubles the number of orders that are.
+/// Makes the jet of the start consistent. Its constant terms are consistent already, and every Newton correction in
+/// jets doubles the number of orders that are.
 fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first_step: f64) {
     let start = &simulator.start;
     let layout = &start.layout;

@@ -1,8 +1,9 @@
 //! Samples that need shorter steps than the schedule has.
 //!
-//! The schedule is the controlling samples'. Another sample may meet a contact at another time, or move faster between them. Where
-//! its local error in a step of the schedule is more than the step's share of the tolerance, or where its equations switch, it
-//! takes steps of its own up to that step's end, and goes on with them until they are as long as the schedule's.
+//! The schedule is the controlling samples'. Another sample may meet a contact at another time, or move faster between
+//! them. Where its local error in a step of the schedule is more than the step's share of the tolerance, or where its
+//! equations switch, it takes steps of its own up to that step's end, and goes on with them until they are as long as
+//! the schedule's.
 
 use symdiff::Tile;
 

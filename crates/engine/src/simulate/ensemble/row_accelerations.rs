@@ -1,11 +1,12 @@
 //! Accelerations and multipliers of rows of output, from the positions and velocities there.
 //!
-//! A step's own w₊ and λ₊ fulfil Φ(q₊) = 0 through b w₊, b ∼ h²: rounding and Newton's tolerance are in them as ε/h², and a
-//! change of h disturbs them by as much as it changes. Positions and velocities do not suffer. So where outputs depend on w
-//! or λ, a row takes those that solve M w + Φ_qᵀ λ = Q and Φ̈ = 0 at its q and v. The steps go on with their own.
+//! A step's own w₊ and λ₊ fulfil Φ(q₊) = 0 through b w₊, b ∼ h²: rounding and Newton's tolerance are in them as ε/h²,
+//! and a change of h disturbs them by as much as it changes. Positions and velocities do not suffer. So where outputs
+//! depend on w or λ, a row takes those that solve M w + Φ_qᵀ λ = Q and Φ̈ = 0 at its q and v. The steps go on with
+//! their own.
 //!
-//! With controlled steps velocities are made consistent too: steps grow as long as what moves allows, and leave Φ_q v + Φ_t =
-//! C h² with it, which local errors of positions do not show.
+//! With controlled steps velocities are made consistent too: steps grow as long as what moves allows, and leave Φ_q v +
+//! Φ_t = C h² with it, which local errors of positions do not show.
 
 use symdiff::Tile;
 
@@ -43,8 +44,8 @@ impl<'s> RowAccelerations<'s> {
         Some(Self { layout, assembly, projects_velocities, solves_accelerations, own: Vec::new() })
     }
 
-    /// The outputs of the state, as [`Stepper::observe`] gives them, with these accelerations. A lane in which they are not
-    /// determined, as in a singular configuration, keeps those of its step.
+    /// The outputs of the state, as [`Stepper::observe`] gives them, with these accelerations. A lane in which they are
+    /// not determined, as in a singular configuration, keeps those of its step.
     pub fn observe(&mut self, stepper: &mut Stepper, into: &mut [f64]) {
         let (layout, width) = (self.layout, stepper.tile().width());
         let block = |registers: std::ops::Range<usize>| registers.start * width..registers.end * width;

@@ -1,8 +1,8 @@
 //! Rows of output from positions and velocities that are no step's own: combined from several runs, or interpolated.
 //!
-//! They miss the constraints by as much as they miss the motion. Positions are moved onto the constraints by the smallest change,
-//! velocities by impulses of the constraints, both of the order of that error, whatever coordinates are independent there.
-//! Accelerations and multipliers follow from the equations, and with them the outputs.
+//! They miss the constraints by as much as they miss the motion. Positions are moved onto the constraints by the
+//! smallest change, velocities by impulses of the constraints, both of the order of that error, whatever coordinates
+//! are independent there. Accelerations and multipliers follow from the equations, and with them the outputs.
 
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
@@ -19,7 +19,8 @@ struct Needs {
     closure: bool,
     /// Whether outputs depend on accelerations or multipliers.
     accelerations: bool,
-    /// Whether one correction solves for the accelerations: forces do not depend on multipliers, and no constraint is redundant.
+    /// Whether one correction solves for the accelerations: forces do not depend on multipliers, and no constraint is
+    /// redundant.
     linear: bool,
 }
 
@@ -109,7 +110,8 @@ impl<'s> RowClosure<'s> {
         into[n..].copy_from_slice(&self.assembly.tile().values()[layout.w.start * width..layout.w.end * width]);
     }
 
-    /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n lines).
+    /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n
+    /// lines).
     pub fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
         if !self.program.sampled.iter().any(|sampled| sampled.is_due(time)) {
             return false;

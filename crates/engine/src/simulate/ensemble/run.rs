@@ -41,7 +41,8 @@ struct TileRun<'s> {
     sampling: Option<Sampling<'s>>,
     /// With a tolerance: keeps all lanes within it.
     lanes: Option<LaneSteps<'s>>,
-    /// The first row before which a lane's local errors add up to more than the tolerance, or its steps pass over a feature.
+    /// The first row before which a lane's local errors add up to more than the tolerance, or its steps pass over a
+    /// feature.
     beyond: Option<usize>,
     /// Where switches are observed.
     switches: Option<SwitchExtents<'s>>,
@@ -167,7 +168,8 @@ impl<'s> EnsembleRun<'s> {
         self
     }
 
-    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
+    /// stopped.
     pub fn reduced(&mut self) -> Vec<f64> {
         let mut values = Vec::new();
         for tile in &mut self.tiles {
@@ -182,9 +184,9 @@ impl<'s> EnsembleRun<'s> {
         values
     }
 
-    /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records the `observed` values: row by
-    /// row, value by value, sample by sample. With a tolerance, a sample that exceeds it takes shorter steps. Returns the
-    /// samples that stopped.
+    /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records the `observed`
+    /// values: row by row, value by value, sample by sample. With a tolerance, a sample that exceeds it takes shorter
+    /// steps. Returns the samples that stopped.
     pub fn advance(
         &mut self,
         schedule: &Schedule,
@@ -229,8 +231,8 @@ impl<'s> EnsembleRun<'s> {
         self.tiles.iter().find_map(|tile| tile.parting.as_ref()?.error())
     }
 
-    /// The constraint that cannot be closed where a sample stopped: the mechanism locks there. Known for the first sample of
-    /// each tile that stops.
+    /// The constraint that cannot be closed where a sample stopped: the mechanism locks there. Known for the first
+    /// sample of each tile that stops.
     pub fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
         let mut stopped = self.tiles.iter().filter_map(|tile| tile.stopped.as_ref());
         let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
@@ -246,7 +248,8 @@ impl<'s> EnsembleRun<'s> {
         not_finite(&self.simulator.system, &self.simulator.program.layout, state, stop.time)
     }
 
-    /// The first row before which a sample's local errors add up to more than the tolerance, or fixed steps pass over a force.
+    /// The first row before which a sample's local errors add up to more than the tolerance, or fixed steps pass over a
+    /// force.
     pub fn beyond_tolerance_from(&self) -> Option<usize> {
         self.tiles.iter().filter_map(|tile| tile.beyond).min()
     }

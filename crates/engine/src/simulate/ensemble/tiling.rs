@@ -12,7 +12,8 @@ const TILE_MEMORY: usize = 2 << 20;
 /// See [`TILE_MEMORY`].
 const NARROWEST: usize = 8;
 
-/// Tiles of `samples` with this many registers each for `threads`: (first, count, width). Results do not depend on the tiling.
+/// Tiles of `samples` with this many registers each for `threads`: (first, count, width). Results do not depend on the
+/// tiling.
 pub(super) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
     let fits = TILE_MEMORY / (registers * size_of::<f64>()).max(1);
     let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));

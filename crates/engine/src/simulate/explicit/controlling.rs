@@ -9,14 +9,16 @@ use crate::simulate::error::SimulationError;
 use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 
-/// What functions of the positions may change by in a step, as a share of their range: rows of a long step see some of it.
+/// What functions of the positions may change by in a step, as a share of their range: rows of a long step see some of
+/// it.
 const MOST_PASSED: f64 = 0.75;
 
 /// Controlling samples in step.
 #[derive(Debug)]
 pub(super) struct Tiles<'s> {
     tiles: Vec<Tile<'s>>,
-    /// Where equations switch, of a sample that is the only one: steps that end where some do would hide their effect on the others between.
+    /// Where equations switch, of a sample that is the only one: steps that end where some do would hide their effect
+    /// on the others between.
     watch: Option<SwitchWatch<'s>>,
     features: Option<&'s Features>,
     samples: Vec<Sample>,

@@ -1,7 +1,9 @@
-//! Dormand and Prince's explicit method of order 8 on the equations of motion, with the constraints differentiated twice.
+//! Dormand and Prince's explicit method of order 8 on the equations of motion, with the constraints differentiated
+//! twice.
 //!
-//! The accelerations follow from M w + Φ_qᵀ λ = Q and Φ̈ = 0 at every stage; after each step positions and velocities are moved
-//! back onto the constraints, by less than the step's error. In joint coordinates of open chains there is nothing to move.
+//! The accelerations follow from M w + Φ_qᵀ λ = Q and Φ̈ = 0 at every stage; after each step positions and velocities
+//! are moved back onto the constraints, by less than the step's error. In joint coordinates of open chains there is
+//! nothing to move.
 //!
 //! - `tableau`: the coefficients;
 //! - `runge_kutta`: a step, its errors and its dense output, for states of samples and of jets alike;

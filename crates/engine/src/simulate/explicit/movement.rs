@@ -13,8 +13,8 @@ const REST: f64 = 1e-9;
 pub(super) struct Movement {
     /// Distance from the start, or speed.
     farthest: Vec<f64>,
-    /// Least that counts, and what lines are of a kind: metres, angles, their rates; nothing depends on a coordinate whose velocity
-    /// is a state.
+    /// Least that counts, and what lines are of a kind: metres, angles, their rates; nothing depends on a coordinate
+    /// whose velocity is a state.
     least: Vec<f64>,
     kinds: Vec<Option<usize>>,
 }

@@ -127,7 +127,8 @@ impl<'s> ExplicitRun<'s> {
         self
     }
 
-    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
+    /// stopped.
     pub fn reduced(&mut self) -> Vec<f64> {
         let mut values = Vec::new();
         for tile in &mut self.tiles {
@@ -141,8 +142,8 @@ impl<'s> ExplicitRun<'s> {
         values
     }
 
-    /// Advances to `rows`, which follow the rows of the last call, and records the `observed` values: row by row, value by value,
-    /// sample by sample. Returns the samples that stopped: whose state is no longer finite.
+    /// Advances to `rows`, which follow the rows of the last call, and records the `observed` values: row by row, value
+    /// by value, sample by sample. Returns the samples that stopped: whose state is no longer finite.
     pub fn advance(
         &mut self,
         schedule: &Schedule,
@@ -246,8 +247,8 @@ fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[boo
 /// Action after a step, given its end.
 type Stepped<'f, M> = dyn FnMut(&mut RungeKutta, &mut M, f64) + 'f;
 
-/// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is called after each,
-/// before the run goes on from its end.
+/// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is
+/// called after each, before the run goes on from its end.
 fn reach<M: Motion>(
     run: &mut RungeKutta,
     motion: &mut M,
@@ -308,8 +309,8 @@ impl<'s> ExplicitJets<'s> {
         Ok(Self { simulator, motion, run, steps: 0, coordinates: simulator.system.q.len() })
     }
 
-    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by output,
-    /// coefficient by coefficient. Returns where the run stopped, if it did.
+    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
+    /// output, coefficient by coefficient. Returns where the run stopped, if it did.
     pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         into.clear();
         let ends = schedule.ending_at(Instants::of(self.simulator)).ends();

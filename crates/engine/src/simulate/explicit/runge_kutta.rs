@@ -1,4 +1,5 @@
-//! A step of the method for states q, v of whatever kind: each of the 2n lines holds values of lanes, or coefficients of a jet.
+//! A step of the method for states q, v of whatever kind: each of the 2n lines holds values of lanes, or coefficients
+//! of a jet.
 
 use symdiff::{Vectorise, vectorised};
 
@@ -113,8 +114,8 @@ impl RungeKutta {
         }
     }
 
-    /// Errors of the step that was finished, lane by lane; `sizes` (2n) is what counts as one of each line, `tolerance` the share of
-    /// it that a step may err by.
+    /// Errors of the step that was finished, lane by lane; `sizes` (2n) is what counts as one of each line, `tolerance`
+    /// the share of it that a step may err by.
     pub fn errors(&self, end: f64, sizes: &[f64], tolerance: f64, width: usize) -> Vec<StepError> {
         let h = end - self.time;
         let error_of = |weights: Row, place: usize| -> f64 {

@@ -1,4 +1,5 @@
-//! The steps that a tolerance asks for: all controlling samples in step, the worst decides; and what stands against the method.
+//! The steps that a tolerance asks for: all controlling samples in step, the worst decides; and what stands against the
+//! method.
 
 use symdiff::math;
 
@@ -16,7 +17,8 @@ const FIRST_STEP: f64 = 1e-2;
 /// Smallest step, as a share of the duration.
 const SMALLEST: f64 = 1e-12;
 
-/// A switch is located to this share of the duration, and a step that ends within this share of itself beyond one ends there.
+/// A switch is located to this share of the duration, and a step that ends within this share of itself beyond one ends
+/// there.
 const LOCATED: f64 = 1e-10;
 const AT_THE_END: f64 = 1e-6;
 
@@ -63,8 +65,8 @@ pub enum ExplicitObstacle {
     },
 }
 
-/// The schedule at which every controlling sample keeps each step's error below `tolerance`, of at most so many steps. Rows
-/// stand where they are; steps pass over them.
+/// The schedule at which every controlling sample keeps each step's error below `tolerance`, of at most so many steps.
+/// Rows stand where they are; steps pass over them.
 ///
 /// # Errors
 /// Where a controlling sample cannot be assembled; inside, what stands against the method.

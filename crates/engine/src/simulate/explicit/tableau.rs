@@ -1,5 +1,5 @@
-//! The coefficients of Dormand and Prince's pair of orders 8, 5 and 3 with its dense output of order 7, as published: Hairer,
-//! Nørsett & Wanner, *Solving Ordinary Differential Equations I* (2nd ed., 1993), II.5 and II.6.
+//! The coefficients of Dormand and Prince's pair of orders 8, 5 and 3 with its dense output of order 7, as published:
+//! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I* (2nd ed., 1993), II.5 and II.6.
 
 /// Weights of earlier stages: (stage, weight).
 pub(super) type Row = &'static [(usize, f64)];

@@ -1,8 +1,9 @@
 //! Frequencies, damping ratios and shapes: (λ² M + λ C + K) φ = 0 on the motions that the constraints allow.
 //!
-//! Without damping that is a symmetric problem. Else the eigenvalues are those of [0 I; −M⁻¹K −M⁻¹C], by real Schur decomposition, and the
-//! shapes come from inverse iteration. A pair σ ± iω is a mode of frequency |λ| and damping ratio −σ/|λ|; two real eigenvalues λ₁, λ₂ are one
-//! of √(λ₁λ₂) and −(λ₁ + λ₂)/(2√(λ₁λ₂)), so that both go on smoothly where damping becomes critical.
+//! Without damping that is a symmetric problem. Else the eigenvalues are those of [0 I; −M⁻¹K −M⁻¹C], by real Schur
+//! decomposition, and the shapes come from inverse iteration. A pair σ ± iω is a mode of frequency |λ| and damping
+//! ratio −σ/|λ|; two real eigenvalues λ₁, λ₂ are one of √(λ₁λ₂) and −(λ₁ + λ₂)/(2√(λ₁λ₂)), so that both go on smoothly
+//! where damping becomes critical.
 
 use nalgebra::{DMatrix, DVector, Schur, SymmetricEigen};
 
@@ -40,7 +41,8 @@ struct Reduced {
     basis: Vec<Vec<f64>>,
 }
 
-/// All modes of a configuration, the slowest first. `None` where M is not positive there, or the iteration does not end.
+/// All modes of a configuration, the slowest first. `None` where M is not positive there, or the iteration does not
+/// end.
 pub fn modes(linear: &Linearised) -> Option<Vec<Mode>> {
     let basis = RowSpace::of(&linear.jacobian, linear.motion.len()).null;
     if basis.is_empty() {

@@ -1,13 +1,13 @@
-//! Eigenvalues where there are states: ẋ = A x with x = (p, u), positions and velocities of the motions that the constraints allow, and the states
-//! among u.
+//! Eigenvalues where there are states: ẋ = A x with x = (p, u), positions and velocities of the motions that the
+//! constraints allow, and the states among u.
 //!
 //! ```text
 //! ṗ = u_p,   Nᵀ M N u̇ = −Nᵀ C N u − Nᵀ K N_p p
 //! ```
 //!
-//! N are the motions that Φ_q allows, and the states. Eigenvalues are those of the strongly connected blocks of A, each balanced (Parlett &
-//! Reinsch, Numer. Math. 13 (1969) 293), by real Schur decomposition: values independent of a filter have no error of it. Eigenvectors come from
-//! inverse iteration.
+//! N are the motions that Φ_q allows, and the states. Eigenvalues are those of the strongly connected blocks of A, each
+//! balanced (Parlett & Reinsch, Numer. Math. 13 (1969) 293), by real Schur decomposition: values independent of a
+//! filter have no error of it. Eigenvectors come from inverse iteration.
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
@@ -47,7 +47,8 @@ impl Eigenvalue {
         self.value.im > 0.0
     }
 
-    /// The trace of the product of two spectral projectors: how many of the one's eigenvalues are the other's. It does not depend on units.
+    /// The trace of the product of two spectral projectors: how many of the one's eigenvalues are the other's. It does
+    /// not depend on units.
     pub fn shared(&self, other: &Self) -> f64 {
         let own = product(&self.left, &self.right) * product(&other.left, &other.right);
         let mut trace = (product(&self.left, &other.right) * product(&other.left, &self.right) / own).re;
@@ -67,7 +68,8 @@ fn product(left: &[Complex<f64>], right: &[Complex<f64>]) -> Complex<f64> {
     left.iter().zip(right).map(|(a, b)| a * b).sum()
 }
 
-/// All eigenvalues about a configuration whose states are the velocities of these coordinates, the slowest first. `None` where the equations have no accelerations, or the iteration does not end.
+/// All eigenvalues about a configuration whose states are the velocities of these coordinates, the slowest first.
+/// `None` where the equations have no accelerations, or the iteration does not end.
 pub fn eigenvalues(linear: &Linearised, states: &[usize]) -> Option<Vec<Eigenvalue>> {
     let first_order = FirstOrder::of(linear, states)?;
     let balanced = Balanced::of(first_order.matrix.clone());
@@ -204,7 +206,8 @@ impl Balanced {
     }
 }
 
-/// The vector that A − μ makes smallest, as real equations, of twice the size where μ is not real; its largest part is 1.
+/// The vector that A − μ makes smallest, as real equations, of twice the size where μ is not real; its largest
+/// part is 1.
 fn inverse_iteration(matrix: &DMatrix<f64>, near: Complex<f64>, begin: &[f64]) -> Option<Vec<Complex<f64>>> {
     let size = matrix.nrows();
     let parts = if near.im == 0.0 { 1 } else { 2 };

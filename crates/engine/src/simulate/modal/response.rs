@@ -1,5 +1,6 @@
-//! What a harmonic load of size one does: (K + iω C − ω² M) x = f on the motions that the constraints allow, for a load along an
-//! output u: f = ∂u/∂q. A state y is iω times its coordinate, so that its row says iω y = ∂f/∂q x + iω ∂f/∂v x + ∂f/∂y y of its rate f.
+//! What a harmonic load of size one does: (K + iω C − ω² M) x = f on the motions that the constraints allow, for a load
+//! along an output u: f = ∂u/∂q. A state y is iω times its coordinate, so that its row says
+//! iω y = ∂f/∂q x + iω ∂f/∂v x + ∂f/∂y y of its rate f.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -22,8 +23,8 @@ impl<'l> Response<'l> {
         Self { linear, space, small }
     }
 
-    /// Real and imaginary part of an output, whose derivatives by q, v, w and λ are given, under the load `force` at ω, rad/s. NaN at the
-    /// frequency of a mode without damping.
+    /// Real and imaginary part of an output, whose derivatives by q, v, w and λ are given, under the load `force` at ω,
+    /// rad/s. NaN at the frequency of a mode without damping.
     pub fn of(&self, force: &[f64], output: [&[f64]; 4], omega: f64) -> [f64; 2] {
         let (k, n) = (self.space.null.len(), force.len());
         let [mass, damping, stiffness] = &self.small;

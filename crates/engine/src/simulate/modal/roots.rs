@@ -1,8 +1,8 @@
 //! Modes of mechanisms with states: vibrations and lags, how they are followed over the box, and their results.
 //!
-//! A pair σ ± iω is a vibration of frequency |λ| and damping ratio −σ/|λ|, a real eigenvalue a lag of time constant −1/λ; the growth is Re λ. What is a
-//! vibration with the nominal parameters stays one where it becomes two real eigenvalues, √(λ₁λ₂) and −(λ₁ + λ₂)/(2√(λ₁λ₂)), and two lags that
-//! become a pair have its real part both.
+//! A pair σ ± iω is a vibration of frequency |λ| and damping ratio −σ/|λ|, a real eigenvalue a lag of time constant
+//! −1/λ; the growth is Re λ. What is a vibration with the nominal parameters stays one where it becomes two real
+//! eigenvalues, √(λ₁λ₂) and −(λ₁ + λ₂)/(2√(λ₁λ₂)), and two lags that become a pair have its real part both.
 
 use std::f64::consts::TAU;
 
@@ -131,7 +131,8 @@ impl<'l> OutputChanges<'l> {
     }
 }
 
-/// The eigenvalues that are those of known modes, in their order, and the least likeness. The most alike are matched first.
+/// The eigenvalues that are those of known modes, in their order, and the least likeness. The most alike are matched
+/// first.
 pub fn followed(known: &[Root], found: &[Eigenvalue]) -> (Vec<Root>, f64) {
     let mut matches = matches(known, found);
     matches.sort_by(|a, b| b.likeness.total_cmp(&a.likeness).then((&a.known, &a.found).cmp(&(&b.known, &b.found))));

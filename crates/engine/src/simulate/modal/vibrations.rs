@@ -113,9 +113,9 @@ impl Vibrations {
         self.number
     }
 
-    /// The equations about a state's position (the layout's registers), as if it were held there and let go, and the outputs of the state
-    /// itself. Away from an equilibrium a stiffness depends on the coordinates; this is the one in the metric of the kinetic energy. States are
-    /// held at their values.
+    /// The equations about a state's position (the layout's registers), as if it were held there and let go, and the
+    /// outputs of the state itself. Away from an equilibrium a stiffness depends on the coordinates; this is the one in
+    /// the metric of the kinetic energy. States are held at their values.
     fn linearised(&self, state: &[f64]) -> (Linearised, Vec<f64>) {
         let layout = &self.program.layout;
         let parameters = &state[layout.parameters.clone()];
@@ -141,7 +141,8 @@ impl Vibrations {
         (at.linearise(), outputs)
     }
 
-    /// The modes of a state that are most like those of a known place, and how much alike the least are; without one, the slowest.
+    /// The modes of a state that are most like those of a known place, and how much alike the least are; without one,
+    /// the slowest.
     pub fn place(&self, state: &[f64], known: Option<&Place>) -> Option<(Place, f64)> {
         let (linear, _) = self.linearised(state);
         let reference = known.or(self.first.as_ref());

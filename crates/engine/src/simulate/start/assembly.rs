@@ -173,8 +173,8 @@ impl<'p> Assembly<'p> {
         self.assemble().into_iter().next().map_or(Ok(()), Err)
     }
 
-    /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the largest residual of each lane that
-    /// cannot be assembled, lane by lane.
+    /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the largest residual of each lane
+    /// that cannot be assembled, lane by lane.
     pub fn assemble_from(&mut self, nominal: &[f64]) -> Vec<ConstraintResidual> {
         self.set_state(nominal);
         self.assemble()
@@ -187,8 +187,8 @@ impl<'p> Assembly<'p> {
         self.complete()
     }
 
-    /// Velocities, accelerations and multipliers for assembled positions. Returns the largest residual of each lane that has
-    /// none.
+    /// Velocities, accelerations and multipliers for assembled positions. Returns the largest residual of each lane
+    /// that has none.
     fn complete(&mut self) -> Vec<ConstraintResidual> {
         let program = self.program;
         self.tile.run(program.position());
@@ -300,8 +300,8 @@ impl<'p> Assembly<'p> {
         residuals.map(|residual| self.tile.lane(residual.register)[0].powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Positions, velocities, accelerations and multipliers of the one lane at its time, from its present state. Returns
-    /// whether there are any.
+    /// Positions, velocities, accelerations and multipliers of the one lane at its time, from its present state.
+    /// Returns whether there are any.
     pub fn close(&mut self) -> bool {
         let program = self.program;
         if !self.correct_until_settled(program.position(), program.layout.q.start)[0] {
@@ -329,8 +329,8 @@ impl<'p> Assembly<'p> {
         &self.scale
     }
 
-    /// Full corrections of the values from register `start` on, until every lane has settled or the corrections are used up.
-    /// Returns which lanes have settled.
+    /// Full corrections of the values from register `start` on, until every lane has settled or the corrections are
+    /// used up. Returns which lanes have settled.
     pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) -> Vec<bool> {
         let layout = &self.program.layout;
         let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };

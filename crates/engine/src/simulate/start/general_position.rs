@@ -35,7 +35,8 @@ pub fn guess_state(system: &System, layout: &Layout, parameters: &[f64]) -> Vec<
     values
 }
 
-/// States that guide the choice of pivots: the nominal start, and states in general position around it, for steps of `h`.
+/// States that guide the choice of pivots: the nominal start, and states in general position around it, for steps of
+/// `h`.
 pub fn pivot_samples(system: &System, layout: &Layout, nominal: &[f64], h: f64) -> [PivotSample; PIVOT_SAMPLES] {
     std::array::from_fn(|series| {
         let mut values = nominal.to_vec();

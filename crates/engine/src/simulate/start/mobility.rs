@@ -42,7 +42,8 @@ pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobil
     Mobility { degrees_of_freedom, redundant, singular_at_start }
 }
 
-/// The first redundant constraint of velocities that others do not imply, because it follows states of its own: nothing can fulfil it.
+/// The first redundant constraint of velocities that others do not imply, because it follows states of its own: nothing
+/// can fulfil it.
 pub fn contradiction(
     system: &System,
     start: &StartProgram,
@@ -68,8 +69,8 @@ pub fn contradiction(
     suspects.into_iter().find(|row| !implied.contains(row)).map(ConstraintId::new)
 }
 
-/// Sizes of the rows of Φ_q around a state: the least of those in general position, with the coordinates' scales. In joint
-/// coordinates a row may vanish where the mechanism is singular.
+/// Sizes of the rows of Φ_q around a state: the least of those in general position, with the coordinates' scales. In
+/// joint coordinates a row may vanish where the mechanism is singular.
 pub fn usual_row_sizes(system: &System, start: &StartProgram, state: &[f64]) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; system.lambda.len()];
     let [_, around @ ..] = pivot_samples(system, &start.layout, state, 0.0);

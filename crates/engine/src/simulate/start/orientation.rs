@@ -1,5 +1,5 @@
-//! The orientation of Φ_q, the sign of its determinant, where motors leave no freedom. Branches of a linkage meet where it changes: near
-//! one another they have different ones.
+//! The orientation of Φ_q, the sign of its determinant, where motors leave no freedom. Branches of a linkage meet where
+//! it changes: near one another they have different ones.
 
 use super::assembly::Assembly;
 use crate::assemble::{ConstraintId, System};
@@ -27,7 +27,8 @@ pub struct Oriented {
 }
 
 impl Orientation {
-    /// Of a system with these redundant constraints; `None` where its independent constraints are not as many as coordinates.
+    /// Of a system with these redundant constraints; `None` where its independent constraints are not as many as
+    /// coordinates.
     pub fn new(system: &System, redundant: &[ConstraintId]) -> Option<Self> {
         let n = system.q.len();
         let mut count = 0;
@@ -59,7 +60,8 @@ impl Orientation {
         Some(Oriented { is_negative, least: ConstraintId::new(least) })
     }
 
-    /// Whether the determinant is negative, and the row of which elimination leaves the smallest share. Each row's pivot is its largest entry.
+    /// Whether the determinant is negative, and the row of which elimination leaves the smallest share. Each row's
+    /// pivot is its largest entry.
     fn eliminate(&mut self) -> Option<(bool, usize)> {
         let n = self.scale.len();
         self.pivots.clear();

@@ -24,8 +24,9 @@ pub fn dependent_of_sizes(rows: &[Vec<(usize, f64)>], usual: &[f64], tolerance: 
     independence.filter(|(_, left_of_row)| *left_of_row <= tolerance).map(|(&row, _)| row).collect()
 }
 
-/// Rows that are left when, again and again, a row is taken away that has a large entry in a column of its own: that row is a part
-/// of no combination that vanishes, so dependence is among the others. What hangs together as a tree leaves none, in linear time.
+/// Rows that are left when, again and again, a row is taken away that has a large entry in a column of its own: that
+/// row is a part of no combination that vanishes, so dependence is among the others. What hangs together as a tree
+/// leaves none, in linear time.
 fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>], usual: &[f64]) -> Vec<usize> {
     let columns = rows.iter().flatten().map(|&(column, _)| column + 1).max().unwrap_or(0);
     let mut rows_of_column: Vec<Vec<usize>> = vec![Vec::new(); columns];
@@ -57,16 +58,17 @@ fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>], usual: &[f64]) -> Vec<us
     (0..rows.len()).filter(|&row| is_left[row]).collect()
 }
 
-/// How independent each row of a sparse matrix is of the rows before it: the largest entry that elimination in the rows'
-/// order leaves of the row, relative to the row's own size or its usual one, whichever is larger. The pivot of a row is its
-/// largest remaining entry; rows within the tolerance give no pivot.
+/// How independent each row of a sparse matrix is of the rows before it: the largest entry that elimination in the
+/// rows' order leaves of the row, relative to the row's own size or its usual one, whichever is larger. The pivot of a
+/// row is its largest remaining entry; rows within the tolerance give no pivot.
 pub fn row_independence(rows: &[impl AsRef<[(usize, f64)]>], usual: &[f64], tolerance: f64) -> Vec<f64> {
     let mut reduced: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new(); // by pivot column
     let mut independence = Vec::with_capacity(rows.len());
     for (row, &usual) in rows.iter().map(AsRef::as_ref).zip(usual) {
         let size = row_size(row).max(usual);
         let mut left: BTreeMap<usize, f64> = row.iter().copied().collect();
-        // Clearing one pivot's column may fill the column of an earlier pivot, so the loop runs until no pivot column is left.
+        // Clearing one pivot's column may fill the column of an earlier pivot, so the loop runs until no pivot column
+        // is left.
         while let Some((&column, &value)) =
             left.iter().find(|(column, value)| **value != 0.0 && reduced.contains_key(column))
         {
@@ -95,8 +97,8 @@ pub fn row_size(row: &[(usize, f64)]) -> f64 {
     row.iter().fold(0.0, |size, (_, value)| size.max(value.abs()))
 }
 
-/// Columns of a matrix that its independent rows leave free, found by elimination with complete pivoting. Columns of large
-/// `weight` become pivots, and so dependent, first.
+/// Columns of a matrix that its independent rows leave free, found by elimination with complete pivoting. Columns of
+/// large `weight` become pivots, and so dependent, first.
 pub fn free_columns(matrix: &DMatrix<f64>, weight: &[f64]) -> Vec<usize> {
     let mut left = matrix.clone();
     let mut free: Vec<usize> = (0..matrix.ncols()).collect();

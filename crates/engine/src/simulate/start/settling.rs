@@ -29,9 +29,9 @@ impl Settling {
         self.last.fill(f64::NAN);
     }
 
-    /// Adds corrections, `count` registers from `corrections` on, to as many values from `values` on, which are before them in the tile,
-    /// in all lanes that have not settled. `scale` has the least size of the values, 1 where it ends. Returns whether a lane has not
-    /// settled.
+    /// Adds corrections, `count` registers from `corrections` on, to as many values from `values` on, which are before
+    /// them in the tile, in all lanes that have not settled. `scale` has the least size of the values, 1 where it ends.
+    /// Returns whether a lane has not settled.
     pub fn apply(
         &mut self,
         tile: &mut Tile,

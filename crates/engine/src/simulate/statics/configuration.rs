@@ -4,7 +4,8 @@
 //! M δẅ + C δv + K δq + Φ_qᵀ δλ = 0,  Φ_q δq = 0,   K = ∂(M w + Φ_qᵀ λ − Q)/∂q,  C = ∂(…)/∂v
 //! ```
 //!
-//! Everything is per scale of the coordinates: q̂ = q/s, so K̂ = S K S and Φ̂_q = Φ_q S with S = diag(s). Eigenvalues do not change by that.
+//! Everything is per scale of the coordinates: q̂ = q/s, so K̂ = S K S and Φ̂_q = Φ_q S with S = diag(s). Eigenvalues
+//! do not change by that.
 
 use nalgebra::DMatrix;
 use symdiff::Tile;

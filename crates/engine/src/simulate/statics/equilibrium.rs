@@ -1,10 +1,11 @@
 //! Where forces are in equilibrium: Φ_qᵀ λ = Q(q, v = 0, λ) and Φ(q) = 0.
 //!
-//! Newton's method on the motions that the constraints allow: with Φ̂_q = L B and N orthogonal to B, the correction of the coordinates is
-//! the shortest one that closes the constraints, and N p with Nᵀ K N p = −Nᵀ(M w + Φ_qᵀ λ − Q). Near a solution that is all: it is the
-//! nearest equilibrium, stable or not. Further away each eigenvalue of Nᵀ K N is taken positive, and the step is shortened: that leads
-//! downhill, to a stable one. States of controllers rest there, too: their rates are zero. What drives them has no hill; Newton's steps are
-//! shortened then, and stability is not looked at, for it depends on how they move.
+//! Newton's method on the motions that the constraints allow: with Φ̂_q = L B and N orthogonal to B, the correction of
+//! the coordinates is the shortest one that closes the constraints, and N p with Nᵀ K N p = −Nᵀ(M w + Φ_qᵀ λ − Q). Near
+//! a solution that is all: it is the nearest equilibrium, stable or not. Further away each eigenvalue of Nᵀ K N is
+//! taken positive, and the step is shortened: that leads downhill, to a stable one. States of controllers rest there,
+//! too: their rates are zero. What drives them has no hill; Newton's steps are shortened then, and stability is not
+//! looked at, for it depends on how they move.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -39,7 +40,8 @@ const MOST_HALVINGS: u32 = 30;
 /// Steps from the nominal parameters to those of a sample that is far from them.
 const CONTINUATION_STEPS: usize = 16;
 
-/// A sample whose coordinates lie further than this from the nominal ones, in their scales, is reached by small changes.
+/// A sample whose coordinates lie further than this from the nominal ones, in their scales, is reached by small
+/// changes.
 const FAR: f64 = 0.25;
 
 /// Finds equilibria of a mechanism.
@@ -88,7 +90,8 @@ impl Equilibrium {
         Configuration::new(&self.program, &self.scale, &self.redundant, parameters)
     }
 
-    /// The equilibrium with `parameters` near that of `nominal` parameters at `state`: its state (the layout's registers), at rest.
+    /// The equilibrium with `parameters` near that of `nominal` parameters at `state`: its state (the layout's
+    /// registers), at rest.
     ///
     /// # Errors
     /// Where none is found.
@@ -222,8 +225,8 @@ struct Step {
 }
 
 impl Balance {
-    /// `None` where a number is not finite. Without states a long step leads downhill; with them it is that of Newton's method, shortened so
-    /// that no coordinate of the mechanism goes far.
+    /// `None` where a number is not finite. Without states a long step leads downhill; with them it is that of Newton's
+    /// method, shortened so that no coordinate of the mechanism goes far.
     fn step(&self, states: &[State]) -> Option<Step> {
         let Linearised { motion, constraint, stiffness, .. } = &self.linear;
         let (basis, n) = (&self.space.null, motion.len());

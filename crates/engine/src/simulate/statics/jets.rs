@@ -13,8 +13,8 @@ use crate::compile::Tapes;
 const SINGULAR: f64 = 1e-10;
 
 impl Equilibrium {
-    /// The jet of an equilibrium whose state is that of the box's centre: each sweep x ← x − J₀⁻¹ R(x) in jets makes one more order
-    /// exact. The outputs are observed. `None` where the equations are singular at the centre.
+    /// The jet of an equilibrium whose state is that of the box's centre: each sweep x ← x − J₀⁻¹ R(x) in jets makes
+    /// one more order exact. The outputs are observed. `None` where the equations are singular at the centre.
     pub fn jet<'s>(
         &self,
         space: &'s JetSpace,

@@ -15,7 +15,8 @@ const LEAST_MASS: f64 = 1e-12;
 /// What the stiffness says of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
-    /// The smallest eigenvalue of K φ = ω² M φ, rad²/s²: negative where the equilibrium is unstable; infinite where nothing can move.
+    /// The smallest eigenvalue of K φ = ω² M φ, rad²/s²: negative where the equilibrium is unstable; infinite where
+    /// nothing can move.
     pub smallest: f64,
     /// The coordinates that move most in directions without stiffness.
     pub indifferent: Vec<CoordinateId>,
@@ -47,8 +48,8 @@ impl Stability {
     }
 }
 
-/// Eigenvalues of K φ = ω² M φ for the symmetric parts on a basis, and the shapes (n each) with φᵀ M φ = 1. `None` where a number is
-/// not finite.
+/// Eigenvalues of K φ = ω² M φ for the symmetric parts on a basis, and the shapes (n each) with φᵀ M φ = 1. `None`
+/// where a number is not finite.
 fn eigen(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, basis: &[Vec<f64>]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
     let (stiffness, mut mass) = (symmetric(reduced(stiffness, basis)), symmetric(reduced(mass, basis)));

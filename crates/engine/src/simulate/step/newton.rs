@@ -1,9 +1,10 @@
 //! Newton's iteration of one step, all lanes of a tile in lockstep.
 //!
-//! The iteration starts from extrapolated w and λ. One correction is mostly enough, because the contraction that was last
-//! observed of the lane's first corrections is taken into account. The matrix is factorised at the step's beginning and kept
-//! for the first corrections; where they do not suffice, it is factorised again for each further one. Every decision is a
-//! lane's own or counts steps and iterations, so that a sample's numbers do not depend on the samples that share its tile.
+//! The iteration starts from extrapolated w and λ. One correction is mostly enough, because the contraction that was
+//! last observed of the lane's first corrections is taken into account. The matrix is factorised at the step's
+//! beginning and kept for the first corrections; where they do not suffice, it is factorised again for each further
+//! one. Every decision is a lane's own or counts steps and iterations, so that a sample's numbers do not depend on the
+//! samples that share its tile.
 
 use symdiff::{Tile, Vectorise, vectorised};
 
@@ -23,15 +24,16 @@ const MAX_CORRECTIONS: usize = 12;
 /// units times the observed contraction.
 const TOLERANCE: f64 = 1e-11;
 
-/// The same for a first correction, whose contraction is only estimated. The remaining error is noise in the response as a
-/// function of the parameters. Against a run that always takes two corrections, the slider crank's Chebyshev bounds over
-/// 2 s change by 2e-12 m at 1e-15, 3e-11 at 1e-14, 2e-9 at 1e-13; those of Taylor by 2e-9 at 1e-14.
+/// The same for a first correction, whose contraction is only estimated. The remaining error is noise in the response
+/// as a function of the parameters. Against a run that always takes two corrections, the slider crank's Chebyshev
+/// bounds over 2 s change by 2e-12 m at 1e-15, 3e-11 at 1e-14, 2e-9 at 1e-13; those of Taylor by 2e-9 at 1e-14.
 const FIRST_TOLERANCE: f64 = 1e-14;
 
 /// Contraction that is assumed of a first correction where none was observed.
 const FIRST_CONTRACTION: f64 = 0.1;
 
-/// The estimated contraction of a first correction is this times the one last observed of its lane, and at least the least.
+/// The estimated contraction of a first correction is this times the one last observed of its lane, and at least the
+/// least.
 const CONTRACTION_SAFETY: f64 = 10.0;
 const LEAST_CONTRACTION: f64 = 1e-9;
 
@@ -103,9 +105,9 @@ impl Newton {
         self.singular[lane]
     }
 
-    /// Solves the step whose `time` and h stand in the tile, for the lanes in `alive`; on return `alive` holds only those
-    /// that converged. The step's tape must have run. With `refine`, lanes that have converged are corrected once more: what
-    /// Newton's tolerance leaves in positions is 1/(βh²) times as large in accelerations.
+    /// Solves the step whose `time` and h stand in the tile, for the lanes in `alive`; on return `alive` holds only
+    /// those that converged. The step's tape must have run. With `refine`, lanes that have converged are corrected once
+    /// more: what Newton's tolerance leaves in positions is 1/(βh²) times as large in accelerations.
     pub fn solve(&mut self, program: &Program, tile: &mut Tile, h: f64, refine: bool, alive: &mut [bool]) {
         self.pending.copy_from_slice(alive);
         let width = tile.width();
@@ -149,8 +151,9 @@ impl Newton {
         self.size_before = h;
     }
 
-    /// Predicts w₊ and λ₊ of pending lanes on the parabola (line, constant) through their values now and at the `known` steps
-    /// before. λ₊ of a redundant constraint starts from zero: a value that is not unique must not depend on earlier steps.
+    /// Predicts w₊ and λ₊ of pending lanes on the parabola (line, constant) through their values now and at the `known`
+    /// steps before. λ₊ of a redundant constraint starts from zero: a value that is not unique must not depend on
+    /// earlier steps.
     fn predict(&mut self, program: &Program, tile: &mut Tile, known: usize, h: f64) {
         let [last, second_last] = &self.before;
         let (weights, last, second_last) = match known {
@@ -218,9 +221,9 @@ impl Newton {
         self.counters.iterations += converged.iter().map(|&converged| u64::from(converged)).sum::<u64>();
     }
 
-    /// Corrections by the rank-revealing solve, for singular lanes. After the first few corrections, a constraint that holds
-    /// to rounding is not corrected any more: near a singular position each such correction would move the mechanism by ε
-    /// over the distance to it. `gain` is that of positions.
+    /// Corrections by the rank-revealing solve, for singular lanes. After the first few corrections, a constraint that
+    /// holds to rounding is not corrected any more: near a singular position each such correction would move the
+    /// mechanism by ε over the distance to it. `gain` is that of positions.
     fn correct_singular(&self, program: &Program, tile: &mut Tile, gain: f64, count: usize) {
         tile.run(program.matrix());
         for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane] && self.singular[lane]) {
@@ -241,8 +244,8 @@ impl Newton {
         }
     }
 
-    /// Ends the iteration of lanes whose constraints hold to rounding and whose corrections are of its size: near a singular
-    /// position they flip between neighbouring numbers for ever.
+    /// Ends the iteration of lanes whose constraints hold to rounding and whose corrections are of its size: near a
+    /// singular position they flip between neighbouring numbers for ever.
     fn accept_rounding(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
         let gain = program.coefficients.position_gain(h);
@@ -251,8 +254,8 @@ impl Newton {
         }
     }
 
-    /// Marks lanes as not converged whose rank-revealing solve has settled without fulfilling the constraints: least squares
-    /// also settle where the constraints cannot be fulfilled.
+    /// Marks lanes as not converged whose rank-revealing solve has settled without fulfilling the constraints: least
+    /// squares also settle where the constraints cannot be fulfilled.
     fn reject_open_constraints(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
         let gain = program.coefficients.constraint_gain(h);

@@ -1,4 +1,5 @@
-//! The rank-revealing solve: a linear system whose matrix may have lost rank, solved on its numbers alone, off the hot path.
+//! The rank-revealing solve: a linear system whose matrix may have lost rank, solved on its numbers alone, off the hot
+//! path.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,9 +11,9 @@ const RANK_TOLERANCE: f64 = 1e-9;
 /// A pivot is eliminated sparsely where it is at least this large in the scaled matrix, and against its row.
 const SAFE: (f64, f64) = (1e-3, 0.1);
 
-/// Solution of `matrix · x = right` where the matrix may have lost rank: entries (row, column, value), scaled symmetrically
-/// by `scale`. Safe pivots are eliminated sparsely; the small remainder has its smallest least-squares solution, by singular
-/// values. `None` where the numbers are not finite.
+/// Solution of `matrix · x = right` where the matrix may have lost rank: entries (row, column, value), scaled
+/// symmetrically by `scale`. Safe pivots are eliminated sparsely; the small remainder has its smallest least-squares
+/// solution, by singular values. `None` where the numbers are not finite.
 pub fn solve_rank_deficient(entries: &[(usize, usize, f64)], right: &[f64], scale: &[f64]) -> Option<Vec<f64>> {
     let finite = entries.iter().map(|(_, _, value)| value).chain(right).all(|value| value.is_finite());
     let mut left = Remainder::new(entries, right, scale);

@@ -9,7 +9,8 @@ use crate::compile::Program;
 /// Corrections below this (relative positions) are round-off, whatever their contraction.
 pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// Corrections up to this (relative positions) may be rounding over the distance to a singular position, if constraints hold.
+/// Corrections up to this (relative positions) may be rounding over the distance to a singular position, if constraints
+/// hold.
 const STALLED: f64 = 1e-10;
 
 /// Entries of the Newton matrix of a lane, after its tape has run: row, column, value.
@@ -49,8 +50,8 @@ fn without_links(entries: Vec<(usize, usize, f64)>, size: usize) -> Vec<(usize, 
     condensed
 }
 
-/// What rounding makes of each of the n + m residuals, zero of those of motion: by rounding of positions, and by that of the
-/// constraints' terms, which counts where no coordinate changes their sum. `gain` is that of positions.
+/// What rounding makes of each of the n + m residuals, zero of those of motion: by rounding of positions, and by that
+/// of the constraints' terms, which counts where no coordinate changes their sum. `gain` is that of positions.
 pub fn rounding_of_residuals(
     program: &Program,
     tile: &Tile,
@@ -68,7 +69,8 @@ pub fn rounding_of_residuals(
     rounding
 }
 
-/// Whether a lane's constraints hold to rounding, and its last correction may be nothing else, after the matrix' tape has run.
+/// Whether a lane's constraints hold to rounding, and its last correction may be nothing else, after the matrix' tape
+/// has run.
 pub fn is_rounding(program: &Program, tile: &Tile, lane: usize, last: f64, gain: f64) -> bool {
     let entries = matrix_entries(program, tile, lane);
     let rounding = rounding_of_residuals(program, tile, lane, &entries, gain);

@@ -166,8 +166,8 @@ impl<'p> Stepper<'p> {
         self.newton.counters
     }
 
-    /// One step of length h to time t₊. A lane that does not converge is stepped alone with substeps; lanes that fail even
-    /// then are returned and no longer run.
+    /// One step of length h to time t₊. A lane that does not converge is stepped alone with substeps; lanes that fail
+    /// even then are returned and no longer run.
     pub fn step(&mut self, h: f64, end: f64) -> Vec<StepFailure> {
         let mut converged = self.try_step(h, end);
         let mut failures = Vec::new();
@@ -183,7 +183,8 @@ impl<'p> Stepper<'p> {
         failures
     }
 
-    /// One step without substeps. Returns which of the running lanes converged and advanced; the others keep their state.
+    /// One step without substeps. Returns which of the running lanes converged and advanced; the others keep their
+    /// state.
     pub fn try_step(&mut self, h: f64, end: f64) -> Vec<bool> {
         let converged = self.solve(h, end);
         self.measure_errors(h);
@@ -309,9 +310,10 @@ impl<'p> Stepper<'p> {
         self.errors.as_deref().unwrap_or_default()
     }
 
-    /// After the iteration: (β + Δ/2 − 1/6) h² (a₊ − a) of each lane, of which only the part that moves the mechanism counts.
-    /// The rest is along the constraints' normals, where positions have no error: a₊ − a is large there after every change of
-    /// h, since the scheme wants velocities with Φ_q v + Φ_t = C h², and would not fall with smaller steps.
+    /// After the iteration: (β + Δ/2 − 1/6) h² (a₊ − a) of each lane, of which only the part that moves the mechanism
+    /// counts. The rest is along the constraints' normals, where positions have no error: a₊ − a is large there after
+    /// every change of h, since the scheme wants velocities with Φ_q v + Φ_t = C h², and would not fall with smaller
+    /// steps.
     fn measure_errors(&mut self, h: f64) {
         let Some(errors) = &mut self.errors else { return };
         self.tile.run(self.program.estimate());

@@ -1,4 +1,5 @@
-//! Whether steps resolve the functions of the time: bounds of their rates of change, and of the number of times that they jump.
+//! Whether steps resolve the functions of the time: bounds of their rates of change, and of the number of times that
+//! they jump.
 
 use std::f64::consts::TAU;
 
@@ -148,14 +149,15 @@ impl TimeFunctions {
         self.halvings
     }
 
-    /// Whether steps of length h resolve every function from a to b, which may change by `share` of its size within a step.
+    /// Whether steps of length h resolve every function from a to b, which may change by `share` of its size within a
+    /// step.
     pub(in crate::simulate) fn are_resolved(&self, (a, b): (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
         self.terms.iter().all(|term| term.is_slow(self, (a, b), h, share, work))
             && self.jumps_are_apart((a, b), h, work)
     }
 
-    /// The functions that steps of length h do not resolve from a time on: the first of them as a formula, its expression,
-    /// and its period, s, as far as its rate or its jumps tell.
+    /// The functions that steps of length h do not resolve from a time on: the first of them as a formula, its
+    /// expression, and its period, s, as far as its rate or its jumps tell.
     pub(super) fn first_unresolved(&self, from: f64, h: f64, work: &mut Work) -> Option<Unresolved<'_>> {
         let symbols = self.over(from, from + h);
         let term = self.terms.iter().find(|term| !term.is_slow(self, (from, from + h), h, RESOLVED, work));
@@ -248,7 +250,8 @@ impl Term {
         if b - a > 1.5 * h {
             return false;
         }
-        // A rate without bound, as that of a root where it begins: what counts is how far the value goes beyond those at the ends.
+        // A rate without bound, as that of a root where it begins: what counts is how far the value goes beyond those
+        // at the ends.
         let [first, last] = [a, b].map(|t| self.over(&all.over(t, t), work).0);
         let beyond = share * self.size;
         let (least, most) = (first.lower().min(last.lower()) - beyond, first.upper().max(last.upper()) + beyond);
@@ -319,7 +322,8 @@ fn pair(ranges: &Ranges, symbols: &[Interval], work: &mut Work) -> (Interval, In
     (next(), next())
 }
 
-/// Half the width of the range of a function over the duration, to a factor of two; `None` where it is constant, or has no bound.
+/// Half the width of the range of a function over the duration, to a factor of two; `None` where it is constant, or has
+/// no bound.
 fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64) -> Option<f64> {
     let mut work = Work::default();
     let mut over = |a: f64, b: f64| {

@@ -1,5 +1,5 @@
-//! One step after another that resolves the functions of the time, within a number of enclosures: functions with very short
-//! periods are refused in words, before hours go by.
+//! One step after another that resolves the functions of the time, within a number of enclosures: functions with very
+//! short periods are refused in words, before hours go by.
 
 use super::resolution::{RESOLVED, TOO_FAST, TimeFunctions, Work};
 use crate::assemble::System;
@@ -8,7 +8,8 @@ use crate::simulate::error::SimulationError;
 /// Functions enclosed over a box before a search is given up: a minute or two.
 pub(in crate::simulate) const MOST_ENCLOSURES: usize = 100_000_000;
 
-/// Times at which the steps of a whole run are counted, of which the densest are left out: a pulse says nothing of the rest.
+/// Times at which the steps of a whole run are counted, of which the densest are left out: a pulse says nothing of the
+/// rest.
 const PLACES: usize = 61;
 const LEFT_OUT: usize = 4;
 

@@ -1,5 +1,5 @@
-//! Which functions of the time there are: the largest expressions that depend on the time and on parameters only, taken apart
-//! where they are sums, since each summand has a size of its own.
+//! Which functions of the time there are: the largest expressions that depend on the time and on parameters only, taken
+//! apart where they are sums, since each summand has a size of its own.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -57,7 +57,8 @@ pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     Some(Functions { graph, terms: all, conditions })
 }
 
-/// The largest subexpressions of time and parameters alone; and the smallest nonlinear functions of both time and state.
+/// The largest subexpressions of time and parameters alone; and the smallest nonlinear functions of both time and
+/// state.
 fn maximal(graph: &Graph, simulator: &Simulator, roots: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
     let system = &simulator.system;
     let parameters: FxHashSet<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();

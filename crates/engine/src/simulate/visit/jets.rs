@@ -11,8 +11,8 @@ use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 
 impl Simulator {
-    /// The outputs' coefficients about `center`, row by row, output by output; the parameters' half widths are their first
-    /// derivatives. Returns where it stopped, if it did.
+    /// The outputs' coefficients about `center`, row by row, output by output; the parameters' half widths are their
+    /// first derivatives. Returns where it stopped, if it did.
     ///
     /// # Errors
     /// Where the centre cannot be assembled, or has no equilibrium.

@@ -1,9 +1,10 @@
 //! Positions, velocities and accelerations that follow from motors: Φ(q, t) = 0, Φ̇ = 0 and Φ̈ = 0 in every row.
 //!
-//! Each row begins where q + h v + h²/2 w of the row before leads. It stays on its branch of the linkage: the way is halved where the
-//! correction from there is long, where the second correction is not much shorter than the first, so that another root is about as near
-//! (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 5.1), and where the determinant of Φ_q changes its sign. Where even the
-//! shortest way changes it, branches meet within rounding: the mechanism goes on smoothly, and the configuration is told as singular.
+//! Each row begins where q + h v + h²/2 w of the row before leads. It stays on its branch of the linkage: the way is
+//! halved where the correction from there is long, where the second correction is not much shorter than the first, so
+//! that another root is about as near (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 5.1), and
+//! where the determinant of Φ_q changes its sign. Where even the shortest way changes it, branches meet within
+//! rounding: the mechanism goes on smoothly, and the configuration is told as singular.
 
 use super::Visit;
 use crate::assemble::EquationId;
@@ -118,7 +119,8 @@ impl Simulator {
         Ok(way)
     }
 
-    /// The start of a sample on the nominal one's branch. Where that of any branch is on another, parameters lead there by small changes.
+    /// The start of a sample on the nominal one's branch. Where that of any branch is on another, parameters lead there
+    /// by small changes.
     ///
     /// # Errors
     /// Where it cannot be assembled, or its branch ends on the way.
@@ -235,7 +237,8 @@ impl Assembly<'_> {
         self.tile_mut().values_mut()[kept].copy_from_slice(state);
     }
 
-    /// Moves the one lane by `step` to a time. Where that leads too far it stays; where the branch is another one, the state before is kept.
+    /// Moves the one lane by `step` to a time. Where that leads too far it stays; where the branch is another one, the
+    /// state before is kept.
     fn advance_to(&mut self, time: f64, step: f64, branch: &mut Branch) -> Advance {
         let layout = &self.program().layout;
         self.keep(&mut branch.before);

@@ -32,8 +32,8 @@ pub struct Visit {
 }
 
 impl Simulator {
-    /// Goes to every configuration of a sample, in the rows of a schedule. Only a motion takes its steps, and its tolerance; kinematics
-    /// does where outputs are reduced to one number by channels.
+    /// Goes to every configuration of a sample, in the rows of a schedule. Only a motion takes its steps, and its
+    /// tolerance; kinematics does where outputs are reduced to one number by channels.
     ///
     /// # Errors
     /// Where it cannot be assembled, or has no equilibrium.

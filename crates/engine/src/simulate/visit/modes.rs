@@ -72,7 +72,8 @@ impl Simulator {
         Ok(places)
     }
 
-    /// The modes of a state that are the nominal ones. Where shapes are not alike, small changes of the parameters lead there.
+    /// The modes of a state that are the nominal ones. Where shapes are not alike, small changes of the parameters lead
+    /// there.
     fn followed(
         &self,
         vibrations: &Vibrations,

@@ -30,8 +30,8 @@ const COLUMNS: [&str; 15] = [
     "failure",
 ];
 
-/// The table of all settings as CSV: those that bound, then those that simulate the nominal sample. Fields that do not apply are
-/// empty; a setting without a result has the error `inf`.
+/// The table of all settings as CSV: those that bound, then those that simulate the nominal sample. Fields that do not
+/// apply are empty; a setting without a result has the error `inf`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -75,7 +75,8 @@ fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
     ]
 }
 
-/// Writes `cost.csv` and `cost.svg` into `dir`, each whole or not at all. They hold seconds, and so differ from run to run.
+/// Writes `cost.csv` and `cost.svg` into `dir`, each whole or not at all. They hold seconds, and so differ from run to
+/// run.
 ///
 /// # Errors
 /// At the first file that cannot be written.

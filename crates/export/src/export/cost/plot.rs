@@ -1,7 +1,7 @@
 //! `cost.svg`: error against seconds, both logarithmic; bounds on the left, nominal trajectories on the right.
 //!
-//! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the settings on
-//! its own Pareto front; the thick grey line is the front of all methods.
+//! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the
+//! settings on its own Pareto front; the thick grey line is the front of all methods.
 
 use svg::node::element::{Circle, Group, Path, Rectangle, Title};
 
@@ -159,7 +159,8 @@ impl Panel {
         ))
     }
 
-    /// The common front below every method's dots and line. Errors below the reference's own error are shown at that error.
+    /// The common front below every method's dots and line. Errors below the reference's own error are shown at that
+    /// error.
     fn curves(&self, drawn: Group, points: &[CostPoint], reference: f64) -> Group {
         let all = || points.iter().filter(|point| is_shown(point));
         let places: Vec<Point> = all().map(|point| point.place(reference)).collect();

@@ -9,7 +9,8 @@ use super::view::{Px, View};
 use super::{AddAll, solid};
 use crate::results::{Drawing, DrawnBody};
 
-/// Of a body without a shape and with one place only, px: wide enough to be seen with the mark of its centre of mass in it.
+/// Of a body without a shape and with one place only, px: wide enough to be seen with the mark of its centre of mass in
+/// it.
 const BLOCK: [f64; 2] = [44.0, 28.0];
 
 /// Number of colours.

@@ -17,7 +17,8 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// A name beside a place, rather in the direction `away`; `None` where there is no room, or it stands there already.
+    /// A name beside a place, rather in the direction `away`; `None` where there is no room, or it stands there
+    /// already.
     pub fn beside(&mut self, at: Px, away: Px, name: &str, size: f64, class: &str) -> Option<Text> {
         if self.named.iter().any(|(known, place)| known == name && (place - at).norm() < 3.0) {
             return None;

@@ -1,4 +1,5 @@
-//! A mechanism as an SVG document: in the plane in its true shape, in space from three quarters and along the three axes.
+//! A mechanism as an SVG document: in the plane in its true shape, in space from three quarters and along the three
+//! axes.
 
 mod body;
 mod glyph;
@@ -22,7 +23,8 @@ use super::folder::AtomicFiles;
 use crate::elements::Glyph;
 use crate::results::{Drawing, DrawnBody, DrawnLength};
 
-/// Colours that remain apart for the colour-blind (Okabe and Ito, 2008), and their meaning; dark where the reader's system is.
+/// Colours that remain apart for the colour-blind (Okabe and Ito, 2008), and their meaning; dark where the reader's
+/// system is.
 const STYLE: &str = "
 svg { background: #fff; font-family: sans-serif; fill: #222; }
 .body { fill-opacity: 0.25; stroke-width: 2; stroke-linejoin: round; stroke-linecap: round; }

@@ -91,7 +91,7 @@ fn closed(corners: &[Px]) -> Path {
     Path::new().set("d", path(corners).unwrap_or_default().close())
 }
 
-/// What is within a radius of a convex polygon, whose corners turn one way.
+/// The points within a radius of a convex polygon, whose corners turn one way.
 fn rounded(corners: &[Px], radius: f64) -> Path {
     let next = |place: usize| corners[(place + 1) % corners.len()];
     if radius < 0.05 {

@@ -1,4 +1,5 @@
-//! A linear axis: a unit that makes its numbers short, ticks at 1, 2 or 5 times a power of ten, labels of equal precision.
+//! A linear axis: a unit that makes its numbers short, ticks at 1, 2 or 5 times a power of ten, labels of equal
+//! precision.
 
 use super::prefix::ScaleUnit;
 use crate::grammar::display_unit::ShownUnit;
@@ -22,8 +23,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis for `values` in SI, shown in a unit, with about `ticks` ticks; `padding` is the part of the range that stays free at each
-    /// end. Whatever is not finite is passed over. What moves by less than `noise` is a constant.
+    /// The axis for `values` in SI, shown in a unit, with about `ticks` ticks; `padding` is the part of the range that
+    /// stays free at each end. Whatever is not finite is passed over. What moves by less than `noise` is a constant.
     pub fn fit<'a>(
         values: impl Iterator<Item = f64>,
         unit: impl Into<ShownUnit<'a>>,

@@ -1,4 +1,5 @@
-//! What all figures have: a document with a title, a style for light and dark readers, text, and the data beside it as JSON.
+//! What all figures have: a document with a title, a style for light and dark readers, text, and the data beside it as
+//! JSON.
 
 use serde::Serialize;
 use svg::Document;

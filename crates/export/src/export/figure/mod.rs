@@ -1,4 +1,5 @@
-//! What figures are made of: scales, paths, legends, colours, and the document with its data. All of it is deterministic.
+//! What figures are made of: scales, paths, legends, colours, and the document with its data. All of it is
+//! deterministic.
 
 pub mod axis;
 pub mod data;

@@ -1,8 +1,8 @@
 //! Curves made ready for drawing: broken at gaps, and without points that nobody could see.
 //!
-//! Within a column of pixels the first, the last, the lowest and the highest point stay, which is all that a screen shows of a curve
-//! (Jugel et al., Proc. VLDB Endow. 7 (2014) 797). Of the rest, points on a straight line between others go (Douglas and Peucker,
-//! Cartographica 10 (1973) 112).
+//! Within a column of pixels the first, the last, the lowest and the highest point stay, which is all that a screen
+//! shows of a curve (Jugel et al., Proc. VLDB Endow. 7 (2014) 797). Of the rest, points on a straight line between
+//! others go (Douglas and Peucker, Cartographica 10 (1973) 112).
 
 /// A point, px.
 pub type Point = (f64, f64);

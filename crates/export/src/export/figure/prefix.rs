@@ -1,4 +1,5 @@
-//! Units as a scale shows them: with the prefix that makes its numbers short (kN, µm), or a power of ten where there is no such prefix.
+//! Units as a scale shows them: with the prefix that makes its numbers short (kN, µm), or a power of ten where there is
+//! no such prefix.
 
 use crate::grammar::display_unit::ShownUnit;
 

@@ -1,6 +1,7 @@
 //! Colours of figures: for light and dark readers, and apart for every colour vision.
 //!
-//! Programs that know no custom properties (editors, converters) pass over a declaration with `var()`, and take the one before it.
+//! Programs that know no custom properties (editors, converters) pass over a declaration with `var()`, and take the one
+//! before it.
 
 /// What all figures share. A figure may stand in a page with others: every rule is of figures alone.
 pub const STYLE: &str = "

@@ -4,8 +4,8 @@ use crate::results::Band;
 
 /// The values that an axis has to show, and which bands exceed it.
 ///
-/// The narrowest band and the nominal course are always in view, and so is everything up to `widest` times as wide. A diverged
-/// bound, such as Taylor's over long times, would reduce the others to lines: it leaves the plot instead.
+/// The narrowest band and the nominal course are always in view, and so is everything up to `widest` times as wide. A
+/// diverged bound, such as Taylor's over long times, would reduce the others to lines: it leaves the plot instead.
 pub fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>, Vec<bool>) {
     let nominal = extent(nominal.iter());
     let extents: Vec<_> = bands.iter().map(|band| extent(band.lower.iter().chain(&band.upper))).collect();

@@ -1,5 +1,5 @@
-//! `report.html`: a run's results to be looked at. The page is made of the other files of the results alone, so that it can be made again
-//! from them; `motion.json` has the rest.
+//! `report.html`: a run's results to be looked at. The page is made of the other files of the results alone, so that it
+//! can be made again from them; `motion.json` has the rest.
 
 mod folder;
 mod html;

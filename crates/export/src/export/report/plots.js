@@ -1,8 +1,9 @@
 // @ts-check
 import { Clock } from './clock.js';
 import { digits, element } from './data.js';
-// The figures of a run, brought to life by the scales and the data that they carry: a cursor at the time, values under the pointer, zoom in time, series on and off.
-// Figures over something else than the time, as frequencies, have a cursor of their own.
+// The figures of a run, brought to life by the scales and the data that they carry: a cursor at the time, values under
+// the pointer, zoom in time, series on and off. Figures over something else than the time, as frequencies, have a
+// cursor of their own.
 
 /** @typedef {{min: number, max: number, from_px: number, to_px: number}} Scale */
 /** @typedef {{id: string, group?: string, label: string, kind: string, panel: string, time?: number[], lower: (number | null)[], upper: (number | null)[]}} Series */

@@ -1,7 +1,8 @@
 // @ts-check
 import { colorOf, hull } from './mechanism.js';
 import { minus, norm } from './vectors.js';
-// What a point sweeps over: in the plane the hulls of all samples' places from one time to the next, in space their paths.
+// What a point sweeps over: in the plane the hulls of all samples' places from one time to the next, in space their
+// paths.
 
 /** @typedef {import('./mechanism.js').Mechanism} Mechanism */
 /** @typedef {import('./mechanism.js').Anchor} Anchor */

@@ -1,4 +1,5 @@
-//! The scripts and the style of a report. The scripts are modules while they are written and checked, and one script in a page.
+//! The scripts and the style of a report. The scripts are modules while they are written and checked, and one script in
+//! a page.
 
 use std::sync::LazyLock;
 

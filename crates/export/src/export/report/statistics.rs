@@ -1,11 +1,13 @@
-//! Sections of a report on statistics: worst case, root sum square and distribution side by side, and the share that fulfils each requirement.
+//! Sections of a report on statistics: worst case, root sum square and distribution side by side, and the share that
+//! fulfils each requirement.
 
 use serde_json::Value;
 
 use super::html::{escaped, number};
 use super::tables::{list, section, shown, table, text};
 
-/// The tolerance stack of each output at the time at which it varies most, and yields; nothing where the model asks for none.
+/// The tolerance stack of each output at the time at which it varies most, and yields; nothing where the model asks for
+/// none.
 pub(super) fn statistics(summary: &Value) -> String {
     let found = &summary["statistics"];
     stack(found) + &yields(found)

@@ -1,4 +1,5 @@
-//! Sections of a report that are text and tables, from `summary.json` and `motion.json`: they are there without scripts, and in print.
+//! Sections of a report that are text and tables, from `summary.json` and `motion.json`: they are there without
+//! scripts, and in print.
 
 use serde_json::Value;
 

@@ -34,8 +34,8 @@ impl Moved {
 
 /// Differences from the record, in the order of the model's outputs; last the missing ones.
 ///
-/// A bound may move by the sum of the errors that are stated of it, the nominal course by the smallest sum of those of a method. An
-/// error may double. Rounded values may differ in their last digit.
+/// A bound may move by the sum of the errors that are stated of it, the nominal course by the smallest sum of those of
+/// a method. An error may double. Rounded values may differ in their last digit.
 pub fn moved(before: &Snapshot, after: &Snapshot) -> Vec<Moved> {
     let mut found = Vec::new();
     for now in &after.outputs {
@@ -91,7 +91,7 @@ fn ends(times: &[String]) -> String {
     }
 }
 
-/// The time at which a curve moved most, relative to the allowance; `None` if it did not. `what` is left empty.
+/// The time at which a curve moved most, relative to the allowance; `None` if it did not. The field `what` stays empty.
 fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)]) -> Option<Moved> {
     let earlier = then.curve(&curve.method, curve.kind)?;
     let mut worst: Option<(f64, Moved)> = None;
@@ -130,7 +130,8 @@ impl Output {
         self.curves.iter().find(|curve| curve.method == method && curve.kind == kind)
     }
 
-    /// The stated error of a bound in a row; of the nominal course, which has none, the smallest of a method. Where it is not known, 0.
+    /// The stated error of a bound in a row; of the nominal course, which has none, the smallest of a method. Where it
+    /// is not known, 0.
     fn error(&self, curve: &Curve, row: usize) -> f64 {
         let errors = self.curves.iter().filter(|other| other.kind == Kind::Error);
         let errors = errors.filter(|other| curve.kind == Kind::Nominal || other.method == curve.method);

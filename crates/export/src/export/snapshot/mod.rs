@@ -1,4 +1,5 @@
-//! Snapshots: bounds of a run as a small text that is kept beside the model, read back and compared with those of a later run.
+//! Snapshots: bounds of a run as a small text that is kept beside the model, read back and compared with those of a
+//! later run.
 
 mod compare;
 mod read;

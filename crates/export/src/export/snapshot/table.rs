@@ -15,10 +15,11 @@ const DIGITS: i32 = 5;
 /// Digits that are shown of a value, at most: a span may be rounding errors alone.
 const MOST_DIGITS: i32 = 13;
 
-/// A snapshot's table: of each output its name with the unit, headings, and ten rows in even distances to the end of the run.
+/// A snapshot's table: of each output its name with the unit, headings, and ten rows in even distances to the end of
+/// the run.
 ///
-/// Columns: `t`, `nominal`, and of each method `METHOD.lower`, `.upper` and `.error`. Bounds have five digits of the output's span,
-/// errors two digits.
+/// Columns: `t`, `nominal`, and of each method `METHOD.lower`, `.upper` and `.error`. Bounds have five digits of the
+/// output's span, errors two digits.
 pub fn snapshot_table(bounds: &Bounds) -> String {
     let rows = rows(bounds.times.len());
     let times = times(&bounds.times);

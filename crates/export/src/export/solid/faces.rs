@@ -11,7 +11,7 @@ use crate::elements::effects::faces_of_hull;
 /// A flat polygon.
 pub(in crate::export) type Face = Vec<[f64; 3]>;
 
-/// The faces of a form; what is within a radius of it is not in them.
+/// The faces of a form, without the points within a radius of it.
 pub(in crate::export) fn faces(form: &Form<f64>) -> Vec<Face> {
     match form {
         Form::Box { size, .. } => of_box(*size),

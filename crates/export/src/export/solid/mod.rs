@@ -10,7 +10,8 @@ pub(super) use frame::SolidFrame;
 
 use crate::elements::Form;
 
-/// Points of which a form is the convex hull, with what is within a radius of it; `None` of one that is no such hull.
+/// Points of which a form is the convex hull, with all points within a radius of it; `None` if the form is no such
+/// hull.
 pub(super) fn core(form: &Form<f64>) -> Option<(Vec<[f64; 3]>, f64)> {
     match form {
         Form::Sphere { radius } => Some((vec![[0.0; 3]], *radius)),

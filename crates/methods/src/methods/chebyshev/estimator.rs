@@ -11,7 +11,8 @@ pub(super) struct RangeEstimator<'a> {
     pub search: &'a RangeSearch,
     /// ξ of the validation samples, and their motions.
     pub validation: (&'a [Vec<f64>], &'a ValidationTable),
-    /// Samples of the whole box with the schedule's steps and with halved ones, where the time steps' errors are asked for.
+    /// Samples of the whole box with the schedule's steps and with halved ones, where the time steps' errors are asked
+    /// for.
     pub halved: Option<(&'a ValidationTable, &'a ValidationTable)>,
     pub sensitivity: Option<SensitivityAnalysis>,
 }

@@ -1,7 +1,8 @@
 //! Chebyshev bounds: a polynomial in the parameters, from samples at Chebyshev nodes, and its range.
 //!
-//! What is expanded are the independent coordinates, from which the outputs follow (`composition`), or the outputs themselves (the
-//! paper's). The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too (`outputs_alone`).
+//! The independent coordinates are expanded, from which the outputs follow (`composition`), or the outputs
+//! themselves (the paper's). The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too
+//! (`outputs_alone`).
 
 mod adaptive;
 mod composition;
@@ -60,8 +61,8 @@ pub mod keys {
     grammar! {
         /// Chebyshev bounds.
         Chebyshev is "`chebyshev`" {
-            /// Degree, for all parameters or by parameter; by default 5, or as the tolerance asks for where there is one, or more
-            /// than three parameters.
+            /// Degree, for all parameters or by parameter; by default 5, or as the tolerance asks for where there is
+            /// one, or more than three parameters.
             order: Option<PerParameter>,
             /// Nodes, more than the degree; by default one more.
             nodes: Option<PerParameter>,

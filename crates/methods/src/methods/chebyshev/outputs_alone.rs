@@ -1,4 +1,5 @@
-//! An ensemble without coordinates: what cannot be composed is expanded itself, to a degree that a tolerance asks for all the same.
+//! An ensemble without coordinates: what cannot be composed is expanded itself, to a degree that a tolerance asks for
+//! all the same.
 
 use std::ops::Range as Rows;
 

@@ -1,5 +1,5 @@
-//! Ranges of the outputs in a row over the box: apart for parameters that do not act together, on a lattice for up to three that do, by
-//! climbs for more.
+//! Ranges of the outputs in a row over the box: apart for parameters that do not act together, on a lattice for up to
+//! three that do, by climbs for more.
 
 use std::convert::Infallible;
 
@@ -11,8 +11,8 @@ const MOST_PARAMETERS: usize = 3;
 /// Fewest intervals of the first lattice along an axis, by the number of its axes.
 const LEAST_INTERVALS: [usize; MOST_PARAMETERS] = [16, 8, 6];
 
-/// Intervals for each degree: of what is composed of polynomials, which is looked at more closely where it asks for it, and of
-/// polynomials.
+/// Intervals for each degree: of what is composed of polynomials, which is looked at more closely where it asks for it,
+/// and of polynomials.
 const COMPOSED: [usize; MOST_PARAMETERS] = [2, 2, 1];
 const POLYNOMIAL: [usize; MOST_PARAMETERS] = [4, 4, 2];
 
@@ -155,7 +155,8 @@ impl RangeSearch {
         extents
     }
 
-    /// Ranges of outputs that are sums over groups of parameters; `anchored` are their values where all parameters are at the anchor.
+    /// Ranges of outputs that are sums over groups of parameters; `anchored` are their values where all parameters are
+    /// at the anchor.
     fn apart(&self, functions: &Functions, outputs: &[usize], groups: &[Vec<usize>], anchored: &[f64]) -> Vec<Extent> {
         let anchor = self.separation.embed(&[], &[]);
         let constant =
@@ -192,8 +193,8 @@ impl RangeSearch {
 }
 
 impl RangeSearch {
-    /// Searches anew, over all parameters together, for the ranges of outputs that are no sums at the ends of these: a kink that lies
-    /// beside all points at which sums are tried.
+    /// Searches anew, over all parameters together, for the ranges of outputs that are no sums at the ends of these: a
+    /// kink that lies beside all points at which sums are tried.
     fn hold_sums(&self, functions: &Functions, outputs: &[usize], sums: &mut [Extent], previous: &mut Previous) {
         let places: Vec<Vec<f64>> = sums.iter().flat_map(|sum| sum.places.iter().cloned()).collect();
         let values = (functions.evaluate)(outputs, &places);
@@ -222,7 +223,7 @@ impl Functions<'_> {
     }
 }
 
-/// Intervals of the first lattice along some axes, for polynomials or what is composed of them.
+/// Intervals of the first lattice along some axes, for polynomials or compositions of them.
 fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
     let place = axes.len().clamp(1, MOST_PARAMETERS) - 1;
     let each = if are_polynomials { POLYNOMIAL[place] } else { COMPOSED[place] };
@@ -260,8 +261,8 @@ pub(super) fn extent(found: Extremes) -> Extent {
 mod tests {
     use super::*;
 
-    /// As a crank's slider in the row in which some samples pass their dead point: all values on a ridge are nearly the same, and the best lies
-    /// where the ridge ends. Climbs alone miss it by a thousandth of the range.
+    /// As a crank's slider in the row in which some samples pass their dead point: all values on a ridge are nearly the
+    /// same, and the best lies where the ridge ends. Climbs alone miss it by a thousandth of the range.
     #[test]
     fn the_end_of_a_ridge_is_found() {
         let weight = |axis: usize| if axis == 0 { 1.0 } else { 0.05 };

@@ -11,11 +11,12 @@ use crate::numerics::{
     Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseWork, Surrogate, SurrogateWork, TensorGrid,
 };
 
-/// Degree of the polynomials whose variance is decomposed, by the number of parameters: those of the outputs, which follow from
-/// the coordinates' at any number of points. For more parameters it is the surrogate's own basis.
+/// Degree of the polynomials whose variance is decomposed, by the number of parameters: those of the outputs, which
+/// follow from the coordinates' at any number of points. For more parameters it is the surrogate's own basis.
 const DEGREES: [u8; 3] = [24, 12, 8];
 
-/// Intervals for each degree on which widths without a parameter are found: nothing hangs on these but the order of the parameters.
+/// Intervals for each degree on which widths without a parameter are found: nothing hangs on these but the order of the
+/// parameters.
 const DENSITY: usize = 4;
 
 /// Polynomials of the outputs themselves, of a degree that most of them need not have.
@@ -97,8 +98,9 @@ impl SensitivityAnalysis {
         coefficients.chunks_exact(surrogate.basis().len()).enumerate().map(of_output).collect()
     }
 
-    /// Every output's width with one parameter at its nominal value, from the outputs' `coefficients`. For many parameters, as far as
-    /// the places of the extremes tell, which is all there is to know of an output that rises or falls with each.
+    /// Every output's width with one parameter at its nominal value, from the outputs' `coefficients`. For many
+    /// parameters, as far as the places of the extremes tell, which is all there is to know of an output that rises or
+    /// falls with each.
     fn widths_without(&self, row: &impl Predicted, coefficients: &[f64], found: &[Extent], axis: usize) -> Vec<f64> {
         if let Some(fine) = &self.fine {
             return fine.widths_without(coefficients, axis);
@@ -173,8 +175,8 @@ impl Fine {
         largest - least
     }
 
-    /// The extreme beside the lattice's: along each axis a parabola through its neighbours, in the angle whose cosine ξ is, in which they
-    /// are equally far. At the ends of an axis the function is even in it.
+    /// The extreme beside the lattice's: along each axis a parabola through its neighbours, in the angle whose cosine ξ
+    /// is, in which they are equally far. At the ends of an axis the function is even in it.
     fn peak(&self, line: &[f64], place: usize, sign: f64) -> f64 {
         let points = DENSITY * (self.nominal[0].len() - 1) + 1;
         let mut peak = line[place];

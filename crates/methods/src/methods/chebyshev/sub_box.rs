@@ -19,7 +19,8 @@ const HIGHEST_OF_MANY: u8 = 16;
 const TELLING: u8 = 16;
 const COMPARED: u8 = 8;
 
-/// A box is split where the expected surplus of a higher degree than is allowed is so many times the largest allowed one.
+/// A box is split where the expected surplus of a higher degree than is allowed is so many times the largest allowed
+/// one.
 const SPLIT: f64 = 4.0;
 
 /// Points spread over a box that are validation samples of a new surrogate, at least.
@@ -40,8 +41,9 @@ pub(super) type Surpluses = FxHashMap<Vec<u8>, f64>;
 pub(super) struct SubBox<'r> {
     pub domain: ParameterBox,
     pub grid: SparseGrid,
-    /// Values at the grid's nodes: so many of them, then row by row, line by line, node by node. Lines are those of the motion, the outputs,
-    /// and for each coordinate that turns the time at which its course is there (NaN where that was not told).
+    /// Values at the grid's nodes: so many of them, then row by row, line by line, node by node. Lines are those of the
+    /// motion, the outputs, and for each coordinate that turns the time at which its course is there (NaN where that
+    /// was not told).
     pub nodes: Vec<(usize, Vec<f64>)>,
     /// Number of these lines.
     pub lines: usize,
@@ -73,16 +75,16 @@ impl SubBox<'_> {
         degrees
     }
 
-    /// Points spread over the box that are to be validation samples besides those that are: in each direction that matters two more than
-    /// the degree, at least a few, and no more than there are nodes.
+    /// Points spread over the box that are to be validation samples besides those that are: in each direction that
+    /// matters two more than the degree, at least a few, and no more than there are nodes.
     pub fn spread_wanted(&self) -> usize {
         let degrees = self.degrees().into_iter().filter(|&degree| degree > 0);
         let wanted: usize = degrees.map(|degree| usize::from(degree) + 2).sum();
         wanted.saturating_sub(self.spread).min(self.grid.len()).max(LEAST_SPREAD)
     }
 
-    /// Validation samples that are those of one half of the box only, which is cut across an axis, on the side of this sign: ξ there, and
-    /// values.
+    /// Validation samples that are those of one half of the box only, which is cut across an axis, on the side of this
+    /// sign: ξ there, and values.
     pub fn validation_in_half(&self, axis: usize, side: f64) -> (Vec<Vec<f64>>, ValidationTable) {
         let common = step_validation(self.grid.dimension()).len();
         let places: Vec<usize> =
@@ -134,8 +136,9 @@ impl SubBox<'_> {
         all
     }
 
-    /// Indices to be added next, generation by generation, at least `wanted` as far as there are any: of each generation those whose
-    /// expected surplus is at least a share of the largest. Surpluses of an earlier generation are believed to be the expected ones.
+    /// Indices to be added next, generation by generation, at least `wanted` as far as there are any: of each
+    /// generation those whose expected surplus is at least a share of the largest. Surpluses of an earlier generation
+    /// are believed to be the expected ones.
     pub fn next(&self, share: f64, wanted: usize) -> Vec<Vec<Vec<u8>>> {
         let (mut grid, mut surplus) = (self.grid.clone(), self.surplus.clone());
         let mut generations: Vec<Vec<Vec<u8>>> = Vec::new();
@@ -158,8 +161,8 @@ impl SubBox<'_> {
         generations
     }
 
-    /// The axis along which the box is to be split: where its degree is as high as is allowed, and a higher one has a much
-    /// larger expected surplus than whatever else can be added; or where surpluses fall so slowly that it will be.
+    /// The axis along which the box is to be split: where its degree is as high as is allowed, and a higher one has a
+    /// much larger expected surplus than whatever else can be added; or where surpluses fall so slowly that it will be.
     pub fn axis_to_split(&self) -> Option<usize> {
         let highest = highest(self.grid.dimension());
         let beyond = |levels: &Vec<u8>| {
@@ -177,8 +180,8 @@ impl SubBox<'_> {
         }
     }
 
-    /// Whether surpluses along an axis fall so slowly that the highest degree will not do. One parameter's are not asked: a degree costs
-    /// but a node.
+    /// Whether surpluses along an axis fall so slowly that the highest degree will not do. One parameter's are not
+    /// asked: a degree costs but a node.
     fn falls_slowly(&self, axis: usize, highest: u8) -> bool {
         let k = self.grid.dimension();
         let at = |degree: u8| {
@@ -210,8 +213,8 @@ fn expected(surplus: &Surpluses, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
     expected
 }
 
-/// The expected surplus of an index: the least that follows from the indices before it, as for a power of Σ aᵢ ξᵢ, where from
-/// ξ^(l − eᵢ) to ξ^l the multinomial coefficient times the weights changes by aᵢ |l|/lᵢ.
+/// The expected surplus of an index: the least that follows from the indices before it, as for a power of Σ aᵢ ξᵢ,
+/// where from ξ^(l − eᵢ) to ξ^l the multinomial coefficient times the weights changes by aᵢ |l|/lᵢ.
 fn extrapolated(surplus: &Surpluses, levels: &[u8]) -> f64 {
     let k = levels.len();
     let weight = |axis: usize| {

@@ -9,12 +9,13 @@
 //! corner beside an end            w = p − c                                     |w|                      0 or M
 //! ```
 //!
-//! Each is taken where the hull does not reach beyond the feature along w, n or e, and the line does not come nearer. The plane across that direction lies between both then, so
-//! that no such value is more than the distance, and the largest is the distance (Ericson, *Real-Time Collision Detection* (2005), ch. 5 and 9).
+//! Each is taken where the hull does not reach beyond the feature along w, n or e, and the line does not come nearer.
+//! The plane across that direction lies between both then, so that no such value is more than the distance, and the
+//! largest is the distance (Ericson, *Real-Time Collision Detection* (2005), ch. 5 and 9).
 //!
-//! Where the line is parallel to a face or an edge several are the largest. Those within s = 10⁻⁴ M of it have a share that falls with their
-//! distance to it: t is their mean, the middle of the part beside the hull, and goes to the lower end within an angle of 10⁻⁴. Where the line passes
-//! through the hull, t is the middle of the part within.
+//! Where the line is parallel to a face or an edge several are the largest. Those within s = 10⁻⁴ M of it have a share
+//! that falls with their distance to it: t is their mean, the middle of the part beside the hull, and goes to the lower
+//! end within an angle of 10⁻⁴. Where the line passes through the hull, t is the middle of the part within.
 
 use symdiff::Scalar;
 

@@ -8,7 +8,8 @@
 //!
 //! p is the positive part with its corner rounded (`positive_part`): within the play nothing acts, and only x is
 //! computed. Without play, b = 0, τ = k x + c ẋ. The reactions of the
-//! shafts on their frames (the ground, or the joints' first bodies) carry the difference of the torques, as of a rigid gear.
+//! shafts on their frames (the ground, or the joints' first bodies) carry the difference of the torques, as of a rigid
+//! gear.
 
 use mbint_derive::Element;
 use symdiff::{Binary, Formula};

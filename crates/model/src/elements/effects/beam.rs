@@ -1,5 +1,5 @@
-//! An element of a beam between two frames: Euler and Bernoulli's or Timoshenko's bending, with large rotations. In space it is
-//! that of `spatial_beam`, in the plane
+//! An element of a beam between two frames: Euler and Bernoulli's or Timoshenko's bending, with large rotations. In
+//! space it is that of `spatial_beam`, in the plane
 //!
 //! ```text
 //! d = r_B − r_A,   ℓ = |d|,   c = d/ℓ          φᵢ: angle from c to the beam's axis aᵢ at its end, fixed in that end's body
@@ -11,12 +11,12 @@
 //! V = ½ (EA/L) e² + 2 (EI/L) (φ₁² + φ₁ φ₂ + φ₂²)          J
 //! ```
 //!
-//! The element turns with its chord (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1 (1991), ch. 7). Its
-//! cubic bends by small angles against that and is longer than the chord by ½ ∫ v'²: e is how much it is stretched, on
-//! average, so bending does not stretch it, and tension stiffens it. L is its length, τ Kelvin and Voigt's damping, φ between −π
-//! and π. With shear, 4 and 2 become (4 + Φ)/(1 + Φ) and (2 − Φ)/(1 + Φ) (Przemieniecki, *Theory of Matrix Structural Analysis*
-//! (1968), ch. 5), and e has b ((φ₁ + φ₂)/2)² + L (φ₂ − φ₁)²/24 after ℓ − L, with Φ and b as in space. A massless one is an
-//! effect; of those with mass (`flexible`) a flexible body is made.
+//! The element turns with its chord (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1 (1991),
+//! ch. 7). Its cubic bends by small angles against that and is longer than the chord by ½ ∫ v'²: e is how much it is
+//! stretched, on average, so bending does not stretch it, and tension stiffens it. L is its length, τ Kelvin and
+//! Voigt's damping, φ between −π and π. With shear, 4 and 2 become (4 + Φ)/(1 + Φ) and (2 − Φ)/(1 + Φ) (Przemieniecki,
+//! *Theory of Matrix Structural Analysis* (1968), ch. 5), and e has b ((φ₁ + φ₂)/2)² + L (φ₂ − φ₁)²/24 after ℓ − L,
+//! with Φ and b as in space. A massless one is an effect; of those with mass (`flexible`) a flexible body is made.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

@@ -7,15 +7,16 @@
 //! τ₁ = −r₁ (T₁ − T₂),   τ₂ = σ r₂ (T₁ − T₂)          N m
 //! ```
 //!
-//! p is the positive part with its corner rounded (`positive_part`). The belt does not slip: while both strands are taut and at rest,
-//! T₁ − T₂ is the torque over the radius, T₁ + T₂ = 2 F₀, and θ₂ follows σ (r₁/r₂) θ₁ but for the stretch u. With `centers` the
-//! strands also pull the shafts together, and stretch as the centres part:
+//! p is the positive part with its corner rounded (`positive_part`). The belt does not slip: while both strands are
+//! taut and at rest, T₁ − T₂ is the torque over the radius, T₁ + T₂ = 2 F₀, and θ₂ follows σ (r₁/r₂) θ₁ but for the
+//! stretch u. With `centers` the strands also pull the shafts together, and stretch as the centres part:
 //!
 //! ```text
 //! L = √(d² − (r₁ − σ r₂)²),   ΔL = L(d) − L(distance),   F = (T₁ + T₂) d/L along the line of centres          m, N
 //! ```
 //!
-//! Angles are those of two bodies about z, or of two joints: then the line of centres may turn with the joints' first bodies.
+//! Angles are those of two bodies about z, or of two joints: then the line of centres may turn with the joints' first
+//! bodies.
 
 use mbint_derive::{Choice, Element};
 use symdiff::{Binary, Formula};

@@ -5,9 +5,9 @@
 //! g(t) = Σ eᵢ(t) vᵢ + ε² (t − m) = 0 within 0 … M,    ε² = 2·10⁻⁴ (ρ + r)/M
 //! ```
 //!
-//! g grows and is straight between the places where p passes a face's plane: its root lies between the last of these at which it is not
-//! positive and the first at which it is. Where the line is parallel to a face many points are as near; m, the one nearest to the block's
-//! middle, is taken then, and takes over within an angle of 10⁻⁴.
+//! g grows and is straight between the places where p passes a face's plane: its root lies between the last of these at
+//! which it is not positive and the first at which it is. Where the line is parallel to a face many points are as near;
+//! m, the one nearest to the block's middle, is taken then, and takes over within an angle of 10⁻⁴.
 
 use symdiff::Scalar;
 
@@ -19,7 +19,8 @@ const PARALLEL: f64 = 1e-4;
 /// Square of a component of a unit vector below which it passes no plane.
 const NONE: f64 = 1e-30;
 
-/// t: how far along the line, from `start` along the unit vector `along` of the block's frame. `half` are the block's half-sizes, `reach` is ρ + r.
+/// t: how far along the line, from `start` along the unit vector `along` of the block's frame. `half` are the block's
+/// half-sizes, `reach` is ρ + r.
 pub(super) fn nearest_to_block<'g>(
     (start, along, length): Segment<'g>,
     half: [Option<Scalar<'g>>; 3],

@@ -1,20 +1,20 @@
 //! Bushing: springs and dampers between two frames, along and about the axes of the first.
 //!
-//! With d = R_F₁ᵀ (r_B − r_A), q = (q₀, e) the rotation of the second frame against the first (`joints::pair`), and K, C, K_t,
-//! C_t diagonal, in the first frame's axes,
+//! With d = R_F₁ᵀ (r_B − r_A), q = (q₀, e) the rotation of the second frame against the first (`joints::pair`), and K,
+//! C, K_t, C_t diagonal, in the first frame's axes,
 //!
 //! ```text
 //! F_B = −(K d + C ḋ)                                       V = ½ dᵀ K d + 2 eᵀ K_t e          N, J
 //! τ₂  = −(2 q₀ K_t e + 2 e × K_t e + C_t (ω₂ − ω₁))                                           N m
 //! ```
 //!
-//! on the second body at B; the opposites act on the first body at the same place. ḋ is what an observer in the first frame
-//! sees. 2 e is the rotation vector to second order, so K_t is the stiffness for small rotations, the torque of a rotation
-//! by φ about an axis K_t sin φ: a bushing is no spring for full turns.
+//! on the second body at B; the opposites act on the first body at the same place. ḋ is what an observer in the first
+//! frame sees. 2 e is the rotation vector to second order, so K_t is the stiffness for small rotations, the torque of a
+//! rotation by φ about an axis K_t sin φ: a bushing is no spring for full turns.
 //!
-//! Full matrices 𝐊, 𝐂 (6 × 6, displacements before rotations) add 𝐊 x + 𝐂 ẋ, x = (d, 2 e), ẋ = (ḋ, ω₂ − ω₁), with the torque
-//! q₀ y + e × y of the rotational part y of 𝐊 x, so that V gains ½ xᵀ 𝐊 x. Where 𝐊 is not symmetric, or a stiffness depends on
-//! the motion, there is no potential and none is counted.
+//! Full matrices 𝐊, 𝐂 (6 × 6, displacements before rotations) add 𝐊 x + 𝐂 ẋ, x = (d, 2 e), ẋ = (ḋ, ω₂ − ω₁), with the
+//! torque q₀ y + e × y of the rotational part y of 𝐊 x, so that V gains ½ xᵀ 𝐊 x. Where 𝐊 is not symmetric, or a
+//! stiffness depends on the motion, there is no potential and none is counted.
 
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
@@ -51,7 +51,8 @@ pub struct Bushing {
     /// About those axes.
     #[quantity(unit = "N*m*s/rad", default = 0)]
     pub torsional_damping: PerAxis,
-    /// Six rows: forces along and torques about those axes by displacements (N/m, N) and small rotations (N/rad, N*m/rad).
+    /// Six rows: forces along and torques about those axes by displacements (N/m, N) and small rotations (N/rad,
+    /// N*m/rad).
     #[key(unit = "N/m")]
     pub stiffness_matrix: Option<SixBySix>,
     /// The same by velocities and angular velocities.

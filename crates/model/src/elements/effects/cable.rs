@@ -5,8 +5,8 @@
 //! F_A = T (r_B − r_A)/ℓ,   F_B = −F_A
 //! ```
 //!
-//! p is the positive part with its corner rounded (`positive_part`): the cable becomes taut over ±ε of stretch. Slack, it
-//! does nothing, and only its length is computed. Points that coincide have no line between them.
+//! p is the positive part with its corner rounded (`positive_part`): the cable becomes taut over ±ε of stretch. Slack,
+//! it does nothing, and only its length is computed. Points that coincide have no line between them.
 
 use mbint_derive::Element;
 use symdiff::{Binary, Formula};

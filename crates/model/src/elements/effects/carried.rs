@@ -1,5 +1,5 @@
-//! A flexible body that its first node carries along: mass, centre and moments of inertia, and how each coordinate of deformation
-//! changes them.
+//! A flexible body that its first node carries along: mass, centre and moments of inertia, and how each coordinate of
+//! deformation changes them.
 //!
 //! x is a place of the undeformed body from the first node, N_k the displacement there by coordinate k, ρ the density:
 //!
@@ -8,9 +8,10 @@
 //! a_k = ∫ρ N_k,   b_k = ∫ρ x × N_k,   c_k = ∫ρ (x·N_k 1 − ½ (x N_kᵀ + N_k xᵀ))
 //! ```
 //!
-//! All but c_k are exact from the mass matrix, since it knows displacements and rotations of the whole body. c_k needs strains of the whole body, x ↦ G x
-//! with G symmetric: the nodes are displaced by G x, and what else there is (the nodes' rotations, the modes) is where it stores the
-//! least energy. That is exact where such a strain is among the shapes, as along a bar or for lumped masses at nodes.
+//! All but c_k are exact from the mass matrix, since it knows displacements and rotations of the whole body. c_k needs
+//! strains of the whole body, x ↦ G x with G symmetric: the nodes are displaced by G x, and what else there is (the
+//! nodes' rotations, the modes) is where it stores the least energy. That is exact where such a strain is among the
+//! shapes, as along a bar or for lumped masses at nodes.
 
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 

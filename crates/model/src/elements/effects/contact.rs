@@ -14,12 +14,12 @@
 //! F_B = f(−gap) n − R_μ v_t,    F_A = −F_B          N, both at r_B − r n
 //! ```
 //!
-//! f is that of `impact`, R_μ that of `dry_friction` under the load f, v_t the tangential part of the velocity of the second
-//! surface against the first. In space round surfaces are spheres, or cylinders with parallel axes where an axis is
-//! given: d is then taken across it. Centres that coincide have no direction between them: inside a hollow |d| is
-//! √(d² + ε²), ε = 10⁻⁴ (R − r), which moves the wall by half of 10⁻⁸ of the clearance. One round body in another, or two whose
-//! centres meet, is no contact that this can tell. Apart the force and its derivatives are exactly zero, and of a tile of samples that
-//! all are apart only the sign of the gap is computed: without a root, from squares.
+//! f is that of `impact`, R_μ that of `dry_friction` under the load f, v_t the tangential part of the velocity of the
+//! second surface against the first. In space round surfaces are spheres, or cylinders with parallel axes where an axis
+//! is given: d is then taken across it. Centres that coincide have no direction between them: inside a hollow |d| is
+//! √(d² + ε²), ε = 10⁻⁴ (R − r), which moves the wall by half of 10⁻⁸ of the clearance. One round body in another, or
+//! two whose centres meet, is no contact that this can tell. Apart the force and its derivatives are exactly zero, and
+//! of a tile of samples that all are apart only the sign of the gap is computed: without a root, from squares.
 
 mod surfaces;
 
@@ -45,7 +45,8 @@ use crate::elements::{Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Pair, Vector};
 
-/// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block, a hull or edges on one body with a circle, sphere, capsule, cylinder or point on another.
+/// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block, a hull or edges on one body with a circle,
+/// sphere, capsule, cylinder or point on another.
 #[derive(Clone, Debug, Element)]
 #[element(
     keyword = "contact",
@@ -69,16 +70,19 @@ pub struct Contact {
     /// Instead of `plane`: radius of a hollow circle, sphere or cylinder that the second is in.
     #[quantity(unit = "m", constant, positive, above = radius)]
     pub hollow: Option<Formula>,
-    /// Instead of `plane`: points of a line in x and y of the first point's frame; both of its sides are surfaces. `{ to: [x, y], radius: R }` is an arc to a point.
+    /// Instead of `plane`: points of a line in x and y of the first point's frame; both of its sides are surfaces.
+    /// `{ to: [x, y], radius: R }` is an arc to a point.
     #[quantity(unit = "m", constant)]
     pub path: Option<Course>,
     /// Instead of `plane`: corners of a closed line, in their order, with arcs as in `path`.
     #[quantity(unit = "m", constant)]
     pub polygon: Option<Course>,
-    /// Instead of `plane`: height of the ground over the first point, a formula of `x` along x of its frame and of t; up is y, in space z.
+    /// Instead of `plane`: height of the ground over the first point, a formula of `x` along x of its frame and of t;
+    /// up is y, in space z.
     #[quantity(unit = "m", time)]
     pub height: Option<OfPlace>,
-    /// Instead of `plane`: both ends of the line in the middle of a capsule, in the first point's frame; its radius is the `rounding`.
+    /// Instead of `plane`: both ends of the line in the middle of a capsule, in the first point's frame; its radius is
+    /// the `rounding`.
     #[quantity(unit = "m", constant)]
     pub capsule: Option<Points>,
     /// Instead of `plane`: lengths of a block along the axes of the first point's frame, about that point.
@@ -94,17 +98,21 @@ pub struct Contact {
     /// Points of the second point's frame that touch, each with the `radius`.
     #[quantity(unit = "m", constant, otherwise = "the second point itself")]
     pub corners: Option<Points>,
-    /// Both ends of the line in the middle of a capsule on the second body, in the second point's frame; its radius is the `radius`.
+    /// Both ends of the line in the middle of a capsule on the second body, in the second point's frame; its radius is
+    /// the `radius`.
     #[quantity(unit = "m", constant, otherwise = "no capsule")]
     pub line: Option<Points>,
-    /// In space: centres of both faces of a cylinder on the second body, in the second point's frame; its radius is the `radius`.
+    /// In space: centres of both faces of a cylinder on the second body, in the second point's frame; its radius is the
+    /// `radius`.
     #[quantity(unit = "m", constant, otherwise = "no cylinder")]
     pub cylinder: Option<Points>,
-    /// In space: lengths of a box on the second body along the axes of the second point's frame, about that point; its surface is the `radius` outside.
+    /// In space: lengths of a box on the second body along the axes of the second point's frame, about that point; its
+    /// surface is the `radius` outside.
     #[quantity(unit = "m", constant, otherwise = "no box")]
     #[key(image = Same)]
     pub r#box: Option<Components>,
-    /// In space: points whose convex hull is on the second body, in the second point's frame; its surface is the `radius` outside.
+    /// In space: points whose convex hull is on the second body, in the second point's frame; its surface is the
+    /// `radius` outside.
     #[quantity(unit = "m", constant, otherwise = "no polyhedron")]
     pub polyhedron: Option<Points>,
     /// In space: axis of two parallel cylinders, in the first point's frame.

@@ -95,7 +95,8 @@ impl Course {
         self.0.iter().map(|stop| Bend { to: stop.place.clone(), radius: stop.radius.clone() }).collect()
     }
 
-    /// Reports too few points, neighbours that are one point somewhere in the box of parameters, and arcs that do not reach.
+    /// Reports too few points, neighbours that are one point somewhere in the box of parameters, and arcs that do not
+    /// reach.
     pub fn check_edges<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, at: Span, (key, least): (&str, usize)) {
         let count = self.0.len();
         if count < least {

@@ -10,13 +10,13 @@
 //! place = face − r (k cos φ + v × k sin φ),   φ = 0, ±120°
 //! ```
 //!
-//! n pushes the cylinder. g grows with τ: sixteen halvings find its root, and two steps of Newton's method from there make it smooth.
-//! Where the line is parallel to the side or to a face many points are as near: m, the middle of the part beside it, takes over within an
-//! angle of 10⁻⁴.
+//! n pushes the cylinder. g grows with τ: sixteen halvings find its root, and two steps of Newton's method from there
+//! make it smooth. Where the line is parallel to the side or to a face many points are as near: m, the middle of the
+//! part beside it, takes over within an angle of 10⁻⁴.
 //!
-//! At φ = 0 each rim's deepest point touches, so that a cylinder rolls on the line between two of them and tips about its rim; on a face
-//! it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the body turns into that of the deepest point. The
-//! pushes at ±120° are alike, and their torques about the axis cancel.
+//! At φ = 0 each rim's deepest point touches, so that a cylinder rolls on the line between two of them and tips about
+//! its rim; on a face it stands on three. There p is 0: up to an angle of ε = 10⁻³ a direction e of the body turns into
+//! that of the deepest point. The pushes at ±120° are alike, and their torques about the axis cancel.
 
 use symdiff::Scalar;
 

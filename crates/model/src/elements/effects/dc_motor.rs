@@ -4,8 +4,9 @@
 //! L di/dt = U − R i − k N ṡ          f = k N i          N or N m, pushes s up
 //! ```
 //!
-//! k is the rotor's torque by current and its voltage by speed, N m/A = V s/rad; N is how far the rotor turns, rad, by the joint's
-//! coordinate. Without L the current is (U − k N ṡ)/R. Electric quantities are bare numbers, in V, A, Ω and H.
+//! k is the rotor's torque by current and its voltage by speed, N m/A = V s/rad; N is how far the rotor turns, rad, by
+//! the joint's coordinate. Without L the current is (U − k N ṡ)/R. Electric quantities are bare numbers, in V, A, Ω and
+//! H.
 
 use mbint_derive::Element;
 use symdiff::Formula;

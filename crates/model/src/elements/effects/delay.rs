@@ -5,9 +5,9 @@
 //! cₖ = (2n−1−k)! (n−1)! / ((2n−1)! k! (n−1−k)!),    dₖ = (2n−1−k)! n! / ((2n−1)! k! (n−k)!)
 //! ```
 //!
-//! Padé's approximation with a numerator of one degree less than the denominator: its Taylor series is that of the delay up to (s T)²ⁿ⁻¹,
-//! and the output follows from states alone, so that the delayed formula may depend on the output. It begins at rest, settled at a constant
-//! input. (Golub & Van Loan, *Matrix Computations* (2013), sec. 9.3.)
+//! Padé's approximation with a numerator of one degree less than the denominator: its Taylor series is that of the
+//! delay up to (s T)²ⁿ⁻¹, and the output follows from states alone, so that the delayed formula may depend on the
+//! output. It begins at rest, settled at a constant input. (Golub & Van Loan, *Matrix Computations* (2013), sec. 9.3.)
 
 use std::borrow::Cow;
 

@@ -4,13 +4,13 @@
 //! F = −R u,   R = μ N s(|u|) / √(|u|² + u₀²),   s = 1 + (b − 1) exp(−(|u|/u_s)²)          N
 //! ```
 //!
-//! u is the velocity of sliding, a number or a vector, N the load, b the breakaway ratio. The sign u/|u| of Coulomb's law is
-//! u/√(|u|² + u₀²) (Oden & Martins, Comput. Methods Appl. Mech. Eng. 52 (1985) 527), which is smooth and falls short of it by
-//! ½(u₀/u)²; s is that of Armstrong-Hélouvry, *Control of Machines with Friction* (1991). What sticks creeps: under a part κ
-//! of the friction that it could bear at u₀ κ/√(1 − κ²).
+//! u is the velocity of sliding, a number or a vector, N the load, b the breakaway ratio. The sign u/|u| of Coulomb's
+//! law is u/√(|u|² + u₀²) (Oden & Martins, Comput. Methods Appl. Mech. Eng. 52 (1985) 527), which is smooth and falls
+//! short of it by ½(u₀/u)²; s is that of Armstrong-Hélouvry, *Control of Machines with Friction* (1991). What sticks
+//! creeps: under a part κ of the friction that it could bear at u₀ κ/√(1 − κ²).
 //!
-//! With another coefficient μ_e along a direction e, μ u becomes μ u + (μ_e − μ) (e · u) e: an ellipse of friction, of which the force
-//! stands against u along its axes alone (Zmitrowicz, Int. J. Solids Struct. 25 (1989) 837).
+//! With another coefficient μ_e along a direction e, μ u becomes μ u + (μ_e − μ) (e · u) e: an ellipse of friction, of
+//! which the force stands against u along its axes alone (Zmitrowicz, Int. J. Solids Struct. 25 (1989) 837).
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

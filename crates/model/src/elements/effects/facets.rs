@@ -45,8 +45,8 @@ impl<'g> Facets<'g> {
         }
     }
 
-    /// The normal of the face that a convex body is farthest from; `lowest` is the least of n · p over the body's points. While the body is
-    /// at a distance of a face that is more than a tenth of the reach, no other is as far.
+    /// The normal of the face that a convex body is farthest from; `lowest` is the least of n · p over the body's
+    /// points. While the body is at a distance of a face that is more than a tenth of the reach, no other is as far.
     pub fn facing(&self, reach: Scalar<'g>, lowest: impl Fn(Vector<'g>) -> Scalar<'g>) -> Vector<'g> {
         let g = reach.builder();
         let apart: Vec<Scalar<'g>> = self.faces.iter().map(|&(normal, height)| lowest(normal) - height).collect();

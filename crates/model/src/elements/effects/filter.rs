@@ -6,9 +6,9 @@
 //! y = x₁ + (bₙ/aₙ) u,     ẋₖ = xₖ₊₁ + (bₙ₋ₖ u − aₙ₋ₖ y)/aₙ,     xₙ₊₁ = 0
 //! ```
 //!
-//! In this form (the observable one; Kailath, *Linear Systems* (1980), sec. 2.1) no rate of the input is needed, and y itself is the
-//! first state where the numerator is shorter than the denominator. It begins at rest, settled at a constant input u₀:
-//! xₖ₊₁ = (aₙ₋ₖ b₀/a₀ − bₙ₋ₖ) u₀/aₙ.
+//! In this form (the observable one; Kailath, *Linear Systems* (1980), sec. 2.1) no rate of the input is needed, and y
+//! itself is the first state where the numerator is shorter than the denominator. It begins at rest, settled at a
+//! constant input u₀: xₖ₊₁ = (aₙ₋ₖ b₀/a₀ − bₙ₋ₖ) u₀/aₙ.
 
 use std::borrow::Cow;
 
@@ -151,7 +151,8 @@ fn is_literal(node: &Node) -> bool {
     node.scalar().is_some_and(|scalar| scalar.text.trim().parse::<f64>().is_ok())
 }
 
-/// The dimension of the last of a list's coefficients, as the first says that has a known one; of bare numbers that of a number.
+/// The dimension of the last of a list's coefficients, as the first says that has a known one; of bare numbers that of
+/// a number.
 fn of_list(known: &[Option<Dimension>], are_literal: bool) -> Option<Dimension> {
     let powers = (0..known.len()).rev();
     let last = |(dimension, power): (&Option<Dimension>, usize)| {

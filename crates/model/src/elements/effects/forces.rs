@@ -57,8 +57,9 @@ pub trait Forces<'g> {
     /// How the teeth of a joint rub.
     fn meshing(&self, joint: usize) -> Result<Option<Meshing<'g>>, BuildError>;
 
-    /// From now on the effect acts only where the condition is positive, whatever its expressions are elsewhere. They are not
-    /// computed where no sample of a tile needs them, so they have to vanish continuously as the condition does.
+    /// From now on the effect acts only where the condition is positive, whatever its expressions are elsewhere. They
+    /// are not computed where no sample of a tile needs them, so they have to vanish continuously as the condition
+    /// does.
     fn only_where(&mut self, condition: Scalar<'g>);
     /// The same, for a condition that is costly: it is not computed either where `within` is not positive.
     fn only_within(&mut self, within: Scalar<'g>, condition: Scalar<'g>);

@@ -5,9 +5,9 @@
 //! V_pot = p₀ V₀ (V₀/V)ⁿ⁻¹/(n − 1) + p_a A ℓ,    for n = 1: −p₀ V₀ ln V + p_a A ℓ            J
 //! ```
 //!
-//! n = 1 is gas at a constant temperature, n = 1.4 air that exchanges no heat, slower changes lie between. p and V are absolute, for
-//! all the gas that is there: in a spring whose piston oil passes through, d is the diameter of the rod. Nothing moves where V would be
-//! negative: the force is no number there.
+//! n = 1 is gas at a constant temperature, n = 1.4 air that exchanges no heat, slower changes lie between. p and V are
+//! absolute, for all the gas that is there: in a spring whose piston oil passes through, d is the diameter of the rod.
+//! Nothing moves where V would be negative: the force is no number there.
 
 use std::f64::consts::FRAC_PI_4;
 

@@ -1,7 +1,7 @@
 //! What a drive's coordinate should be, and how fast that changes.
 //!
-//! The rate of a target that depends on t alone is its derivative by t. Of one that follows states or a motion it is a formula of its
-//! own, `target_rate`: the target's derivative would need rates and accelerations.
+//! The rate of a target that depends on t alone is its derivative by t. Of one that follows states or a motion it is a
+//! formula of its own, `target_rate`: the target's derivative would need rates and accelerations.
 
 use symdiff::{Formula, Scalar};
 

@@ -6,8 +6,8 @@
 //! n = (−h', 1)/√(1 + h'²),      gap = n · (p − u, q − h) − r,      the surface moves with ∂h/∂t along up
 //! ```
 //!
-//! f' = 1 + h'² + h'' (h − q) is positive where the centre is nearer than the surface's centre of curvature: a circle that is larger than a
-//! hollow touches it at two points, of which this knows one.
+//! f' = 1 + h'² + h'' (h − q) is positive where the centre is nearer than the surface's centre of curvature: a circle
+//! that is larger than a hollow touches it at two points, of which this knows one.
 
 use symdiff::Scalar;
 

@@ -7,9 +7,10 @@
 //! gap = the largest of these − ρ − r
 //! ```
 //!
-//! u is the unit vector along an edge (away from the corner), m that in a face across the edge, to its inside: where the conditions hold, the
-//! direction is one in which the hull does not reach beyond the edge or the corner, so that the value is no more than the distance, and for the nearest of
-//! them it is the distance (Ericson, *Real-Time Collision Detection* (2005), ch. 5). Inside, the nearest face pushes.
+//! u is the unit vector along an edge (away from the corner), m that in a face across the edge, to its inside: where
+//! the conditions hold, the direction is one in which the hull does not reach beyond the edge or the corner, so that
+//! the value is no more than the distance, and for the nearest of them it is the distance (Ericson, *Real-Time
+//! Collision Detection* (2005), ch. 5). Inside, the nearest face pushes.
 //!
 //! Which faces there are follows from the points, so these are the same for all samples.
 
@@ -187,8 +188,8 @@ impl Hull {
         best.unwrap_or((g.number(0.0), [g.number(0.0); 3]))
     }
 
-    /// The square of the greatest distance from an edge or a corner beside which the place is, zero where it is beside none, and the way
-    /// from there.
+    /// The square of the greatest distance from an edge or a corner beside which the place is, zero where it is beside
+    /// none, and the way from there.
     fn beside_edges<'g>(&self, g: &'g Builder, place: Vector<'g>) -> (Scalar<'g>, [Scalar<'g>; 3]) {
         let zero = g.number(0.0);
         let mut best = (zero, [zero; 3]);

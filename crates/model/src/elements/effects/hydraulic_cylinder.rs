@@ -9,10 +9,11 @@
 //! φ(Δp) = Δp/(Δp² + δ²)^¼,    ⟨x⟩ = 0 below 0, x²/4ε to 2ε, x − ε beyond
 //! ```
 //!
-//! Chamber 1 is that of the piston's full face, 2 that of the rod. x is the valve's opening: with x > 0 oil flows from the supply to
-//! chamber 1 and from 2 to the tank. Flow through an edge grows with the root of its drop of pressure (Merritt, *Hydraulic Control
-//! Systems* (1967), sec. 3.2, 5.1, 6.1), below δ with the drop itself, so that its derivative is finite; ε is the overlap of the edges. The cylinder
-//! has no ends: a `stop` is what holds it. Where a pressure would be negative, oil would boil, and this is no model of it.
+//! Chamber 1 is that of the piston's full face, 2 that of the rod. x is the valve's opening: with x > 0 oil flows from
+//! the supply to chamber 1 and from 2 to the tank. Flow through an edge grows with the root of its drop of pressure
+//! (Merritt, *Hydraulic Control Systems* (1967), sec. 3.2, 5.1, 6.1), below δ with the drop itself, so that its
+//! derivative is finite; ε is the overlap of the edges. The cylinder has no ends: a `stop` is what holds it. Where a
+//! pressure would be negative, oil would boil, and this is no model of it.
 
 use std::f64::consts::FRAC_PI_4;
 

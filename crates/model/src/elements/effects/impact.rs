@@ -5,9 +5,9 @@
 //! ```
 //!
 //! Hertz's n = 3/2 has a continuous derivative where the
-//! surfaces first touch, and the damping grows with the depth, so the force has no jump there. Surfaces do not stick: where
-//! 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its derivative: the law is written for
-//! δ > 0 alone, and the caller guards it by that condition.
+//! surfaces first touch, and the damping grows with the depth, so the force has no jump there. Surfaces do not stick:
+//! where 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its derivative: the
+//! law is written for δ > 0 alone, and the caller guards it by that condition.
 //!
 //! Whatever K and n, an impact at v ends with the speed e v of
 //!
@@ -15,8 +15,9 @@
 //! d − ln(1 + d) = −d e − ln(1 − d e),   d = χ v          Marhefka & Orin, IEEE Trans. Syst. Man Cybern. 29 (1999) 566
 //! ```
 //!
-//! which gives χ of the `restitution` e at v: d = (1 − e)/e k(e), where k goes from 1 at e = 0 to 3/2 at e = 1, as a polynomial by which e is met to 1e-5.
-//! Both laws of the literature hold for e near 1. At e = 0.5, they leave 0.66 and 0.73:
+//! which gives χ of the `restitution` e at v: d = (1 − e)/e k(e), where k goes from 1 at e = 0 to 3/2 at e = 1, as a
+//! polynomial by which e is met to 1e-5. Both laws of the literature hold for e near 1. At e = 0.5, they leave 0.66 and
+//! 0.73:
 //!
 //! ```text
 //! χ = 3 (1 − e)/(2 v)          Hunt & Crossley, J. Appl. Mech. 42 (1975) 440

@@ -7,10 +7,11 @@
 //! both            f = −[(C + μ N) R(u) + c] ṡ,   τ = −[(C + μ N) R(u) + c] r² ω,   u = (ṡ, r ω)
 //! ```
 //!
-//! F_λ, M_λ are the joint's reaction on the second body, a its axis, R that of `dry_friction`, C a part of the dry friction
-//! that has nothing to do with the load, c viscous. The opposites act on the first body. Q so depends on λ, and the Newton
-//! matrix has its block −∂Q/∂λ. |F| is √(F² + ε²), ε = 1 µN, for |F| has no derivative at 0. Where friction is so large that the
-//! reaction it needs grows faster than the load it resists, the mechanism jams (Painlevé) and there is no motion to be found.
+//! F_λ, M_λ are the joint's reaction on the second body, a its axis, R that of `dry_friction`, C a part of the dry
+//! friction that has nothing to do with the load, c viscous. The opposites act on the first body. Q so depends on λ,
+//! and the Newton matrix has its block −∂Q/∂λ. |F| is √(F² + ε²), ε = 1 µN, for |F| has no derivative at 0. Where
+//! friction is so large that the reaction it needs grows faster than the load it resists, the mechanism jams (Painlevé)
+//! and there is no motion to be found.
 
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};

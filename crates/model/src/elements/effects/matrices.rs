@@ -1,4 +1,5 @@
-//! Matrices of a flexible body, in the model or in a file of their own: mass and stiffness by the motions of its nodes and by modes.
+//! Matrices of a flexible body, in the model or in a file of their own: mass and stiffness by the motions of its nodes
+//! and by modes.
 //!
 //! A row and a column belong to each of
 //!
@@ -6,9 +7,9 @@
 //! x, y, z, rotations about x, y and z of the first node, …, of the last one, then the modes          (in the plane x, y, angle)
 //! ```
 //!
-//! That is the order of Craig and Bampton's reduction (*Coupling of substructures for dynamic analyses*, AIAA J. 6 (1968) 1313): constraint
-//! modes, which move one coordinate of one node, then normal modes with all nodes held. Lengths and rotations are small, in the axes of
-//! the body as it stands undeformed; everything is in SI units.
+//! That is the order of Craig and Bampton's reduction (*Coupling of substructures for dynamic analyses*, AIAA J. 6
+//! (1968) 1313): constraint modes, which move one coordinate of one node, then normal modes with all nodes held.
+//! Lengths and rotations are small, in the axes of the body as it stands undeformed; everything is in SI units.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use schemars::{Schema, SchemaGenerator, json_schema};

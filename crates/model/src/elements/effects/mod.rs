@@ -1,7 +1,7 @@
 //! Effects: what moves bodies.
 //!
-//! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema, documentation,
-//! its references, its forces, its cost.
+//! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema,
+//! documentation, its references, its forces, its cost.
 
 mod along_hull;
 mod arc;
@@ -142,8 +142,8 @@ pub trait ForceElement: Element {
         Vec::new()
     }
 
-    /// Whether its name alone stands for a state, known before it is read: the dimension, as far as that is known by then. Nothing
-    /// is reported.
+    /// Whether its name alone stands for a state, known before it is read: the dimension, as far as that is known by
+    /// then. Nothing is reported.
     fn value_ahead<S: SymbolTable>(_reader: &mut Reader<'_, S>, _mapping: &Node) -> Option<Option<Dimension>> {
         None
     }

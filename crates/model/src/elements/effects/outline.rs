@@ -6,9 +6,10 @@
 //! arc of radius R about c; w = p − c:          d = |R − |w|| within its ends, else the distance from the nearer one
 //! ```
 //!
-//! p is the centre of the circle of radius r in the first frame, n the edge's left normal, ρ the outline's rounding. Where two edges join,
-//! the surface is round about their corner, so that normals do not jump. On the outer side of a corner the nearer edge pushes, and of two
-//! that both end there the first one; on the inner side both push. All edges' forces are summed at p, with their torque about it.
+//! p is the centre of the circle of radius r in the first frame, n the edge's left normal, ρ the outline's rounding.
+//! Where two edges join, the surface is round about their corner, so that normals do not jump. On the outer side of a
+//! corner the nearer edge pushes, and of two that both end there the first one; on the inner side both push. All edges'
+//! forces are summed at p, with their torque about it.
 
 use symdiff::Scalar;
 
@@ -140,7 +141,8 @@ impl<'g> Outline<'g> {
         let mut sum = Sum { force: none, torque: none, push: zero, friction: none, along: zero, energy: zero };
         let square_of_reach = self.reach * self.reach;
         for (index, (edge, place)) in self.edges.iter().zip(places).enumerate() {
-            // In radii, so that it stays where the effect's own condition is known to hold: what follows switches in a contact only.
+            // In radii, so that it stays where the effect's own condition is known to hold: what follows switches in a
+            // contact only.
             let touches = 1.0 - place.square / square_of_reach;
             let (before, past) = (place.along.only_where(touches), place.past.only_where(touches));
             let across = edge.across(place, [before, past]);

@@ -1,4 +1,5 @@
-//! Proportional, integral and derivative control of a joint's coordinate, with a filtered derivative, a limit and anti-windup.
+//! Proportional, integral and derivative control of a joint's coordinate, with a filtered derivative, a limit and
+//! anti-windup.
 //!
 //! ```text
 //! e = target − s,   u = k_p e + I + k_d d,   f = sat(u)          N or N m, pushes s up
@@ -6,8 +7,8 @@
 //! d = ė, or with a filter of the time constant T_f:   ḋ = (ė − d)/T_f
 //! ```
 //!
-//! sat is that of a servo. While it limits, (f − u)/T_t takes the integral back (Åström & Murray, *Feedback Systems*, 2nd ed. (2021),
-//! sec. 11.4). I begins at `initial`, d at 0.
+//! sat is that of a servo. While it limits, (f − u)/T_t takes the integral back (Åström & Murray, *Feedback Systems*,
+//! 2nd ed. (2021), sec. 11.4). I begins at `initial`, d at 0.
 
 use std::sync::LazyLock;
 
@@ -64,7 +65,8 @@ pub struct Pid {
     /// Time constant by which the rate of error lags.
     #[quantity(unit = "s", constant, positive, otherwise = "no lag")]
     filter: Option<Formula>,
-    /// Largest force or torque; the corner is round, and half a per cent below where the sum before it reaches the limit.
+    /// Largest force or torque; the corner is round, and half a per cent below where the sum before it reaches the
+    /// limit.
     #[quantity(unit = "N or N*m", constant, positive, otherwise = "none")]
     limit: Option<Formula>,
     /// Time in which the integral follows the limit.

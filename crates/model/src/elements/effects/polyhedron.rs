@@ -7,9 +7,10 @@
 //! block, hull        each corner of both, where the other is nearest; each two edges, where they are nearest
 //! ```
 //!
-//! Two convex polyhedra are nearest at a corner of one of them or where two edges cross. Where faces lie on one another these are the
-//! corners of what both faces share. Distances of edges have no sign: crossing edges may be as deep as ρ + r. Each push is the
-//! gradient of an energy of its own distance, so that the sum keeps energy, also while a corner passes over an edge.
+//! Two convex polyhedra are nearest at a corner of one of them or where two edges cross. Where faces lie on one another
+//! these are the corners of what both faces share. Distances of edges have no sign: crossing edges may be as deep as
+//! ρ + r. Each push is the gradient of an energy of its own distance, so that the sum keeps energy, also while a corner
+//! passes over an edge.
 
 use std::rc::Rc;
 

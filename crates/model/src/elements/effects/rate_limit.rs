@@ -4,8 +4,8 @@
 //! ẏ = sat_R((c − y)/T),     c = u, or within limits: m + sat_w(u − m),   m = (lower + upper)/2,   w = (upper − lower)/2
 //! ```
 //!
-//! sat is that of a servo, T the lag with which y follows slow inputs. Since y follows c, which is within the limits, y does not run up
-//! against them. It begins at `initial`.
+//! sat is that of a servo, T the lag with which y follows slow inputs. Since y follows c, which is within the limits, y
+//! does not run up against them. It begins at `initial`.
 
 use std::borrow::Cow;
 

@@ -54,7 +54,8 @@ macro_rules! effects {
                 }
             }
 
-            /// Whether the name of what an entry describes stands for a state, and of which dimension, as far as that is known.
+            /// Whether the name of what an entry describes stands for a state, and of which dimension, as far as that
+            /// is known.
             pub fn value_ahead<S: $crate::grammar::SymbolTable>(
                 reader: &mut $crate::grammar::Reader<'_, S>,
                 entry: &$crate::grammar::Node,
@@ -137,7 +138,8 @@ macro_rules! effects {
                 }
             }
 
-            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such kind.
+            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such
+            /// kind.
             pub fn images(keyword: &str) -> Option<Vec<$crate::grammar::KeyImage>> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as $crate::grammar::Group>::images()),)*

@@ -5,8 +5,8 @@
 //! s = (v·r u·v − u·r + ε² m)/(|u × v|² + ε²) within 0 … L,    t = v·r + s u·v within 0 … M,    centre = b + t v
 //! ```
 //!
-//! Against a block see `beside`, against a hull `along_hull`. Lines that cross have one nearest pair of points. Parallel ones have many: m
-//! is the middle of their common part, and ε = 10⁻⁴ the angle at which it takes over.
+//! Against a block see `beside`, against a hull `along_hull`. Lines that cross have one nearest pair of points.
+//! Parallel ones have many: m is the middle of their common part, and ε = 10⁻⁴ the angle at which it takes over.
 
 use symdiff::Scalar;
 

@@ -4,9 +4,10 @@
 //! y(t) = u(t_k) for t_k ≤ t < t_{k+1},     t_k = k T,     k = 0, 1, 2, …
 //! ```
 //!
-//! u is taken just before t_k: where it refers to y itself, or to other sampled numbers, these have the values that they were held at until
-//! then. So y is the memory of a difference equation, y_{k+1} = f(y_k, …), which begins at `initial`. Steps of the integration end
-//! at the instants t_k. (Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed. (1997), ch. 2)
+//! u is taken just before t_k: where it refers to y itself, or to other sampled numbers, these have the values that
+//! they were held at until then. So y is the memory of a difference equation, y_{k+1} = f(y_k, …), which begins at
+//! `initial`. Steps of the integration end at the instants t_k. (Åström & Wittenmark, *Computer-Controlled Systems*,
+//! 3rd ed. (1997), ch. 2)
 
 use std::borrow::Cow;
 

@@ -5,7 +5,8 @@
 //! sat(x) = ½ [√((x + L)² + ε²) − √((x − L)² + ε²)],   ε = L/100
 //! ```
 //!
-//! sat is x well within the limit L (its derivative there is 1 − 5·10⁻⁵), L beyond, and smooth between. d target/dt is `target_rate` where it is said.
+//! sat is x well within the limit L (its derivative there is 1 − 5·10⁻⁵), L beyond, and smooth between. d target/dt is
+//! `target_rate` where it is said.
 
 use mbint_derive::Element;
 use symdiff::Formula;
@@ -46,7 +47,8 @@ pub struct Servo {
     /// Force by rate of error.
     #[quantity(unit = "N*s/m or N*m*s/rad", default = 0)]
     derivative: Formula,
-    /// Largest force or torque; the corner is round, and half a per cent below where the sum before it reaches the limit.
+    /// Largest force or torque; the corner is round, and half a per cent below where the sum before it reaches the
+    /// limit.
     #[quantity(unit = "N or N*m", constant, positive, otherwise = "none")]
     limit: Option<Formula>,
 }

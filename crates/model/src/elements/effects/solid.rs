@@ -6,9 +6,9 @@
 //! gap = |e| − ρ − r,    normal = e/|e|
 //! ```
 //!
-//! p is the other's centre in the first frame; e leads to it from the nearest point, so that normals turn smoothly about edges and
-//! corners. Inside of a block, where e = 0, the nearest face pushes: gap = maxᵢ(|pᵢ| − hᵢ) − ρ − r, which is continuous. A centre on
-//! a capsule's line has no nearest side: nothing pushes it.
+//! p is the other's centre in the first frame; e leads to it from the nearest point, so that normals turn smoothly
+//! about edges and corners. Inside of a block, where e = 0, the nearest face pushes: gap = maxᵢ(|pᵢ| − hᵢ) − ρ − r,
+//! which is continuous. A centre on a capsule's line has no nearest side: nothing pushes it.
 
 use symdiff::{Builder, Formula, Scalar};
 

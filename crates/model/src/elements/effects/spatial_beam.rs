@@ -1,7 +1,7 @@
 //! The element of a beam in space: bending about two axes, torsion, shear and tension, with large rotations.
 //!
-//! The frames at the ends have x along the beam. θ is the rotation vector of the second against the first, τ = tan(|θ|/4) u along its
-//! axis u. The middle frame R_m is the first one turned by half of θ; in its axes stand
+//! The frames at the ends have x along the beam. θ is the rotation vector of the second against the first, τ =
+//! tan(|θ|/4) u along its axis u. The middle frame R_m is the first one turned by half of θ; in its axes stand
 //!
 //! ```text
 //! d = r_B − r_A,   ℓ = |d|,   c = d/ℓ                        ψ = θ = 4 f τ,   f = atan|τ|/|τ| = 1 − τ²/3 + τ⁴/5 − …
@@ -11,12 +11,12 @@
 //! b = L (1/10 − Φ²/2)/(1 + Φ)²
 //! ```
 //!
-//! c_y and c_z are the mean slopes of the sections against the chord: with EI ψ/L they are the stiffness matrix of Timoshenko's
-//! beam (Przemieniecki, *Theory of Matrix Structural Analysis* (1968), ch. 5). Without shear e is that of the element in the plane
-//! ([`super::beam`]); a part c/(1 + Φ) of the slope bends, and the sections shear by γ = c Φ/(1 + Φ), which brings them nearer by
-//! L γ²/2. The middle frame turns by δμ = ½ (δα + δβ) − ½ τ × (δβ − δα), with δα and δβ the rotations of the ends in its
-//! axes, and δτ = ¼ (1 + τ²)(δβ − δα) (conformal rotation vector: Milenković, *Coordinates suitable for angular motion synthesis in
-//! robots* (1982)). So, with n = ∂V/∂d, m = ∂V/∂ψ and k = d × n,
+//! c_y and c_z are the mean slopes of the sections against the chord: with EI ψ/L they are the stiffness matrix of
+//! Timoshenko's beam (Przemieniecki, *Theory of Matrix Structural Analysis* (1968), ch. 5). Without shear e is that of
+//! the element in the plane ([`super::beam`]); a part c/(1 + Φ) of the slope bends, and the sections shear by γ = c
+//! Φ/(1 + Φ), which brings them nearer by L γ²/2. The middle frame turns by δμ = ½ (δα + δβ) − ½ τ × (δβ − δα), with δα
+//! and δβ the rotations of the ends in its axes, and δτ = ¼ (1 + τ²)(δβ − δα) (conformal rotation vector: Milenković,
+//! *Coordinates suitable for angular motion synthesis in robots* (1982)). So, with n = ∂V/∂d, m = ∂V/∂ψ and k = d × n,
 //!
 //! ```text
 //! p = (1 + τ²)(f m + 2 f' τ (τ · m))                          f' by τ²

@@ -9,10 +9,10 @@
 //!
 //! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and
 //! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
-//! ℓ = 0: the force is NaN there, unless ℓ₀ = 0. Then the elastic force is −k d, and the damper's is −c ḋ where the points
-//! meet, which is its limit on every straight way through: ḋ is d's direction there. A zero stiffness or damping leaves nothing behind.
-//! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may depend on.
-//! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
+//! ℓ = 0: the force is NaN there, unless ℓ₀ = 0. Then the elastic force is −k d, and the damper's is −c ḋ where the
+//! points meet, which is its limit on every straight way through: ḋ is d's direction there. A zero stiffness or damping
+//! leaves nothing behind. A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else
+//! a formula may depend on. With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

@@ -4,8 +4,8 @@
 //! ẏ = f(t, q, v, y)        in the unit of y over s;      y = y₀ at the start
 //! ```
 //!
-//! y is the velocity of a coordinate of its own, with mass 1 and the force f, so that schemes, jets and enclosures take it as they
-//! take every velocity (decision 0082). Nothing depends on that coordinate itself.
+//! y is the velocity of a coordinate of its own, with mass 1 and the force f, so that schemes, jets and enclosures take
+//! it as they take every velocity (decision 0082). Nothing depends on that coordinate itself.
 
 use std::borrow::Cow;
 

@@ -1,7 +1,8 @@
 //! A flexible body by its mass and stiffness matrices, as finite elements and Craig and Bampton's reduction give them.
 //!
-//! Nodes i = 1 … n are frames of bodies; R is the orientation of the first one, X_i where node i is in the undeformed body. In the axes
-//! of the first node stand displacements, rotations and rates of the nodes, and q are the coordinates of the modes:
+//! Nodes i = 1 … n are frames of bodies; R is the orientation of the first one, X_i where node i is in the undeformed
+//! body. In the axes of the first node stand displacements, rotations and rates of the nodes, and q are the coordinates
+//! of the modes:
 //!
 //! ```text
 //! d_i = Rᵀ (r_i − r_1) − (X_i − X_1),     ρ_i = 2 tan(θ_i/2) n_i of the rotation Rᵀ R_i          m, rad
@@ -11,8 +12,9 @@
 //! T = ½ ∫ |Rᵀ ṙ_1 + Rᵀ ω_1 × (x + N u) + N u̇|² dm          J, N the displacement by u: see `assemble::superelement_inertia`
 //! ```
 //!
-//! Deformation is small against the first node, its motion is not; rigid motions strain nothing. The matrices are constant, so
-//! tension and spin do not stiffen the body: what bends far, or spins fast, is divided into several, or is a `beam`.
+//! Deformation is small against the first node, its motion is not; rigid motions strain nothing. The matrices are
+//! constant, so tension and spin do not stiffen the body: what bends far, or spins fast, is divided into several, or is
+//! a `beam`.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
@@ -36,7 +38,8 @@ use crate::multibody::{BuildError, Pair, RelativeDisplacement, Vector};
     checked
 )]
 pub struct Superelement {
-    /// The frames at its nodes, each `body.point` or `body`, in the order of the matrices; their axes are those of the undeformed body.
+    /// The frames at its nodes, each `body.point` or `body`, in the order of the matrices; their axes are those of the
+    /// undeformed body.
     pub nodes: Vec<PointRef>,
     /// `nodes`, `mass`, `stiffness` and the number of `modes`, here or in a YAML file of their own.
     pub matrices: Matrices,

@@ -5,10 +5,11 @@
 //! worm                     F = −μ N R(u) u,   N = |λ|/(r₂ cos α cos γ)      on the worm along its thread, u the speed of sliding there
 //! ```
 //!
-//! R is that of `dry_friction`. Teeth that roll take their share from both rims: the one that drives gives (1 + c)|λ u|, the driven one gets
-//! (1 − c)|λ u|, c = (1 − η)/(1 + η), which is η of it whichever drives. The multiplier λ of the joint's constraint is what is
-//! transmitted, so Q depends on it. |λ| is √(λ² + ε²), ε = 10⁻⁶ N m or N. Teeth are where they are by the constraint: on a worm
-//! the force acts at the pitch point and on the bearings; that of teeth that roll acts along the rims alone.
+//! R is that of `dry_friction`. Teeth that roll take their share from both rims: the one that drives gives (1 + c)|λ
+//! u|, the driven one gets (1 − c)|λ u|, c = (1 − η)/(1 + η), which is η of it whichever drives. The multiplier λ of
+//! the joint's constraint is what is transmitted, so Q depends on it. |λ| is √(λ² + ε²), ε = 10⁻⁶ N m or N. Teeth are
+//! where they are by the constraint: on a worm the force acts at the pitch point and on the bearings; that of teeth
+//! that roll acts along the rims alone.
 
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};
@@ -46,7 +47,8 @@ pub struct ToothFriction {
     /// The joint.
     #[group]
     pub on: Teeth,
-    /// Power that comes out over that which goes in, at speed; of a planetary set that of both meshes together, with the carrier held.
+    /// Power that comes out over that which goes in, at speed; of a planetary set that of both meshes together, with
+    /// the carrier held.
     #[quantity(unit = "1", constant, requires = SHARE)]
     #[key(otherwise = "needed, but for a worm gear")]
     pub efficiency: Option<Formula>,
@@ -54,7 +56,8 @@ pub struct ToothFriction {
     #[quantity(unit = "1", constant, nonnegative)]
     #[key(otherwise = "needed for a worm gear, and for nothing else")]
     pub coefficient: Option<Formula>,
-    /// How it depends on the speed: of the second member (rad/s, a rack m/s), of the sun against the carrier, along a worm's thread (m/s).
+    /// How it depends on the speed: of the second member (rad/s, a rack m/s), of the sun against the carrier, along a
+    /// worm's thread (m/s).
     #[group]
     pub dry: DryFriction,
 }

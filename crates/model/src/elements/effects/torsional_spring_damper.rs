@@ -5,8 +5,8 @@
 //! −τ about the axis on the second body, +τ on the first
 //! ```
 //!
-//! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
-//! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
+//! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own
+//! angle φ and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
 use mbint_derive::Element;
 use symdiff::Formula;

@@ -27,8 +27,8 @@ pub(super) enum Surface<'g> {
 }
 
 impl<'g> Surface<'g> {
-    /// Positive where what lies within a radius about a line of the second body may touch a solid; `None` of other surfaces, which are found at
-    /// once.
+    /// Positive where what lies within a radius about a line of the second body may touch a solid; `None` of other
+    /// surfaces, which are found at once.
     pub fn is_near(&self, line: &Rod<'g>, radius: Scalar<'g>, pair: &Pair<'g>) -> Option<Scalar<'g>> {
         let (solid, reach) = match self {
             Self::Whole(Shape::Solid(solid, reach)) => (solid.radius(reach.builder()), *reach),
@@ -156,8 +156,8 @@ impl<'g> Touch<'g> {
 }
 
 impl<'g> Shape<'g> {
-    /// Where it touches a circle, sphere or point of a radius about `centre`, which belongs to the second body. Across the axis, a unit
-    /// vector in the first frame, centres are apart.
+    /// Where it touches a circle, sphere or point of a radius about `centre`, which belongs to the second body. Across
+    /// the axis, a unit vector in the first frame, centres are apart.
     pub fn touch(
         &self,
         pair: &Pair<'g>,

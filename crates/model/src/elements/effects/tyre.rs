@@ -8,12 +8,14 @@
 //! magic formula:     f = sin(c atan(b s − e (b s − atan b s))),    b = 1/c
 //! ```
 //!
-//! e_x is the wheel's heading: the x axis of the point's frame, in the ground's plane, turned by `steer` about the ground's normal; e_y is to
-//! its left. C and C_x are the slopes at no slip, μ N and μ_x N the largest forces, c and e the shape and curvature
-//! of the magic formula (Bakker, Nyborg & Pacejka, SAE 870421 (1987); Pacejka, *Tire and Vehicle Dynamics*, 3rd ed. (2012), sec. 4.3.1), in
-//! which C, μ and e may be formulas of the load. Forces of both directions share the slip s, so that they lie within the ellipse
-//! of μ_x N and μ N (similarity method, ibid., sec. 4.2). sat is that of a servo. Below v₀ slips fade, so that a tyre at rest is a damper. r ω − v_x is
-//! how fast the wheel's lowest point slides back, and the force acts there: on the wheel, the radius below the point. Without a wheel κ = 0.
+//! e_x is the wheel's heading: the x axis of the point's frame, in the ground's plane, turned by `steer` about the
+//! ground's normal; e_y is to its left. C and C_x are the slopes at no slip, μ N and μ_x N the largest forces, c and e
+//! the shape and curvature of the magic formula (Bakker, Nyborg & Pacejka, SAE 870421 (1987); Pacejka, *Tire and
+//! Vehicle Dynamics*, 3rd ed. (2012), sec. 4.3.1), in which C, μ and e may be formulas of the load. Forces of both
+//! directions share the slip s, so that they lie within the ellipse of μ_x N and μ N (similarity method, ibid., sec.
+//! 4.2). sat is that of a servo. Below v₀ slips fade, so that a tyre at rest is a damper. r ω − v_x is how fast the
+//! wheel's lowest point slides back, and the force acts there: on the wheel, the radius below the point. Without a
+//! wheel κ = 0.
 
 use mbint_derive::Element;
 use symdiff::{Binary, Formula, Scalar};
@@ -65,7 +67,8 @@ pub struct Tyre {
     /// Side force by slip angle, where that is small.
     #[quantity(unit = "N/rad", positive, otherwise = "none: no side force")]
     pub cornering_stiffness: Option<Formula>,
-    /// The body that rolls, for forces along the heading. In the plane the ground is then below, along x, and there is no side force.
+    /// The body that rolls, for forces along the heading. In the plane the ground is then below, along x, and there is
+    /// no side force.
     pub wheel: Option<BodyRef>,
     /// Of the wheel.
     #[quantity(unit = "m", constant, positive)]

@@ -5,17 +5,17 @@
 //! flat     Φ = n · d − b − s(α) = 0              α = phase − θ,  θ the angle of n                1 row, m
 //! ```
 //!
-//! d = r_B − r_A in the plane normal to the first frame's z, angles being counted from that frame's x, α between 0 and 2π;
-//! b is the base radius and s the lift. B is the roller's centre, so that b + s is the pitch curve in polar coordinates, or
-//! a point of the flat face, whose normal n is fixed in the second frame and points away from the cam: b + s is then the
-//! profile's support function. A follower that moves radially by b + s(φ) while the cam turns by φ has exactly this
-//! profile.
+//! d = r_B − r_A in the plane normal to the first frame's z, angles being counted from that frame's x, α between 0 and
+//! 2π; b is the base radius and s the lift. B is the roller's centre, so that b + s is the pitch curve in polar
+//! coordinates, or a point of the flat face, whose normal n is fixed in the second frame and points away from the cam:
+//! b + s is then the profile's support function. A follower that moves radially by b + s(φ) while the cam turns by φ
+//! has exactly this profile.
 //!
-//! N = √(1 + (s'/|d|)²) makes ∂Φ/∂r_B the unit normal of the pitch curve, (d + s' z × d/|d|)/(N |d|), so λ is the contact
-//! force, N: −Φ_qᵀ λ pushes the roller's centre with −λ along that normal; its pressure angle is atan(s'/|d|). The flat
-//! face is pushed with −λ n at the contact, s' beside the foot of the perpendicular from A: at B that has the torque
-//! −λ (z × n · d + s'). λ < 0 is contact; the follower is guided on both sides, so that λ > 0 says where a single profile
-//! would lose it. It fails at d = 0, and where b + s + s″ ≤ 0 a flat face cannot touch the profile.
+//! N = √(1 + (s'/|d|)²) makes ∂Φ/∂r_B the unit normal of the pitch curve, (d + s' z × d/|d|)/(N |d|), so λ is the
+//! contact force, N: −Φ_qᵀ λ pushes the roller's centre with −λ along that normal; its pressure angle is atan(s'/|d|).
+//! The flat face is pushed with −λ n at the contact, s' beside the foot of the perpendicular from A: at B that has the
+//! torque −λ (z × n · d + s'). λ < 0 is contact; the follower is guided on both sides, so that λ > 0 says where a
+//! single profile would lose it. It fails at d = 0, and where b + s + s″ ≤ 0 a flat face cannot touch the profile.
 //!
 //! A table is a function of the formula: `lift: rise(angle)`. It has to join smoothly where α goes from 2π to 0.
 

@@ -137,8 +137,8 @@ pub trait Joint: Debug {
         None
     }
 
-    /// Its nonholonomic constraints: Ψ(q, v, t) = 0, linear in the velocities of the mechanism, which are no derivatives of constraints of
-    /// positions.
+    /// Its nonholonomic constraints: Ψ(q, v, t) = 0, linear in the velocities of the mechanism, which are no
+    /// derivatives of constraints of positions.
     ///
     /// # Errors
     /// As [`rows`](Self::rows).
@@ -234,7 +234,8 @@ pub enum Mobilizer<'a> {
 }
 
 impl<'a> Mobilizer<'a> {
-    /// The one axis about which it turns or along which it slides, of a planar motion the normal; `None` where there is none, or two.
+    /// The one axis about which it turns or along which it slides, of a planar motion the normal; `None` where there is
+    /// none, or two.
     pub fn axis(&self) -> Option<&'a [Formula; 3]> {
         match *self {
             Self::Weld { .. } | Self::TwoRotations { .. } | Self::FreeRotation => None,

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! The second frame is turned by `angle` about the first's z. The first rows are those of the spherical joint: λ is the
-//! force on the second body, at B. −Φ_qᵀ λ of the others is a torque −λ on the second body and +λ on the first, in the axes
-//! of the turned first frame.
+//! force on the second body, at B. −Φ_qᵀ λ of the others is a torque −λ on the second body and +λ on the first, in the
+//! axes of the turned first frame.
 
 use mbint_derive::Element;
 use symdiff::Formula;

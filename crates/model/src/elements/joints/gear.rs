@@ -4,11 +4,12 @@
 //! Φ = φ₂ − ratio φ₁ − offset = 0          1 row, rad
 //! ```
 //!
-//! φ is the angle of a body about z, or of a joint about its axis. An external pair has a negative ratio. −Φ_qᵀ λ is the
-//! torque −λ on the second and +ratio λ on the first; the difference is carried by whatever holds the axles, so this is no
-//! pair of action and reaction. A torque on a joint's angle acts on its second body, and the opposite on its first. Where
-//! teeth touch does not change the motion, but the reactions of the bearings. With a `pressure_angle` they are those of the force
-//! at the pitch point (`teeth`), which is the gear's own reaction; without, they are refused where something asks for them.
+//! φ is the angle of a body about z, or of a joint about its axis. An external pair has a negative ratio. −Φ_qᵀ λ is
+//! the torque −λ on the second and +ratio λ on the first; the difference is carried by whatever holds the axles, so
+//! this is no pair of action and reaction. A torque on a joint's angle acts on its second body, and the opposite on its
+//! first. Where teeth touch does not change the motion, but the reactions of the bearings. With a `pressure_angle` they
+//! are those of the force at the pitch point (`teeth`), which is the gear's own reaction; without, they are refused
+//! where something asks for them.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

@@ -3,8 +3,8 @@
 //! A joint is between two points A and B with frames. Axes are directions in both frames alike (any length but zero):
 //! where the joint's angle is zero, the frames' axes are parallel.
 //!
-//! To add a joint: its file here and its line in the registry below. No other stage names a kind of joint: each asks for a
-//! capability of the trait [`Joint`].
+//! To add a joint: its file here and its line in the registry below. No other stage names a kind of joint: each asks
+//! for a capability of the trait [`Joint`].
 
 mod capabilities;
 mod registry;

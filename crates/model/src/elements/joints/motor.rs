@@ -14,10 +14,10 @@
 //! trapezoidal  σ = [u² − ⟨u − r⟩² − ⟨u − 1 + r⟩²]/(2 r (1 − r))      Σ = [u³ − ⟨u − r⟩³ − ⟨u − 1 + r⟩³]/(6 r (1 − r))
 //! ```
 //!
-//! −Φ_qᵀ λ is the force or torque −λ on the coordinate: along or about the joint's axis on its second body, the opposite on its
-//! first. The motor's reaction is the force or torque it must provide. Cycloidal and quintic moves have continuous accelerations;
-//! trapezoidal ones jump, and with them the forces. Profiles: Biagiotti & Melchiorri, *Trajectory Planning for Automatic
-//! Machines and Robots* (2008), ch. 2 and 3.
+//! −Φ_qᵀ λ is the force or torque −λ on the coordinate: along or about the joint's axis on its second body, the
+//! opposite on its first. The motor's reaction is the force or torque it must provide. Cycloidal and quintic moves have
+//! continuous accelerations; trapezoidal ones jump, and with them the forces. Profiles: Biagiotti & Melchiorri,
+//! *Trajectory Planning for Automatic Machines and Robots* (2008), ch. 2 and 3.
 
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
@@ -51,7 +51,8 @@ pub struct Motor {
     #[quantity(unit = "m or rad", time)]
     #[key(image = Turning)]
     position: Option<Formula>,
-    /// From the beginning, also as a formula of t, positions and states, or, with a `profile`, from rest within the `duration`.
+    /// From the beginning, also as a formula of t, positions and states, or, with a `profile`, from rest within the
+    /// `duration`.
     #[quantity(unit = "m/s or rad/s", command)]
     #[key(image = Turning)]
     speed: Option<Formula>,

@@ -5,9 +5,9 @@
 //!     ⎣ 2 e_x, 2 e_y     ⎦              in the plane 1 row, m
 //! ```
 //!
-//! The nᵢ are the slot's unit normals; the slot goes through A and does not end. −Φ_qᵀ λ of the first rows is the force −λ
-//! nᵢ at B on the second body (the pin) and the opposite on the first (the slot), at the same place. In the plane the first
-//! row of the prismatic joint.
+//! The nᵢ are the slot's unit normals; the slot goes through A and does not end. −Φ_qᵀ λ of the first rows is the force
+//! −λ nᵢ at B on the second body (the pin) and the opposite on the first (the slot), at the same place. In the plane
+//! the first row of the prismatic joint.
 
 use mbint_derive::Element;
 use symdiff::Formula;

@@ -4,8 +4,8 @@
 //! Φ = nᵢ · (r_B − r_A) = 0          2 rows, m; in the plane, where it is a pin in a slot, 1
 //! ```
 //!
-//! The nᵢ are the line's unit normals; it goes through A and does not end. −Φ_qᵀ λ is the force −λ nᵢ at B on the second
-//! body and the opposite on the first, at the same place.
+//! The nᵢ are the line's unit normals; it goes through A and does not end. −Φ_qᵀ λ is the force −λ nᵢ at B on the
+//! second body and the opposite on the first, at the same place.
 
 use mbint_derive::Element;
 use symdiff::Formula;

@@ -4,10 +4,10 @@
 //! Φ = s − radius φ − offset = 0          1 row, m
 //! ```
 //!
-//! φ is the angle of the pinion's joint, s the displacement of the rack's. −Φ_qᵀ λ is the force −λ along the rack's axis on
-//! the second body of its joint and the torque +radius λ about the pinion's axis on the second body of its; the opposites
-//! act on the first bodies. The reaction is the force on the rack: with a `pressure_angle` that of the teeth at the pitch point
-//! (`teeth`), which the bearings and the guide feel.
+//! φ is the angle of the pinion's joint, s the displacement of the rack's. −Φ_qᵀ λ is the force −λ along the rack's
+//! axis on the second body of its joint and the torque +radius λ about the pinion's axis on the second body of its; the
+//! opposites act on the first bodies. The reaction is the force on the rack: with a `pressure_angle` that of the teeth
+//! at the pitch point (`teeth`), which the bearings and the guide feel.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

@@ -75,7 +75,8 @@ macro_rules! joints {
                 }
             }
 
-            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such kind.
+            /// What the keys of a kind are to an instance that is mirrored or turned; `None` where there is no such
+            /// kind.
             pub fn images(keyword: &str) -> Option<Vec<$crate::grammar::KeyImage>> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD => Some(<$name as $crate::grammar::Group>::images()),)*

@@ -5,9 +5,9 @@
 //!     ⎣ 2 nᵢ · e  ⎦              in the plane 2 rows, m
 //! ```
 //!
-//! A on the first, B on the second body. −Φ_qᵀ λ of the first rows is the force +λ at B on the second body and −λ at A on
-//! the first: λ is the pin's force on the second body, in the ground's axes. The others carry the torque across the axis.
-//! Nothing fails; with both points on prescribed coordinates a row vanishes.
+//! A on the first, B on the second body. −Φ_qᵀ λ of the first rows is the force +λ at B on the second body and −λ at A
+//! on the first: λ is the pin's force on the second body, in the ground's axes. The others carry the torque across the
+//! axis. Nothing fails; with both points on prescribed coordinates a row vanishes.
 
 use mbint_derive::Element;
 

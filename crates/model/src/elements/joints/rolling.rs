@@ -5,10 +5,10 @@
 //!     ⎣ t · (r_B − r_A) + radius (θ_B − θ_A) − offset   ⎦
 //! ```
 //!
-//! B is the wheel's centre. The rail goes through A along t, and does not end; n is t turned by a right angle, so that a wheel on a rail
-//! along x is above it. −Φ_qᵀ λ of the first row is the force −λ n on the wheel, that of the second the force −λ t where it touches:
-//! at B with the torque −λ radius. The rail has the opposites there. Both hold whatever their size: `friction` of a `contact` says
-//! when a wheel slips or leaves its rail.
+//! B is the wheel's centre. The rail goes through A along t, and does not end; n is t turned by a right angle, so that
+//! a wheel on a rail along x is above it. −Φ_qᵀ λ of the first row is the force −λ n on the wheel, that of the second
+//! the force −λ t where it touches: at B with the torque −λ radius. The rail has the opposites there. Both hold
+//! whatever their size: `friction` of a `contact` says when a wheel slips or leaves its rail.
 
 use mbint_derive::Element;
 use symdiff::Formula;

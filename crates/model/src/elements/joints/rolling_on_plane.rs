@@ -7,13 +7,14 @@
 //! w = n − (n · u) u,   s = −radius w/|w|                             ball: w = n
 //! ```
 //!
-//! B is the centre, u the axle and n the normal of the plane through A. t₁ = u × n/|w| is the way the disc rolls, t₂ = n × t₁; of a ball they are
-//! any two directions in the plane. s goes from the centre to the lowest point of the rim, which has no velocity against the plane. Ψ is no
-//! derivative of positions: a disc that is rolled about comes back elsewhere, so that it may be put anywhere on the plane, at any angle, and
-//! moves from there in three ways.
+//! B is the centre, u the axle and n the normal of the plane through A. t₁ = u × n/|w| is the way the disc rolls, t₂ =
+//! n × t₁; of a ball they are any two directions in the plane. s goes from the centre to the lowest point of the rim,
+//! which has no velocity against the plane. Ψ is no derivative of positions: a disc that is rolled about comes back
+//! elsewhere, so that it may be put anywhere on the plane, at any angle, and moves from there in three ways.
 //!
-//! The forces −λ n, −λ₁ t₁ and −λ₂ t₂ are on the disc where it touches: −Φ_qᵀ λ − Ψ_vᵀ (λ₁, λ₂). The plane's body has the opposites there. All hold
-//! whatever their size: `friction` of a `contact` says when a wheel slips or leaves the plane. A disc that lies flat has no lowest point.
+//! The forces −λ n, −λ₁ t₁ and −λ₂ t₂ are on the disc where it touches: −Φ_qᵀ λ − Ψ_vᵀ (λ₁, λ₂). The plane's body has
+//! the opposites there. All hold whatever their size: `friction` of a `contact` says when a wheel slips or leaves the
+//! plane. A disc that lies flat has no lowest point.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

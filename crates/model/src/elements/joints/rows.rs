@@ -1,15 +1,15 @@
 //! What a joint's constraints are written in, and the constraints that several joints share.
 //!
-//! A virtual rotation δπ of the second body, in the axes of the first frame F₁, changes the vector part e of the relative
-//! rotation q = (q₀, e) by ½ (q₀ δπ + δπ × e), so a row
+//! A virtual rotation δπ of the second body, in the axes of the first frame F₁, changes the vector part e of the
+//! relative rotation q = (q₀, e) by ½ (q₀ δπ + δπ × e), so a row
 //!
 //! ```text
 //! Φ = 2 n · e = 0          1 row, rad
 //! ```
 //!
-//! forbids rotations with a part about n: with all three n the frames are parallel; with the two normal to an axis, they
-//! turn about it, by any angle. −Φ_qᵀ λ is the torque −λ (q₀ n + e × n), in F₁'s axes, on the second body and the opposite
-//! on the first. Unlike products of axes, the row has no second solution in which an axis points backwards.
+//! forbids rotations with a part about n: with all three n the frames are parallel; with the two normal to an axis,
+//! they turn about it, by any angle. −Φ_qᵀ λ is the torque −λ (q₀ n + e × n), in F₁'s axes, on the second body and the
+//! opposite on the first. Unlike products of axes, the row has no second solution in which an axis points backwards.
 
 use symdiff::{Builder, Formula, Scalar};
 
@@ -18,8 +18,9 @@ use crate::multibody::{BuildError, Pair, Vector};
 
 /// One scalar constraint.
 ///
-/// The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is −Φ_qᵀ λ, or −Ψ_vᵀ λ of a velocity constraint. `force` and `torque` are those that
-/// is on the joint's second body, for λ = 1; the first body has the opposite, at the same place (but for gears and racks).
+/// The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is −Φ_qᵀ λ, or −Ψ_vᵀ λ of a velocity
+/// constraint. `force` and `torque` are those that is on the joint's second body, for λ = 1; the first body has the
+/// opposite, at the same place (but for gears and racks).
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'g> {
     /// Distinguishes it from the joint's other rows; empty where there are none.
@@ -32,7 +33,8 @@ pub struct Row<'g> {
     pub torque: Vector<'g>,
 }
 
-/// The mechanism as far as constraints depend on it: at a position and a time, and for velocity constraints in a motion.
+/// The mechanism as far as constraints depend on it: at a position and a time, and for velocity constraints in a
+/// motion.
 pub trait Kinematics<'g> {
     /// The graph that expressions are added to.
     fn graph(&self) -> &'g Builder;
@@ -74,8 +76,8 @@ pub trait Kinematics<'g> {
     fn joint_name(&self, joint: usize) -> &str;
     /// The bodies that a joint is between, by index.
     fn bodies(&self, joint: usize) -> Option<[usize; 2]>;
-    /// The line about or along which a joint's coordinate is counted: a point of it and the unit vector along it, in the frame
-    /// of one of the joint's bodies; `None` where there is none.
+    /// The line about or along which a joint's coordinate is counted: a point of it and the unit vector along it, in
+    /// the frame of one of the joint's bodies; `None` where there is none.
     fn line(&self, on: OnJoint, body: usize) -> Result<Option<[Vector<'g>; 2]>, BuildError>;
     /// The position of a point of a body's frame, m.
     fn place(&self, body: usize, local: Vector<'g>) -> Vector<'g>;
@@ -125,8 +127,8 @@ impl<'g, 'k> Frames<'g, 'k> {
         self.pair.displacement(direction)
     }
 
-    /// No displacement along n, a unit vector of the first frame: Φ = n₁ · (r_B − r_A), m. −Φ_qᵀ λ is the force −λ n₁ at B
-    /// on the second body and the opposite on the first, at the same place.
+    /// No displacement along n, a unit vector of the first frame: Φ = n₁ · (r_B − r_A), m. −Φ_qᵀ λ is the force −λ n₁
+    /// at B on the second body and the opposite on the first, at the same place.
     pub fn normal_row(&self, name: &'static str, normal: Vector<'g>) -> Row<'g> {
         let normal = self.outward(normal);
         let offset = self.offset();
@@ -160,8 +162,8 @@ impl<'g, 'k> Frames<'g, 'k> {
         [self.normal_row("normal_1", first), self.normal_row("normal_2", second)]
     }
 
-    /// Two unit vectors normal to a unit vector and to one another. Which axis of the frame they lean on is decided at the
-    /// nominal parameters: the one that the vector is farthest from.
+    /// Two unit vectors normal to a unit vector and to one another. Which axis of the frame they lean on is decided at
+    /// the nominal parameters: the one that the vector is farthest from.
     pub fn normals(&self, axis: Vector<'g>) -> [Vector<'g>; 2] {
         let size = self.k.nominal(axis).into_iter().map(f64::abs).enumerate();
         let least = size.reduce(|best, next| if next.1 < best.1 { next } else { best }).map_or(0, |(index, _)| index);

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! a₁ is the axis, φ the joint's angle, never wrapped, and the pitch the advance in a turn, positive for a right-handed
-//! thread. −Φ_qᵀ λ of the last row is the force −λ a₁ at B and the torque +λ (pitch / 2π) a₁ on the second body, and the
-//! opposite on the first.
+//! thread. −Φ_qᵀ λ of the last row is the force −λ a₁ at B and the torque +λ (pitch / 2π) a₁ on the second body, and
+//! the opposite on the first.
 
 use mbint_derive::Element;
 use symdiff::Formula;

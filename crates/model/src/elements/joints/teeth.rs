@@ -5,11 +5,12 @@
 //! F_t = τ₂/ρ₂,   |F| = |F_t| / (cos αₙ cos β)
 //! ```
 //!
-//! P is where the pitch surfaces touch, g their common line there, t the way in which the first gear's teeth move across it for a
-//! positive angle, m the normal of both, from P towards the axis of the smaller gear if that is the second, and away from it
-//! otherwise. ρᵢ = (aᵢ × (P − cᵢ)) · t is the gear's radius with a sign, τ₂ the torque that the constraint's multiplier is; αₙ is
-//! the pressure angle across the teeth and β the helix angle, h = ±1 of the first gear's hand. Teeth touch on one flank or the
-//! other: the middle part presses the gears apart whichever way torque goes.
+//! P is where the pitch surfaces touch, g their common line there, t the way in which the first gear's teeth move
+//! across it for a positive angle, m the normal of both, from P towards the axis of the smaller gear if that is the
+//! second, and away from it otherwise. ρᵢ = (aᵢ × (P − cᵢ)) · t is the gear's radius with a sign, τ₂ the torque that
+//! the constraint's multiplier is; αₙ is the pressure angle across the teeth and β the helix angle, h = ±1 of the first
+//! gear's hand. Teeth touch on one flank or the other: the middle part presses the gears apart whichever way torque
+//! goes.
 //!
 //! ```text
 //! parallel axes        P = c₁ + x e,   x = κ d/(κ − 1),   g = a₁          κ = (a₁ · a₂) ψ̇₂/ψ̇₁, e from c₁ to c₂, d apart
@@ -17,9 +18,9 @@
 //! rack                 P = c₁ + x e,   e = s × a₁,   x = ṡ/ψ̇₁              s along the rack
 //! ```
 //!
-//! Angles ψ are those against the body that both bearings have in common; all of this is fixed in its frame. The constraint
-//! equates angles, so its multiplier acts as torques about the axes: `instead` is what the force at P stands for. The difference
-//! does no work, and is carried by the bearings. (Norton, *Machine Design* (2014), ch. 12 and 13.)
+//! Angles ψ are those against the body that both bearings have in common; all of this is fixed in its frame. The
+//! constraint equates angles, so its multiplier acts as torques about the axes: `instead` is what the force at P stands
+//! for. The difference does no work, and is carried by the bearings. (Norton, *Machine Design* (2014), ch. 12 and 13.)
 
 use mbint_derive::Element;
 use schemars::Schema;
@@ -48,7 +49,8 @@ pub struct Flanks {
     #[quantity(unit = "rad", constant, requires = PRESSURE)]
     #[key(otherwise = "the torque alone is known, and bearings that the teeth push on have no known reactions")]
     pub pressure_angle: Option<Formula>,
-    /// Of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a right-handed gear.
+    /// Of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a right-handed
+    /// gear.
     #[quantity(unit = "rad", default = 0, constant, requires = BELOW_RIGHT)]
     #[key(image = Turning)]
     pub helix_angle: Formula,
@@ -102,7 +104,8 @@ pub struct ToothForce<'g> {
 pub(super) struct Toothed<'g> {
     /// By index.
     pub body: usize,
-    /// Whether the joint's coordinate is that of the toothed body against the common one, or −1 where it is the opposite.
+    /// Whether the joint's coordinate is that of the toothed body against the common one, or −1 where it is the
+    /// opposite.
     pub sign: f64,
     /// A point of the axis.
     pub center: Vector<'g>,

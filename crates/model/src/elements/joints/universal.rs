@@ -5,9 +5,9 @@
 //!     ⎣ a₁ · b₂   ⎦
 //! ```
 //!
-//! a₁ and b₂ are unit vectors along the arms of the cross. The first rows are those of the spherical joint. −Φ_qᵀ λ of the
-//! last is the torque λ a₁ × b₂ on the second body and the opposite on the first. It fails where nothing else keeps the arms
-//! from lying in each other's shaft: with the shafts at a right angle, the cross can turn on its own.
+//! a₁ and b₂ are unit vectors along the arms of the cross. The first rows are those of the spherical joint. −Φ_qᵀ λ of
+//! the last is the torque λ a₁ × b₂ on the second body and the opposite on the first. It fails where nothing else keeps
+//! the arms from lying in each other's shaft: with the shafts at a right angle, the cross can turn on its own.
 
 use mbint_derive::Element;
 

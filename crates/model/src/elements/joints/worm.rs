@@ -7,10 +7,11 @@
 //! N = |f|/(cos α cos γ)                                                                      between the flanks, N
 //! ```
 //!
-//! e leads from the worm's axis a₁ to the wheel's, a₂, where they are nearest, t = a₁ × e. The thread runs along cos γ t + sin γ a₁: a
-//! right-handed worm (γ > 0) that turns about a₁ pushes the wheel's teeth along −a₁. α is the pressure angle across the thread. Without
-//! friction the worm drives the wheel as well as the wheel the worm; with an effect `tooth_friction` the worm's efficiency is
-//! tan γ/tan(γ + ρ), the wheel's tan(γ − ρ)/tan γ, tan ρ = μ/cos α, and where γ < ρ the wheel cannot drive.
+//! e leads from the worm's axis a₁ to the wheel's, a₂, where they are nearest, t = a₁ × e. The thread runs along cos γ
+//! t + sin γ a₁: a right-handed worm (γ > 0) that turns about a₁ pushes the wheel's teeth along −a₁. α is the pressure
+//! angle across the thread. Without friction the worm drives the wheel as well as the wheel the worm; with an effect
+//! `tooth_friction` the worm's efficiency is tan γ/tan(γ + ρ), the wheel's tan(γ − ρ)/tan γ, tan ρ = μ/cos α, and where
+//! γ < ρ the wheel cannot drive.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

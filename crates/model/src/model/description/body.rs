@@ -37,7 +37,8 @@ impl Inertia {
 pub struct Body {
     /// Its name.
     pub name: String,
-    /// kg; absent only where no declared coordinate needs it (ground), and of a beam's node, whose mass is that of its elements.
+    /// kg; absent only where no declared coordinate needs it (ground), and of a beam's node, whose mass is that of its
+    /// elements.
     pub mass: Option<Formula>,
     /// Absent only where the body does not turn, and of a beam's node.
     pub inertia: Option<Inertia>,

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// Remembers where the names of a list are. The list may grow, be cut, and be another one: a remembered index is compared with its
-/// end. A name that stays in its place stays as it is.
+/// Remembers where the names of a list are. The list may grow, be cut, and be another one: a remembered index is
+/// compared with its end. A name that stays in its place stays as it is.
 #[derive(Default)]
 pub struct NameIndex(Mutex<Known>);
 

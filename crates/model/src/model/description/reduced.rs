@@ -59,7 +59,8 @@ pub enum ReducedKind {
     LastWhen,
     /// From when on the source stays negative.
     Settling,
-    /// How far it goes beyond its target (the second source; its own value at the end where there is none), seen from its start.
+    /// How far it goes beyond its target (the second source; its own value at the end where there is none), seen from
+    /// its start.
     Overshoot,
     /// The width of the narrowest strip that holds the path of both sources.
     Straightness,
@@ -74,9 +75,9 @@ pub struct Requirement {
     pub text: String,
     /// SI unit of the slacks; empty where dimensionless or unknown.
     pub unit: String,
-    /// The unit in which people see the slacks, where what is limited has one.
+    /// The unit in which people see the slacks, where the limited quantity has one.
     pub display: Option<DisplayUnit>,
-    /// How far the limits are from what is limited.
+    /// Distance of the limits from the limited quantity.
     pub slacks: Vec<Formula>,
     /// Places of these among the outputs, once they are there.
     pub places: Vec<usize>,

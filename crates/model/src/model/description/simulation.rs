@@ -48,7 +48,7 @@ pub enum Formulation {
 pub enum Stepping {
     /// Every step this long, s.
     Fixed(f64),
-    /// Steps' local position errors add up to no more than this over the run, relative to |q|, or to the model's size where that
-    /// is larger.
+    /// Steps' local position errors add up to no more than this over the run, relative to |q|, or to the model's size
+    /// where that is larger.
     Tolerance(f64),
 }

@@ -1,4 +1,5 @@
-//! What the schema says beyond keys and types: ranges of numbers, keys that exclude or need each other, defaults and examples.
+//! What the schema says beyond keys and types: ranges of numbers, keys that exclude or need each other, defaults and
+//! examples.
 //!
 //! Only what the reader refuses for certain is refused: formulas, and what depends on names, are the reader's.
 
@@ -148,8 +149,8 @@ fn only_points() -> Value {
     json!({ "required": ["points"], "maxProperties": 1 })
 }
 
-/// Bodies have mass where they can move and inertia where they can turn, except where only the geometry of their motion is asked for; a
-/// beam has its own, and a link of a robot.
+/// Bodies have mass where they can move and inertia where they can turn, except where only the geometry of their motion
+/// is asked for; a beam has its own, and a link of a robot.
 fn massive() -> Value {
     let moves_by =
         |coordinates: Value| json!({ "properties": { "coordinates": { "contains": { "enum": coordinates } } } });

@@ -29,8 +29,8 @@ use crate::grammar::values::{Components, Number, Rotation, UnitName};
 /// What the schema is called by those that refer to it.
 const SCHEMA_ID: &str = "https://raw.githubusercontent.com/mbint/mbint/main/schemas/mbint.schema.json";
 
-/// Version of the language of model files: the second number grows with every key that is added, the first one where a model of before
-/// does not mean the same any more.
+/// Version of the language of model files: the second number grows with every key that is added, the first one where a
+/// model of before does not mean the same any more.
 pub const SCHEMA_VERSION: &str = "1.0";
 
 /// The JSON Schema of model files, as text that ends with a newline.

@@ -20,7 +20,8 @@ grammar! {
         urdf: Option<String>,
         /// Whether the robot's root link is fixed to the ground, which is the default.
         base: Option<BaseName>,
-        /// A robot to begin with: an MJCF file (MuJoCo's XML), beside this one. Its bodies are bodies, its numbers parameters.
+        /// A robot to begin with: an MJCF file (MuJoCo's XML), beside this one. Its bodies are bodies, its numbers
+        /// parameters.
         mjcf: Option<String>,
         /// Commands to the actuators of the `mjcf`, by name: numbers, or formulas of t and the motion.
         controls: Option<IndexMap<String, Number>>,
@@ -48,11 +49,13 @@ grammar! {
         analysis: Option<AnalysisName>,
         /// Questions of `analysis: modes`.
         modes: Option<Modes>,
-        /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others. Or `equilibrium`.
+        /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others. Or
+        /// `equilibrium`.
         initial: Option<InitialFile>,
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
         guess: Option<IndexMap<String, StartFile>>,
-        /// Outputs: names with formulas, e.g. `x3: slider.x`, or reduced to one number a motion, e.g. `stroke: { range: slider.x }`.
+        /// Outputs: names with formulas, e.g. `x3: slider.x`, or reduced to one number a motion, e.g.
+        /// `stroke: { range: slider.x }`.
         outputs: Option<IndexMap<String, OutputFile>>,
         /// Requirements on outputs: names with comparisons, e.g. `clears: x3 >= 0.4 m`.
         requirements: Option<IndexMap<String, RequirementFile>>,
@@ -116,17 +119,20 @@ grammar! {
         duration: Option<Number>,
         /// Length of every step, s; instead of a `tolerance` of the model.
         step: Option<Number>,
-        /// Instead of `step`: error that the steps may leave in every output, relative to how far it moves in the run; every sample keeps it, and steps end at events.
+        /// Instead of `step`: error that the steps may leave in every output, relative to how far it moves in the run;
+        /// every sample keeps it, and steps end at events.
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0.
         alpha: Option<Number>,
         /// s between rows of output.
         output_step: Option<Number>,
-        /// By which coordinates the motion is described. With `joint`, one joint of each loop is a constraint: the one with which a step is shortest.
+        /// By which coordinates the motion is described. With `joint`, one joint of each loop is a constraint: the one
+        /// with which a step is shortest.
         formulation: Option<FormulationName>,
         /// By what the motion is integrated.
         scheme: Option<SchemeName>,
-        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3 or 4.
+        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3
+        /// or 4.
         extrapolation: Option<u32>,
     }
 
@@ -184,16 +190,18 @@ grammar! {
 
     /// A function of the time by points that it passes; it rests before the first and after the last.
     Trajectory is "a trajectory" {
-        /// Pairs of a time and a value, times ascending; with timing `cubic` or `quintic` a third number is the rate there, else 0.
+        /// Pairs of a time and a value, times ascending; with timing `cubic` or `quintic` a third number is the rate
+        /// there, else 0.
         points: Vec<WaypointFile>,
         /// How it moves from one point to the next.
         timing: TimingName,
-        /// With timing `trapezoidal`: how long it takes to reach its full rate, and again to rest, s; by default a quarter of each move.
+        /// With timing `trapezoidal`: how long it takes to reach its full rate, and again to rest, s; by default a
+        /// quarter of each move.
         ramp: Option<Number>,
     }
 
-    /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its ends, or a
-    /// periodic one.
+    /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its
+    /// ends, or a periodic one.
     Table is "a table" {
         /// A CSV file, beside the model; `#` begins a comment.
         file: Option<String>,

@@ -13,7 +13,8 @@ grammar! {
     Assembly is "an assembly" {
         /// One line for people.
         description: Option<String>,
-        /// Its parameters with the default values of instances. Each instance has its own: uncertain values deviate in each by themselves.
+        /// Its parameters with the default values of instances. Each instance has its own: uncertain values deviate in
+        /// each by themselves.
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Parameters that are one for all instances, as are their deviations; or `all`.
         shared: Option<SharedFile>,
@@ -49,7 +50,8 @@ grammar! {
     InstanceFile is "an instance" {
         /// The assembly.
         of: String,
-        /// Where the assembly's ground is, and where its bodies start: a position, or a frame, in that of the instance around it. Its numbers are parameters, `front_left.at.x`.
+        /// Where the assembly's ground is, and where its bodies start: a position, or a frame, in that of the instance
+        /// around it. Its numbers are parameters, `front_left.at.x`.
         at: Option<AtFile>,
         /// The axis across which it is mirrored, before it is placed.
         mirror: Option<AxisName>,

@@ -68,7 +68,8 @@ grammar! {
         last_when: Option<String>,
         /// From when on this formula stays within `band` of `target`, s.
         settling: Option<Number>,
-        /// How far this formula goes beyond `target`, seen from its start; without `target`, beyond its value at the end.
+        /// How far this formula goes beyond `target`, seen from its start; without `target`, beyond its value at the
+        /// end.
         overshoot: Option<Number>,
         /// Width of the narrowest strip that holds this path; with `line`, the greatest distance from that.
         straightness: Option<PathFile>,

@@ -11,17 +11,21 @@ grammar! {
         duration: Number,
         /// Length of every step, s; by default 1e-3.
         step: Option<Number>,
-        /// Instead of `step`: error that the steps may leave in every output, relative to how far it moves in the run; every sample keeps it, and steps end at events.
+        /// Instead of `step`: error that the steps may leave in every output, relative to how far it moves in the run;
+        /// every sample keeps it, and steps end at events.
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0; by default -0.1.
         alpha: Option<Number>,
-        /// s between rows of output; by default about a 200th of the duration. The last row is at the end, however near.
+        /// s between rows of output; by default about a 200th of the duration. The last row is at the end, however
+        /// near.
         output_step: Option<Number>,
-        /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions. With `joint`, one joint of each loop is a constraint: the one with which a step is shortest.
+        /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions. With
+        /// `joint`, one joint of each loop is a constraint: the one with which a step is shortest.
         formulation: Option<FormulationName>,
         /// By what the motion is integrated; by default `auto`.
         scheme: Option<SchemeName>,
-        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3 or 4.
+        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3
+        /// or 4.
         extrapolation: Option<u32>,
     }
 }

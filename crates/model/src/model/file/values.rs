@@ -33,7 +33,8 @@ schema_only! {
         Auto,
         /// Each body has coordinates of its own, and joints constrain them.
         Absolute,
-        /// The joints' angles and displacements, as far as joints give bodies their positions; those that close loops constrain them.
+        /// The joints' angles and displacements, as far as joints give bodies their positions; those that close loops
+        /// constrain them.
         Joint,
     }
 
@@ -187,7 +188,8 @@ schema_only! {
 
     #[schemars(untagged, inline)]
     pub enum ParameterFile {
-        /// A number, a formula, or a number with its unit, perhaps with its deviation: `0.5 m ± 1%`, `0.5 m +0.01 -0.02`, `[0.49, 0.51] m`.
+        /// A number, a formula, or a number with its unit, perhaps with its deviation: `0.5 m ± 1%`,
+        /// `0.5 m +0.01 -0.02`, `[0.49, 0.51] m`.
         Number(Number),
         /// Its smallest and largest value.
         Interval([Number; 2]),

@@ -1,4 +1,4 @@
-//! `<asset>`: meshes by their names, what is known of those that were read, and where files of assets lie.
+//! `<asset>`: meshes by their names, properties of those that were read, and the folders of the assets' files.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};

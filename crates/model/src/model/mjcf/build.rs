@@ -1,7 +1,7 @@
 //! [`Robot`] → bodies, joints and start values of the model.
 //!
-//! Bodies without joints are part of the one that they are in: points of it, called after them. Several joints of a body
-//! have bodies without mass between them.
+//! Bodies without joints are part of the one that they are in: points of it, called after them. Several joints of a
+//! body have bodies without mass between them.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,5 @@
-//! MJCF text → elements with places, included files in their places, every name checked against [`table`](super::table).
+//! MJCF text → elements with places, included files in their places, every name checked against
+//! [`table`](super::table).
 
 use std::path::{Path, PathBuf};
 

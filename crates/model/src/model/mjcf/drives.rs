@@ -7,7 +7,7 @@ use crate::model::robots::algebra::Value;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Entry;
 
-/// What of a force acts on one joint.
+/// The part of a force that acts on one joint.
 pub struct Share {
     /// Of its effect.
     name: String,

@@ -1,4 +1,5 @@
-//! The elements of MJCF, from <https://mujoco.readthedocs.io/en/stable/XMLreference.html> and the schema that MuJoCo 4.0 prints.
+//! The elements of MJCF, from <https://mujoco.readthedocs.io/en/stable/XMLreference.html> and the schema that MuJoCo
+//! 4.0 prints.
 
 use super::format::Fate::{Ignored, Refused, Supported};
 use super::format::Rule;

@@ -26,7 +26,8 @@ impl Flags {
         actuators: true,
     };
 
-    /// What a `<flag>` leaves on; `is_off` says whether it disables a name. Every name is asked for, so that a wrong word is reported.
+    /// What a `<flag>` leaves on; `is_off` says whether it disables a name. Every name is asked for, so that a wrong
+    /// word is reported.
     pub fn after(self, is_off: &mut dyn FnMut(&str) -> bool) -> Self {
         let [passive, constraint] = ["passive", "constraint"].map(&mut *is_off);
         Self {

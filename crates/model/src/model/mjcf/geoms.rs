@@ -158,7 +158,8 @@ fn of_unit_mass(shape: Shape, [a, b, c]: [f64; 3]) -> (f64, [f64; 3]) {
             (2.0 * PI * a * a * b, [across, across, a * a / 2.0])
         }
         Shape::Capsule => {
-            // A cylinder, and two halves of a sphere, each with its centre of mass 3/8 of the radius beyond the cylinder's end.
+            // A cylinder, and two halves of a sphere, each with its centre of mass 3/8 of the radius beyond the
+            // cylinder's end.
             let height = 2.0 * b;
             let ball = 4.0 * a / (4.0 * a + 3.0 * height);
             let across = (1.0 - ball) * (3.0 * a * a + height * height) / 12.0

@@ -11,7 +11,7 @@ use crate::syntax::mesh_file::MOST_BYTES;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;
 
-/// Part of the volume by which tetrahedra may exceed what is enclosed without a word.
+/// Part of the enclosed volume by which tetrahedra may exceed it without a warning.
 const SLIGHT: f64 = 0.01;
 
 /// What the mesh of a name makes up; reports why nothing does.

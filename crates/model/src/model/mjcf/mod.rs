@@ -1,9 +1,9 @@
 //! `mjcf:`, a robot's file as the beginning of a model; or alone, as a model of a second.
 //!
 //! XML with its included files (`document`), every name checked against the table of the format (`table`, `elements`) →
-//! [`Robot`](robot::Robot) with defaults applied (`values`, `read`, `geoms`, `couplings`) → parameters (`robots::numbers`) →
-//! entries of the model's tree with the places of the MJCF (`build`, `start`, `effects`). All that comes after reads the
-//! tree as if it were written out.
+//! [`Robot`](robot::Robot) with defaults applied (`values`, `read`, `geoms`, `couplings`) → parameters
+//! (`robots::numbers`) → entries of the model's tree with the places of the MJCF (`build`, `start`, `effects`). All
+//! that comes after reads the tree as if it were written out.
 
 mod actuators;
 mod assets;

@@ -91,7 +91,7 @@ pub struct Contents<'i> {
     parts: Vec<Part>,
 }
 
-/// Where what is read goes.
+/// Destination of the data read.
 pub struct Whole<'r> {
     pub robot: &'r mut Robot,
     pub names: &'r mut Names,

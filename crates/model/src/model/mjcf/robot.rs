@@ -1,4 +1,5 @@
-//! What an MJCF says, typed, defaults applied: bodies, joints and what couples and drives them, lengths in m, angles in rad.
+//! What an MJCF says, typed, defaults applied: bodies, joints and what couples and drives them, lengths in m, angles in
+//! rad.
 
 use std::collections::{HashMap, HashSet};
 

@@ -69,8 +69,8 @@ impl Sections {
         }
     }
 
-    /// Adds a body. An entry of the model with nothing but `points` gives them to it, before what it has by their names; any other is
-    /// a body of its own in its place.
+    /// Adds a body. An entry of the model with nothing but `points` gives them to it, before what it has by their
+    /// names; any other is a body of its own in its place.
     pub fn add_body(&mut self, name: &str, mut node: Node) {
         let Some(entries) = self.of("bodies", &node.span.clone()) else { return };
         let Some(own) = entries.iter_mut().find(|entry| entry.key == name) else {

@@ -1,5 +1,5 @@
-//! Tolerances of values that depend on uncertain parameters: `s2: { value: s, tolerance: 0.01 mm }` lies around s wherever s is. The
-//! deviation is an uncertain parameter of its own, `s2.deviation`.
+//! Tolerances of values that depend on uncertain parameters: `s2: { value: s, tolerance: 0.01 mm }` lies around s
+//! wherever s is. The deviation is an uncertain parameter of its own, `s2.deviation`.
 
 use symdiff::{Binary, Formula};
 
@@ -20,7 +20,8 @@ pub fn owner(entries: &[Entry], name: &str) -> Option<usize> {
     entries.iter().position(|entry| entry.key == name)
 }
 
-/// Adds the deviations of uncertain parameters whose values depend on uncertain ones. They may be set like parameters of the file.
+/// Adds the deviations of uncertain parameters whose values depend on uncertain ones. They may be set like parameters
+/// of the file.
 pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &[(Override, Span)]) {
     let varies = varying(drafts);
     let own = drafts.len();

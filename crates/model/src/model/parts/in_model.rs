@@ -85,7 +85,8 @@ impl Writer<'_, '_> {
         self.put("bodies", &places.bodies, bodies);
     }
 
-    /// Notes what acts on level ground in an instance of which the ground is not level. With a wheel in the plane that is across y.
+    /// Notes what acts on level ground in an instance of which the ground is not level. With a wheel in the plane that
+    /// is across y.
     fn check_level(&mut self, effect: &Entry, frame: Frame) {
         let Value::Mapping(kinds) = &effect.value.value else { return };
         let on_level_ground = |kind: &&Entry| EffectKind::scope_of(&kind.key) == Some(effects::Scope::LevelGround);
@@ -203,8 +204,8 @@ fn held_in_model(
 /// Kinds of joints of which drives take the angle, unless they say `coordinate`; a mirror counts it the other way.
 pub(super) const TURNING: [&str; 3] = ["revolute", "cylindrical", "screw"];
 
-/// Turns the directions of the ground that an effect has. One number about z is one about an axis of any direction in a frame that is
-/// turned in space, but for one about a joint's axis.
+/// Turns the directions of the ground that an effect has. One number about z is one about an axis of any direction in a
+/// frame that is turned in space, but for one about a joint's axis.
 fn turn_directions(effect: &mut Entry, frame: Frame, scope: &Arc<Scope>, is_on_turning: bool) {
     let Value::Mapping(kinds) = &mut effect.value.value else { return };
     let [kind] = kinds.as_mut_slice() else { return };

@@ -1,8 +1,8 @@
 //! `include:`, `assemblies:`, `instances:` and `repeat:`: the model's tree with all of them written out.
 //!
-//! Every copy keeps the locations of its original: an instance's copy of the definition's text has offsets of its own among the
-//! sources, which know the instance. Names stay as they are written; a [`Scope`] at each scalar gives their meaning. So all
-//! that comes after reads the tree as if it were written out.
+//! Every copy keeps the locations of its original: an instance's copy of the definition's text has offsets of its own
+//! among the sources, which know the instance. Names stay as they are written; a [`Scope`] at each scalar gives their
+//! meaning. So all that comes after reads the tree as if it were written out.
 
 mod in_model;
 mod include;

@@ -45,7 +45,8 @@ impl Writer<'_, '_> {
         counts
     }
 
-    /// The parameters of an instance, by their full names: `own` is the assembly's copy for it, `given` what the instance says.
+    /// The parameters of an instance, by their full names: `own` is the assembly's copy for it, `given` what the
+    /// instance says.
     pub(super) fn parameters(
         &mut self,
         definition: &str,

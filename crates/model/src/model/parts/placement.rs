@@ -1,7 +1,7 @@
 //! `at` and `mirror` of instances: where an assembly's ground is in the model.
 //!
-//! What an instance says of its place are its parameters `at.x` and so on, in the frame of the instance that it is in. Where it is in the
-//! model follows: `at.model.x`, … ([`crate::syntax::frame`]).
+//! What an instance says of its place are its parameters `at.x` and so on, in the frame of the instance that it is in.
+//! Where it is in the model follows: `at.model.x`, … ([`crate::syntax::frame`]).
 
 use std::sync::Arc;
 
@@ -164,7 +164,8 @@ impl Writer<'_, '_> {
         Some(())
     }
 
-    /// The parameters that say where an instance is: `front_left.at.x` as it says itself, `front_left.at.model.x` in the model.
+    /// The parameters that say where an instance is: `front_left.at.x` as it says itself, `front_left.at.model.x` in
+    /// the model.
     pub(super) fn parameters_of(
         &mut self,
         prefix: &str,

@@ -1,4 +1,5 @@
-//! What the readers of robots' files share: XML with places and limits of size, numbers that may be parameters, frames and masses.
+//! What the readers of robots' files share: XML with places and limits of size, numbers that may be parameters, frames
+//! and masses.
 
 pub mod algebra;
 mod budget;

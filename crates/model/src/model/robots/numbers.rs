@@ -1,4 +1,5 @@
-//! Numbers of a robot's file as parameters: those that something names, with what a model or the file's own attributes say.
+//! Numbers of a robot's file as parameters: those that something names, with what a model or the file's own attributes
+//! say.
 
 use std::collections::{HashMap, HashSet};
 

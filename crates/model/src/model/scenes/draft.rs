@@ -83,7 +83,8 @@ impl Draft {
         }
     }
 
-    /// The entries of a section, which is made if it is not there; nothing where it is no mapping, as is reported of the model.
+    /// The entries of a section, which is made if it is not there; nothing where it is no mapping, as is reported of
+    /// the model.
     fn section(&mut self, key: &str, key_span: Span, like: &Node) -> Option<&mut Vec<Entry>> {
         let is_word = |entry: &Entry| key == "initial" && entry.value.scalar().is_some();
         let found = self.entries.iter().position(|e| e.key == key && !e.value.is_null() && !is_word(e));
@@ -163,7 +164,8 @@ impl Draft {
         }
     }
 
-    /// The names, with those that patterns stand for, and the parts of effects on many: of them only those that are out, or in.
+    /// The names, with those that patterns stand for, and the parts of effects on many: of them only those that are
+    /// out, or in.
     fn all_names(&self, names: Vec<(String, Span)>, out: bool) -> Vec<(String, Span)> {
         let each = |(name, span): (String, Span)| {
             let entries =

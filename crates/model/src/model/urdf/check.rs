@@ -1,7 +1,8 @@
-//! The checks that urdf-rs does not make: unknown and repeated elements, unknown attributes, and every number in its place.
+//! The checks that urdf-rs does not make: unknown and repeated elements, unknown attributes, and every number in its
+//! place.
 //!
-//! [`rewrite`] gives the robot back as a text that urdf-rs reads without error: only what [`format`](super::format) lists,
-//! wrong values replaced after they are reported, so that all errors of a file are found at once.
+//! [`rewrite`] gives the robot back as a text that urdf-rs reads without error: only what [`format`](super::format)
+//! lists, wrong values replaced after they are reported, so that all errors of a file are found at once.
 
 use std::fmt::Write;
 

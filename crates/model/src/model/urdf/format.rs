@@ -1,4 +1,5 @@
-//! The part of URDF that decides how a robot moves: elements, their attributes, and which of their numbers may be uncertain.
+//! The part of URDF that decides how a robot moves: elements, their attributes, and which of their numbers may be
+//! uncertain.
 //!
 //! From <http://wiki.ros.org/urdf/XML>, with URDF 1.1 (`quat_xyzw`) and 1.2 (`acceleration`, `deceleration`, `jerk`).
 

@@ -1,8 +1,8 @@
 //! `urdf:`, a robot's file as the beginning of a model; or alone, as a model with gravity.
 //!
-//! XML (`robots::xml`, `check`, `read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`robots::numbers`) → bodies, joints and effects
-//! (`build`, `effects`, `start`), with formulas (`robots::algebra`) where a number is a parameter. A number is one where something names it;
-//! all others stay numbers.
+//! XML (`robots::xml`, `check`, `read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`robots::numbers`) →
+//! bodies, joints and effects (`build`, `effects`, `start`), with formulas (`robots::algebra`) where a number is a
+//! parameter. A number is one where something names it; all others stay numbers.
 
 mod bodies;
 mod build;
@@ -149,8 +149,8 @@ impl Urdf {
 }
 
 impl Declared {
-    /// Effects that are not left out, start values and, where the model has none, outputs; and whether masses stay positive.
-    /// `limits` is the section of that name.
+    /// Effects that are not left out, start values and, where the model has none, outputs; and whether masses stay
+    /// positive. `limits` is the section of that name.
     pub fn finish(&self, reader: &mut Reader, left_out: &LeftOut, limits: Option<(&Node, Span)>, observe: bool) {
         let Urdf { robot, floating, words, .. } = &self.urdf;
         let source = Source { robot, floating: *floating, words, named: &self.named };

@@ -1,7 +1,8 @@
 //! URDF text → [`Robot`].
 //!
-//! The text is parsed for places ([`xml`](crate::model::robots::xml)) and checked ([`check`](super::check)); urdf-rs reads the values; and
-//! the remaining checks are relations of values: names, masses, axes, and that links and joints are one tree.
+//! The text is parsed for places ([`xml`](crate::model::robots::xml)) and checked ([`check`](super::check)); urdf-rs
+//! reads the values; and the remaining checks are relations of values: names, masses, axes, and that links and joints
+//! are one tree.
 
 use std::collections::{HashMap, HashSet};
 

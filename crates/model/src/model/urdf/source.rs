@@ -1,4 +1,5 @@
-//! What the bodies, joints and start values of a robot are made from: its numbers, frames, and where its parts are in the model.
+//! What the bodies, joints and start values of a robot are made from: its numbers, frames, and where its parts are in
+//! the model.
 
 use std::collections::HashSet;
 

@@ -46,7 +46,8 @@ impl Climb {
         self.reach.iter().enumerate().flat_map(along).collect()
     }
 
-    /// Finds the targets from the probes, and asks for points on the way to them: axes that are coupled overshoot together.
+    /// Finds the targets from the probes, and asks for points on the way to them: axes that are coupled overshoot
+    /// together.
     pub(super) fn stride(&mut self, seen: &Evaluations) -> Vec<Vec<f64>> {
         let x = &seen.points[self.at];
         let here = seen.value(self.goal, self.at);
@@ -128,8 +129,8 @@ fn sides(xi: f64, reach: f64) -> [Option<f64>; 2] {
     }
 }
 
-/// Where in [−1, 1] the parabola through three values is largest, and by how much it is larger there than at x. (Position
-/// and value below and above x.)
+/// Where in [−1, 1] the parabola through three values is largest, and by how much it is larger there than at x.
+/// (Position and value below and above x.)
 pub(super) fn target(x: f64, here: f64, below: (f64, f64), above: (f64, f64)) -> (f64, f64) {
     let (a, b) = (below.0 - x, above.0 - x);
     let (left, right) = ((below.1 - here) / a, (above.1 - here) / b);

@@ -1,14 +1,15 @@
 //! Least and largest values of functions of many parameters, searched for by evaluating them: where a grid would be too
 //! large, and nothing but values is known.
 //!
-//! All functions are evaluated at the same points, and every value counts for every function. A design that is the same each time
-//! (middle, middles of faces, corners by Walsh functions, a low-discrepancy sequence) and the places of a neighbouring problem's
-//! extremes give each function, above and below, its starts. A climb probes along every axis, where it stands on a face just inwards: by
-//! the parabola through three values, or the sign of a slope, each axis has its target. The climb moves to
-//! the best value on the way to all of them at once, and ends where that promises nothing. Probes of all climbs are one batch.
+//! All functions are evaluated at the same points, and every value counts for every function. A design that is the same
+//! each time (middle, middles of faces, corners by Walsh functions, a low-discrepancy sequence) and the places of a
+//! neighbouring problem's extremes give each function, above and below, its starts. A climb probes along every axis,
+//! where it stands on a face just inwards: by the parabola through three values, or the sign of a slope, each axis has
+//! its target. The climb moves to the best value on the way to all of them at once, and ends where that promises
+//! nothing. Probes of all climbs are one batch.
 //!
-//! Ends found are attained. That nothing lies beyond it is not proven: of many local extremes, as of the sine of a sum that turns
-//! more than once, one close to the best may be taken for it.
+//! Ends found are attained. That nothing lies beyond it is not proven: of many local extremes, as of the sine of a sum
+//! that turns more than once, one close to the best may be taken for it.
 
 mod climb;
 mod evaluations;

@@ -2,8 +2,8 @@
 
 use symdiff::math;
 
-/// I_x(a, b): how much of the law lies below x. By its continued fraction (modified Lentz; W. H. Press et al., Numerical Recipes,
-/// section 6.4), where that converges fast, else by its symmetry.
+/// I_x(a, b): how much of the law lies below x. By its continued fraction (modified Lentz; W. H. Press et al.,
+/// Numerical Recipes, section 6.4), where that converges fast, else by its symmetry.
 pub fn beta_cdf(x: f64, a: f64, b: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;

@@ -3,7 +3,8 @@
 use super::beta::beta_quantile;
 use super::points::REPLICATES;
 
-/// Student's t for 95 % on both sides with one degree of freedom less than there are replicates (Abramowitz & Stegun, table 26.10).
+/// Student's t for 95 % on both sides with one degree of freedom less than there are replicates (Abramowitz & Stegun,
+/// table 26.10).
 pub(super) const STUDENT: f64 = 2.131;
 
 /// An estimate, and the half width of its 95 % confidence interval as far as sampling goes.
@@ -25,8 +26,8 @@ impl Estimate {
     }
 }
 
-/// The 95 % confidence interval of a share of which so many of all samples were seen (C. J. Clopper & E. S. Pearson, Biometrika 26 (1934)
-/// 404). Points that are spread evenly are no worse than random ones.
+/// The 95 % confidence interval of a share of which so many of all samples were seen (C. J. Clopper & E. S. Pearson,
+/// Biometrika 26 (1934) 404). Points that are spread evenly are no worse than random ones.
 pub fn share_interval(seen: usize, of: usize) -> [f64; 2] {
     let (seen, left) = (seen as f64, of.saturating_sub(seen) as f64);
     let lower = if seen == 0.0 { 0.0 } else { beta_quantile(0.025, seen, left + 1.0) };
@@ -77,8 +78,8 @@ impl Replicates {
     }
 }
 
-/// The value below which a share of them lies, linearly between two of them (R. J. Hyndman & Y. Fan, The American Statistician 50 (1996)
-/// 361, type 5). Puts them in another order; NaN where one is.
+/// The value below which a share of them lies, linearly between two of them (R. J. Hyndman & Y. Fan, The American
+/// Statistician 50 (1996) 361, type 5). Puts them in another order; NaN where one is.
 pub fn quantile_of(values: &mut [f64], share: f64) -> f64 {
     if values.iter().any(|value| value.is_nan()) {
         return f64::NAN;

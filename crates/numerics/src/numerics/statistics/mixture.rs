@@ -1,4 +1,5 @@
-//! Normal laws about places where something fails, beside the law itself: points of the mixture, each with the ratio of the densities.
+//! Normal laws about places where something fails, beside the law itself: points of the mixture, each with the ratio of
+//! the densities.
 
 use super::points::replicate;
 use super::special::normal_quantile;
@@ -84,8 +85,8 @@ pub(super) fn value_and_slopes(at: &[f64], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f6
     (values[0], (0..at.len()).map(slope).collect())
 }
 
-/// The point at this distance from the middle at which least is left, as far as can be seen from the start (S. R. Winterstein et al.,
-/// Environmental parameters for extreme response: inverse FORM, ICOSSAR 1993, 551).
+/// The point at this distance from the middle at which least is left, as far as can be seen from the start (S. R.
+/// Winterstein et al., Environmental parameters for extreme response: inverse FORM, ICOSSAR 1993, 551).
 pub fn least_at_distance(start: &[f64], radius: f64, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Vec<f64>> {
     let onto = |point: &[f64]| -> Option<Vec<f64>> {
         let length = dot(point, point).sqrt();

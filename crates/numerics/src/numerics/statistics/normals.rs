@@ -31,8 +31,8 @@ impl Normals {
     }
 }
 
-/// The share of points in k dimensions that lie farther out than r: of χ² with k degrees of freedom above r² (M. Abramowitz & I. A. Stegun,
-/// Handbook of Mathematical Functions, 26.4.4 and 26.4.5).
+/// The share of points in k dimensions that lie farther out than r: of χ² with k degrees of freedom above r² (M.
+/// Abramowitz & I. A. Stegun, Handbook of Mathematical Functions, 26.4.4 and 26.4.5).
 pub fn farther_than(r: f64, k: usize) -> f64 {
     if r <= 0.0 {
         return 1.0;
@@ -60,7 +60,8 @@ mod tests {
 
     #[test]
     fn published_chi_squares() {
-        // χ² above 3.841 (1), 5.991 (2), 9.488 (4), 31.41 (20) and 18.307 (10) is 5 %; 4 degrees above 30 are (1 + 15) e⁻¹⁵.
+        // χ² above 3.841 (1), 5.991 (2), 9.488 (4), 31.41 (20) and 18.307 (10) is 5 %; 4 degrees above 30 are (1 + 15)
+        // e⁻¹⁵.
         for (k, squared) in [(1, 3.841_459), (2, 5.991_465), (4, 9.487_729), (20, 31.410_43), (10, 18.307_04)] {
             assert!((farther_than(f64::sqrt(squared), k) - 0.05).abs() < 1e-7, "{k}");
         }

@@ -1,10 +1,12 @@
-//! Points spread evenly over the unit cube: a lattice, shifted at random a few times, so that the replicates tell how far a mean is off.
+//! Points spread evenly over the unit cube: a lattice, shifted at random a few times, so that the replicates tell how
+//! far a mean is off.
 
 /// Shifts of the lattice.
 pub const REPLICATES: usize = 16;
 
-/// A generating vector whose first 2^m points are a good lattice for every m up to 20: R. Cools, F. Y. Kuo & D. Nuyens, Constructing
-/// embedded lattice rules for multivariate integration, SIAM J. Sci. Comput. 28 (2006) 2162 (`exod2_base2_m20_CKN`).
+/// A generating vector whose first 2^m points are a good lattice for every m up to 20: R. Cools, F. Y. Kuo & D. Nuyens,
+/// Constructing embedded lattice rules for multivariate integration, SIAM J. Sci. Comput. 28 (2006) 2162
+/// (`exod2_base2_m20_CKN`).
 const GENERATOR: [u64; 32] = [
     1, 182667, 469891, 498753, 110745, 446247, 250185, 118627, 245333, 283199, 408519, 391023, 246327, 126539, 399185,
     461527, 300343, 69681, 516695, 436179, 106383, 238523, 413283, 70841, 47719, 300129, 113029, 123925, 410745,
@@ -19,8 +21,8 @@ pub(super) fn mixed(counter: u64) -> u64 {
     (z ^ (z >> 31)) >> 11
 }
 
-/// One replicate's points in (0, 1)^k, point after point; `count` is a power of two up to 2^20. Along axes beyond the generator's, points are
-/// random.
+/// One replicate's points in (0, 1)^k, point after point; `count` is a power of two up to 2^20. Along axes beyond the
+/// generator's, points are random.
 pub fn replicate(number: usize, k: usize, count: usize) -> Vec<f64> {
     const UNIT: f64 = 1.0 / (1_u64 << 53) as f64;
     let mut points = Vec::with_capacity(k * count);

@@ -1,5 +1,6 @@
-//! Shares that are so small that few samples see them: by importance sampling about the likeliest points that fail, by directional
-//! sampling, or by subset simulation, whichever says most; each is held against the points that subset simulation finds to fail.
+//! Shares that are so small that few samples see them: by importance sampling about the likeliest points that fail, by
+//! directional sampling, or by subset simulation, whichever says most; each is held against the points that subset
+//! simulation finds to fail.
 
 use super::estimates::{Estimate, STUDENT};
 use super::mixture::{Mixture, distance, value_and_slopes};
@@ -19,7 +20,7 @@ const TOWARD: usize = 256;
 const PLACES: usize = 6;
 const MOST_PLACES: usize = 48;
 
-/// An interval that is this share of what it is of is good enough.
+/// A sampling error of at most this share of the value is small enough.
 const CLOSE: f64 = 5e-3;
 
 /// The narrowest of several intervals is too narrow by chance: so much wider is each.
@@ -69,9 +70,10 @@ impl RareMethod {
 pub struct RareShare {
     /// The share.
     pub value: f64,
-    /// Its 95 % confidence interval, from what fails if errors help to what fails if they harm; unknown (NaN) where methods contradict one another.
+    /// Its 95 % confidence interval, from what fails if errors help to what fails if they harm; unknown (NaN) where
+    /// methods contradict one another.
     pub interval: [f64; 2],
-    /// By what it was found.
+    /// The method that found it.
     pub method: RareMethod,
     /// Samples that this took.
     pub samples: usize,
@@ -80,8 +82,9 @@ pub struct RareShare {
 /// Estimates for slacks that errors help, as they are, and that errors harm.
 type Estimates = [Estimate; 3];
 
-/// The share with a negative slack, where something is found to fail. `slacks` has the values of points in independent normal scores, with
-/// errors that help, none, and errors that harm; `starts` are points from which places that fail are looked for.
+/// The share with a negative slack, where something is found to fail. `slacks` has the values of points in independent
+/// normal scores, with errors that help, none, and errors that harm; `starts` are points from which places that fail
+/// are looked for.
 pub fn rare_share(starts: &[Vec<f64>], slacks: &Slacks) -> Option<RareShare> {
     let k = starts.first()?.len();
     let count = std::cell::Cell::new(0);
@@ -167,9 +170,9 @@ fn by_importance(mixture: &Mixture, k: usize, slacks: &Slacks) -> Estimates {
     estimates(&(0..REPLICATES).map(of_replicate).collect::<Vec<_>>())
 }
 
-/// The deviation about the share, relative to it, that points which fail foresee, where some of them are left out: such samples do not say so
-/// themselves. The mean square of all weights is the share times the mean weight of what fails. Where none is left out, evenly spread points do
-/// better, and their replicates say how much.
+/// The deviation about the share, relative to it, that points which fail foresee, where some of them are left out: such
+/// samples do not say so themselves. The mean square of all weights is the share times the mean weight of what fails.
+/// Where none is left out, evenly spread points do better, and their replicates say how much.
 fn of_weights(mixture: &Mixture, seen: &Subset, share: f64) -> f64 {
     let weights: Vec<f64> = seen.failing.iter().map(|point| mixture.weight(point)).collect();
     if weights.iter().all(|weight| *weight < UNCOVERED * share) {

@@ -1,5 +1,6 @@
-//! Directional sampling: along each direction from the middle, the share that fails follows from where the slack changes its sign (P. Bjerager,
-//! Journal of Engineering Mechanics 114 (1988) 1285). What surrounds the middle, as a sphere does, has nearly the same share along all.
+//! Directional sampling: along each direction from the middle, the share that fails follows from where the slack
+//! changes its sign (P. Bjerager, Journal of Engineering Mechanics 114 (1988) 1285). What surrounds the middle, as a
+//! sphere does, has nearly the same share along all.
 
 use super::normals::farther_than;
 use super::special::normal_quantile;
@@ -83,7 +84,7 @@ pub fn shares_along(directions: &[Vec<f64>], slacks: &Slacks) -> Vec<[f64; 3]> {
     }
     for ((number, which, ends), [(a, low), (b, high)]) in crossings.into_iter().zip(brackets) {
         let secant = a - low * (b - a) / (high - low);
-        // Written so that NaN, of what has no value, does not count.
+        // Written so that NaN, of unknown values, does not count.
         let root = if secant >= a && secant <= b { secant } else { 0.5 * (a + b) };
         let (from, to) = if ends[0].1 >= 0.0 { (root, ends[1].0) } else { (ends[0].0, root) };
         shares[number][which] += farther_than(from, k) - farther_than(to, k);

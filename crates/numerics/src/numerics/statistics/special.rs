@@ -12,8 +12,8 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().fold(0.0, |value, c| value * x + c)
 }
 
-/// Φ⁻¹(p), 0 < p < 1; ∓∞ at the ends. M. J. Wichura, Algorithm AS 241 (PPND16), Applied Statistics 37 (1988) 477: relative error
-/// about 1e-16.
+/// Φ⁻¹(p), 0 < p < 1; ∓∞ at the ends. M. J. Wichura, Algorithm AS 241 (PPND16), Applied Statistics 37 (1988) 477:
+/// relative error about 1e-16.
 pub fn normal_quantile(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {

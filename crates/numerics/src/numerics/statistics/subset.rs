@@ -1,4 +1,5 @@
-//! Subset simulation: the way to what fails rarely, level by level. It sees failing sets of any shape, in many dimensions.
+//! Subset simulation: the way to what fails rarely, level by level. It sees failing sets of any shape, in many
+//! dimensions.
 
 use super::normals::Normals;
 use super::points::REPLICATES;
@@ -23,8 +24,9 @@ pub struct Subset {
     pub failing: Vec<Vec<f64>>,
 }
 
-/// The share of the normal law in k dimensions with a negative slack (S.-K. Au & J. L. Beck, Probabilistic Engineering Mechanics 16 (2001) 263), by
-/// chains of I. Papaioannou et al., Probabilistic Engineering Mechanics 41 (2015) 89. `None` where nothing is found to fail.
+/// The share of the normal law in k dimensions with a negative slack (S.-K. Au & J. L. Beck, Probabilistic Engineering
+/// Mechanics 16 (2001) 263), by chains of I. Papaioannou et al., Probabilistic Engineering Mechanics 41 (2015) 89.
+/// `None` where nothing is found to fail.
 pub fn subset(k: usize, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Subset> {
     let mut found = Subset { shares: Vec::with_capacity(REPLICATES), failing: Vec::new() };
     for number in 0..REPLICATES {
@@ -92,7 +94,7 @@ fn chains(
     (points, values)
 }
 
-/// What has no value fails.
+/// The values with −∞ in place of NaN, so that unknown values fail.
 fn known(values: Vec<f64>) -> Vec<f64> {
     values.into_iter().map(|value| if value.is_nan() { f64::NEG_INFINITY } else { value }).collect()
 }

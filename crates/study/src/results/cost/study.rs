@@ -4,8 +4,8 @@ use super::method::CostMethod;
 use crate::compile::Scheme;
 use crate::model::Stepping;
 
-/// A work-precision study of one model. Errors are relative to each output's scale: the widest that the reference's band
-/// gets over the run (of an output without a band: how far its nominal course reaches).
+/// A work-precision study of one model. Errors are relative to each output's scale: the widest that the reference's
+/// band gets over the run (of an output without a band: how far its nominal course reaches).
 #[derive(Clone, Debug)]
 pub struct CostStudy {
     /// The model's name.
@@ -53,8 +53,8 @@ impl CostStudy {
         if self.is_deterministic() { self.reference.trajectory_error } else { self.reference.bounds_error }
     }
 
-    /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance, the reference's own error
-    /// counted in.
+    /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance, the reference's own
+    /// error counted in.
     pub fn cheapest(&self) -> Option<&CostPoint> {
         let own = self.own_error();
         let good = self.choices().filter(|point| point.deviation.largest() + own <= self.tolerance);

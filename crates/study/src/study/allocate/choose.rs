@@ -5,7 +5,8 @@ use super::worst::Slack;
 use crate::numerics::{Linear, Power, cheapest};
 use symdiff::math;
 
-/// Rounds of linearisation, what a round may change at most, and when it has settled: of worst cases, and of samples, which tell less.
+/// Rounds of linearisation, what a round may change at most, and when it has settled: of worst cases, and of samples,
+/// which tell less.
 const ROUNDS: [usize; 2] = [40, 12];
 const CHANGE: f64 = 2.0;
 const SETTLED: [f64; 2] = [1e-6, 3e-3];
@@ -65,8 +66,8 @@ fn together(slack: &mut dyn Slack, items: &[Item], tightest: &[f64]) -> Vec<f64>
     with(largest(slack, least, widest, &with))
 }
 
-/// The largest factor up to `most` that is good; `least` is. By the Illinois variant of false position (M. Dowell & P. Jarratt, BIT 11
-/// (1971) 168), which keeps the root between two factors.
+/// The largest factor up to `most` that is good; `least` is. By the Illinois variant of false position (M. Dowell & P.
+/// Jarratt, BIT 11 (1971) 168), which keeps the root between two factors.
 fn largest(slack: &mut dyn Slack, least: f64, most: f64, with: &dyn Fn(f64) -> Vec<f64>) -> f64 {
     let mut high = (most, slack.least(&with(most)));
     if high.1 >= -ROUNDING {
@@ -105,7 +106,8 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     let costs: Vec<f64> = priced.iter().filter_map(|&i| items[i].cost(1.0)).collect();
     let mut multiples = tightest.to_vec();
     priced.iter().for_each(|&i| multiples[i] = start[i].clamp(tightest[i], items[i].widest));
-    // Where worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all requirements hold.
+    // Where worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all
+    // requirements hold.
     if slack.power() == Power::First && is_flat(slack, &multiples, tightest) {
         let from = multiples.clone();
         let with = |factor: f64| -> Vec<f64> {
@@ -147,7 +149,8 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     with(largest(slack, least, 1.0, &with))
 }
 
-/// Whether, by its linearisation in the multiples, a constraint does not hold with the tightest ones either, with which all do.
+/// Whether, by its linearisation in the multiples, a constraint does not hold with the tightest ones either, with which
+/// all do.
 fn is_flat(slack: &mut dyn Slack, multiples: &[f64], tightest: &[f64]) -> bool {
     slack.left(multiples);
     let moves: Vec<f64> = multiples.iter().zip(tightest).map(|(at, least)| least - at).collect();

@@ -1,8 +1,9 @@
 //! Tolerances that are as loose, or as cheap, as the requirements allow.
 //!
-//! One run over the widest box (`items`, `wide`) gives a surrogate of the requirements' margins (`surface`). On it, `choose` finds the cheapest
-//! tolerances under what worst cases (`worst`) or yields (`share`) leave of the margins. A study of its own at the result then says whether
-//! they hold, its errors included; by what it differs from the surrogate, the next round knows better.
+//! One run over the widest box (`items`, `wide`) gives a surrogate of the requirements' margins (`surface`). On it,
+//! `choose` finds the cheapest tolerances under what worst cases (`worst`) or yields (`share`) leave of the margins. A
+//! study of its own at the result then says whether they hold, its errors included; by what it differs from the
+//! surrogate, the next round knows better.
 
 mod choose;
 mod items;
@@ -191,7 +192,8 @@ impl Allocator<'_> {
         let options = of(self.options);
         let (_, summary) = if self.asked.share.is_some() {
             model.statistics.asked = true;
-            // Of requirements only: quantiles of outputs over time cost more than all else, and nothing here reads them.
+            // Of requirements only: quantiles of outputs over time cost more than all else, and nothing here reads
+            // them.
             statistics::run(&model, 0, &options)?
         } else {
             let (bounds, summary, _) = reduced::run(&model, &options, false)?;

@@ -11,8 +11,8 @@ use crate::study::statistics::Laws;
 /// Points of each replicate. The confirming study finds the rest.
 const POINTS: usize = 1 << 9;
 
-/// Where less than this may fail, points are drawn about the places that fail first: so many of them, looked for from so many samples of
-/// each requirement.
+/// Where less than this may fail, points are drawn about the places that fail first: so many of them, looked for from
+/// so many samples of each requirement.
 const RARE: f64 = 0.1;
 const PLACES: usize = 6;
 const STARTS: usize = 12;
@@ -20,8 +20,9 @@ const STARTS: usize = 12;
 /// Points are drawn again where a multiple is another by this factor.
 const OTHER: f64 = 1.2;
 
-/// Samples from which the derivatives of the quantile are taken: with what lies below them within these ends, in shares that may fail, and at
-/// least so many. What the tolerances take of them is shared as at the quantile itself where margins are linear and laws normal.
+/// Samples from which the derivatives of the quantile are taken: with what lies below them within these ends, in shares
+/// that may fail, and at least so many. What the tolerances take of them is shared as at the quantile itself where
+/// margins are linear and laws normal.
 const BESIDE: [f64; 2] = [0.4, 2.5];
 const LEAST: usize = 64;
 
@@ -78,7 +79,8 @@ impl<'s> Share<'s> {
         Drawn { multiples: multiples.to_vec(), samples, weights }
     }
 
-    /// Laws about the places at the distance of what may fail at which each requirement has least left, the least of all first.
+    /// Laws about the places at the distance of what may fail at which each requirement has least left, the least of
+    /// all first.
     fn mixture(&self, multiples: &[f64]) -> Mixture {
         let distance = -normal_quantile(self.may_fail);
         let slacks = |points: &[Vec<f64>]| {
@@ -127,7 +129,8 @@ impl<'s> Share<'s> {
         shares[from..to].iter().map(|(number, _)| *number).collect()
     }
 
-    /// Mean derivatives of slacks of some samples with respect to the multiples; `pick` takes a sample's slack out of those of all.
+    /// Mean derivatives of slacks of some samples with respect to the multiples; `pick` takes a sample's slack out of
+    /// those of all.
     fn slopes(&self, multiples: &[f64], which: &[usize], pick: impl Fn(&[f64], usize) -> f64) -> Vec<f64> {
         let Some(drawn) = &self.drawn else { return vec![0.0; multiples.len()] };
         let weight: f64 = which.iter().map(|&place| drawn.weights[place]).sum();

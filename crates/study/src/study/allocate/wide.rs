@@ -11,7 +11,8 @@ use crate::study::{Kept, Options, RunError, statistics, subsystems};
 /// Where the surrogate over the widest box is not known, the box is made smaller so many times.
 const NARROWER: usize = 4;
 
-/// The surrogate's order is raised while its margins are off by more than this share of the nominal ones, so many times.
+/// The surrogate's order is raised while its margins are off by more than this share of the nominal ones, so many
+/// times.
 const ROUGH: f64 = 0.02;
 const ORDERS: usize = 3;
 

@@ -38,8 +38,8 @@ pub(super) fn uncertain(model: &Description) -> usize {
     model.uncertain().count()
 }
 
-/// The model's stepping made `parts` times as fine: as many whole steps between rows as come nearest to it. A tolerance goes
-/// with the third power of the step.
+/// The model's stepping made `parts` times as fine: as many whole steps between rows as come nearest to it. A tolerance
+/// goes with the third power of the step.
 pub(super) fn finer(simulation: &Simulation, parts: f64) -> Stepping {
     match simulation.stepping {
         Stepping::Fixed(step) => {

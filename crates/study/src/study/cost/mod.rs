@@ -1,8 +1,8 @@
 //! What accuracy costs in time: a work-precision study of one model.
 //!
 //! `grid` lists the settings; `plan` which reference can be had, and `reference` computes it with its own error; every
-//! setting is run as `batch::run` runs a model, against the clock (`timing`), and `deviation` says how far its bounds are off.
-//! `integrators` does the same with other schemes on the nominal trajectory.
+//! setting is run as `batch::run` runs a model, against the clock (`timing`), and `deviation` says how far its bounds
+//! are off. `integrators` does the same with other schemes on the nominal trajectory.
 
 mod deviation;
 mod grid;
@@ -180,9 +180,9 @@ fn beyond_budget(method: CostMethod, count: usize, options: &CostOptions) -> Str
     format!("{}: {count} of its settings, which the budget of {} s does not allow", method.label(), options.budget)
 }
 
-/// Runs settings by rising work as long as the budget lasts: what a method's last run took on the clock tells what its next will, and the
-/// `rate` what its first will. A run that goes beyond it nevertheless is ended. The points are in the settings' order; also how many settings
-/// of which method were skipped.
+/// Runs settings by rising work as long as the budget lasts: what a method's last run took on the clock tells what its
+/// next will, and the `rate` what its first will. A run that goes beyond it nevertheless is ended. The points are in
+/// the settings' order; also how many settings of which method were skipped.
 fn run_settings(
     model: &Description,
     settings: &[Setting],

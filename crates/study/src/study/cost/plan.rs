@@ -7,7 +7,8 @@ use crate::model::Description;
 use crate::results::CostMethod;
 use crate::study::scheme;
 
-/// Highest orders for one, two and three parameters; for more, the highest up to [`FEW`] that this many simulations allow.
+/// Highest orders for one, two and three parameters; for more, the highest up to [`FEW`] that this many simulations
+/// allow.
 const ORDERS: [usize; 3] = [32, 24, 10];
 const FEW: usize = 7;
 
@@ -49,8 +50,8 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// The highest order, and with it the finest steps, that two short runs promise to be done in time; the cheapest there is
-    /// where none is. Where the error has an expansion in powers of the steps, these are extrapolated.
+    /// The highest order, and with it the finest steps, that two short runs promise to be done in time; the cheapest
+    /// there is where none is. Where the error has an expansion in powers of the steps, these are extrapolated.
     ///
     /// # Errors
     /// Where a run fails, or even the coarsest takes too long, or there are too many parameters for any.
@@ -82,8 +83,8 @@ impl Plan {
             return Err(CostError::TooMany { parameters: k, simulations: simulations(highest) });
         }
 
-        // Seconds on the clock are a constant, in which the model is compiled, and a rate times the simulations: by the method, and beside
-        // it, which takes as many simulations at every order.
+        // Seconds on the clock are a constant, in which the model is compiled, and a rate times the simulations: by the
+        // method, and beside it, which takes as many simulations at every order.
         let trials = [setting(2, 0.5), setting(2, 1.0)];
         let [coarse, fine] = [spent(model, &trials[0], options)?, spent(model, &trials[1], options)?];
         let rate = ((fine.seconds - coarse.seconds) / (fine.work - coarse.work)).max(0.0);
@@ -128,7 +129,8 @@ impl Plan {
     }
 }
 
-/// Points of the densest scan, and of its half, that can be done in time, each with two step sizes; none for many parameters.
+/// Points of the densest scan, and of its half, that can be done in time, each with two step sizes; none for many
+/// parameters.
 fn dense_scan(
     model: &Description,
     method: CostMethod,

@@ -1,12 +1,13 @@
-//! What errors are measured against: bounds of a high order, extrapolated over small steps and widened to what a dense scan
-//! reaches, with an estimate of their remaining error.
+//! What errors are measured against: bounds of a high order, extrapolated over small steps and widened to what a dense
+//! scan reaches, with an estimate of their remaining error.
 //!
-//! - *Steps.* Where no equation switches, every sample's steps are extrapolated, and B(h) is taken as it is. Else B(h), B(2h), B(4h) of a
-//!   scheme of second order extrapolate to (4 B(h) − B(2h))/3 and (4 B(2h) − B(4h))/3. The
-//!   error of either falls with h by four or more, and so is at most a third of how far it is from that of twice the steps. Controlled
-//!   steps have no such expansion: there B(h) is taken as it is, and a third of its distance from B(2h).
+//! - *Steps.* Where no equation switches, every sample's steps are extrapolated, and B(h) is taken as it is. Else B(h),
+//!   B(2h), B(4h) of a scheme of second order extrapolate to (4 B(h) − B(2h))/3 and (4 B(2h) − B(4h))/3. The error of
+//!   either falls with h by four or more, and so is at most a third of how far it is from that of twice the steps.
+//!   Controlled steps have no such expansion: there B(h) is taken as it is, and a third of its distance from B(2h).
 //! - *Order.* How far the bounds are from those of order p − 2: rather the latter's error.
-//! - *Scan.* Its samples lie in the true range. The rest is taken to be as much as it adds to a scan of half its density.
+//! - *Scan.* Its samples lie in the true range. The rest is taken to be as much as it adds to a scan of half its
+//!   density.
 
 use std::cell::Cell;
 

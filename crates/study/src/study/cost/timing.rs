@@ -16,8 +16,8 @@ const LONG_ENOUGH: f64 = 0.15;
 /// … or there were so many of them.
 const OFTEN_ENOUGH: usize = 5;
 
-/// Something done at least once: its last result, and the shortest time, s, that `seconds` makes of a result and of the time
-/// it took.
+/// Something done at least once: its last result, and the shortest time, s, that `seconds` makes of a result and of the
+/// time it took.
 ///
 /// # Errors
 /// The first that occurs.
@@ -71,7 +71,8 @@ pub(super) fn timed(
     best_of(|| bounds(model, setting, options, progress), seconds)
 }
 
-/// What a run takes on the clock, s, and what for: simulations times steps of all that it simulates, of which so much beside the method.
+/// What a run takes on the clock, s, and what for: simulations times steps of all that it simulates, of which so much
+/// beside the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spent {
     pub(super) seconds: f64,

@@ -12,7 +12,8 @@ const DENSE: usize = 8;
 const AT_ONCE: usize = 64;
 
 impl Motions<'_> {
-    /// As [`Ensemble::dense_motions`](crate::methods::Ensemble::dense_motions): of explicit steps, which tell what lies inside them.
+    /// As [`Ensemble::dense_motions`](crate::methods::Ensemble::dense_motions): of explicit steps, which tell what lies
+    /// inside them.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.

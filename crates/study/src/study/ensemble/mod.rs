@@ -38,8 +38,8 @@ const BLOCK: usize = 1 << 20;
 /// Most rows of a block.
 const MOST_ROWS: usize = 64;
 
-/// A range that is narrower than this, relative to the model's size and the run's duration, is rounding: Newton's iteration ends at 1e-12 or
-/// so.
+/// A range that is narrower than this, relative to the model's size and the run's duration, is rounding: Newton's
+/// iteration ends at 1e-12 or so.
 const AT_REST: f64 = 1e-10;
 
 /// A mechanism under one schedule.

@@ -6,8 +6,8 @@ use crate::numerics::Range;
 use crate::simulate::{SimulationError, SingularPass};
 
 impl Motions<'_> {
-    /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end even
-    /// after an interruption.
+    /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end
+    /// even after an interruption.
     ///
     /// # Errors
     /// Where it cannot be assembled, or constraints contradict one another on the way.

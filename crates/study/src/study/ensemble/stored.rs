@@ -10,7 +10,8 @@ use crate::simulate::SimulationError;
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
 use crate::study::effort::INSTRUCTION_SECONDS;
 
-/// Values of a part are about so many bytes, in samples between [`FEWEST`] and [`MOST`], a whole number of the widest tiles.
+/// Values of a part are about so many bytes, in samples between [`FEWEST`] and [`MOST`], a whole number of the widest
+/// tiles.
 const PART_BYTES: usize = 64 << 20;
 const FEWEST: usize = 32;
 const MOST: usize = 1024;
@@ -24,7 +25,8 @@ pub(in crate::study) struct Stored<'a> {
     pub store: &'a PartStore,
     /// Number of the subsystem.
     pub subsystem: usize,
-    /// Whether samples that cannot be assembled are found before their tasks are deferred, since the box is cut by them.
+    /// Whether samples that cannot be assembled are found before their tasks are deferred, since the box is cut by
+    /// them.
     pub assembles_first: bool,
 }
 
@@ -111,8 +113,8 @@ impl Stored<'_> {
         Task { subsystem, schedule, tolerance, observed, until, channels, scan, samples }
     }
 
-    /// Gives every task with its part, which is simulated where it is missing. Where the missing ones together take long, all of them
-    /// are deferred.
+    /// Gives every task with its part, which is simulated where it is missing. Where the missing ones together take
+    /// long, all of them are deferred.
     fn each_part(
         &self,
         motions: &Motions,

@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// A weight hangs from a rod that hangs from a spring: each carries what is below it.
+    /// A weight hangs from a rod that hangs from a spring: each carries everything below it.
     #[test]
     fn what_hangs_is_carried() {
         let found = forces_of(

@@ -1,7 +1,7 @@
 //! The motion of all bodies, for a report: nominal, at samples, and as polynomials in the parameters.
 //!
-//! Poses are outputs of the whole model like any other, asked in place of its own: the same equations and the same steps, and nothing of it is in
-//! the program of a run.
+//! Poses are outputs of the whole model like any other, asked in place of its own: the same equations and the same
+//! steps, and nothing of it is in the program of a run.
 
 mod forces;
 mod rows;
@@ -162,7 +162,8 @@ impl Posed {
         drawn(description, Some(extent(rows.iter().copied().step_by(self.per_body()))))
     }
 
-    /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for angles, m.
+    /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for
+    /// angles, m.
     fn weights(&self, points: &[f64], drawing: &Drawing) -> Vec<f64> {
         let mut points = points.chunks_exact(3);
         let reach = drawing.bodies.iter().map(|body| {
@@ -177,7 +178,8 @@ impl Posed {
         reach[1..].iter().flat_map(|&reach| of_body(reach)).collect()
     }
 
-    /// Times of the rows that are looked at, and the poses of every sample there. The nominal sample, the first, reaches all of them.
+    /// Times of the rows that are looked at, and the poses of every sample there. The nominal sample, the first,
+    /// reaches all of them.
     fn record(
         &self,
         description: &Description,

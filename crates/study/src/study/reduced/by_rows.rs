@@ -1,8 +1,8 @@
 //! A requirement over the time by the bounds of its slacks in the rows.
 //!
-//! The least slack over the time and the box is the same whichever comes first. Over the time first, it is one number a motion, with a kink
-//! over the box wherever it changes its place in time. Over the box first, it is the least of the lower bounds in the rows, which know
-//! no such kink; only what lies between rows is estimated.
+//! The least slack over the time and the box is the same whichever comes first. Over the time first, it is one number a
+//! motion, with a kink over the box wherever it changes its place in time. Over the box first, it is the least of the
+//! lower bounds in the rows, which know no such kink; only what lies between rows is estimated.
 
 use super::super::bands::bands;
 use super::super::outcome::Results;
@@ -15,8 +15,8 @@ use crate::results::Band;
 const SAFETY: f64 = 2.0;
 
 impl Study<'_> {
-    /// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a margin of
-    /// `simulated` contradicts them.
+    /// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a
+    /// margin of `simulated` contradicts them.
     pub(super) fn by_rows(&self, own: &Requirement, rows: &Results, simulated: f64) -> Option<Part> {
         let (from, to) = own.times.filter(|(from, to)| from < to)?;
         let schedule = &rows.schedule;

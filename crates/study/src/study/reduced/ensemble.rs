@@ -1,6 +1,7 @@
 //! Reduced outputs as an ensemble of one row, whose coordinates are the channels: what bounds outputs bounds these too.
 //!
-//! The samples of rows are those of reduced outputs. What each is reduced to is kept, so that it is not simulated twice.
+//! The samples of rows are those of reduced outputs. What each is reduced to is kept, so that it is not simulated
+//! twice.
 
 use std::collections::BTreeMap;
 use std::ops::Range as Rows;

@@ -41,7 +41,8 @@ fn place(outputs: &mut Vec<Output>, name: &str, formula: &Formula, of_results: b
     })
 }
 
-/// Results with the model's own outputs, and what its analysis adds: without those behind its own, of all those of the expanded model.
+/// Results with the model's own outputs, and what its analysis adds: without those behind its own, of all those of the
+/// expanded model.
 pub fn shown(
     description: &Description,
     expanded: &Description,

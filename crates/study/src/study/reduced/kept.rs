@@ -47,8 +47,8 @@ impl KeptReduced {
         largest(self.plan.parts(requirement).map(|part| self.errors[part].surrogate))
     }
 
-    /// Margins of the first so many requirements at samples of the subsystem's box, requirement by requirement, sample by sample; NaN where one is
-    /// unknown. In parallel, with the same bits for any number of threads.
+    /// Margins of the first so many requirements at samples of the subsystem's box, requirement by requirement, sample
+    /// by sample; NaN where one is unknown. In parallel, with the same bits for any number of threads.
     pub fn margins<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
         let first = if count == 0 { self.plan.values() } else { self.plan.parts(0).start };
         let wanted: Vec<usize> = (first..self.plan.values()).collect();

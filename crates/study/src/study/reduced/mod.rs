@@ -1,8 +1,9 @@
 //! Reduced outputs and requirements: bounds of one number a motion, and verdicts.
 //!
-//! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities and the values that follow; `ensemble` is
-//! what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it); `answers` puts those of
-//! subsystems together; `keeping`, `kept` and `margins` evaluate them after the run; `refine` runs a model until all are decided.
+//! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities and the values that follow;
+//! `ensemble` is what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it);
+//! `answers` puts those of subsystems together; `keeping`, `kept` and `margins` evaluate them after the run; `refine`
+//! runs a model until all are decided.
 
 mod answers;
 mod by_rows;

@@ -1,8 +1,9 @@
 //! Channels of a motion, and how reduced outputs follow from them.
 //!
-//! A maximum over the time has a kink over the box where it changes place. The time is therefore cut between the local extremes of the
-//! nominal motion: the extreme in each window is a channel of its own, which the surrogate expands, and the maximum is the largest of
-//! the channels' polynomials, kinks included. So it is with events: the windows lie around the humps in which they can occur.
+//! A maximum over the time has a kink over the box where it changes place. The time is therefore cut between the local
+//! extremes of the nominal motion: the extreme in each window is a channel of its own, which the surrogate expands, and
+//! the maximum is the largest of the channels' polynomials, kinks included. So it is with events: the windows lie
+//! around the humps in which they can occur.
 
 use crate::assemble::NumberFormulas;
 use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
@@ -23,8 +24,8 @@ pub struct Plan {
     pub expanded: usize,
     /// Reduced outputs, then parts of the requirements' margins.
     values: Vec<Value>,
-    /// For each requirement, which values are parts of its margin: it is the least of them. Each part is bounded alone, so that the
-    /// kinks between them do no harm.
+    /// For each requirement, which values are parts of its margin: it is the least of them. Each part is bounded alone,
+    /// so that the kinks between them do no harm.
     margins: Vec<std::ops::Range<usize>>,
     /// For each requirement over the time, the channels that say when each slack is least, and how much it is then.
     whens: Vec<Vec<(usize, usize)>>,
@@ -73,7 +74,8 @@ struct Planner<'a> {
 }
 
 impl Plan {
-    /// Of a model whose formulas have their places among its outputs, given the nominal course of an output in rows at `times`.
+    /// Of a model whose formulas have their places among its outputs, given the nominal course of an output in rows at
+    /// `times`.
     pub fn of(description: &Description, times: &[f64], nominal: &dyn Fn(usize) -> Vec<f64>) -> Self {
         let end = description.simulation.duration;
         let mut planner = Planner { channels: Vec::new(), nominal, times };

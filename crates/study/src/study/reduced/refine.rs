@@ -14,8 +14,8 @@ const ROUNDS: usize = 5;
 const MORE: usize = 2;
 const SMALLER: f64 = 8.0;
 
-/// Runs a model; where some requirement is undecided and no tolerance is asked for, again with a higher order or shorter steps, within
-/// the budget.
+/// Runs a model; where some requirement is undecided and no tolerance is asked for, again with a higher order or
+/// shorter steps, within the budget.
 ///
 /// # Errors
 /// As for any run.
@@ -65,8 +65,8 @@ fn simulations(summary: &Summary) -> usize {
     summary.methods.iter().map(|method| method.simulations).sum()
 }
 
-/// A finer request: a higher order where the surrogate's error is the larger one, shorter steps where theirs is. `None` where neither
-/// can help: the errors are small beside the margin, which is itself on both sides of the limit.
+/// A finer request: a higher order where the surrogate's error is the larger one, shorter steps where theirs is. `None`
+/// where neither can help: the errors are small beside the margin, which is itself on both sides of the limit.
 fn refined(model: &Description, own: &RequirementSummary, summary: &Summary) -> Option<Description> {
     let mut finer = model.clone();
     let by_steps = own.time > own.surrogate;

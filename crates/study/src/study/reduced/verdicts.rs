@@ -119,7 +119,8 @@ impl Study<'_> {
         })
     }
 
-    /// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be believed.
+    /// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be
+    /// believed.
     fn part(&self, values: &Values, place: usize) -> Part {
         let bands = bands(self, values.results, place, 1);
         let is_resolved = |band: &Band| !band.error.unresolved[0];
@@ -136,7 +137,8 @@ impl Study<'_> {
         }
     }
 
-    /// The simulated sample with the least margin; where bounds do not tell that all hold, the neighbours of the best are tried too.
+    /// The simulated sample with the least margin; where bounds do not tell that all hold, the neighbours of the best
+    /// are tried too.
     fn nearest(
         &self,
         (number, own): (usize, &Requirement),
@@ -216,8 +218,8 @@ impl Study<'_> {
         Ok(())
     }
 
-    /// Whether certified bounds of every slack prove the requirement. They are of the steps' ends, which are rows only where each row is
-    /// a step.
+    /// Whether certified bounds of every slack prove the requirement. They are of the steps' ends, which are rows only
+    /// where each row is a step.
     fn is_certified(&self, own: &Requirement, rows: &Results) -> bool {
         let Some((from, to)) = own.times else { return false };
         let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else {

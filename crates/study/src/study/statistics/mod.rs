@@ -1,5 +1,5 @@
-//! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation, and the linearised
-//! tolerance stack.
+//! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation,
+//! and the linearised tolerance stack.
 
 mod laws;
 mod numbers;

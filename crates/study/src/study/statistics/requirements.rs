@@ -1,4 +1,5 @@
-//! The share of the production that fulfils requirements: over the whole motion, between rows too, by samples of the surrogate of their margins.
+//! The share of the production that fulfils requirements: over the whole motion, between rows too, by samples of the
+//! surrogate of their margins.
 
 use rayon::prelude::*;
 

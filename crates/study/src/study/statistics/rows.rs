@@ -29,7 +29,8 @@ const FEW_CLOSED: usize = 1 << 8;
 /// Samples at which the polynomial through an output's own samples is held against the loop closure.
 const COMPARED: usize = 256;
 
-/// It takes the closure's place where it differs by no more than this share of the values' range, or of the stated error.
+/// It takes the closure's place where it differs by no more than this share of the values' range, or of the stated
+/// error.
 const NEAR: (f64, f64) = (1e-4, 0.5);
 
 /// A difference quotient's step, as a share of the interval's half width.

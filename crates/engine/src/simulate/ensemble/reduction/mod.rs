@@ -1,7 +1,7 @@
 //! One number of a motion: outputs accumulated from step to step, between steps too.
 //!
-//! Between steps an output is the cubic through the values at four of them (`piece`), one order more than the scheme has. Where the
-//! values jump it does not rise above them.
+//! Between steps an output is the cubic through the values at four of them (`piece`), one order more than the scheme
+//! has. Where the values jump it does not rise above them.
 
 mod piece;
 mod zone;
@@ -116,8 +116,8 @@ impl<'s> Reduction<'s> {
         }
     }
 
-    /// After the last step: the values, channel by channel, lane by lane; NaN of lanes that stopped. A value at one time only is
-    /// constant.
+    /// After the last step: the values, channel by channel, lane by lane; NaN of lanes that stopped. A value at one
+    /// time only is constant.
     pub fn finish(&mut self) -> Vec<f64> {
         if let ([time], [values]) = (&self.times[..], &self.values[..]) {
             let (time, values) = (time + 1.0, values.clone());

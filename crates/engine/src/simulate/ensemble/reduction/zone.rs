@@ -18,7 +18,8 @@ impl Zone {
     /// Goes on to a point.
     pub fn add(&mut self, point: [f64; 2]) {
         self.points.push(point);
-        // A round path has a large hull: as many points come as it has, so that a point costs the same however many there are.
+        // A round path has a large hull: as many points come as it has, so that a point costs the same however many
+        // there are.
         if self.points.len() > FEW.max(2 * self.hull) {
             self.points = hull(&mut self.points);
             self.hull = self.points.len();
@@ -39,8 +40,8 @@ impl Zone {
     }
 }
 
-/// The width of the narrowest strip that holds a convex polygon. One of its lines is along an edge; the point farthest from the edge goes
-/// around with it (M. I. Shamos, Computational Geometry, Yale 1978: rotating calipers).
+/// The width of the narrowest strip that holds a convex polygon. One of its lines is along an edge; the point farthest
+/// from the edge goes around with it (M. I. Shamos, Computational Geometry, Yale 1978: rotating calipers).
 fn narrowest(hull: &[[f64; 2]]) -> f64 {
     let count = hull.len();
     let distance = |edge: usize, place: usize| {
@@ -58,7 +59,8 @@ fn narrowest(hull: &[[f64; 2]]) -> f64 {
         }
         widths.push(distance(edge, far));
     }
-    // Rounding may have held the point back: then a width is too small. The least one is looked at again, until it is right.
+    // Rounding may have held the point back: then a width is too small. The least one is looked at again, until it is
+    // right.
     loop {
         let edge = (0..count).fold(0, |best, edge| if widths[edge] < widths[best] { edge } else { best });
         let width = (0..count).map(|place| distance(edge, place)).fold(0.0, f64::max);

@@ -21,8 +21,8 @@ impl Adaptation<'_> {
         lines(self.ensemble, Observed::Motion)
     }
 
-    /// Largest error of a sub-box's surrogate at new nodes, over the one that is allowed: that of the outputs that follow from its
-    /// motion, against those that follow from the nodes' own.
+    /// Largest error of a sub-box's surrogate at new nodes, over the one that is allowed: that of the outputs that
+    /// follow from its motion, against those that follow from the nodes' own.
     pub(super) fn errors_at(
         &mut self,
         surrogate: &Surrogate,
@@ -56,8 +56,8 @@ impl Adaptation<'_> {
         (0..self.goal.rows.min(sub_box.rows())).rev().step_by(self.every).collect()
     }
 
-    /// Estimates a sub-box's error. A glance at some rows tells where it may be too large; those are looked at closely, the worst first,
-    /// until one of them is.
+    /// Estimates a sub-box's error. A glance at some rows tells where it may be too large; those are looked at closely,
+    /// the worst first, until one of them is.
     pub(super) fn check(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
         sub_box.estimates = None;
         let rows = self.looked_at(sub_box);
@@ -83,7 +83,8 @@ impl Adaptation<'_> {
         largest(found.iter().zip(allowed).map(|(found, allowed)| SAFETY_OF_SURROGATE * found.error / allowed))
     }
 
-    /// For each of some rows the largest error at the samples with the least and the largest values, over the one that is allowed.
+    /// For each of some rows the largest error at the samples with the least and the largest values, over the one that
+    /// is allowed.
     fn glance(&mut self, sub_box: &SubBox, rows: &[usize]) -> Result<Vec<f64>, EnsembleError> {
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let allowed = &self.goal.allowed;

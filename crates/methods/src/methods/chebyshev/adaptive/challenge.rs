@@ -1,9 +1,9 @@
-//! New validation samples for a surrogate that seems to be good enough: where it says that outputs are least and largest, and where
-//! neither nodes nor earlier samples are.
+//! New validation samples for a surrogate that seems to be good enough: where it says that outputs are least and
+//! largest, and where neither nodes nor earlier samples are.
 //!
-//! Samples that a surrogate has been refined against say little of it. So each time it meets them, and before its error is stated,
-//! new ones are simulated, more the higher its degree, and only if it meets these too it is believed. They stay validation
-//! samples: what it is refined to afterwards has to meet them as well.
+//! Samples that a surrogate has been refined against say little of it. So each time it meets them, and before its error
+//! is stated, new ones are simulated, more the higher its degree, and only if it meets these too it is believed. They
+//! stay validation samples: what it is refined to afterwards has to meet them as well.
 
 use std::borrow::Cow;
 
@@ -48,8 +48,8 @@ impl Adaptation<'_> {
         self.check(sub_box)
     }
 
-    /// Points near to all at which, in the rows that are looked at, outputs are least or largest by the surrogate, and not near to nodes or to
-    /// validation samples.
+    /// Points near to all at which, in the rows that are looked at, outputs are least or largest by the surrogate, and
+    /// not near to nodes or to validation samples.
     fn ends(&mut self, sub_box: &SubBox) -> Result<Vec<Vec<f64>>, EnsembleError> {
         let rows = self.looked_at(sub_box);
         let surrogate = Surrogate::sparse(&sub_box.grid);
@@ -100,8 +100,8 @@ impl Scale {
         along.map(|((a, b), weight)| weight * (a - b).abs()).fold(0.0, f64::max)
     }
 
-    /// At most so many of the places, such that each is near to one of them or of those that are known, as far as so many are enough: always the one that is
-    /// farthest from all before.
+    /// At most so many of the places, such that each is near to one of them or of those that are known, as far as so
+    /// many are enough: always the one that is farthest from all before.
     fn cover<'p>(
         &self,
         places: &[Vec<f64>],

@@ -1,11 +1,12 @@
 //! Chebyshev bounds within a tolerance: the degree grows parameter by parameter where the response needs it, and where
 //! that does not help, the box is split.
 //!
-//! Each box has a sparse grid (Gerstner & Griebel, Computing 71 (2003) 65). A round adds the indices with the largest expected
-//! hierarchical surplus. The surplus of an index is the error of the surrogate at its node before the node is added: for nested
-//! nodes, the difference of the polynomials without and with it. The expected surplus is that of the indices before, times what one
-//! degree more would change if the response depended on a single weighted sum of the parameters, as it does to first order.
-//! Validation samples decide whether the surrogate is good enough, new ones each time it seems to be (`challenge`).
+//! Each box has a sparse grid (Gerstner & Griebel, Computing 71 (2003) 65). A round adds the indices with the largest
+//! expected hierarchical surplus. The surplus of an index is the error of the surrogate at its node before the node is
+//! added: for nested nodes, the difference of the polynomials without and with it. The expected surplus is that of the
+//! indices before, times what one degree more would change if the response depended on a single weighted sum of the
+//! parameters, as it does to first order. Validation samples decide whether the surrogate is good enough, new ones each
+//! time it seems to be (`challenge`).
 
 mod assessment;
 mod challenge;
@@ -33,10 +34,11 @@ const ADDED: f64 = 0.3;
 const TOGETHER: usize = 8;
 const GROWTH: usize = 8;
 
-/// Share of what is left of the budget that is kept for new validation samples, at most.
+/// Largest share of the remaining budget that is reserved for new validation samples.
 const KEPT_FREE: usize = 2;
 
-/// A surrogate that a value contradicts which was simulated elsewhere is refined until its nodes have grown by this share.
+/// A surrogate that a value contradicts which was simulated elsewhere is refined until its nodes have grown by this
+/// share.
 const DOUBTED: usize = 2;
 
 /// Rows in which a surrogate is looked at between rounds.
@@ -166,7 +168,8 @@ impl<'r> Adaptation<'r> {
         }
     }
 
-    /// Whether something was simulated elsewhere that lies outside of the ranges over all sub-boxes by more than is allowed.
+    /// Whether something was simulated elsewhere that lies outside of the ranges over all sub-boxes by more than is
+    /// allowed.
     fn is_contradicted(&self, boxes: &[SubBox]) -> bool {
         let outputs = self.ensemble.outputs();
         let of = |sub_box: &SubBox, place: usize| {
@@ -242,8 +245,9 @@ impl<'r> Adaptation<'r> {
         Ok((samples.len(), motions))
     }
 
-    /// A round: adds the indices with the largest expected surplus, and, so that as many nodes are simulated together as go well
-    /// together, those that would come next. So many simulations of the budget are kept free for validation samples.
+    /// A round: adds the indices with the largest expected surplus, and, so that as many nodes are simulated together
+    /// as go well together, those that would come next. So many simulations of the budget are kept free for validation
+    /// samples.
     fn refine(&mut self, sub_box: &mut SubBox, reserve: usize) -> Result<(), EnsembleError> {
         let left = self.goal.budget.simulations.saturating_sub(self.goal.spent);
         let room = left - reserve.min(left / KEPT_FREE);

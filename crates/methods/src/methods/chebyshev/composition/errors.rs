@@ -12,12 +12,13 @@ use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surr
 /// So many independent coordinates are moved one by one.
 const MOST_MOVED: usize = 4;
 
-/// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it does not matter.
+/// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it
+/// does not matter.
 const FAR: f64 = 0.1;
 
 impl Row<'_> {
-    /// Errors of the outputs at a glance: how far the coordinates' errors move them where the samples have their least and largest values.
-    /// Near an extreme that is an upper bound of what moves the extreme itself.
+    /// Errors of the outputs at a glance: how far the coordinates' errors move them where the samples have their least
+    /// and largest values. Near an extreme that is an upper bound of what moves the extreme itself.
     pub fn errors_at_samples(&self, (points, direct): (&[Vec<f64>], &ValidationTable), row: usize) -> Vec<f64> {
         let outputs = self.ensemble.outputs();
         if row >= direct.rows() {
@@ -43,8 +44,8 @@ impl Row<'_> {
         (0..outputs).map(error).collect()
     }
 
-    /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
-    /// far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
+    /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends,
+    /// and how far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
     pub fn errors(
         &self,
         range_search: &RangeSearch,
@@ -73,11 +74,12 @@ impl Row<'_> {
         extents.iter().zip(moved).enumerate().map(error).collect()
     }
 
-    /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as they are
-    /// and with halved ones, move the ends.
+    /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as
+    /// they are and with halved ones, move the ends.
     ///
-    /// A coordinate that is too early or too late is so by about the same time over many turns. An end of a band that is full of turns
-    /// is at rest, and such a shift moves it by next to nothing. What of the errors is none may move an end wherever it is.
+    /// A coordinate that is too early or too late is so by about the same time over many turns. An end of a band that
+    /// is full of turns is at rest, and such a shift moves it by next to nothing. What of the errors is none may move
+    /// an end wherever it is.
     pub fn step_errors(
         &self,
         range_search: &RangeSearch,
@@ -105,8 +107,8 @@ impl Row<'_> {
         moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
     }
 
-    /// How far errors of the independent coordinates and of their velocities (pairwise) move the ends of the outputs' ranges. What
-    /// positions and velocities do adds up, too, since their errors may have either sign.
+    /// How far errors of the independent coordinates and of their velocities (pairwise) move the ends of the outputs'
+    /// ranges. What positions and velocities do adds up, too, since their errors may have either sign.
     fn moved_by(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
         let lines = |first: usize| errors.iter().skip(first).step_by(2);
         let moves = |first: usize| -> Vec<Moves> {
@@ -122,9 +124,9 @@ impl Row<'_> {
 
     /// How far moves of the independent coordinates, one for each, move the ends of the outputs' ranges.
     ///
-    /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an output. Many are
-    /// moved together: all one way, or every other one against the rest. Where that moves an end by little, the extreme stays where it
-    /// is, to first order; else it is searched for again.
+    /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an
+    /// output. Many are moved together: all one way, or every other one against the rest. Where that moves an end by
+    /// little, the extreme stays where it is, to first order; else it is searched for again.
     fn moved(&self, range_search: &RangeSearch, found: &[Extent], moves: &[Moves]) -> Vec<f64> {
         let one_by_one = moves.len() <= MOST_MOVED;
         let rounds = if one_by_one { moves.len() } else { 2 };

@@ -42,8 +42,8 @@ impl Row<'_> {
         Extent::at(range, 0.0, ends.map(|sample| self.surrogate.samples()[sample].clone()))
     }
 
-    /// The largest errors of the independent coordinates' polynomials, and of their velocities': those at validation samples, or what the
-    /// polynomials lack; zero of velocities that are not expanded, since no output needs them.
+    /// The largest errors of the independent coordinates' polynomials, and of their velocities': those at validation
+    /// samples, or what the polynomials lack; zero of velocities that are not expanded, since no output needs them.
     pub(super) fn coordinate_errors(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<(usize, f64)> {
         let expanded = self.expanded(points);
         let values = |line: usize| line * points.len()..(line + 1) * points.len();
@@ -113,8 +113,8 @@ impl Row<'_> {
     }
 
     /// Some outputs with the motion moved in some ways, output by output, way by way, point by point. All outputs
-    /// follow together from a motion, a few points at a time: memory grows with what is asked for, not with all outputs
-    /// times all points.
+    /// follow together from a motion, a few points at a time: memory grows with the outputs asked for, not with all
+    /// outputs times all points.
     pub fn evaluate_some(&self, outputs: &[usize], points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
         let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
         let (count, ways_count) = (points.len(), ways.len());

@@ -1,9 +1,9 @@
-//! Composition: what is expanded is what is smooth. The independent coordinates and their velocities become polynomials of
-//! the parameters; every output follows from them through the loop closure and its own formula.
+//! Composition: the smooth functions are expanded. The independent coordinates and their velocities become polynomials
+//! of the parameters; every output follows from them through the loop closure and its own formula.
 //!
-//! Where an output that is composed in this way is the same polynomial as the one through its own samples, that polynomial takes its
-//! place: its range costs no closure. Where it is NaN, or not what the samples' simulations say, so does that polynomial, as
-//! with `expand: output`.
+//! Where an output that is composed in this way is the same polynomial as the one through its own samples, that
+//! polynomial takes its place: its range costs no closure. Where it is NaN, or not what the samples' simulations say,
+//! so does that polynomial, as with `expand: output`.
 
 mod errors;
 mod evaluation;
@@ -24,13 +24,14 @@ use crate::numerics::{
 /// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
 const MOST_COORDINATES: usize = 300;
 
-/// An output is the polynomial through its samples where both differ by less than this share of its range, and so many units of
-/// rounding of its values.
+/// An output is the polynomial through its samples where both differ by less than this share of its range, and so many
+/// units of rounding of its values.
 const ALIKE: f64 = 1e-10;
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
-/// An output does not follow from the coordinates where it differs from its simulated samples by this share of their range and this
-/// one of their values. (Accelerations and reactions of the samples have errors of the scheme that those which follow do not have.)
+/// An output does not follow from the coordinates where it differs from its simulated samples by this share of their
+/// range and this one of their values. (Accelerations and reactions of the samples have errors of the scheme that those
+/// which follow do not have.)
 const DISAGREES: (f64, f64) = (0.25, 1e-3);
 
 /// Samples at which outputs are held against the simulation, at most.
@@ -45,7 +46,7 @@ pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
     parameters > 0 && (1..=MOST_COORDINATES).contains(&coordinates)
 }
 
-/// One mechanism's closures, and what is evaluated through them.
+/// One mechanism's closures, and the functions that are evaluated through them.
 pub(super) struct Composer<'a> {
     ensemble: &'a dyn Ensemble,
     /// Those used so far.
@@ -58,9 +59,10 @@ impl<'a> Composer<'a> {
         Self { ensemble, closures: Vec::new() }
     }
 
-    /// Applies `look` to rows, in parallel block by block of so many (with the extremes of the row before in the same block), given the
-    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line), courses of coordinates, and, behind the outputs, times
-    /// of these. Velocities are expanded where they are asked for, or outputs need them.
+    /// Applies `look` to rows, in parallel block by block of so many (with the extremes of the row before in the same
+    /// block), given the motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line),
+    /// courses of coordinates, and, behind the outputs, times of these. Velocities are expanded where they are asked
+    /// for, or outputs need them.
     ///
     /// # Errors
     /// Where a closure cannot be compiled.
@@ -121,12 +123,12 @@ impl<'a> Composer<'a> {
     }
 }
 
-/// Corners of the box at which a search looks first: all of eight parameters', and of more such that any two meet at all
-/// their ends.
+/// Corners of the box at which a search looks first: all of eight parameters', and of more such that any two meet at
+/// all their ends.
 const CORNERS: usize = 256;
 
-/// Rows looked at one after the other, so that each can begin where the one before ended. Fixed, so that results do not depend
-/// on the number of threads.
+/// Rows looked at one after the other, so that each can begin where the one before ended. Fixed, so that results do not
+/// depend on the number of threads.
 pub(super) const BLOCK: usize = 16;
 
 /// One row of output.
@@ -264,7 +266,8 @@ impl<'r> Row<'r> {
         Found { extents, expanded, own: is_own }
     }
 
-    /// What becomes of each output, given its values at some points and at the compared samples, and its own polynomial's at the points.
+    /// What becomes of each output, given its values at some points and at the compared samples, and its own
+    /// polynomial's at the points.
     fn sorted<'v>(
         &self,
         compared: &[usize],
@@ -292,7 +295,8 @@ impl<'r> Row<'r> {
         ALIKE * Range::of(self.own_samples(output)).width() + rounding[output]
     }
 
-    /// How far outputs, as they follow from the coordinates, are from the ends of these ranges where those are attained.
+    /// How far outputs, as they follow from the coordinates, are from the ends of these ranges where those are
+    /// attained.
     fn apart_at_ends(&self, outputs: &[usize], found: &[Extent]) -> Vec<f64> {
         let ends = self.at_own_ends(outputs, found, &[Moves::default()]);
         let apart = |([least, most], found): (&[f64; 2], &Extent)| {

@@ -24,7 +24,8 @@ pub fn turning(direct: &ValidationTable, points: &[Vec<f64>], ensemble: &dyn Ens
     ensemble.scales().iter().enumerate().map(of_coordinate).collect()
 }
 
-/// Simulates corners of a box, one for each coordinate that turns: the number of simulations, and the coordinates' courses there.
+/// Simulates corners of a box, one for each coordinate that turns: the number of simulations, and the coordinates'
+/// courses there.
 ///
 /// # Errors
 /// Where a corner cannot be assembled.
@@ -64,8 +65,9 @@ pub(super) fn phases<'c>(
     closure.independent().iter().filter_map(of).collect()
 }
 
-/// Positions (n lines of samples), and velocities where they are there, with those of such coordinates as times of their courses, and
-/// rates of these. `known` are the times, line by line of the courses, as far as they were told before.
+/// Positions (n lines of samples), and velocities where they are there, with those of such coordinates as times of
+/// their courses, and rates of these. `known` are the times, line by line of the courses, as far as they were told
+/// before.
 pub(super) fn as_times<'m>(
     motion: &'m [f64],
     phases: &[(usize, Phase)],
@@ -87,8 +89,9 @@ pub(super) fn as_times<'m>(
     motion
 }
 
-/// Highest degree along each axis, or how far a coordinate that is expanded as times turns along it, in its scale: what polynomials of
-/// the coordinate itself would have to follow. An axis turns it by the share of the coefficients whose terms it has.
+/// Highest degree along each axis, or how far a coordinate that is expanded as times turns along it, in its scale: what
+/// polynomials of the coordinate itself would have to follow. An axis turns it by the share of the coefficients whose
+/// terms it has.
 pub fn with_turns(
     (basis, coefficients): (&SparseBasis, &[f64]),
     phases: &[(usize, Phase)],

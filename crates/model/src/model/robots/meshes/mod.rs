@@ -1,4 +1,4 @@
-//! Meshes of a robot's file: triangles, and volume, centre and inertia of what they enclose.
+//! Meshes of a robot's file: triangles, and volume, centre and inertia of the solid that they enclose.
 
 mod msh;
 mod solid;
