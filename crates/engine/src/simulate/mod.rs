@@ -42,7 +42,7 @@ mod unmet_switch;
 mod visit;
 
 pub use closure::{Closure, Points, choose_independent};
-pub use control::{Controller, Divided, Integration, Schedule, ToleranceSchedule, schedule_for_tolerance};
+pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetRun, Observed, Stop};

@@ -10,7 +10,7 @@
 
 use symdiff::Tile;
 
-use super::control::{Controller, Schedule};
+use super::control::Steps;
 use super::ensemble::{EnsembleRun, Observed};
 use super::error::SimulationError;
 use super::simulator::Simulator;
@@ -90,7 +90,7 @@ pub struct SwitchSearch {
 pub fn unmet_switch(
     simulator: &Simulator,
     domain: &ParameterBox,
-    (schedule, tolerance): (&Schedule, Option<Controller>),
+    steps: Steps<'_>,
     held_out: &[Vec<f64>],
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<SwitchSearch>, SimulationError> {
@@ -100,7 +100,7 @@ pub fn unmet_switch(
     let others = surrogate.as_ref().map_or_else(|| spread(k, SPREAD * k), |surrogate| surrogate.samples().to_vec());
     let nodes = others.len();
     let points = [&others, held_out].concat();
-    let observing = Observing { simulator, program, domain, schedule, tolerance, interrupted };
+    let observing = Observing { simulator, program, domain, steps, interrupted };
     let mut suspects = Vec::new();
     let mut before: Option<Vec<f64>> = None;
     let mut work = SurrogateWork::default();
@@ -110,7 +110,7 @@ pub fn unmet_switch(
         let of_nodes: Vec<f64> = motions.chunks_exact(points.len()).flat_map(|line| line[..nodes].to_vec()).collect();
         let coefficients = between.surrogate.coefficients(&of_nodes, &mut work);
         if let Some(before) = before.replace(coefficients.clone()) {
-            let times = [schedule.time(row - 1), schedule.time(row)];
+            let times = [steps.schedule.time(row - 1), steps.schedule.time(row)];
             suspects.extend(between.suspects(row, times, [&before, &coefficients], &one_sided(program, met)));
         }
     })?;
@@ -190,8 +190,7 @@ struct Observing<'a> {
     simulator: &'a Simulator,
     program: &'a SwitchProgram,
     domain: &'a ParameterBox,
-    schedule: &'a Schedule,
-    tolerance: Option<Controller>,
+    steps: Steps<'a>,
     interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -205,15 +204,16 @@ impl Observing<'_> {
         mut look: impl FnMut(usize, &[f64], &[Depths]),
     ) -> Result<Observations, SimulationError> {
         let samples = self.domain.samples(xi);
-        let mut run = EnsembleRun::start(self.simulator, &samples, self.schedule.first_step())?;
+        let mut run = EnsembleRun::start(self.simulator, &samples, self.steps.schedule.first_step())?;
         let (lines, switches) = (2 * self.simulator.program.scale.len(), self.program.switches.len());
         let stride = (lines + 2 * switches) * samples.len();
         let mut sizes = vec![0.0_f64; switches];
         let (mut all, mut values): (Vec<[Vec<Depths>; 2]>, Vec<f64>) = (Vec::new(), Vec::new());
         let mut switched_from = None;
-        for first in (0..self.schedule.rows).step_by(BLOCK) {
-            let rows = first..(first + BLOCK).min(self.schedule.rows);
-            let stops = run.advance(self.schedule, rows.clone(), self.tolerance, Observed::Switches, &mut values);
+        for first in (0..self.steps.schedule.rows).step_by(BLOCK) {
+            let rows = first..(first + BLOCK).min(self.steps.schedule.rows);
+            let stops =
+                run.advance(self.steps.schedule, rows.clone(), self.steps.controller, Observed::Switches, &mut values);
             let reached = stops.iter().map(|stop| stop.row).min().unwrap_or(rows.end);
             for (row, values) in (rows.start..reached).zip(values.chunks_exact(stride)) {
                 let (motions, extents) = values.split_at(lines * samples.len());

@@ -15,7 +15,7 @@ use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::{Ledger, ParameterBox, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{
-    Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance,
+    Controller, Divided, Schedule, SimulationError, Simulator, Steps, TimeFunctions, schedule_for_tolerance,
 };
 
 /// A compiled subsystem, and its questions.
@@ -196,7 +196,9 @@ impl<'a> Study<'a> {
             }
         };
         let switches = match &validation {
-            Some((validation, _)) => self.switches((&schedule, tolerance), validation, &mut internal)?,
+            Some((validation, _)) => {
+                self.switches(Steps { schedule: &schedule, controller: tolerance }, validation, &mut internal)?
+            }
             None => None,
         };
         let seen = Ledger::new(schedule.rows, self.simulator.program.outputs.len());

@@ -7,13 +7,13 @@ use super::outcome::Switches;
 use super::single::Study;
 use crate::methods::Validation;
 use crate::results::MethodSummary;
-use crate::simulate::{Controller, Integration, Schedule, SimulationError, unmet_switch};
+use crate::simulate::{Integration, SimulationError, Steps, unmet_switch};
 
 impl Study<'_> {
     /// Searches the box for them; `None` where the equations have none.
     pub(super) fn switches(
         &self,
-        (schedule, tolerance): (&Schedule, Option<Controller>),
+        steps: Steps<'_>,
         validation: &Validation,
         internal: &mut Vec<InternalError>,
     ) -> Result<Option<Switches>, SimulationError> {
@@ -22,8 +22,8 @@ impl Study<'_> {
         }
         (self.stage)("searching for switches");
         let begun = Instant::now();
-        let at_rows = schedule.ending_at_rows();
-        let steps = (&at_rows, tolerance);
+        let at_rows = steps.schedule.ending_at_rows();
+        let steps = Steps { schedule: &at_rows, ..steps };
         let found = caught("the search for switches", || {
             unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
         });
@@ -36,13 +36,13 @@ impl Study<'_> {
         };
         Ok(found.map(|mut found| {
             // Steps that a tolerance decides end at switches.
-            if tolerance.is_some() || schedule.integration == Integration::Explicit {
+            if steps.controller.is_some() || steps.schedule.integration == Integration::Explicit {
                 found.switched_from = None;
             }
             let summary = MethodSummary {
                 method: "switches".to_owned(),
                 simulations: found.simulations,
-                steps: schedule.steps_before(schedule.rows - 1),
+                steps: steps.schedule.steps_before(steps.schedule.rows - 1),
                 newton_iterations: found.counters.iterations,
                 rank_revealing_solves: found.counters.rank_revealing,
                 order: None,

@@ -9,7 +9,7 @@ use symdiff::jet::JetSpace;
 use super::ensemble::{Motions, stopped_at};
 use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::Sample;
-use crate::simulate::{SimulationError, SingularPass, Stop, Visit};
+use crate::simulate::{SimulationError, SingularPass, Steps, Stop, Visit};
 
 /// Samples that are visited at once.
 const BLOCK: usize = 256;
@@ -50,7 +50,13 @@ impl Motions<'_> {
             }
             let found: Vec<Result<Visit, SimulationError>> = samples
                 .par_iter()
-                .map(|sample| self.simulator.visit(sample, (self.schedule, self.tolerance), self.channels()))
+                .map(|sample| {
+                    self.simulator.visit(
+                        sample,
+                        Steps { schedule: self.schedule, controller: self.tolerance },
+                        self.channels(),
+                    )
+                })
                 .collect();
             for (place, visit) in found.into_iter().enumerate() {
                 let (visit, sample) = (visit?, block * BLOCK + place);

@@ -2,6 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::schedule::Schedule;
+
+/// Steps of a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Steps<'s> {
+    /// Rows, and the steps between them.
+    pub schedule: &'s Schedule,
+    /// Control of the local error of each step; none for steps of fixed length.
+    pub controller: Option<Controller>,
+}
+
 /// Step-size control for HHT.
 ///
 /// The local position error δ of a step (Negrut et al. 2007, §5) is of third order. Each step may have its share of the

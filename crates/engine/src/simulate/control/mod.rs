@@ -13,7 +13,7 @@ mod switch_watch;
 
 pub use adaptive::Adaptive;
 pub(in crate::simulate) use adaptive::MOST_CHANGE;
-pub use controller::Controller;
+pub use controller::{Controller, Steps};
 pub use division::Divided;
 pub use integration::Integration;
 pub use samples::{ToleranceSchedule, schedule_for_tolerance};

@@ -10,7 +10,7 @@ mod kinematics;
 mod modes;
 mod statics;
 
-use super::control::{Controller, Schedule};
+use super::control::Steps;
 use super::diagnostics::SingularPass;
 use super::ensemble::{Channel, Stop};
 use super::error::SimulationError;
@@ -37,17 +37,12 @@ impl Simulator {
     ///
     /// # Errors
     /// Where it cannot be assembled, or has no equilibrium.
-    pub fn visit(
-        &self,
-        sample: &Sample,
-        steps: (&Schedule, Option<Controller>),
-        channels: &[Channel],
-    ) -> Result<Visit, SimulationError> {
+    pub fn visit(&self, sample: &Sample, steps: Steps<'_>, channels: &[Channel]) -> Result<Visit, SimulationError> {
         if let Some(vibrations) = &self.vibrations {
             return self.visit_modes(vibrations, sample, steps, channels);
         }
         match self.system.analysis {
-            Analysis::Kinematics => self.visit_kinematics(sample, steps.0, channels),
+            Analysis::Kinematics => self.visit_kinematics(sample, steps.schedule, channels),
             _ => self.visit_equilibrium(sample, channels),
         }
     }

@@ -3,7 +3,7 @@
 use super::Visit;
 use crate::compile::Layout;
 use crate::numerics::Sample;
-use crate::simulate::control::{Controller, Schedule};
+use crate::simulate::control::Steps;
 use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::modal::{ALIKE, Place, Vibrations};
@@ -21,7 +21,7 @@ impl Simulator {
         &self,
         vibrations: &Vibrations,
         sample: &Sample,
-        steps: (&Schedule, Option<Controller>),
+        steps: Steps<'_>,
         channels: &[Channel],
     ) -> Result<Visit, SimulationError> {
         let nominal = match vibrations.nominal.get() {
@@ -42,7 +42,7 @@ impl Simulator {
             };
             self.derived.iter().for_each(|derived| derived.set(sample, &mut told));
             visit.values.extend_from_slice(&told);
-            reduction.push(steps.0.time(row), told, &[true]);
+            reduction.push(steps.schedule.time(row), told, &[true]);
         }
         visit.reduced = reduction.finish();
         if visit.stop.is_some() {
@@ -52,11 +52,7 @@ impl Simulator {
     }
 
     /// Those of the nominal sample, each row's in the order of the row before.
-    fn nominal_places(
-        &self,
-        vibrations: &Vibrations,
-        steps: (&Schedule, Option<Controller>),
-    ) -> Result<Vec<Place>, SimulationError> {
+    fn nominal_places(&self, vibrations: &Vibrations, steps: Steps<'_>) -> Result<Vec<Place>, SimulationError> {
         let nominal: Sample = self.system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let (states, _) = self.states(&nominal, steps)?;
         let mut places: Vec<Place> = Vec::with_capacity(states.len());
@@ -112,8 +108,8 @@ impl Simulator {
     }
 
     /// The states of a sample in all rows.
-    fn states(&self, sample: &Sample, steps: (&Schedule, Option<Controller>)) -> Result<States, SimulationError> {
-        let (schedule, tolerance) = steps;
+    fn states(&self, sample: &Sample, steps: Steps<'_>) -> Result<States, SimulationError> {
+        let Steps { schedule, controller } = steps;
         let start = self.state_at_start(sample)?;
         if schedule.rows == 1 {
             return Ok((vec![start], None));
@@ -121,7 +117,7 @@ impl Simulator {
         let samples = std::slice::from_ref(sample);
         let mut run = EnsembleRun::start(self, samples, schedule.first_step())?;
         let mut motion = Vec::new();
-        let stops = run.advance(schedule, 0..schedule.rows, tolerance, Observed::Motion, &mut motion);
+        let stops = run.advance(schedule, 0..schedule.rows, controller, Observed::Motion, &mut motion);
         let stop = stops.first().map(|stop| Stop { open: run.open_constraint(stop, schedule), ..*stop });
         let reached = stop.as_ref().map_or(schedule.rows, |stop| stop.row);
         let layout: &Layout = &self.start.layout;

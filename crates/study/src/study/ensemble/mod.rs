@@ -23,7 +23,7 @@ use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, JET_WORK, Samp
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SimulationError,
-    Simulator, Stop, choose_independent,
+    Simulator, Steps, Stop, choose_independent,
 };
 
 use jet::SampleJet;
@@ -129,8 +129,8 @@ impl<'a> Motions<'a> {
     }
 
     /// Steps, and the tolerance of their local errors.
-    pub fn steps(&self) -> (&Schedule, Option<Controller>) {
-        (self.schedule, self.tolerance)
+    pub fn steps(&self) -> Steps<'_> {
+        Steps { schedule: self.schedule, controller: self.tolerance }
     }
 
     /// Instructions of a step of one sample.

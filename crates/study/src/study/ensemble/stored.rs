@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use super::Motions;
 use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan_shard};
 use crate::numerics::{Sample, ScanBounds, ScanGrid};
-use crate::simulate::SimulationError;
+use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
 use crate::study::effort::INSTRUCTION_SECONDS;
 
@@ -108,9 +108,9 @@ impl Stored<'_> {
         (observed, until): (Observed, Until),
         scan: Option<ScanPart>,
     ) -> Task {
-        let (schedule, tolerance) = motions.steps();
+        let Steps { schedule, controller } = motions.steps();
         let (subsystem, schedule, channels) = (self.subsystem, schedule.clone(), motions.channels().to_vec());
-        Task { subsystem, schedule, tolerance, observed, until, channels, scan, samples }
+        Task { subsystem, schedule, tolerance: controller, observed, until, channels, scan, samples }
     }
 
     /// Gives every task with its part, which is simulated where it is missing. Where the missing ones together take
@@ -233,7 +233,7 @@ fn deliver(
 
 /// What a task is expected to take on one core, s.
 fn seconds_of(motions: &Motions, task: &Task) -> f64 {
-    let (schedule, _) = motions.steps();
+    let schedule = motions.steps().schedule;
     let steps = (schedule.steps_before(schedule.rows.saturating_sub(1)) * schedule.integration.steps()) as f64;
     task.samples.len() as f64 * steps * motions.instructions_of_step() * INSTRUCTION_SECONDS
 }

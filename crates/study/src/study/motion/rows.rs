@@ -7,7 +7,7 @@ use super::super::{RunError, formulation};
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
-    Controller, EnsembleRun, Integration, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance,
+    Controller, EnsembleRun, Integration, Observed, Schedule, Simulator, Steps, TimeFunctions, schedule_for_tolerance,
 };
 
 /// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
@@ -133,8 +133,10 @@ impl Rows {
             (0..rows).step_by(every).map(|row| Schedule::time_of(duration, output_step, row)).collect();
         let schedule = Schedule::fixed(duration, output_step, output_step);
         let outputs = self.simulator.system.outputs.len();
-        let found: Vec<_> =
-            samples.par_iter().map(|sample| self.simulator.visit(sample, (&schedule, None), &[])).collect();
+        let found: Vec<_> = samples
+            .par_iter()
+            .map(|sample| self.simulator.visit(sample, Steps { schedule: &schedule, controller: None }, &[]))
+            .collect();
         for (&sample, visit) in running.iter().zip(found) {
             let visit = match visit {
                 Err(error) if sample == 0 => return Err(error.into()),
