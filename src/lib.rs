@@ -3,13 +3,15 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
 mod api;
+mod cli;
 
 pub use api::{Band, Error, Model, ModelBuilder, Output, Study, StudyResult, Value};
+#[doc(inline)]
 pub use methods::Method;
+#[doc(inline)]
 pub use results::Summary;
+#[doc(inline)]
 pub use syntax::Diagnostics;
-
-mod cli;
 
 // Rooms of the crates below keep their names here.
 use mbint_engine::{assemble, compile, simulate};

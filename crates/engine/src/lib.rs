@@ -1,5 +1,5 @@
-//! From a `Description` to motions: equations of motion (`assemble`), programs for residuals and Jacobians (`compile`), and
-//! HHT-I3, explicit and certified integration of samples in lanes (`simulate`).
+//! From a `Description` to motions: equations of motion (`assemble`), programs for residuals and Jacobians (`compile`),
+//! and HHT-I3, explicit and certified integration of samples in lanes (`simulate`).
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]

@@ -1,4 +1,4 @@
-//! What a model file is made of, before it is a model: text and trees with spans (`syntax`), keys with types and units from
+//! Parts of a model file, before they are a model: text and trees with spans (`syntax`), keys with types and units from
 //! which both the reader and the schema follow (`grammar`), and symbols of bodies, points and frames (`multibody`).
 
 #![forbid(unsafe_code)]
