@@ -103,10 +103,13 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         return Err(Failure::Deferred);
     }
     let (bounds, mut summary) = found?;
+    let interrupted = interrupt::asked();
+    if interrupted && bounds.times.is_empty() {
+        return Err(failed(&"interrupted before there were results"));
+    }
     let named = request.named.get(job.number).unwrap_or(&job.path);
     verdicts::add_commands(&mut summary, named, &request.given);
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
-    let interrupted = interrupt::asked();
     let folder = match interrupted && !request.overwrite && holds_complete_results(&job.folder) {
         true => beside(&job.folder),
         false => job.folder.clone(),

@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
@@ -57,8 +57,12 @@ impl Progress {
         Self { bar, stage, lines }
     }
 
-    /// Shows that this fraction is done. May be called from any thread, in any order: the bar never goes back.
+    /// Shows that this fraction is done. May be called from any thread, in any order: the bar goes back for a new count
+    /// only, which begins with 0.
     pub fn set(&self, fraction: f64) {
+        if fraction == 0.0 {
+            self.bar.reset();
+        }
         let parts = (fraction.clamp(0.0, 1.0) * PARTS as f64) as u64;
         if parts > self.bar.position() {
             self.bar.set_position(parts);
@@ -80,7 +84,6 @@ impl Progress {
 
 /// A line every ten seconds, until there is nobody to end it.
 fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Receiver<()>) {
-    let begun = Instant::now();
     let mut known = None;
     while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
         let done = bar.position() as f64 / PARTS as f64;
@@ -89,7 +92,7 @@ fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Rec
         if known.as_ref().is_some_and(|known| *known == (stage.clone(), percent(done))) {
             continue;
         }
-        let line = line(name, &stage, done, begun.elapsed());
+        let line = line(name, &stage, done, bar.elapsed());
         known = Some((stage, percent(done)));
         // If standard error is closed, nobody can be told.
         let _ = writeln!(std::io::stderr(), "{line}");
@@ -108,15 +111,15 @@ fn line(name: &str, stage: &str, fraction: f64, elapsed: Duration) -> String {
     line
 }
 
-/// Whole percent.
+/// Whole percent: of a hundred, only when all is done.
 fn percent(fraction: f64) -> u32 {
-    (100.0 * fraction).round() as u32
+    (100.0 * fraction) as u32
 }
 
 /// How long the rest takes if it goes on like that; empty where that is not known yet.
 fn left(fraction: f64, elapsed: Duration) -> String {
     let left = elapsed.as_secs_f64() * (1.0 / fraction.max(1e-6) - 1.0);
-    match fraction > 0.01 && left < 1e6 {
+    match fraction > 0.01 && fraction < 1.0 && left < 1e6 {
         true => format!(", about {} left", HumanDuration(Duration::from_secs_f64(left))),
         false => String::new(),
     }

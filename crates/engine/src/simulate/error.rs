@@ -122,6 +122,9 @@ pub enum SimulationError {
         /// The sample.
         parameters: NamedValues,
     },
+    /// It ended at an interruption.
+    #[error("interrupted")]
+    Interrupted,
     /// Simulations were left to shards.
     #[error("simulations are missing")]
     Deferred,

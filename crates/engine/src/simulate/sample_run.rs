@@ -5,6 +5,7 @@ use super::diagnostics::{OpenConstraint, SingularPass, TooDeep};
 use super::ensemble::{Channel, EnsembleRun, ExtrapolatedRun, Observed, Stop};
 use super::error::SimulationError;
 use super::explicit::ExplicitRun;
+use super::interruption::Interruption;
 use super::simulator::Simulator;
 use super::step::Counters;
 use crate::numerics::Sample;
@@ -53,6 +54,25 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => Self::Plain(run.reducing(channels)),
             Self::Extrapolated(run) => Self::Extrapolated(run.reducing(channels)),
             Self::Explicit(run) => Self::Explicit(run.reducing(channels)),
+        }
+    }
+
+    /// Ends where it is asked to.
+    #[must_use]
+    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
+        match self {
+            Self::Plain(run) => Self::Plain(run.heeding(interruption)),
+            Self::Extrapolated(run) => Self::Extrapolated(run.heeding(interruption)),
+            Self::Explicit(run) => Self::Explicit(run.heeding(interruption)),
+        }
+    }
+
+    /// As [`EnsembleRun::is_cut`].
+    pub fn is_cut(&self) -> bool {
+        match self {
+            Self::Plain(run) => run.is_cut(),
+            Self::Extrapolated(run) => run.is_cut(),
+            Self::Explicit(run) => run.is_cut(),
         }
     }
 

@@ -13,6 +13,7 @@ use symdiff::Tile;
 use super::control::Steps;
 use super::ensemble::{EnsembleRun, Observed};
 use super::error::SimulationError;
+use super::interruption::Interruption;
 use super::simulator::Simulator;
 use super::step::Counters;
 use crate::compile::{SwitchProgram, Tapes};
@@ -92,7 +93,7 @@ pub fn unmet_switch(
     domain: &ParameterBox,
     steps: Steps<'_>,
     held_out: &[Vec<f64>],
-    interrupted: &(dyn Fn() -> bool + Sync),
+    interruption: Interruption<'_>,
 ) -> Result<Option<SwitchSearch>, SimulationError> {
     let k = domain.dimension();
     let Some(program) = simulator.switches().filter(|_| k > 0) else { return Ok(None) };
@@ -100,7 +101,7 @@ pub fn unmet_switch(
     let others = surrogate.as_ref().map_or_else(|| spread(k, SPREAD * k), |surrogate| surrogate.samples().to_vec());
     let nodes = others.len();
     let points = [&others, held_out].concat();
-    let observing = Observing { simulator, program, domain, steps, interrupted };
+    let observing = Observing { simulator, program, domain, steps, interruption };
     let mut suspects = Vec::new();
     let mut before: Option<Vec<f64>> = None;
     let mut work = SurrogateWork::default();
@@ -191,7 +192,7 @@ struct Observing<'a> {
     program: &'a SwitchProgram,
     domain: &'a ParameterBox,
     steps: Steps<'a>,
-    interrupted: &'a (dyn Fn() -> bool + Sync),
+    interruption: Interruption<'a>,
 }
 
 impl Observing<'_> {
@@ -204,7 +205,8 @@ impl Observing<'_> {
         mut look: impl FnMut(usize, &[f64], &[Depths]),
     ) -> Result<Observations, SimulationError> {
         let samples = self.domain.samples(xi);
-        let mut run = EnsembleRun::start(self.simulator, &samples, self.steps.schedule.first_step())?;
+        let mut run =
+            EnsembleRun::start(self.simulator, &samples, self.steps.schedule.first_step())?.heeding(self.interruption);
         let (lines, switches) = (2 * self.simulator.program.scale.len(), self.program.switches.len());
         let stride = (lines + 2 * switches) * samples.len();
         let mut sizes = vec![0.0_f64; switches];
@@ -214,6 +216,9 @@ impl Observing<'_> {
             let rows = first..(first + BLOCK).min(self.steps.schedule.rows);
             let stops =
                 run.advance(self.steps.schedule, rows.clone(), self.steps.controller, Observed::Switches, &mut values);
+            if run.is_cut() {
+                break;
+            }
             let reached = stops.iter().map(|stop| stop.row).min().unwrap_or(rows.end);
             for (row, values) in (rows.start..reached).zip(values.chunks_exact(stride)) {
                 let (motions, extents) = values.split_at(lines * samples.len());
@@ -237,7 +242,7 @@ impl Observing<'_> {
                 look(row, motions, &before.iter().zip(&after).map(deeper).collect::<Vec<Depths>>());
                 all.push([before, after]);
             }
-            if reached < rows.end || (self.interrupted)() {
+            if reached < rows.end {
                 break;
             }
         }

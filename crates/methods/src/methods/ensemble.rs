@@ -15,6 +15,11 @@ use crate::numerics::{EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
 
+/// A method ended at an interruption, and knows nothing.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+#[error("interrupted")]
+pub struct Interrupted;
+
 /// Simulations that one order of a jet counts as in progress reports.
 pub const JET_WORK: usize = 5;
 
@@ -43,8 +48,8 @@ pub struct Sampling {
     pub observed: Observed,
     /// When to end.
     pub until: Until,
-    /// Whether to go on after an interruption, since half of the rows would be of no use.
-    pub finish: bool,
+    /// Whether half of the rows are of no use: an interruption is an error.
+    pub whole: bool,
 }
 
 /// Why a sample stopped.
@@ -205,11 +210,19 @@ pub trait Ensemble: Sync {
     /// Whether what has been found so far is enough.
     fn is_interrupted(&self) -> bool;
 
+    /// An error at an interruption, for whatever is of no use before it is done.
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    fn go_on(&self) -> Result<(), EnsembleError> {
+        if self.is_interrupted() { Err(Interrupted.into()) } else { Ok(()) }
+    }
+
     /// Simulates samples block by block; `reduce` gets the rows of a block and their values (row, line, sample). Ends
     /// as `sampling` says, or at an interruption.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// Where a sample cannot be assembled; [`Interrupted`] where half of the rows are of no use.
     fn simulate(
         &self,
         samples: &[Sample],
@@ -295,7 +308,7 @@ pub fn scan_shard<E>(
     samples: &[Sample],
     mut simulate: impl FnMut(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
 ) -> Result<Simulated, E> {
-    let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
+    let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: false };
     simulate(samples, sampling, &mut |rows, values| bounds.observe(rows, (first, samples.len()), values))
 }
 

@@ -124,30 +124,37 @@ impl BoundingMethod for Taylor {
         let space = JetSpace::new(k, self.order);
         let range = TaylorRange::new(k, self.order, self.range);
         let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
-        let simulated = ensemble.jets(&space, &mut |rows, values| {
-            let mut found: Vec<PolynomialEstimate> = values
+        let mut reached = 0;
+        let mut simulated = ensemble.jets(&space, &mut |rows, values| {
+            let found: Option<Vec<PolynomialEstimate>> = values
                 .par_chunks_exact(space.len())
                 .map_init(
                     || range.clone(),
                     |range, coefficients| {
+                        ensemble.go_on().ok()?;
                         let at_point = |xi: &Vec<f64>| range.monomials().evaluate(coefficients, xi);
                         let at_validation = validation.points.iter().map(at_point).collect();
                         let (range, excess) = range.enclose(coefficients);
                         let coefficients = Vec::new();
-                        PolynomialEstimate {
+                        Some(PolynomialEstimate {
                             range,
                             excess,
                             truncation: 0.0,
                             at_validation,
                             sensitivity: None,
                             coefficients,
-                        }
+                        })
                     },
                 )
                 .collect();
+            let Some(mut found) = found else { return };
+            reached = rows.end;
             // With a kink, too, it is furthest off at the corners, which are among the validation samples.
             bands.set_polynomials(rows, &mut found, (validation, &[]));
         })?;
+        if ensemble.is_interrupted() {
+            simulated.missing = simulated.missing.max(ensemble.rows() - reached);
+        }
         Ok(bands.finish(1, simulated))
     }
 }

@@ -30,10 +30,10 @@ impl ValidationTable {
         ensemble: &dyn Ensemble,
         samples: &[Sample],
         observed: Observed,
-        finish: bool,
+        whole: bool,
     ) -> Result<(Self, Simulated), EnsembleError> {
         let mut values = Vec::new();
-        let sampling = Sampling { observed, until: Until::End, finish };
+        let sampling = Sampling { observed, until: Until::End, whole };
         let simulated = ensemble.simulate(samples, sampling, &mut |_, block| values.extend_from_slice(block))?;
         let outputs = ensemble.outputs();
         let motions = lines(ensemble, observed) - outputs;
@@ -155,7 +155,7 @@ pub struct Validation {
 
 impl OddSteps {
     /// Simulates the sample nearest to the middle of the box and two at opposite ends.
-    fn run(ensembles: Ensembles, points: &[Vec<f64>], finish: bool) -> Result<(Self, Effort), EnsembleError> {
+    fn run(ensembles: Ensembles, points: &[Vec<f64>], whole: bool) -> Result<(Self, Effort), EnsembleError> {
         let size = |place: &usize| points[*place].iter().map(|xi| xi.abs()).sum::<f64>();
         let sum = |place: &usize| points[*place].iter().sum::<f64>();
         let all = || 0..points.len();
@@ -166,7 +166,7 @@ impl OddSteps {
         places.dedup();
         let chosen: Vec<Vec<f64>> = places.iter().map(|&place| points[place].clone()).collect();
         let samples = ensembles.direct.domain().samples(&chosen);
-        let (table, simulated) = ValidationTable::of(ensembles.odd, &samples, Observed::Outputs, finish)?;
+        let (table, simulated) = ValidationTable::of(ensembles.odd, &samples, Observed::Outputs, whole)?;
         Ok((Self { places, table, ratio: ensembles.ratio }, simulated.effort))
     }
 }

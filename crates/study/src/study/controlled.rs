@@ -108,7 +108,7 @@ impl Study<'_> {
         let values = |schedule, controller| {
             let motions = self.motions(schedule, controller, &progress);
             let mut values: Vec<f64> = Vec::new();
-            let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
+            let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: false };
             motions
                 .simulate(samples, sampling, &mut |_, block| values.extend_from_slice(block))
                 .map_err(simulation_error)?;

@@ -95,7 +95,7 @@ pub struct Options<'a> {
     pub store: Option<&'a PartStore>,
     /// Told, where simulations are stored, how many bytes they may take on the disk, before the first is made.
     pub disk: &'a (dyn Fn(u64) + Sync),
-    /// Told now and then which fraction is done.
+    /// Told now and then which fraction is done; 0 begins a new count, as for statistics after simulations.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Called with the current activity, in a few words, whenever it changes.
     pub stage: &'a (dyn Fn(&str) + Sync),

@@ -145,7 +145,10 @@ impl Trajectories<'_> {
         let lines = self.columns.iter().map(Vec::len).sum();
         let size = samples_of_part(lines, self.times.len());
         let closed = self.closed(size);
-        self.store(&motions, size, &closed).map_err(RunError::from)?;
+        match self.store(&motions, size, &closed) {
+            Err(SimulationError::Interrupted) => return Ok(None),
+            done => done.map_err(RunError::from)?,
+        }
         let width = self.outputs.len();
         let mut stopped = 0;
         let mut values = Vec::new();
@@ -171,6 +174,9 @@ impl Trajectories<'_> {
     fn closed(&self, size: usize) -> Vec<bool> {
         let mut closed = Vec::with_capacity(self.chosen.count);
         for first in (0..self.chosen.count).step_by(size) {
+            if self.studies.iter().any(|study| (study.interrupted)()) {
+                break;
+            }
             let samples = (self.chosen.at)(first..(first + size).min(self.chosen.count));
             closed.resize(first + samples.len(), false);
             for (study, subsystem) in self.studies.iter().zip(self.subsystems) {
@@ -225,7 +231,7 @@ impl Trajectories<'_> {
             return Ok(());
         }
         let (rows_of_sample, width, columns) = (self.times.len(), self.outputs.len(), &self.columns[number]);
-        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: false };
         let simulated = motions.simulate(&samples, sampling, &mut |rows, block| {
             let lines = rows.flat_map(|row| columns.iter().map(move |column| (row, *column)));
             for ((row, column), of_line) in lines.zip(block.chunks_exact(samples.len())) {

@@ -48,8 +48,7 @@ fn simulate(description: &Description, options: &Options, store: &PartStore, nam
         let progress = Progress::new(task.samples.len() * task.schedule.rows, options.progress);
         let motions = study.motions(&task.schedule, task.tolerance, &progress).reducing(&task.channels);
         match simulate_part(&motions, store, name, &task) {
-            // Interrupted.
-            Err(SimulationError::Deferred) => return Ok(()),
+            Err(SimulationError::Interrupted) => return Ok(()),
             done => done?,
         }
     }

@@ -8,8 +8,8 @@ use super::outcome::{Outcome, Ran, Results, Tried};
 use super::reduced::{Found, Store};
 use super::{Options, RunError};
 use crate::methods::{
-    BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
-    Stop, Validation, can_compose,
+    BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Interrupted, Method, MethodResult, Observed, Problem,
+    Simulated, Stop, Validation, can_compose,
 };
 use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::{Ledger, ParameterBox, Sample};
@@ -236,7 +236,10 @@ impl<'a> Study<'a> {
             found,
         };
         if !(self.interrupted)() {
-            results.found = self.reduced(&results, tolerance, &progress)?;
+            results.found = match self.reduced(&results, tolerance, &progress) {
+                Err(SimulationError::Interrupted) => Found::nothing(self.description),
+                found => found?,
+            };
         }
         Ok(results)
     }
@@ -274,7 +277,9 @@ impl<'a> Study<'a> {
             let before = motions.over();
             let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
                 // Others may be complete.
-                Ok(Err(SimulationError::Deferred)) => self.unknown(schedule, method.name())?,
+                Ok(Err(SimulationError::Deferred | SimulationError::Interrupted)) => {
+                    self.unknown(schedule, method.name())?
+                }
                 Ok(timed) => timed?.0,
                 Err(error) => {
                     internal.push(error);
@@ -299,8 +304,8 @@ impl<'a> Study<'a> {
         Ok(outcome)
     }
 
-    /// Result of a subsystem whose study panicked.
-    pub(super) fn lost(&self, error: InternalError) -> Result<Ran, SimulationError> {
+    /// Result of a subsystem of which nothing is known: its study panicked, or was interrupted.
+    pub(super) fn lost(&self, error: Option<InternalError>) -> Result<Ran, SimulationError> {
         let simulation = &self.description.simulation;
         let schedule = Schedule::fixed(simulation.duration, simulation.output_step, simulation.output_step);
         let nominal = self.unknown(&schedule, "nominal")?;
@@ -315,7 +320,7 @@ impl<'a> Study<'a> {
             validation: None,
             methods: Vec::new(),
             halved: Vec::new(),
-            internal: vec![error],
+            internal: error.into_iter().collect(),
             found: Found::nothing(self.description),
         };
         Ok(self.conclude(results, None))
@@ -324,6 +329,9 @@ impl<'a> Study<'a> {
 
 /// The error of simulations behind that of an ensemble.
 pub(super) fn simulation_error(error: EnsembleError) -> SimulationError {
+    if error.is::<Interrupted>() {
+        return SimulationError::Interrupted;
+    }
     // `Motions` has no other errors.
     *error.downcast().expect("motions fail as simulations do")
 }

@@ -59,6 +59,10 @@ fn run_all(
                 deferred = true;
                 continue;
             }
+            Ok(Err(RunError::Simulation(SimulationError::Interrupted))) => {
+                let Ran { bounds, summary, kept, .. } = study.lost(None)?;
+                (bounds, summary, kept)
+            }
             Ok(found) => found?,
             Err(error) => {
                 lost += 1;
@@ -66,7 +70,7 @@ fn run_all(
                 if lost == count {
                     return Err(error.into());
                 }
-                let Ran { bounds, summary, kept, .. } = study.lost(error)?;
+                let Ran { bounds, summary, kept, .. } = study.lost(Some(error))?;
                 (bounds, summary, kept)
             }
         };

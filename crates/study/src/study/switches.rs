@@ -7,7 +7,7 @@ use super::outcome::Switches;
 use super::single::Study;
 use crate::methods::Validation;
 use crate::results::MethodSummary;
-use crate::simulate::{Integration, SimulationError, Steps, unmet_switch};
+use crate::simulate::{Integration, Interruption, SimulationError, Steps, unmet_switch};
 
 impl Study<'_> {
     /// Searches the box for them; `None` where the equations have none.
@@ -25,7 +25,8 @@ impl Study<'_> {
         let at_rows = steps.schedule.ending_at_rows();
         let steps = Steps { schedule: &at_rows, ..steps };
         let found = caught("the search for switches", || {
-            unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
+            let interruption = Interruption::new(self.interrupted);
+            unmet_switch(&self.simulator, &self.domain, steps, &validation.points, interruption)
         });
         let found = match found {
             Ok(found) => found?,

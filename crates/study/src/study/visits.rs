@@ -9,7 +9,7 @@ use symdiff::jet::JetSpace;
 use super::ensemble::{Motions, stopped_at};
 use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::Sample;
-use crate::simulate::{SimulationError, SingularPass, Steps, Stop, Visit};
+use crate::simulate::{Interruption, SimulationError, SingularPass, Steps, Stop, Visit};
 
 /// Samples that are visited at once.
 const BLOCK: usize = 256;
@@ -43,9 +43,9 @@ impl Motions<'_> {
         let mut stops: Vec<Stop> = Vec::new();
         let mut singular = Vec::new();
         let mut visited = 0;
+        let interruption = Interruption::new(self.interrupted);
         for (block, samples) in samples.chunks(BLOCK).enumerate() {
-            let is_over = (self.interrupted)() && !sampling.finish;
-            if is_over || !stops.is_empty() && sampling.until == Until::FirstStop {
+            if !stops.is_empty() && sampling.until == Until::FirstStop {
                 break;
             }
             let found: Vec<Result<Visit, SimulationError>> = samples
@@ -55,9 +55,13 @@ impl Motions<'_> {
                         sample,
                         Steps { schedule: self.schedule, controller: self.tolerance },
                         self.channels(),
+                        interruption,
                     )
                 })
                 .collect();
+            if found.iter().any(|visit| matches!(visit, Err(SimulationError::Interrupted))) {
+                break;
+            }
             for (place, visit) in found.into_iter().enumerate() {
                 let (visit, sample) = (visit?, block * BLOCK + place);
                 for (line, value) in visit.values.into_iter().enumerate() {
@@ -103,9 +107,9 @@ impl Motions<'_> {
         half_widths: &[f64],
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, SimulationError> {
-        let times = self.times();
+        let (times, interruption) = (self.times(), Interruption::new(self.interrupted));
         let mut next = 0;
-        let stop = self.simulator.visit_jets(space, center, half_widths, &times, &mut |values| {
+        let stop = self.simulator.visit_jets(space, (center, half_widths), &times, interruption, &mut |values| {
             reduce(next..next + 1, values);
             self.progress.advance(JET_WORK * (space.monomials().order() + 1));
             next += 1;

@@ -15,12 +15,14 @@ use rayon::prelude::*;
 use symdiff::{WIDTHS, jet::JetSpace};
 
 use super::jets::JetRun;
+use super::observed::{Observed, Stop};
 use super::reduction::Channel;
 use super::row_closure::{JetClosure, RowClosure};
-use super::run::{EnsembleRun, Observed, Stop};
+use super::run::EnsembleRun;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::error::SimulationError;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
@@ -112,6 +114,18 @@ impl<'s> ExtrapolatedRun<'s> {
         self
     }
 
+    /// As [`EnsembleRun::heeding`].
+    #[must_use]
+    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
+        self.levels = self.levels.into_iter().map(|level| level.heeding(interruption)).collect();
+        self
+    }
+
+    /// As [`EnsembleRun::is_cut`].
+    pub fn is_cut(&self) -> bool {
+        self.levels.iter().any(EnsembleRun::is_cut)
+    }
+
     /// As [`EnsembleRun::reduced`]: what the levels' outputs are reduced to, combined as their motions are.
     pub fn reduced(&mut self) -> Vec<f64> {
         let of_levels: Vec<Vec<f64>> = self.levels.iter_mut().map(EnsembleRun::reduced).collect();
@@ -141,6 +155,9 @@ impl<'s> ExtrapolatedRun<'s> {
                     None => stops.push(stop),
                 }
             }
+        }
+        if self.is_cut() {
+            return stops;
         }
         combined(&self.weights, &self.values, &mut self.motion);
         let (samples, motion) = (self.samples, &self.motion);
@@ -244,6 +261,18 @@ impl<'s> ExtrapolatedJets<'s> {
         &self.levels
     }
 
+    /// As [`JetRun::heeding`].
+    #[must_use]
+    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
+        self.levels = self.levels.into_iter().map(|level| level.heeding(interruption)).collect();
+        self
+    }
+
+    /// As [`JetRun::is_cut`].
+    pub fn is_cut(&self) -> bool {
+        self.levels.iter().any(JetRun::is_cut)
+    }
+
     /// As [`JetRun::advance`].
     pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         let mut stop: Option<Stop> = None;
@@ -253,6 +282,9 @@ impl<'s> ExtrapolatedJets<'s> {
             let found = run.advance_motion(&schedule.refined(1 << level), rows.start..reached, values);
             reached = found.as_ref().map_or(reached, |stop| stop.row);
             stop = found.or(stop);
+        }
+        if self.is_cut() {
+            return stop;
         }
         let rows = rows.start..reached;
         let shortest = self.values.iter().map(Vec::len).min().unwrap_or(0);

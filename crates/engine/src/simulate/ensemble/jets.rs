@@ -6,10 +6,11 @@
 
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
-use super::run::Stop;
+use super::observed::Stop;
 use crate::compile::{StartProgram, Tapes};
 use crate::simulate::control::Schedule;
 use crate::simulate::error::SimulationError;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, Stepper};
@@ -31,6 +32,8 @@ pub struct JetRun<'s> {
     /// Whether rows make their velocities consistent.
     projects: bool,
     step_size: f64,
+    interruption: Interruption<'s>,
+    is_cut: bool,
 }
 
 impl<'s> JetRun<'s> {
@@ -57,7 +60,19 @@ impl<'s> JetRun<'s> {
         let recomputes = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
         let center = Stepper::new(program, &assembled);
         let sampling = Sampling::new(simulator, &assembled);
-        Ok(Self { simulator, order, center, memory, start, recomputes, sampling, projects: false, step_size: f64::NAN })
+        Ok(Self {
+            simulator,
+            order,
+            center,
+            memory,
+            start,
+            recomputes,
+            sampling,
+            projects: false,
+            step_size: f64::NAN,
+            interruption: Interruption::default(),
+            is_cut: false,
+        })
     }
 
     /// For steps that are controlled by a tolerance: rows make their velocities consistent.
@@ -65,6 +80,17 @@ impl<'s> JetRun<'s> {
     pub fn controlled(mut self) -> Self {
         self.projects = self.simulator.projects_row_velocities();
         self
+    }
+
+    /// Ends where it is asked to.
+    #[must_use]
+    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
+        Self { interruption, ..self }
+    }
+
+    /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
@@ -104,6 +130,10 @@ impl<'s> JetRun<'s> {
     fn advance_to(&mut self, schedule: &Schedule, row: usize) -> Option<Stop> {
         let instants = Instants::of(self.simulator);
         for (h, end) in schedule.steps_to(row).flat_map(|step| instants.divide(step)) {
+            self.is_cut |= self.interruption.is_asked();
+            if self.is_cut {
+                return None;
+            }
             if let Err(singular) = self.step(h, end) {
                 let equation = self.center.worst_equation(0);
                 return Some(Stop { sample: 0, row, time: end, equation, open: None, singular });

@@ -10,6 +10,7 @@ use symdiff::Tile;
 use crate::compile::Tapes;
 use crate::simulate::control::{Adaptive, Controller, MOST_CHANGE, SwitchWatch};
 use crate::simulate::features::FeatureWatch;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{StepFailure, Stepper};
 
@@ -27,6 +28,8 @@ pub(super) struct LaneSteps<'s> {
     alone: Vec<Option<Box<Adaptive<'s>>>>,
     /// Sum of each lane's local errors over the tolerance.
     error_ratios: Vec<f64>,
+    interruption: Interruption<'s>,
+    is_cut: bool,
 }
 
 impl<'s> LaneSteps<'s> {
@@ -41,7 +44,19 @@ impl<'s> LaneSteps<'s> {
             features: simulator.features().map(FeatureWatch::new),
             alone: (0..width).map(|_| None).collect(),
             error_ratios: vec![0.0; width],
+            interruption: Interruption::default(),
+            is_cut: false,
         }
+    }
+
+    /// Ends where it is asked to.
+    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
+        Self { interruption, ..self }
+    }
+
+    /// Whether a lane's steps ended at an interruption: its state is not that of the last step's end.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Sum of each lane's local errors over the tolerance.
@@ -140,9 +155,9 @@ impl<'s> LaneSteps<'s> {
     /// Steps alone from `start` to `end`; the sum of local errors over the tolerance.
     ///
     /// # Errors
-    /// Where no step is short enough.
+    /// Where no step is short enough, and at an interruption.
     fn advance(
-        &self,
+        &mut self,
         alone: &mut Adaptive<'s>,
         stepper: &mut Stepper<'s>,
         (start, end): (f64, f64),
@@ -150,7 +165,11 @@ impl<'s> LaneSteps<'s> {
         let counted = alone.stepper.counters();
         alone.stepper.refine(stepper.refines());
         let (mut time, mut sum, mut reached) = (start, 0.0, false);
-        for _ in 0..MOST_STEPS {
+        for step in 0..MOST_STEPS {
+            if self.interruption.is_asked_in(step + 1) {
+                self.is_cut = true;
+                break;
+            }
             let attempt = alone.attempt(time, end);
             if alone.has_failed() {
                 break;

@@ -3,6 +3,7 @@
 mod extrapolated;
 mod jets;
 mod lane_steps;
+mod observed;
 mod reduction;
 mod row_accelerations;
 mod row_closure;
@@ -12,7 +13,8 @@ mod tiling;
 
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
 pub use jets::JetRun;
+pub use observed::{Observed, Stop};
 pub(in crate::simulate) use reduction::Reduction;
 pub use reduction::{Accumulation, Channel};
 pub(in crate::simulate) use row_closure::{JetClosure, RowClosure};
-pub use run::{EnsembleRun, Observed, Stop};
+pub use run::EnsembleRun;

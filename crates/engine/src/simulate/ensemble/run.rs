@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::lane_steps::LaneSteps;
+use super::observed::{Observed, Stop};
 use super::reduction::{Channel, Reduction};
 use super::row_accelerations::RowAccelerations;
 use super::switch_extents::SwitchExtents;
@@ -15,6 +16,7 @@ use crate::simulate::diagnostics::{
 };
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::FeatureWatch;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, StepFailure, Stepper};
@@ -59,50 +61,9 @@ struct TileRun<'s> {
     parting: Option<PartingWatch<'s>>,
     /// Where outputs are reduced to one number.
     reduction: Option<Reduction<'s>>,
-}
-
-/// Values that are recorded in each row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Observed {
-    /// The model's outputs.
-    Outputs,
-    /// Positions, then velocities (2n), then the model's outputs.
-    Motion,
-    /// Positions, then velocities (2n).
-    Coordinates,
-    /// Positions, then velocities (2n), then of each switch the least and the largest value since the row before.
-    Switches,
-}
-
-impl Observed {
-    /// Number of values a row and sample.
-    pub fn count(self, simulator: &Simulator) -> usize {
-        match self {
-            Self::Outputs => simulator.program.outputs.len(),
-            Self::Motion => 2 * simulator.program.scale.len() + simulator.program.outputs.len(),
-            Self::Coordinates => 2 * simulator.program.scale.len(),
-            Self::Switches => {
-                2 * simulator.program.scale.len() + 2 * simulator.switches().map_or(0, |program| program.switches.len())
-            }
-        }
-    }
-}
-
-/// A sample that stopped, and the row in which it did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
-    /// Number of the sample in the ensemble.
-    pub sample: usize,
-    /// First row of output that it did not reach.
-    pub row: usize,
-    /// s
-    pub time: f64,
-    /// The equation with the largest scaled residual.
-    pub equation: crate::assemble::EquationId,
-    /// The constraint that cannot be closed there, if one is known.
-    pub open: Option<OpenConstraint>,
-    /// Whether the sample could continue, but without the invertible Newton matrix that jets need.
-    pub singular: bool,
+    interruption: Interruption<'s>,
+    /// Whether it ended at an interruption.
+    is_cut: bool,
 }
 
 impl<'s> EnsembleRun<'s> {
@@ -139,6 +100,8 @@ impl<'s> EnsembleRun<'s> {
                     watch: None,
                     parting: None,
                     reduction: None,
+                    interruption: Interruption::default(),
+                    is_cut: false,
                 })
             })
             .collect();
@@ -166,6 +129,18 @@ impl<'s> EnsembleRun<'s> {
             }
         }
         self
+    }
+
+    /// Ends where it is asked to.
+    #[must_use]
+    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
+        self.tiles.iter_mut().for_each(|tile| tile.interruption = interruption);
+        self
+    }
+
+    /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
+    pub fn is_cut(&self) -> bool {
+        self.tiles.iter().any(|tile| tile.is_cut)
     }
 
     /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
@@ -281,7 +256,9 @@ impl TileRun<'_> {
         let width = self.stepper.tile().width();
         if !std::mem::replace(&mut self.begun, true) {
             self.accelerations = RowAccelerations::new(self.simulator, self.stepper.tile(), tolerance.is_some());
-            self.lanes = tolerance.map(|controller| LaneSteps::new(self.simulator, controller, &mut self.stepper));
+            self.lanes = tolerance.map(|controller| {
+                LaneSteps::new(self.simulator, controller, &mut self.stepper).heeding(self.interruption)
+            });
             self.features = self.simulator.features().filter(|_| tolerance.is_none()).map(FeatureWatch::new);
             let observes_switches = observed == Observed::Switches;
             self.switches = self
@@ -292,6 +269,7 @@ impl TileRun<'_> {
         }
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
+        let mut taken = 0;
         for (place, row) in rows.enumerate() {
             if row == 0 {
                 self.reduce(0.0);
@@ -302,6 +280,11 @@ impl TileRun<'_> {
                 if !self.stepper.alive().contains(&true) {
                     break;
                 }
+                self.is_cut |= self.interruption.is_asked_in(taken);
+                if self.is_cut {
+                    return (values, stops);
+                }
+                taken += 1;
                 self.stepper.set_step_size(h);
                 let is_observed = steps.peek().is_none() || self.reduction.is_some();
                 self.stepper.refine(self.observes_accelerations && is_observed);
@@ -318,6 +301,10 @@ impl TileRun<'_> {
                     Some(lanes) => lanes.step(&mut self.stepper, h, end),
                     None => self.stepper.step(h, end),
                 };
+                if self.lanes.as_ref().is_some_and(LaneSteps::is_cut) {
+                    self.is_cut = true;
+                    return (values, stops);
+                }
                 if let (Some(first), None) = (failures.first(), &self.stopped) {
                     self.stopped = Some((self.first + first.lane, self.stepper.lane(first.lane)));
                 }

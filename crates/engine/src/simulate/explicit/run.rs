@@ -9,6 +9,7 @@ use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
 use crate::simulate::error::SimulationError;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
@@ -64,6 +65,9 @@ pub(super) struct Tile<'s> {
     pub alive: Vec<bool>,
     /// Where outputs are reduced to one number.
     reduction: Option<Reduction<'s>>,
+    interruption: Interruption<'s>,
+    /// Whether it ended at an interruption.
+    is_cut: bool,
 }
 
 /// Samples in tiles for so many threads, assembled.
@@ -93,6 +97,8 @@ pub(super) fn tiles<'s>(
             steps: 0,
             alive,
             reduction: None,
+            interruption: Interruption::default(),
+            is_cut: false,
         })
     };
     let chunks: Vec<(usize, &[Sample])> = samples.chunks(at_once).enumerate().collect();
@@ -125,6 +131,18 @@ impl<'s> ExplicitRun<'s> {
             tile.reduction = Some(Reduction::new(channels, outputs, tile.alive.len()));
         }
         self
+    }
+
+    /// As [`EnsembleRun::heeding`](crate::simulate::EnsembleRun::heeding).
+    #[must_use]
+    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
+        self.tiles.iter_mut().for_each(|tile| tile.interruption = interruption);
+        self
+    }
+
+    /// As [`EnsembleRun::is_cut`](crate::simulate::EnsembleRun::is_cut).
+    pub fn is_cut(&self) -> bool {
+        self.tiles.iter().any(|tile| tile.is_cut)
     }
 
     /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
@@ -183,14 +201,15 @@ impl Tile<'_> {
         let mut values = vec![0.0; rows.len() * lines * width];
         let mut stops = Vec::new();
         let mut state = vec![0.0; self.run.state.len()];
-        for (row, values) in rows.zip(values.chunks_exact_mut(lines * width)) {
+        for (row, of_row) in rows.zip(values.chunks_exact_mut(lines * width)) {
             let time = schedule.time(row);
-            let Self { motion, rows, run, steps, alive, reduction, .. } = self;
+            let Self { motion, rows, run, steps, alive, reduction, interruption, is_cut, .. } = self;
             if row == 0 {
                 let mut start = run.state.clone();
                 reduce(reduction, rows, alive, 0.0, &mut start);
             }
             let mut between = vec![0.0; if reduction.is_some() { state.len() } else { 0 }];
+            let mut taken = 0;
             let mut stepped = |run: &mut RungeKutta, motion: &mut RowClosure, end: f64| {
                 if reduction.is_some() {
                     run.prepare_dense(motion, end);
@@ -200,13 +219,20 @@ impl Tile<'_> {
                         reduce(reduction, rows, alive, run.time + share * (end - run.time), &mut between);
                     }
                 }
+                taken += 1;
+                *is_cut |= interruption.is_asked_in(taken);
+                !*is_cut
             };
             reach(run, motion, (steps, ends), time, (&mut state, &mut stepped));
+            self.is_cut |= self.interruption.is_asked_in(row);
+            if self.is_cut {
+                return (values, stops);
+            }
             self.rows.close(time, &mut state);
             let outputs = match observed {
-                Observed::Outputs => &mut *values,
+                Observed::Outputs => &mut *of_row,
                 _ => {
-                    let (motion, outputs) = values.split_at_mut(state.len());
+                    let (motion, outputs) = of_row.split_at_mut(state.len());
                     motion.copy_from_slice(&state);
                     outputs
                 }
@@ -226,7 +252,7 @@ impl Tile<'_> {
                             singular: false,
                         });
                     }
-                    values.iter_mut().skip(lane).step_by(width).for_each(|value| *value = f64::NAN);
+                    of_row.iter_mut().skip(lane).step_by(width).for_each(|value| *value = f64::NAN);
                 }
             }
         }
@@ -244,11 +270,11 @@ fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[boo
     }
 }
 
-/// Action after a step, given its end.
-type Stepped<'f, M> = dyn FnMut(&mut RungeKutta, &mut M, f64) + 'f;
+/// Action after a step, given its end; whether to go on.
+type Stepped<'f, M> = dyn FnMut(&mut RungeKutta, &mut M, f64) -> bool + 'f;
 
 /// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is
-/// called after each, before the run goes on from its end.
+/// called after each, before the run goes on from its end; where it says so, the run goes no further.
 fn reach<M: Motion>(
     run: &mut RungeKutta,
     motion: &mut M,
@@ -266,7 +292,9 @@ fn reach<M: Motion>(
                 *steps += 1;
                 run.attempt(motion, end);
                 run.finish(motion, end);
-                stepped(run, motion, end);
+                if !stepped(run, motion, end) {
+                    return;
+                }
                 if time < end {
                     run.prepare_dense(motion, end);
                 }
@@ -290,6 +318,8 @@ pub struct ExplicitJets<'s> {
     run: RungeKutta,
     steps: usize,
     coordinates: usize,
+    interruption: Interruption<'s>,
+    is_cut: bool,
 }
 
 impl<'s> ExplicitJets<'s> {
@@ -306,7 +336,26 @@ impl<'s> ExplicitJets<'s> {
         let mut motion = JetClosure::new(simulator, space, (center, half_width), &start)?;
         let state = motion.start(simulator, space, (center, half_width))?;
         let run = RungeKutta::start(&mut motion, 0.0, state);
-        Ok(Self { simulator, motion, run, steps: 0, coordinates: simulator.system.q.len() })
+        Ok(Self {
+            simulator,
+            motion,
+            run,
+            steps: 0,
+            coordinates: simulator.system.q.len(),
+            interruption: Interruption::default(),
+            is_cut: false,
+        })
+    }
+
+    /// As [`JetRun::heeding`](crate::simulate::JetRun::heeding).
+    #[must_use]
+    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
+        Self { interruption, ..self }
+    }
+
+    /// As [`JetRun::is_cut`](crate::simulate::JetRun::is_cut).
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
@@ -318,7 +367,15 @@ impl<'s> ExplicitJets<'s> {
         for row in rows {
             let time = schedule.time(row);
             let steps = (&mut self.steps, &ends[..]);
-            reach(&mut self.run, &mut self.motion, steps, time, (&mut state, &mut |_, _, _| {}));
+            let (interruption, is_cut) = (self.interruption, &mut self.is_cut);
+            let mut stepped = |_: &mut RungeKutta, _: &mut JetClosure, _| {
+                *is_cut |= interruption.is_asked();
+                !*is_cut
+            };
+            reach(&mut self.run, &mut self.motion, steps, time, (&mut state, &mut stepped));
+            if self.is_cut {
+                return None;
+            }
             if let Some(place) = state.iter().position(|value| !value.is_finite()) {
                 let place = place * 2 * self.coordinates / state.len() % self.coordinates.max(1);
                 let equation = EquationId::new(place);

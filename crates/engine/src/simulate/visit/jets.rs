@@ -8,6 +8,7 @@ use crate::model::Analysis;
 use crate::numerics::Sample;
 use crate::simulate::ensemble::Stop;
 use crate::simulate::error::SimulationError;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
 
 impl Simulator {
@@ -15,13 +16,14 @@ impl Simulator {
     /// first derivatives. Returns where it stopped, if it did.
     ///
     /// # Errors
-    /// Where the centre cannot be assembled, or has no equilibrium.
+    /// Where the centre cannot be assembled, or has no equilibrium; [`SimulationError::Interrupted`] where it is asked to
+    /// end.
     pub fn visit_jets(
         &self,
         space: &JetSpace,
-        center: &Sample,
-        half_width: &[f64],
+        (center, half_width): (&Sample, &[f64]),
         times: &[f64],
+        interruption: Interruption<'_>,
         row: &mut dyn FnMut(&[f64]),
     ) -> Result<Option<Stop>, SimulationError> {
         match self.system.analysis {
@@ -31,7 +33,7 @@ impl Simulator {
                 times.iter().for_each(|_| row(&unknown));
                 Ok(None)
             }
-            Analysis::Kinematics => self.kinematic_jets(space, center, half_width, times, row),
+            Analysis::Kinematics => self.kinematic_jets(space, (center, half_width), times, interruption, row),
             _ => {
                 self.jets_at_equilibrium(space, center, half_width, row)?;
                 Ok(None)
@@ -64,9 +66,9 @@ impl Simulator {
     fn kinematic_jets(
         &self,
         space: &JetSpace,
-        center: &Sample,
-        half_width: &[f64],
+        (center, half_width): (&Sample, &[f64]),
         times: &[f64],
+        interruption: Interruption<'_>,
         row: &mut dyn FnMut(&[f64]),
     ) -> Result<Option<Stop>, SimulationError> {
         let (start, layout) = (&self.start, &self.start.layout);
@@ -77,7 +79,7 @@ impl Simulator {
         memory.run(start.sample());
         let order = space.monomials().order();
         let mut values = Vec::new();
-        let way = self.walk(center, times, &mut |assembly| {
+        let way = self.walk((center, times), interruption, &mut |assembly| {
             for register in layout.state().chain([layout.time]) {
                 memory.set_constant(register, assembly.tile().lane(register)[0]);
             }

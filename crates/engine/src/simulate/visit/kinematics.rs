@@ -13,6 +13,7 @@ use crate::simulate::control::Schedule;
 use crate::simulate::diagnostics::SingularPass;
 use crate::simulate::ensemble::{Channel, Reduction, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
+use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::{Assembly, Orientation, Oriented};
 
@@ -32,9 +33,9 @@ impl Simulator {
     /// Every row; where outputs are reduced to one number, every step between rows too.
     pub(super) fn visit_kinematics(
         &self,
-        sample: &Sample,
-        schedule: &Schedule,
+        (sample, schedule): (&Sample, &Schedule),
         channels: &[Channel],
+        interruption: Interruption<'_>,
     ) -> Result<Visit, SimulationError> {
         let mut visit = Visit::default();
         let (mut times, mut rows) = (Vec::new(), Vec::new());
@@ -48,7 +49,7 @@ impl Simulator {
         }
         let mut reduction = Reduction::new(channels, self.start.outputs.len(), 1);
         let mut place = 0;
-        let way = self.walk(sample, &times, &mut |assembly| {
+        let way = self.walk((sample, &times), interruption, &mut |assembly| {
             let outputs = self.start.outputs.iter().map(|&register| assembly.tile().lane(register)[0]);
             if !channels.is_empty() {
                 let mut values = reduction.buffer();
@@ -72,8 +73,8 @@ impl Simulator {
     /// Tells of every row, in which the outputs are observed.
     pub(super) fn walk(
         &self,
-        sample: &Sample,
-        times: &[f64],
+        (sample, times): (&Sample, &[f64]),
+        interruption: Interruption<'_>,
         row: &mut dyn FnMut(&Assembly),
     ) -> Result<Way, SimulationError> {
         let mut branch = Branch::new(self);
@@ -81,6 +82,9 @@ impl Simulator {
         let mut way = Way::default();
         let mut now = 0.0;
         for (place, &time) in times.iter().enumerate() {
+            if interruption.is_asked_in(place) {
+                return Err(SimulationError::Interrupted);
+            }
             while now < time {
                 let mut step = time - now;
                 // The shortest way to the other sign of the determinant.

@@ -14,6 +14,7 @@ use super::control::Steps;
 use super::diagnostics::SingularPass;
 use super::ensemble::{Channel, Stop};
 use super::error::SimulationError;
+use super::interruption::Interruption;
 use super::simulator::Simulator;
 use crate::model::Analysis;
 use crate::numerics::Sample;
@@ -36,13 +37,22 @@ impl Simulator {
     /// tolerance; kinematics does where outputs are reduced to one number by channels.
     ///
     /// # Errors
-    /// Where it cannot be assembled, or has no equilibrium.
-    pub fn visit(&self, sample: &Sample, steps: Steps<'_>, channels: &[Channel]) -> Result<Visit, SimulationError> {
+    /// Where it cannot be assembled, or has no equilibrium; [`SimulationError::Interrupted`] where it is asked to end.
+    pub fn visit(
+        &self,
+        sample: &Sample,
+        steps: Steps<'_>,
+        channels: &[Channel],
+        interruption: Interruption<'_>,
+    ) -> Result<Visit, SimulationError> {
+        if interruption.is_asked() {
+            return Err(SimulationError::Interrupted);
+        }
         if let Some(vibrations) = &self.vibrations {
-            return self.visit_modes(vibrations, sample, steps, channels);
+            return self.visit_modes(vibrations, (sample, steps), channels, interruption);
         }
         match self.system.analysis {
-            Analysis::Kinematics => self.visit_kinematics(sample, steps.schedule, channels),
+            Analysis::Kinematics => self.visit_kinematics((sample, steps.schedule), channels, interruption),
             _ => self.visit_equilibrium(sample, channels),
         }
     }

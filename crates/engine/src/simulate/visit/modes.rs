@@ -6,6 +6,7 @@ use crate::numerics::Sample;
 use crate::simulate::control::Steps;
 use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
+use crate::simulate::interruption::Interruption;
 use crate::simulate::modal::{ALIKE, Place, Vibrations};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
@@ -20,22 +21,25 @@ impl Simulator {
     pub(super) fn visit_modes(
         &self,
         vibrations: &Vibrations,
-        sample: &Sample,
-        steps: Steps<'_>,
+        (sample, steps): (&Sample, Steps<'_>),
         channels: &[Channel],
+        interruption: Interruption<'_>,
     ) -> Result<Visit, SimulationError> {
         let nominal = match vibrations.nominal.get() {
             Some(nominal) => nominal,
             None => {
-                let found = self.nominal_places(vibrations, steps)?;
+                let found = self.nominal_places(vibrations, steps, interruption)?;
                 vibrations.nominal.get_or_init(|| found)
             }
         };
-        let (states, stop) = self.states(sample, steps)?;
+        let (states, stop) = self.states(sample, steps, interruption)?;
         let lines = self.system.outputs.len();
         let mut visit = Visit { stop, ..Visit::default() };
         let mut reduction = Reduction::new(channels, lines, 1);
         for (row, (state, nominal)) in states.iter().zip(nominal).enumerate() {
+            if interruption.is_asked() {
+                return Err(SimulationError::Interrupted);
+            }
             let mut told = match self.followed(vibrations, state, nominal, sample, states.len() == 1) {
                 Some(place) => vibrations.tell(state, &place, nominal),
                 None => vec![f64::NAN; lines],
@@ -52,11 +56,19 @@ impl Simulator {
     }
 
     /// Those of the nominal sample, each row's in the order of the row before.
-    fn nominal_places(&self, vibrations: &Vibrations, steps: Steps<'_>) -> Result<Vec<Place>, SimulationError> {
+    fn nominal_places(
+        &self,
+        vibrations: &Vibrations,
+        steps: Steps<'_>,
+        interruption: Interruption<'_>,
+    ) -> Result<Vec<Place>, SimulationError> {
         let nominal: Sample = self.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-        let (states, _) = self.states(&nominal, steps)?;
+        let (states, _) = self.states(&nominal, steps, interruption)?;
         let mut places: Vec<Place> = Vec::with_capacity(states.len());
         for state in &states {
+            if interruption.is_asked() {
+                return Err(SimulationError::Interrupted);
+            }
             let Some((mut place, _)) = vibrations.place(state, None) else { break };
             if let Some(before) = places.last()
                 && let Some((followed, _)) = vibrations.place(state, Some(before))
@@ -108,16 +120,24 @@ impl Simulator {
     }
 
     /// The states of a sample in all rows.
-    fn states(&self, sample: &Sample, steps: Steps<'_>) -> Result<States, SimulationError> {
+    fn states(
+        &self,
+        sample: &Sample,
+        steps: Steps<'_>,
+        interruption: Interruption<'_>,
+    ) -> Result<States, SimulationError> {
         let Steps { schedule, controller } = steps;
         let start = self.state_at_start(sample)?;
         if schedule.rows == 1 {
             return Ok((vec![start], None));
         }
         let samples = std::slice::from_ref(sample);
-        let mut run = EnsembleRun::start(self, samples, schedule.first_step())?;
+        let mut run = EnsembleRun::start(self, samples, schedule.first_step())?.heeding(interruption);
         let mut motion = Vec::new();
         let stops = run.advance(schedule, 0..schedule.rows, controller, Observed::Motion, &mut motion);
+        if run.is_cut() {
+            return Err(SimulationError::Interrupted);
+        }
         let stop = stops.first().map(|stop| Stop { open: run.open_constraint(stop, schedule), ..*stop });
         let reached = stop.as_ref().map_or(schedule.rows, |stop| stop.row);
         let layout: &Layout = &self.start.layout;

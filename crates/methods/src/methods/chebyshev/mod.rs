@@ -15,7 +15,7 @@ mod sensitivity;
 mod sub_box;
 
 use super::BoundsRequest;
-use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
+use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
 use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
@@ -333,9 +333,10 @@ fn composed(
         sensitivity: Some(SensitivityAnalysis::new(domain, surrogate)),
     };
     let stride = lines(ensemble, Observed::Motion) * samples.len();
-    let mut failure = None;
-    let sampling = Sampling { observed: Observed::Motion, until: Until::FirstStop, finish: false };
-    let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
+    let mut failure: Option<EnsembleError> = None;
+    let mut reached = 0;
+    let sampling = Sampling { observed: Observed::Motion, until: Until::FirstStop, whole: false };
+    let mut simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
         let times: Vec<f64> = rows.clone().map(|row| ensemble.time(row)).collect();
         let first = rows.start;
         let keeps = kept.is_some();
@@ -351,9 +352,15 @@ fn composed(
                     let estimates = estimates.into_iter().enumerate();
                     estimates.for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
                 }
+                reached = first + times.len();
             }
+            // The rows before are known.
+            Err(error) if error.is::<Interrupted>() => {}
             Err(error) => failure = Some(error),
         }
     })?;
+    if ensemble.is_interrupted() {
+        simulated.missing = simulated.missing.max(ensemble.rows() - reached);
+    }
     failure.map_or(Ok((bands, simulated)), Err)
 }

@@ -99,15 +99,17 @@ pub(super) fn expanded(
     let sensitivity = SensitivityAnalysis::new(ensemble.domain(), surrogate);
     let rounding: Vec<f64> = (0..ensemble.outputs()).map(|output| ensemble.rounding(output)).collect();
     let kinks: Vec<bool> = (0..ensemble.outputs()).map(|output| ensemble.has_kink(output)).collect();
-    let sampling = Sampling { observed: Observed::Outputs, until: Until::FirstStop, finish: false };
-    let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
+    let sampling = Sampling { observed: Observed::Outputs, until: Until::FirstStop, whole: false };
+    let mut reached = 0;
+    let mut simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
         let keeps = kept.is_some();
-        let mut found: Vec<PolynomialEstimate> = values
+        let found: Option<Vec<PolynomialEstimate>> = values
             .par_chunks_exact(samples.len())
             .enumerate()
             .map_init(
                 || (range.clone(), SurrogateWork::default(), SparseWork::default()),
                 |(range, work, sparse), (line, responses)| {
+                    ensemble.go_on().ok()?;
                     let coefficients = surrogate.coefficients(responses, work);
                     let mut at_validation = vec![0.0; validation.points.len()];
                     surrogate.basis().values(&validation.points, &coefficients, &mut at_validation, sparse);
@@ -119,10 +121,12 @@ pub(super) fn expanded(
                         .sensitivities(&sensitivity, rounding[line % rounding.len()])
                         .map(|mut found| found.swap_remove(0));
                     let coefficients = if keeps { coefficients } else { Vec::new() };
-                    PolynomialEstimate { range, excess, truncation, at_validation, sensitivity, coefficients }
+                    Some(PolynomialEstimate { range, excess, truncation, at_validation, sensitivity, coefficients })
                 },
             )
             .collect();
+        let Some(mut found) = found else { return };
+        reached = rows.end;
         bands.set_polynomials(rows.clone(), &mut found, (validation, &kinks));
         if let Some(kept) = &mut kept {
             let lines: Vec<&[f64]> = found.iter().map(|found| found.coefficients.as_slice()).collect();
@@ -130,5 +134,8 @@ pub(super) fn expanded(
             kept.extend(of_rows.map(|(row, lines)| KeptRow::of_outputs(ensemble.time(row), lines)));
         }
     })?;
+    if ensemble.is_interrupted() {
+        simulated.missing = simulated.missing.max(ensemble.rows() - reached);
+    }
     Ok((bands, simulated))
 }

@@ -50,13 +50,15 @@ impl Replicates {
         Self { quantiles: vec![Vec::with_capacity(REPLICATES); quantiles], ..Self::default() }
     }
 
-    /// Adds a replicate, whose values are put in another order; `shares` are those below the quantiles.
+    /// Adds a replicate, whose values are sorted; `shares` are those below the quantiles.
     pub fn add(&mut self, values: &mut [f64], shares: &[f64]) {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
         self.means.push(mean);
         self.deviations.push((squares / (n - 1.0)).sqrt());
+        // NaN is the first or the last.
+        values.sort_unstable_by(f64::total_cmp);
         for (quantiles, &share) in self.quantiles.iter_mut().zip(shares) {
             quantiles.push(quantile_of(values, share));
         }
@@ -79,18 +81,19 @@ impl Replicates {
 }
 
 /// The value below which a share of them lies, linearly between two of them (R. J. Hyndman & Y. Fan, The American
-/// Statistician 50 (1996) 361, type 5). Puts them in another order; NaN where one is.
-pub fn quantile_of(values: &mut [f64], share: f64) -> f64 {
-    if values.iter().any(|value| value.is_nan()) {
+/// Statistician 50 (1996) 361, type 5), where they are sorted; NaN where one is.
+fn quantile_of(sorted: &[f64], share: f64) -> f64 {
+    let n = sorted.len();
+    if [sorted.first(), sorted.last()].iter().any(|end| end.is_none_or(|value| value.is_nan())) {
         return f64::NAN;
     }
-    let n = values.len();
-    let place = (share * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
-    let below = place as usize;
-    let (_, &mut low, rest) = values.select_nth_unstable_by(below, f64::total_cmp);
-    let high = rest.iter().copied().fold(f64::INFINITY, f64::min);
-    let between = place - below as f64;
-    if between == 0.0 || high == f64::INFINITY { low } else { low + between * (high - low) }
+    let index = (share * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+    let (below, between) = (index as usize, index.fract());
+    let low = sorted[below];
+    match sorted.get(below + 1) {
+        Some(high) if between > 0.0 && *high < f64::INFINITY => low + between * (high - low),
+        _ => low,
+    }
 }
 
 #[cfg(test)]
@@ -134,8 +137,15 @@ mod tests {
 
     #[test]
     fn quantiles_of_few() {
-        let mut values = [4.0, 1.0, 3.0, 2.0];
-        assert_eq!([0.0, 0.125, 0.25, 0.5, 1.0].map(|p| quantile_of(&mut values, p)), [1.0, 1.0, 1.5, 2.5, 4.0]);
-        assert!(quantile_of(&mut [1.0, f64::NAN], 0.5).is_nan());
+        let shares = [0.0, 0.125, 0.25, 0.5, 1.0];
+        let found = |values: &mut [f64]| {
+            let mut replicates = Replicates::new(shares.len());
+            replicates.add(values, &shares);
+            replicates.quantiles.concat()
+        };
+        assert_eq!(found(&mut [4.0, 1.0, 3.0, 2.0]), [1.0, 1.0, 1.5, 2.5, 4.0]);
+        for nan in [f64::NAN, -f64::NAN] {
+            assert!(found(&mut [1.0, nan, 2.0]).iter().all(|value| value.is_nan()));
+        }
     }
 }

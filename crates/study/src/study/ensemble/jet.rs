@@ -7,7 +7,7 @@ use symdiff::jet::JetSpace;
 use super::effort;
 use crate::methods::Effort;
 use crate::simulate::{
-    ExplicitJets, ExtrapolatedJets, Integration, JetRun, Schedule, SimulationError, Simulator, Stop,
+    ExplicitJets, ExtrapolatedJets, Integration, Interruption, JetRun, Schedule, SimulationError, Simulator, Stop,
 };
 
 /// The run of one jet, however the schedule's steps are taken.
@@ -39,6 +39,24 @@ impl<'s> SampleJet<'s> {
                 Self::Explicit(Box::new(ExplicitJets::start(simulator, space, (center, half_widths))?))
             }
         })
+    }
+
+    /// Ends where it is asked to.
+    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
+        match self {
+            Self::Plain(jet) => Self::Plain(Box::new(jet.heeding(interruption))),
+            Self::Extrapolated(jets) => Self::Extrapolated(Box::new(jets.heeding(interruption))),
+            Self::Explicit(jets) => Self::Explicit(Box::new(jets.heeding(interruption))),
+        }
+    }
+
+    /// Whether it ended at an interruption: the rows of the last call are not known.
+    pub fn is_cut(&self) -> bool {
+        match self {
+            Self::Plain(jet) => jet.is_cut(),
+            Self::Extrapolated(jets) => jets.is_cut(),
+            Self::Explicit(jets) => jets.is_cut(),
+        }
     }
 
     pub fn advance(&mut self, schedule: &Schedule, rows: Rows<usize>, into: &mut Vec<f64>) -> Option<Stop> {

@@ -22,8 +22,8 @@ use crate::grammar::quantity::Dimension;
 use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Channel, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SimulationError,
-    Simulator, Steps, Stop, choose_independent,
+    Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
+    SimulationError, Simulator, Steps, Stop, choose_independent,
 };
 
 use jet::SampleJet;
@@ -163,7 +163,7 @@ impl<'a> Motions<'a> {
     /// Samples at their start.
     fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
         let run = SampleRun::start(self.simulator, samples, self.schedule)?;
-        Ok(run.reducing(self.channels))
+        Ok(run.reducing(self.channels).heeding(Interruption::new(self.interrupted)))
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -182,16 +182,19 @@ impl<'a> Motions<'a> {
             methods::Observed::Outputs => Observed::Outputs,
             methods::Observed::Motion => Observed::Motion,
         };
-        let Sampling { until, finish, .. } = sampling;
+        let until = sampling.until;
         let rows_a_block = Self::rows_a_block(observed.count(self.simulator), samples.len());
         let mut values = Vec::new();
         let mut stop: Option<Stop> = None;
         let mut stopped = Vec::new();
         let mut next = 0;
         let goes_on = |stop: &Option<Stop>| stop.is_none() || until == Until::End;
-        while next < self.schedule.rows && goes_on(&stop) && (finish || !self.is_interrupted()) {
+        while next < self.schedule.rows && goes_on(&stop) && !self.is_interrupted() {
             let rows = next..(next + rows_a_block).min(self.schedule.rows);
             let stops = run.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
+            if run.is_cut() {
+                break;
+            }
             stopped.extend(stops.iter().map(|stop| stop.sample));
             stop = stop.into_iter().chain(stops).min_by_key(|stop| (stop.row, stop.sample));
             reduce(rows.clone(), &values);
@@ -290,10 +293,14 @@ impl Ensemble for Motions<'_> {
             self.ledger.into_iter().for_each(|ledger| ledger.note(rows.start, (lines, samples.len()), values));
             reduce(rows, values);
         };
-        match &self.stored {
-            Some(stored) => Ok(stored.simulate(self, samples, sampling, &mut noted)?),
-            None => Ok(self.simulate_here(samples, sampling, &mut noted)?),
+        let simulated = match &self.stored {
+            Some(stored) => stored.simulate(self, samples, sampling, &mut noted)?,
+            None => self.simulate_here(samples, sampling, &mut noted)?,
+        };
+        if sampling.whole {
+            self.go_on()?;
         }
+        Ok(simulated)
     }
 
     fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
@@ -315,13 +322,17 @@ impl Ensemble for Motions<'_> {
             return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
         }
         let box_of_jet = (&center[..], &half_widths[..]);
-        let mut jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
+        let jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
+        let mut jet = jet.heeding(Interruption::new(self.interrupted));
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;
         while next < self.schedule.rows && stop.is_none() && !self.is_interrupted() {
             let rows = next..(next + MOST_ROWS).min(self.schedule.rows);
             stop = jet.advance(self.schedule, rows.clone(), &mut values);
+            if jet.is_cut() {
+                break;
+            }
             reduce(rows.clone(), &values);
             self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
             next = rows.end;

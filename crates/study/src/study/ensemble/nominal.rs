@@ -6,8 +6,7 @@ use crate::numerics::Range;
 use crate::simulate::{SimulationError, SingularPass};
 
 impl Motions<'_> {
-    /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end
-    /// even after an interruption.
+    /// The nominal motion as bands without width, and the singular configurations that it passes.
     ///
     /// # Errors
     /// Where it cannot be assembled, or constraints contradict one another on the way.
@@ -15,7 +14,7 @@ impl Motions<'_> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
         if self.simulator.system.analysis.visits() {
-            let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
+            let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, whole: false };
             let nominal = std::slice::from_ref(&self.domain.nominal);
             let (simulated, singular) = self.visit_watching(nominal, sampling, &mut |rows, values| {
                 for (row, output) in rows.flat_map(|row| (0..outputs).map(move |output| (row, output))) {
@@ -27,7 +26,7 @@ impl Motions<'_> {
         }
         let sample = std::slice::from_ref(&self.domain.nominal);
         let mut run = self.start(sample)?.watching();
-        let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
+        let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, whole: false };
         let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
             for (row, values) in rows.zip(values.chunks_exact(outputs)) {
                 for (output, &value) in values.iter().enumerate() {

@@ -171,7 +171,7 @@ pub(in crate::study) fn simulate_part(
     task: &Task,
 ) -> Result<(), SimulationError> {
     if motions.is_interrupted() {
-        return Err(SimulationError::Deferred);
+        return Err(SimulationError::Interrupted);
     }
     let mut writer = store.begin(name).map_err(of_store)?;
     let (simulated, bounds) = match &task.scan {
@@ -183,7 +183,7 @@ pub(in crate::study) fn simulate_part(
             (simulated, Some(bounds))
         }
         None => {
-            let sampling = Sampling { observed: task.observed, until: task.until, finish: false };
+            let sampling = Sampling { observed: task.observed, until: task.until, whole: false };
             let mut written = Ok(());
             let simulated = motions.simulate_here(&task.samples, sampling, &mut |_, values| {
                 if written.is_ok() {
@@ -196,7 +196,7 @@ pub(in crate::study) fn simulate_part(
     };
     if motions.is_interrupted() {
         // Half of the rows is no part.
-        return Err(SimulationError::Deferred);
+        return Err(SimulationError::Interrupted);
     }
     writer.finish(&simulated, bounds.as_ref()).map_err(of_store)
 }

@@ -7,7 +7,8 @@ use super::super::{RunError, formulation};
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
-    Controller, EnsembleRun, Integration, Observed, Schedule, Simulator, Steps, TimeFunctions, schedule_for_tolerance,
+    Controller, EnsembleRun, Integration, Interruption, Observed, Schedule, Simulator, Steps, TimeFunctions,
+    schedule_for_tolerance,
 };
 
 /// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
@@ -135,7 +136,14 @@ impl Rows {
         let outputs = self.simulator.system.outputs.len();
         let found: Vec<_> = samples
             .par_iter()
-            .map(|sample| self.simulator.visit(sample, Steps { schedule: &schedule, controller: None }, &[]))
+            .map(|sample| {
+                self.simulator.visit(
+                    sample,
+                    Steps { schedule: &schedule, controller: None },
+                    &[],
+                    Interruption::default(),
+                )
+            })
             .collect();
         for (&sample, visit) in running.iter().zip(found) {
             let visit = match visit {

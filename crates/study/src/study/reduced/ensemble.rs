@@ -111,12 +111,12 @@ impl<'a> ReducedEnsemble<'a> {
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
-    pub fn channels(&self, samples: &[Sample], finish: bool) -> Result<(Vec<Vec<f64>>, Simulated), EnsembleError> {
+    pub fn channels(&self, samples: &[Sample], whole: bool) -> Result<(Vec<Vec<f64>>, Simulated), EnsembleError> {
         let unknown: Vec<Sample> =
             samples.iter().filter(|sample| self.store.get(self.steps, sample).is_none()).cloned().collect();
         let mut simulated = Simulated::default();
         if !unknown.is_empty() {
-            let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish };
+            let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole };
             let own = self.motions.simulate(&unknown, sampling, &mut |_, _| ())?;
             simulated = Simulated { stop: None, stopped: Vec::new(), missing: 0, ..own };
         }
@@ -173,7 +173,7 @@ impl Ensemble for ReducedEnsemble<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        let (channels, simulated) = self.channels(samples, sampling.finish)?;
+        let (channels, simulated) = self.channels(samples, sampling.whole)?;
         let motions = if sampling.observed == Observed::Motion { 2 * self.scales.len() } else { 0 };
         let mut block = vec![0.0; (motions + self.outputs()) * samples.len()];
         let mut values = Vec::new();

@@ -81,7 +81,7 @@ impl Study<'_> {
             samples.extend([corner(-1.0), corner(1.0)]);
         }
         let (outputs, mut values) = (motions.outputs(), Vec::new());
-        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: true };
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
         motions
             .simulate(&samples, sampling, &mut |_, rows| values.extend_from_slice(rows))
             .map_err(simulation_error)?;
@@ -113,6 +113,7 @@ impl Study<'_> {
     ) -> Result<Found, SimulationError> {
         let Some(store) = self.store.get() else { return Ok(Found::default()) };
         let begun = std::time::Instant::now();
+        (self.stage)("reduced outputs");
         let schedule = &rows.schedule;
         let (halved, odd) = (schedule.refined(2), schedule.at_odds());
         let finer = tolerance.map(|tolerance| tolerance.for_parts(2));
@@ -128,7 +129,11 @@ impl Study<'_> {
         let unreliable = rows.unreliable_from().is_some();
         results.note(&direct);
         let values = self.values(&results, unreliable, store);
-        let requirements = self.verdicts(&values, rows, [&direct, &with_halved])?;
+        (self.stage)("requirements");
+        let requirements = match self.verdicts(&values, rows, [&direct, &with_halved]) {
+            Err(SimulationError::Interrupted) => Found::nothing(self.description).requirements,
+            found => found?,
+        };
         // The search for a sample that fails has simulated some more.
         results.note(&direct);
         let values = self.values(&results, unreliable, store);
@@ -223,7 +228,7 @@ impl Study<'_> {
     /// The nominal motion's values as bands without width.
     fn nominal_values(&self, ensemble: &dyn Ensemble) -> Result<MethodResult, SimulationError> {
         let mut bands = BandBuilder::new(ensemble.outputs(), 1);
-        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: true };
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
         let nominal = std::slice::from_ref(&self.domain.nominal);
         let mut take = |_, values: &[f64]| {
             for (place, &value) in values.iter().enumerate() {

@@ -14,6 +14,9 @@ const ROUNDS: usize = 5;
 const MORE: usize = 2;
 const SMALLER: f64 = 8.0;
 
+/// Said where a round was not awaited.
+const UNFINISHED: &str = "interrupted in a refining round: results are those of the round before";
+
 /// Runs a model; where some requirement is undecided and no tolerance is asked for, again with a higher order or
 /// shorter steps, within the budget.
 ///
@@ -39,6 +42,10 @@ pub fn run(model: &Description, options: &Options, keep: bool) -> Result<(Bounds
         }
         spent += before;
         let next = subsystems::run(&finer, options, keep)?;
+        if (options.interrupted)() {
+            found.1.failure.get_or_insert_with(|| UNFINISHED.to_owned());
+            break;
+        }
         before = simulations(&next.1);
         (found, model, rounds) = (next, Cow::Owned(finer), rounds + 1);
     }

@@ -49,7 +49,7 @@ impl Study<'_> {
     /// The verdict of each requirement.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled.
+    /// Where a sample cannot be assembled, and at an interruption.
     pub(super) fn verdicts(
         &self,
         values: &Values,
@@ -57,7 +57,11 @@ impl Study<'_> {
         ensembles: [&ReducedEnsemble; 2],
     ) -> Result<Vec<RequirementSummary>, SimulationError> {
         let requirements = self.description.requirements.iter().enumerate();
-        requirements.map(|own| self.verdict(own, values, rows, ensembles)).collect()
+        let verdict = |own| match (self.interrupted)() {
+            true => Err(SimulationError::Interrupted),
+            false => self.verdict(own, values, rows, ensembles),
+        };
+        requirements.map(verdict).collect()
     }
 
     fn verdict(

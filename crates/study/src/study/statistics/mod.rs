@@ -17,6 +17,9 @@ use crate::results::{
 pub(super) use laws::Laws;
 use rows::Rows;
 
+/// Why there are none.
+const INTERRUPTED: &str = "interrupted before they were done";
+
 /// Runs every method asked for, and statistics of the first so many outputs beside.
 ///
 /// # Errors
@@ -24,6 +27,7 @@ use rows::Rows;
 pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
     let (bounds, mut summary, kept) = reduced::run(description, options, true)?;
     let found = match &kept {
+        _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
         Some(kept) => of_run((description, shown), options, &bounds, kept),
         None => Err("there is no surrogate over the whole box".to_owned()),
     };
@@ -71,9 +75,10 @@ fn of_run(
         }
     }
     let kept = wide.as_ref().unwrap_or(kept);
-    let rows = Rows::new(description, &laws, kept)?;
-    let outputs = rows.outputs(shown);
-    let (requirements, together) = requirements::all(&rows);
+    let rows = Rows::new(description, options, &laws, kept)?;
+    let outputs = rows.outputs(shown)?;
+    let (requirements, together) = requirements::all(&rows)?;
+    let reduced = numbers::all(&rows)?;
     let summary = StatisticsSummary {
         samples: rows.samples(),
         parameters: laws.summaries(),
@@ -82,7 +87,7 @@ fn of_run(
         outside: laws.outside(),
         simulations,
         outputs: outputs.iter().filter_map(|(place, output)| side_by_side(bounds, *place, output)).collect(),
-        reduced: numbers::all(&rows),
+        reduced,
         requirements,
         together,
         failure: note,

@@ -8,15 +8,21 @@ use crate::results::{NumberStatistics, Uncertain};
 const MOST: usize = 1 << 18;
 
 /// Those whose surrogate is known.
-pub(super) fn all(rows: &Rows) -> Vec<NumberStatistics> {
+///
+/// # Errors
+/// At an interruption.
+pub(super) fn all(rows: &Rows) -> Result<Vec<NumberStatistics>, String> {
     let reduced = &rows.description.reduced;
-    let Some(kept) = rows.kept.reduced(reduced.len()) else { return Vec::new() };
+    let Some(kept) = rows.kept.reduced(reduced.len()) else { return Ok(Vec::new()) };
+    rows.stage("statistics of reduced outputs");
     let shares = &rows.description.statistics.quantiles;
     let fewer = rows.fewer(MOST / REPLICATES);
     let mut of_number = vec![Replicates::new(shares.len()); reduced.len()];
     for replicate in 0..REPLICATES {
+        rows.progress(replicate, REPLICATES);
         let samples = rows.points(replicate, fewer);
         for (own, values) in of_number.iter_mut().zip(kept.values(&samples)) {
+            rows.go_on()?;
             own.add(&mut { values }, shares);
         }
     }
@@ -32,5 +38,5 @@ pub(super) fn all(rows: &Rows) -> Vec<NumberStatistics> {
             quantiles: own.quantiles().into_iter().map(with_error).collect(),
         }
     };
-    of_number.into_iter().enumerate().map(number).collect()
+    Ok(of_number.into_iter().enumerate().map(number).collect())
 }

@@ -33,12 +33,17 @@ struct Margins<'a> {
 }
 
 /// All requirements, and where there are several all together.
-pub(super) fn all(rows: &Rows) -> (Vec<YieldSummary>, Option<YieldSummary>) {
-    let Some(kept) = rows.kept.margins() else { return (Vec::new(), None) };
+///
+/// # Errors
+/// At an interruption.
+pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary>), String> {
+    let Some(kept) = rows.kept.margins() else { return Ok((Vec::new(), None)) };
+    rows.stage("statistics of requirements");
     let requirements = &rows.description.requirements;
     let fewer = rows.fewer(MOST / REPLICATES);
     let mut margins = Margins { rows, kept: &kept, fewer, values: vec![Vec::new(); requirements.len()] };
     for replicate in 0..REPLICATES {
+        rows.go_on()?;
         let samples = rows.points(replicate, fewer);
         let found = kept.values(&samples);
         for (all, own) in margins.values.iter_mut().zip(found.chunks_exact(samples.len())) {
@@ -46,15 +51,19 @@ pub(super) fn all(rows: &Rows) -> (Vec<YieldSummary>, Option<YieldSummary>) {
         }
     }
     let alone = |number: usize| margins.summary(&requirements[number].name, &[number]);
-    let each = (0..requirements.len()).filter_map(|number| {
-        let mut summary = alone(number)?;
-        capability(rows, &requirements[number], &margins.values[number], &mut summary);
-        Some(summary)
-    });
-    let each: Vec<YieldSummary> = each.collect();
+    let mut each = Vec::with_capacity(requirements.len());
+    for (number, requirement) in requirements.iter().enumerate() {
+        rows.progress(number, requirements.len());
+        if let Some(mut summary) = alone(number) {
+            capability(rows, requirement, &margins.values[number], &mut summary)?;
+            each.push(summary);
+        }
+        rows.go_on()?;
+    }
     let every: Vec<usize> = (0..requirements.len()).collect();
     let together = (every.len() > 1 && each.len() == every.len()).then(|| margins.summary(TOGETHER, &every)).flatten();
-    (each, together)
+    rows.go_on()?;
+    Ok((each, together))
 }
 
 impl Margins<'_> {
@@ -109,6 +118,10 @@ impl Margins<'_> {
         let scales: Vec<f64> = of.iter().map(|&number| mean_size(&self.values[number])).collect();
         // The least of all, each in its own scale, with errors that help, none, and errors that harm.
         let slacks = |points: &[Vec<f64>]| -> Vec<[f64; 3]> {
+            if self.rows.go_on().is_err() {
+                // Unknown, at once: the search then ends soon.
+                return vec![[f64::NAN; 3]; points.len()];
+            }
             let samples: Vec<Vec<f64>> = points.iter().map(|scores| laws.of_scores(scores)).collect();
             let found = self.kept.values(&samples);
             let of_sample = |sample: usize| {
@@ -149,7 +162,12 @@ fn mean_size(values: &[f64]) -> f64 {
 }
 
 /// Capabilities of a requirement over time at its worst time, of another by its margin.
-fn capability(rows: &Rows, requirement: &Requirement, margins: &[f64], summary: &mut YieldSummary) {
+fn capability(
+    rows: &Rows,
+    requirement: &Requirement,
+    margins: &[f64],
+    summary: &mut YieldSummary,
+) -> Result<(), String> {
     let moments = |values: &[f64]| {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -158,12 +176,13 @@ fn capability(rows: &Rows, requirement: &Requirement, margins: &[f64], summary: 
     let Some((from, to)) = requirement.times else {
         let (mean, deviation) = moments(margins);
         summary.cpk = Some(mean / (3.0 * deviation)).filter(|cpk| cpk.is_finite());
-        return;
+        return Ok(());
     };
     let times = rows.kept.times();
     let rounding = 1e-9 * times.last().copied().unwrap_or(0.0);
     let within = |row: &usize| times[*row] >= from - rounding && times[*row] <= to + rounding;
     let of_row = |row: usize| {
+        rows.go_on()?;
         let own = |&output: &usize| moments(&rows.few_values(row, output));
         let moments: Vec<(f64, f64)> = requirement.places.iter().map(own).collect();
         let cpk = moments.iter().map(|(mean, deviation)| mean / (3.0 * deviation)).fold(f64::INFINITY, f64::min);
@@ -173,11 +192,13 @@ fn capability(rows: &Rows, requirement: &Requirement, margins: &[f64], summary: 
             [(above, deviation), (below, _)] => Some((above + below) / (6.0 * deviation)),
             _ => None,
         };
-        (row, cp, cpk)
+        Ok((row, cp, cpk))
     };
-    let all: Vec<_> = (0..times.len()).filter(within).collect::<Vec<_>>().into_par_iter().map(of_row).collect();
-    let known = all.into_iter().filter(|(_, _, cpk)| cpk.is_finite());
+    let all = (0..times.len()).filter(within).collect::<Vec<_>>().into_par_iter().map(of_row);
+    let all: Result<Vec<_>, String> = all.collect();
+    let known = all?.into_iter().filter(|(_, _, cpk)| cpk.is_finite());
     if let Some((row, cp, cpk)) = known.min_by(|a, b| a.2.total_cmp(&b.2)) {
         (summary.cp, summary.cpk, summary.time) = (cp, Some(cpk), Some(times[row]));
     }
+    Ok(())
 }

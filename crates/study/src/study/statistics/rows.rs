@@ -1,13 +1,17 @@
 //! One row after the other: samples of the surrogate, and their statistics of each output.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 
+use super::INTERRUPTED;
 use super::laws::Laws;
 use crate::model::Description;
 use crate::numerics::largest;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
 use crate::results::{OutputStatistics, Uncertain};
 use crate::simulate::is_one_number;
+use crate::study::Options;
 use crate::study::kept::{Evaluator, Kept};
 
 /// Samples where a model asks for no number: about a million.
@@ -39,6 +43,7 @@ const STEP: f64 = 1e-2;
 /// Samples and what evaluates them.
 pub(super) struct Rows<'a> {
     pub description: &'a Description,
+    options: &'a Options<'a>,
     pub laws: &'a Laws,
     pub kept: &'a Kept,
     evaluator: Evaluator<'a>,
@@ -61,14 +66,38 @@ impl<'a> Rows<'a> {
     ///
     /// # Errors
     /// Where a loop closure cannot be compiled.
-    pub fn new(description: &'a Description, laws: &'a Laws, kept: &'a Kept) -> Result<Self, String> {
+    pub fn new(
+        description: &'a Description,
+        options: &'a Options<'a>,
+        laws: &'a Laws,
+        kept: &'a Kept,
+    ) -> Result<Self, String> {
         let evaluator = kept.evaluator().map_err(|error| error.to_string())?;
         let asked = description.statistics.samples.unwrap_or(SAMPLES);
         let count = asked.min(MOST_NUMBERS / laws.dimension()).max(REPLICATES);
         // The largest power of two that is not more.
         let count = 1 << (count / REPLICATES).ilog2();
         let samples = (0..REPLICATES).into_par_iter().map(|number| laws.samples(number, count)).collect();
-        Ok(Self { description, laws, kept, evaluator, samples })
+        Ok(Self { description, options, laws, kept, evaluator, samples })
+    }
+
+    /// Tells the current activity.
+    pub fn stage(&self, activity: &str) {
+        (self.options.stage)(activity);
+        (self.options.progress)(0.0);
+    }
+
+    /// Tells which share of it is done.
+    pub fn progress(&self, done: usize, of: usize) {
+        (self.options.progress)(done as f64 / of as f64);
+    }
+
+    /// An error at an interruption.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn go_on(&self) -> Result<(), String> {
+        if (self.options.interrupted)() { Err(INTERRUPTED.to_owned()) } else { Ok(()) }
     }
 
     /// Samples of each row.
@@ -78,10 +107,18 @@ impl<'a> Rows<'a> {
 
     /// The first `count` outputs, and the results that an analysis adds to the outputs, each with its number; without
     /// shapes and responses, which are many.
-    pub fn outputs(&self, count: usize) -> Vec<(usize, OutputStatistics)> {
+    ///
+    /// # Errors
+    /// At an interruption.
+    pub fn outputs(&self, count: usize) -> Result<Vec<(usize, OutputStatistics)>, String> {
+        self.stage("statistics of outputs");
         let further = self.description.outputs.len()..self.kept.outputs();
         let further = further.filter(|&output| is_one_number(self.kept.named(output).0));
-        (0..count).chain(further).map(|output| (output, self.of_output(output))).collect()
+        let wanted: Vec<usize> = (0..count).chain(further).collect();
+        let done = AtomicUsize::new(0);
+        let all = wanted.len() * self.kept.times().len();
+        let of_row_done = || self.progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+        wanted.into_iter().map(|output| Ok((output, self.of_output(output, &of_row_done)?))).collect()
     }
 
     /// One replicate's samples: every so many of the lattice's points are a lattice again.
@@ -94,17 +131,22 @@ impl<'a> Rows<'a> {
         (self.samples[0].len() / self.laws.dimension() / count).max(1)
     }
 
-    fn of_output(&self, output: usize) -> OutputStatistics {
-        let mut rows: Vec<RowStatistics> =
-            (0..self.kept.times().len()).into_par_iter().map(|row| self.of_row(row, output, OVER_TIME)).collect();
+    fn of_output(&self, output: usize, of_row_done: &(dyn Fn() + Sync)) -> Result<OutputStatistics, String> {
+        let of_row = |row: usize| {
+            let found = self.of_row(row, output, OVER_TIME);
+            of_row_done();
+            found
+        };
+        let rows = (0..self.kept.times().len()).into_par_iter().map(of_row);
+        let mut rows: Vec<RowStatistics> = rows.collect::<Result<_, String>>()?;
         let deviation = |row: &usize| rows[*row].deviation.value;
         let known = (0..rows.len()).filter(|row| deviation(row).is_finite());
         if let Some(widest) = known.max_by(|a, b| deviation(a).total_cmp(&deviation(b)).then(b.cmp(a))) {
-            rows[widest] = self.of_row(widest, output, 1);
+            rows[widest] = self.of_row(widest, output, 1)?;
         }
         let quantile = |place: usize| rows.iter().map(|row| row.quantiles[place]).collect();
         let (name, unit) = self.kept.named(output);
-        OutputStatistics {
+        Ok(OutputStatistics {
             name: name.to_owned(),
             unit: unit.to_owned(),
             mean: rows.iter().map(|row| row.mean).collect(),
@@ -113,28 +155,30 @@ impl<'a> Rows<'a> {
             linear: rows.iter().map(|row| row.linear).collect(),
             rss: rows.iter().map(|row| row.rss).collect(),
             resolved: rows.iter().map(|row| row.resolved).collect(),
-        }
+        })
     }
 
-    fn of_row(&self, row: usize, output: usize, fewer: usize) -> RowStatistics {
+    fn of_row(&self, row: usize, output: usize, fewer: usize) -> Result<RowStatistics, String> {
+        self.go_on()?;
         let stated = self.kept.error(output);
         let own_error = self.own_error(row, output, stated.total[row]);
         let shares = &self.description.statistics.quantiles;
         let mut replicates = Replicates::new(shares.len());
         for replicate in 0..REPLICATES {
+            self.go_on()?;
             replicates.add(&mut self.values(row, output, (replicate, fewer), own_error.is_some()), shares);
         }
         let error = stated.total[row] + own_error.unwrap_or(0.0);
         let with_error = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
         let (linear, rss) = self.stack(row, output);
-        RowStatistics {
+        Ok(RowStatistics {
             mean: with_error(replicates.mean()),
             deviation: with_error(replicates.deviation()),
             quantiles: replicates.quantiles().into_iter().map(with_error).collect(),
             linear,
             rss,
             resolved: !stated.unresolved[row] && error.is_finite(),
-        }
+        })
     }
 
     /// An output's values in a row, enough of them for mean and deviation.

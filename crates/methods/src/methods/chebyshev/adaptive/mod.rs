@@ -110,7 +110,7 @@ impl<'r> Adaptation<'r> {
     /// Refines until the goal is met or the budget is spent.
     ///
     /// # Errors
-    /// Where a sample cannot be assembled or a closure not be compiled.
+    /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
     pub fn search(mut self) -> Result<Adapted, EnsembleError> {
         let direct = (Cow::Borrowed(self.validation.points.as_slice()), Cow::Borrowed(&self.validation.direct));
         let spread = self.validation.spread();
@@ -119,7 +119,8 @@ impl<'r> Adaptation<'r> {
             let worst = (0..boxes.len()).max_by(|&a, &b| boxes[a].error.total_cmp(&boxes[b].error)).unwrap_or(0);
             // NaN is not met.
             let met = boxes[worst].error <= 1.0;
-            let stopped = self.ensemble.is_interrupted() || self.simulated.stop.is_some();
+            self.ensemble.go_on()?;
+            let stopped = self.simulated.stop.is_some();
             if (met || self.is_spent()) && !stopped && boxes.iter().any(|sub_box| !sub_box.challenged) {
                 boxes.iter_mut().try_for_each(|sub_box| self.challenge(sub_box))?;
                 continue;
@@ -187,7 +188,6 @@ impl<'r> Adaptation<'r> {
     fn is_spent(&self) -> bool {
         let Budget { simulations, seconds } = self.goal.budget;
         self.exhausted
-            || self.ensemble.is_interrupted()
             || self.goal.spent >= simulations
             || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
     }
@@ -237,7 +237,7 @@ impl<'r> Adaptation<'r> {
     fn simulate(&mut self, domain: &ParameterBox, nodes: &[Vec<f64>]) -> Result<(usize, Vec<f64>), EnsembleError> {
         let samples = domain.samples(nodes);
         let mut motions = Vec::new();
-        let sampling = Sampling { observed: Observed::Motion, until: Until::FirstStop, finish: true };
+        let sampling = Sampling { observed: Observed::Motion, until: Until::FirstStop, whole: true };
         let simulated =
             self.ensemble.simulate(&samples, sampling, &mut |_, values| motions.extend_from_slice(values))?;
         self.simulated.add(self.goal.spent, simulated);

@@ -65,7 +65,7 @@ impl<'a> Composer<'a> {
     /// for, or outputs need them.
     ///
     /// # Errors
-    /// Where a closure cannot be compiled.
+    /// Where a closure cannot be compiled, and at an interruption.
     pub fn rows<T: Send>(
         &mut self,
         surrogate: &Surrogate,
@@ -84,6 +84,7 @@ impl<'a> Composer<'a> {
             let (mut work, mut previous) = (SurrogateWork::default(), Previous::default());
             let first = block * together;
             let at = |(place, &time): (usize, &f64)| {
+                self.ensemble.go_on()?;
                 let row = first + place;
                 let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..stride]);
                 let velocities = velocities || closure.needs_velocities();
@@ -95,12 +96,13 @@ impl<'a> Composer<'a> {
                     (time, motion, velocities),
                     &mut work,
                 );
-                look(row, &at, &mut previous)
+                Ok(look(row, &at, &mut previous))
             };
-            times.iter().enumerate().map(at).collect::<Vec<T>>()
+            times.iter().enumerate().map(at).collect()
         };
-        let blocks: Vec<Vec<T>> = times.par_chunks(together).enumerate().map(look_at_block).collect();
-        Ok(blocks.into_iter().flatten().collect())
+        let blocks: Result<Vec<Vec<T>>, EnsembleError> =
+            times.par_chunks(together).enumerate().map(look_at_block).collect();
+        Ok(blocks?.into_iter().flatten().collect())
     }
 
     /// The closure over the coordinates that are best taken as independent at the middle sample's motion.
