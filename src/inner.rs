@@ -48,7 +48,8 @@ pub mod results {
 
 pub mod simulate {
     pub use crate::simulate::{
-        EnsembleRun, JetRun, Observed, Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance,
+        EnsembleRun, Interruption, JetRun, Observed, Schedule, SimulationError, Simulator, Stepper,
+        schedule_for_tolerance,
     };
 }
 

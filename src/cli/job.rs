@@ -120,6 +120,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     }
     let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
     let parts = (request.report && !interrupted).then(|| page::parts(job, request.settings.threads));
+    // Half a motion is none.
+    let parts = parts.filter(|_| !interrupt::asked());
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
     let files = files.map_err(|error| failed(&error))?;
     interrupt::keep_results(false);

@@ -2,10 +2,12 @@
 
 use super::args::ReportArgs;
 use super::console::Console;
+use super::interrupt;
 use super::meshes::{MOST_TRIANGLES, read_meshes};
 use super::request::Job;
 use super::{Failure, Status};
 use crate::export::{ReportParts, write_report};
+use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions};
 
 /// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
@@ -19,7 +21,8 @@ pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status,
 
 /// What a report shows of a job beside its results. The page says so where a motion cannot be simulated.
 pub(super) fn parts(job: &Job, threads: Option<usize>) -> ReportParts {
-    let options = MotionOptions { threads, size: SIZE / job.share.max(1) };
+    let options =
+        MotionOptions { threads, size: SIZE / job.share.max(1), interruption: Interruption::new(&interrupt::asked) };
     let motion = study::caught("the report's motion", || study::motion(&job.model, options));
     let motion = match motion {
         Ok(found) => found.map_err(|error| error.to_string()),

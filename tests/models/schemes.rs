@@ -4,7 +4,9 @@ use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
 use mbint::inner::model::Description;
 use mbint::inner::numerics::Sample;
-use mbint::inner::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
+use mbint::inner::simulate::{
+    EnsembleRun, Interruption, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance,
+};
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
 
@@ -182,9 +184,14 @@ fn the_error_falls_with_the_tolerance_in_every_scheme() {
         let errors = tolerances.map(|tolerance| {
             let simulator = compiled(&description, scheme, 2e-4);
             let sample = nominal_sample(&simulator);
-            let piloted =
-                schedule_for_tolerance(&simulator, std::slice::from_ref(&sample), (1.0, 0.02), tolerance, &|| false)
-                    .unwrap();
+            let piloted = schedule_for_tolerance(
+                &simulator,
+                std::slice::from_ref(&sample),
+                (1.0, 0.02),
+                tolerance,
+                Interruption::default(),
+            )
+            .unwrap();
             assert_eq!(piloted.failure, None);
             distance(&courses(&simulator, &piloted.schedule, sample)[0], &exact)
         });

@@ -9,7 +9,7 @@ use crate::methods::{Observed, Validation};
 use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::{Sample, spread};
 use crate::results::{Decision, MethodSummary};
-use crate::simulate::{ExplicitObstacle, Schedule, SimulationError, Simulator, explicit_schedule};
+use crate::simulate::{ExplicitObstacle, Interruption, Schedule, SimulationError, Simulator, explicit_schedule};
 
 /// A step may err by this share of what the run may be off by, until it is known how errors grow.
 pub(super) const OF_STEPS: f64 = 0.01;
@@ -94,7 +94,7 @@ impl Study<'_> {
         let times = (self.description.simulation.duration, self.description.simulation.output_step);
         let asked = self.description.simulation.scheme == SchemeChoice::Explicit;
         let most = if asked { MOST_STEPS } else { FEW_STEPS + base.steps_before(base.rows - 1) };
-        explicit_schedule(&self.simulator, samples, times, tolerance, most)
+        explicit_schedule(&self.simulator, samples, times, tolerance, most, Interruption::new(self.interrupted))
     }
 
     /// A schedule whose errors at the validation samples are within the steps' share of a tolerance of the bounds.
@@ -204,7 +204,7 @@ pub(super) fn decision(description: &Description, simulator: &Simulator) -> Opti
     let base = Schedule::fixed(simulation.duration, step, simulation.output_step);
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let (times, most) = ((simulation.duration, simulation.output_step), FEW_STEPS + base.steps_before(base.rows - 1));
-    Some(match explicit_schedule(simulator, &[nominal], times, OF_STEPS * tolerance, most) {
+    Some(match explicit_schedule(simulator, &[nominal], times, OF_STEPS * tolerance, most, Interruption::default()) {
         Ok(Ok(schedule)) => {
             let steps = schedule.steps_before(schedule.rows - 1);
             let (explicit, plain) = (explicit_work(simulator, &schedule), plain_work(simulator, &base));

@@ -15,7 +15,8 @@ use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::{Ledger, ParameterBox, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{
-    Controller, Divided, Schedule, SimulationError, Simulator, Steps, TimeFunctions, schedule_for_tolerance,
+    Controller, Divided, Interruption, Schedule, SimulationError, Simulator, Steps, TimeFunctions,
+    schedule_for_tolerance,
 };
 
 /// A compiled subsystem, and its questions.
@@ -140,7 +141,7 @@ impl<'a> Study<'a> {
                     &samples,
                     (duration, output_step),
                     tolerance,
-                    self.interrupted,
+                    Interruption::new(self.interrupted),
                 )?;
                 // The nominal sample may be of another part of the box.
                 let inside = |sample: &Sample| samples[0] != *sample || self.domain.contains(sample);

@@ -7,6 +7,7 @@ use super::controller::Controller;
 use super::schedule::Schedule;
 use crate::numerics::Sample;
 use crate::simulate::error::SimulationError;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
@@ -17,9 +18,6 @@ const FIRST_STEP: f64 = 1e-2;
 
 /// Where a run ends, its constraints are examined this share of an output step later: a residual needs time to grow.
 const LOOK_AHEAD: f64 = 0.5;
-
-/// Steps that are tried between two looks at whether to end.
-const BETWEEN_LOOKS: usize = 256;
 
 /// Most steps of a schedule: where it needs more, no step resolves the motion.
 const MOST_STEPS: usize = 2_000_000;
@@ -51,7 +49,7 @@ pub fn schedule_for_tolerance(
     samples: &[Sample],
     (duration, output_step): (f64, f64),
     tolerance: f64,
-    interrupted: &dyn Fn() -> bool,
+    interruption: Interruption<'_>,
 ) -> Result<ToleranceSchedule, SimulationError> {
     let controller = Controller { tolerance, duration };
     let mut control = Control::start(simulator, samples, controller, output_step)?;
@@ -64,7 +62,7 @@ pub fn schedule_for_tolerance(
         let mut list = Vec::new();
         let at_row = control.steps.clone();
         while time < goal {
-            if control.tries.is_multiple_of(BETWEEN_LOOKS) && interrupted() {
+            if interruption.is_asked_in(control.tries) {
                 complete_rows = complete_rows.min(row);
                 break 'rows;
             }

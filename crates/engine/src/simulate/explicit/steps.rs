@@ -7,6 +7,7 @@ use super::controlling::Tiles;
 use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::error::SimulationError;
+use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
@@ -69,13 +70,14 @@ pub enum ExplicitObstacle {
 /// Rows stand where they are; steps pass over them.
 ///
 /// # Errors
-/// Where a controlling sample cannot be assembled; inside, what stands against the method.
+/// Where a controlling sample cannot be assembled, and at an interruption; inside, what stands against the method.
 pub fn explicit_schedule(
     simulator: &Simulator,
     samples: &[Sample],
     (duration, output_step): (f64, f64),
     tolerance: f64,
     most: usize,
+    interruption: Interruption<'_>,
 ) -> Result<Result<Schedule, ExplicitObstacle>, SimulationError> {
     let mut tiles = Tiles::start(simulator, samples, duration)?;
     let too_many = Ok(Err(ExplicitObstacle::TooManySteps { steps: most }));
@@ -89,6 +91,9 @@ pub fn explicit_schedule(
     let mut uncut: Option<f64> = None;
     let mut switches = Vec::new();
     while time < duration {
+        if interruption.is_asked() {
+            return Err(SimulationError::Interrupted);
+        }
         if ends.len() == most {
             return too_many;
         }

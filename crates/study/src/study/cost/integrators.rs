@@ -9,7 +9,7 @@ use crate::compile::Scheme;
 use crate::model::{Description, Simulation, Stepping};
 use crate::numerics::Sample;
 use crate::results::{CostMethod, CostPoint, Integrator};
-use crate::simulate::{Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance};
+use crate::simulate::{Interruption, Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance};
 use crate::study::{RunError, first_step, scheme as model_scheme};
 
 /// What integrates in place of plain steps.
@@ -104,7 +104,7 @@ impl Course {
                     samples,
                     (simulation.duration, simulation.output_step),
                     tolerance,
-                    &|| false,
+                    Interruption::default(),
                 )?;
                 (controlled.schedule, controlled.failure.map(|failure| failure.to_string()))
             }

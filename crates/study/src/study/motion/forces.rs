@@ -10,6 +10,7 @@ use super::rows::Rows;
 use crate::grammar::{PointRef, Sensor};
 use crate::model::{Analysis, Description};
 use crate::results::MovingForce;
+use crate::simulate::Interruption;
 use crate::study::RunError;
 
 /// Most arrows; a model with more joints and effects has those of the first.
@@ -24,23 +25,27 @@ struct AskedForce {
 }
 
 /// The forces at some times of the nominal motion; none where they cannot be computed.
-pub(super) fn forces(description: &Description, times: &[f64]) -> Vec<MovingForce> {
+pub(super) fn forces(description: &Description, times: &[f64], interruption: Interruption<'_>) -> Vec<MovingForce> {
     // Without forces there is no motion that could show them, and not every motion is of forces.
     let has_forces = matches!(description.analysis, Analysis::Motion | Analysis::Statics);
     if !has_forces {
         return Vec::new();
     }
-    simulated(description, times).unwrap_or_default()
+    simulated(description, times, interruption).unwrap_or_default()
 }
 
-fn simulated(description: &Description, times: &[f64]) -> Result<Vec<MovingForce>, RunError> {
+fn simulated(
+    description: &Description,
+    times: &[f64],
+    interruption: Interruption<'_>,
+) -> Result<Vec<MovingForce>, RunError> {
     let mut asked = Asked::default();
     let wanted = ask(description, &mut asked);
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
     let numbers = asked.0.len();
-    let asking = Rows::asking(description, asked)?;
+    let asking = Rows::asking(description, asked, interruption)?;
     let mut rows: Vec<Values> = Vec::new();
     let nominal = [asking.domain.nominal.clone()];
     let (found, _) = asking.of_samples(description, &nominal, numbers, |_, _, values| rows.push(values))?;
@@ -114,7 +119,7 @@ mod tests {
     fn forces_of(text: &str) -> Vec<MovingForce> {
         let description =
             model::load_str("forces.yaml", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        forces(&description, &[0.0, 0.005])
+        forces(&description, &[0.0, 0.005], Interruption::default())
     }
 
     #[test]

@@ -14,6 +14,7 @@ use super::drawing::{drawn, extent, has_ground};
 use crate::model::Description;
 use crate::numerics::{Sample, SparseWork, SurrogateWork};
 use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
+use crate::simulate::Interruption;
 use rows::Rows;
 use samples::Samples;
 use thinning::Thinning;
@@ -27,30 +28,32 @@ const MOST: usize = 600;
 
 /// How a motion is found.
 #[derive(Clone, Copy, Debug)]
-pub struct MotionOptions {
+pub struct MotionOptions<'a> {
     /// Threads; all cores where absent. The motion does not depend on them.
     pub threads: Option<usize>,
     /// How many numbers of two bytes all poses may come to, about.
     pub size: usize,
+    /// Asked now and then whether to end.
+    pub interruption: Interruption<'a>,
 }
 
 /// Simulates the motion of all bodies.
 ///
 /// # Errors
-/// Where the mechanism cannot be built, assembled or stepped.
+/// Where the mechanism cannot be built, assembled or stepped, and at an interruption.
 pub fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     pool.install(|| {
         // Its ground is drawn when it is known what the motion passes.
         let drawing = drawn(description, None)?;
-        let mut posed = Posed::compile(description)?;
+        let mut posed = Posed::compile(description, options.interruption)?;
         posed.simulate(description, drawing, options.size)
     })
 }
 
 /// A model that is asked for its bodies' poses in place of its outputs.
-pub(super) struct Posed {
-    pub(super) rows: Rows,
+pub(super) struct Posed<'a> {
+    pub(super) rows: Rows<'a>,
     bodies: Vec<AskedBody>,
     /// Whether bodies leave the plane.
     spatial: bool,
@@ -64,12 +67,12 @@ struct Recorded {
     stopped: Option<usize>,
 }
 
-impl Posed {
-    pub(super) fn compile(description: &Description) -> Result<Self, RunError> {
+impl<'a> Posed<'a> {
+    pub(super) fn compile(description: &Description, interruption: Interruption<'a>) -> Result<Self, RunError> {
         let mut asked = Asked::default();
         let bodies = description.bodies.iter().enumerate();
         let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
-        Ok(Self { rows: Rows::asking(description, asked)?, bodies, spatial: description.space.spatial })
+        Ok(Self { rows: Rows::asking(description, asked, interruption)?, bodies, spatial: description.space.spatial })
     }
 
     fn per_body(&self) -> usize {
@@ -149,7 +152,7 @@ impl Posed {
             stopped: wanted.len() - 1 - nodes.len() - samples.len(),
             samples,
             polynomials,
-            forces: forces::forces(description, &found_times),
+            forces: forces::forces(description, &found_times, self.rows.interruption),
             drawing: self.with_ground(description, drawing, &recorded[0].rows)?,
         })
     }
@@ -239,7 +242,7 @@ mod tests {
     fn poses_come_through_the_same_tapes() {
         let description = four_bar();
         let whole = crate::study::formulation::compiled(&description).unwrap().program;
-        let posed = Posed::compile(&description).unwrap().rows.simulator.program;
+        let posed = Posed::compile(&description, Interruption::default()).unwrap().rows.simulator.program;
         let steps = |program: &crate::compile::Program| {
             [program.step_size(), program.step(), program.factor(), program.correct(), program.advance()]
                 .map(|tape| tape.len())
@@ -250,20 +253,30 @@ mod tests {
 
     #[test]
     fn polynomials_meet_samples_that_they_were_not_made_from() {
-        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 300_000 }).unwrap();
+        let motion = motion(
+            &four_bar(),
+            MotionOptions { threads: Some(1), size: 300_000, interruption: Interruption::default() },
+        )
+        .unwrap();
         let polynomials = motion.polynomials.as_ref().unwrap();
         assert_eq!((motion.samples.len(), motion.stopped, polynomials.degrees.len()), (12, 0, 30));
         // Tolerances are half a percent: what a polynomial of degree four leaves is far below a micrometre.
         assert!(polynomials.error < 1e-7, "{}", polynomials.error);
         assert!(motion.between < 1e-3, "{}", motion.between);
-        let several = super::motion(&four_bar(), MotionOptions { threads: Some(2), size: 300_000 }).unwrap();
+        let several = super::motion(
+            &four_bar(),
+            MotionOptions { threads: Some(2), size: 300_000, interruption: Interruption::default() },
+        )
+        .unwrap();
         assert_eq!(several.nominal.bodies, motion.nominal.bodies);
         assert_eq!(several.polynomials.unwrap().bodies, polynomials.bodies);
     }
 
     #[test]
     fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
-        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 1 }).unwrap();
+        let motion =
+            motion(&four_bar(), MotionOptions { threads: Some(1), size: 1, interruption: Interruption::default() })
+                .unwrap();
         assert_eq!((motion.times.len(), motion.rows), (FEWEST, 201));
         assert!(motion.between > 1e-3, "{}", motion.between);
     }

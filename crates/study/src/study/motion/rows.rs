@@ -7,8 +7,8 @@ use super::super::{RunError, formulation};
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
-    Controller, EnsembleRun, Integration, Interruption, Observed, Schedule, Simulator, Steps, TimeFunctions,
-    schedule_for_tolerance,
+    Controller, EnsembleRun, Integration, Interruption, Observed, Schedule, SimulationError, Simulator, Steps,
+    TimeFunctions, schedule_for_tolerance,
 };
 
 /// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
@@ -21,9 +21,10 @@ const BLOCK: usize = 64;
 const CONTROLLING: usize = 8;
 
 /// A model that is asked for something in place of its outputs.
-pub(in crate::study) struct Rows {
+pub(in crate::study) struct Rows<'a> {
     pub(in crate::study) simulator: Simulator,
     pub(super) domain: ParameterBox,
+    pub(super) interruption: Interruption<'a>,
 }
 
 /// What is simulated.
@@ -41,9 +42,13 @@ fn every(numbers: usize) -> usize {
     numbers.div_ceil(MOST_NUMBERS).max(1)
 }
 
-impl Rows {
-    /// Asks something.
-    pub(super) fn asking(description: &Description, asked: Asked) -> Result<Self, RunError> {
+impl<'a> Rows<'a> {
+    /// Asks something, until it is interrupted.
+    pub(super) fn asking(
+        description: &Description,
+        asked: Asked,
+        interruption: Interruption<'a>,
+    ) -> Result<Self, RunError> {
         // Responses are between outputs that are not asked here.
         let modes = ModesRequest { responses: Vec::new(), ..description.modes };
         let whole = Description { outputs: asked.0, modes, ..description.clone() };
@@ -54,7 +59,7 @@ impl Rows {
             lower: parameters.iter().map(|parameter| parameter.lower).collect(),
             upper: parameters.iter().map(|parameter| parameter.upper).collect(),
         };
-        Ok(Self { simulator, domain })
+        Ok(Self { simulator, domain, interruption })
     }
 
     /// Times of the rows that are looked at, and where samples stop. What is asked is given to `keep`: the sample,
@@ -92,7 +97,7 @@ impl Rows {
         let (schedule, controller) = self.schedule(description, samples)?;
         let every = every(schedule.rows * numbers * samples.len());
         let mut times = Vec::new();
-        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?;
+        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?.heeding(self.interruption);
         let outputs = self.simulator.system.outputs.len();
         let mut values = Vec::new();
         let mut next = 0;
@@ -100,6 +105,9 @@ impl Rows {
             let block = next..(next + BLOCK).min(schedule.rows);
             for stop in run.advance(&schedule, block.clone(), controller, Observed::Outputs, &mut values) {
                 stopped[running[stop.sample]].get_or_insert(stop.row.div_ceil(every));
+            }
+            if run.is_cut() {
+                return Err(SimulationError::Interrupted.into());
             }
             let end = stopped[0].map_or(block.end, |row| block.end.min(row * every));
             for (row, of_row) in block.clone().zip(values.chunks_exact(outputs * samples.len())) {
@@ -137,12 +145,7 @@ impl Rows {
         let found: Vec<_> = samples
             .par_iter()
             .map(|sample| {
-                self.simulator.visit(
-                    sample,
-                    Steps { schedule: &schedule, controller: None },
-                    &[],
-                    Interruption::default(),
-                )
+                self.simulator.visit(sample, Steps { schedule: &schedule, controller: None }, &[], self.interruption)
             })
             .collect();
         for (&sample, visit) in running.iter().zip(found) {
@@ -178,10 +181,13 @@ impl Rows {
             }
             Stepping::Tolerance(tolerance) => {
                 let controlling = &samples[..samples.len().min(1 + CONTROLLING)];
-                let found =
-                    schedule_for_tolerance(&self.simulator, controlling, (duration, output_step), tolerance, &|| {
-                        false
-                    })?;
+                let found = schedule_for_tolerance(
+                    &self.simulator,
+                    controlling,
+                    (duration, output_step),
+                    tolerance,
+                    self.interruption,
+                )?;
                 (found.schedule, Some(Controller { tolerance, duration }))
             }
         };

@@ -18,7 +18,7 @@ pub(super) use laws::Laws;
 use rows::Rows;
 
 /// Why there are none.
-const INTERRUPTED: &str = "interrupted before they were done";
+const INTERRUPTED: &str = "interrupted before statistics were done";
 
 /// Runs every method asked for, and statistics of the first so many outputs beside.
 ///
@@ -36,6 +36,9 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
         outputs: Vec::new(),
         summary: StatisticsSummary { failure: Some(failure), ..StatisticsSummary::default() },
     });
+    if (options.interrupted)() {
+        summary.failure.get_or_insert_with(|| INTERRUPTED.to_owned());
+    }
     summary.statistics = Some(Box::new(found));
     Ok((bounds, summary))
 }
