@@ -38,6 +38,7 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
         }
     })?;
     drop(progress);
+    interrupt::wait_for(&folder)?;
     let files = write_allocation(&folder, &found);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
     if !args.run.quiet {

@@ -42,6 +42,7 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         Err(error) => return Err(failed(&error)),
     };
     drop(progress);
+    interrupt::wait_for(&folder)?;
     let files = write_cost(&folder, &study).map_err(|error| failed(&error))?;
     if !args.run.quiet {
         console.print(&overview(&study, &folder, &files))?;

@@ -1,9 +1,13 @@
 //! Ctrl-C, and the signals of a system that ends a program: while there are results to keep, the first asks a run to
 //! keep them and end, and the second ends the program at once; before, as while a model is compiled, the first does.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::Failure;
 use super::status::Status;
+use crate::export::wait_for_folder;
+use crate::syntax::harmless;
 
 /// Whether an end was asked for.
 static ASKED: AtomicBool = AtomicBool::new(false);
@@ -29,6 +33,21 @@ pub(super) fn listen() {
 /// Whether an end was asked for.
 pub(super) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
+}
+
+/// Waits while another run writes into a folder, and says so.
+///
+/// # Errors
+/// If an end is asked for meanwhile.
+pub(super) fn wait_for(folder: &Path) -> Result<(), Failure> {
+    let mut is_told = false;
+    let mut waits = || {
+        if !std::mem::replace(&mut is_told, true) {
+            eprintln!("waiting for another run that writes into {}", harmless(&folder.display().to_string()));
+        }
+        !asked()
+    };
+    wait_for_folder(folder, &mut waits).map_err(|error| Failure::Failed(error.to_string()))
 }
 
 /// Says whether there are results to keep.

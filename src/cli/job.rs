@@ -103,19 +103,22 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         return Err(Failure::Deferred);
     }
     let (bounds, mut summary) = found?;
-    let interrupted = interrupt::asked();
-    if interrupted && bounds.times.is_empty() {
+    if interrupt::asked() && bounds.times.is_empty() {
         return Err(failed(&"interrupted before there were results"));
     }
     let named = request.named.get(job.number).unwrap_or(&job.path);
     verdicts::add_commands(&mut summary, named, &request.given);
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
-    let folder = match interrupted && !request.overwrite && holds_complete_results(&job.folder) {
+    // At an interruption nobody is waited for.
+    let is_free = interrupt::wait_for(&job.folder).is_ok();
+    let interrupted = interrupt::asked();
+    let folder = match !is_free || interrupted && !request.overwrite && holds_complete_results(&job.folder) {
         true => beside(&job.folder),
         false => job.folder.clone(),
     };
     // What compares scenes compares those of one run.
     if let Some(all) = folder.parent().filter(|_| !job.page && folder == job.folder) {
+        interrupt::wait_for(all)?;
         remove_comparison(all).map_err(|error| failed(&error))?;
     }
     let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
@@ -147,7 +150,7 @@ pub(super) fn report(done: &Done, console: &Console) {
         if done.folder.to_string_lossy().ends_with(".interrupted") {
             let folder = done.folder.display();
             console.warning(&format!(
-                "{name}: the older results are complete and are kept; what there is of this run is in {folder} (--overwrite replaces them)"
+                "{name}: the older results are kept; what there is of this run is in {folder} (--overwrite replaces them)"
             ));
         }
         return;

@@ -75,6 +75,7 @@ impl Scenes {
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
         // What compares scenes is written when all are there.
+        interrupt::wait_for(&self.folder)?;
         let files = if found.is_empty() || status == Status::Deferred {
             Ok(Vec::new())
         } else {

@@ -7,7 +7,7 @@ use super::console::{BOLD, Console, to_json};
 use super::meshes::{MOST_TRIANGLES, read_meshes};
 use super::run::results_of;
 use super::table::{Align, Table};
-use super::{Failure, Status, load};
+use super::{Failure, Status, interrupt, load};
 use crate::export::{prepare_folder, write_drawing};
 use crate::results::{Drawing, DrawnBody};
 use crate::study;
@@ -21,6 +21,7 @@ pub(super) fn show(args: &ShowArgs, console: &mut Console) -> Result<Status, Fai
     read_meshes(&mut drawing, args.model.parent().unwrap_or(Path::new("")), MOST_TRIANGLES);
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    interrupt::wait_for(&folder)?;
     let file = write_drawing(&folder, &drawing).map_err(|error| Failure::Failed(error.to_string()))?;
     console.print(&match args.format {
         Format::Text => format!("{}{}\n", table(&drawing), file.display()),

@@ -128,6 +128,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     let sweep = Sweep { model: name.clone(), axes: axes.iter().map(Axis::heading).collect(), points };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    interrupt::wait_for(&folder)?;
     let files = write_sweep(&folder, &sweep).map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
     if !args.run.quiet {
         let simulations = sweep.simulations();

@@ -17,6 +17,12 @@ pub enum ExportError {
         /// Reason that the system gives.
         source: io::Error,
     },
+    /// Another run writes into the folder, and was not waited for.
+    #[error("another run writes into the folder {}", path.display())]
+    Held {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A file cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write {

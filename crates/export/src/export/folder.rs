@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::error::ExportError;
 use super::owned::{OWNED, Owned, sha256};
@@ -24,6 +25,9 @@ pub(super) struct AtomicFiles<'d> {
     /// Not every system opens folders, and not every file system locks: then the files of two runs may mix.
     folder: Option<fs::File>,
 }
+
+/// Between two tries to lock a folder.
+const BETWEEN_TRIES: Duration = Duration::from_millis(100);
 
 /// How temporary files are called.
 const TEMPORARY: (&str, &str) = (".mbint-", ".tmp");
@@ -119,6 +123,22 @@ pub(super) fn settle(dir: &Path) -> Result<(), ExportError> {
     let folder = fs::File::open(dir).ok();
     let _locked = folder.as_ref().is_some_and(|folder| folder.lock().is_ok());
     replacing::finish(dir)
+}
+
+/// Waits while another run writes into a folder; `waits` is asked every tenth of a second whether to go on waiting.
+///
+/// # Errors
+/// If it is not to go on.
+pub fn wait_for_folder(dir: &Path, waits: &mut dyn FnMut() -> bool) -> Result<(), ExportError> {
+    // What cannot be opened or locked is not waited for.
+    let Ok(folder) = fs::File::open(dir) else { return Ok(()) };
+    while let Err(fs::TryLockError::WouldBlock) = folder.try_lock() {
+        if !waits() {
+            return Err(ExportError::Held { path: dir.to_owned() });
+        }
+        std::thread::sleep(BETWEEN_TRIES);
+    }
+    Ok(())
 }
 
 /// Writes texts under their names into a folder, which is created if it does not exist. Returns their paths.

@@ -42,7 +42,7 @@ pub use earlier::holds_complete_results;
 pub use error::ExportError;
 pub use figure::Caption;
 pub use files::write_results;
-pub use folder::{prepare_folder, write_pages};
+pub use folder::{prepare_folder, wait_for_folder, write_pages};
 pub use junit::{Suite, write_junit};
 pub use overlay::SceneBounds;
 pub use owned::SUMMARY;
