@@ -73,6 +73,7 @@ pub(super) fn bounds(
         progress: &set_progress,
         stage: &|stage| progress.stage(stage),
         interrupted: &interrupt::asked,
+        ..study::Options::default()
     };
     study::run(model, options).map_err(|error| {
         let message = format!("{}: {error}", model.name);
@@ -103,7 +104,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         return Err(Failure::Deferred);
     }
     let (bounds, mut summary) = found?;
-    if interrupt::asked() && bounds.times.is_empty() {
+    if summary.is_cut && bounds.times.is_empty() {
         return Err(failed(&"interrupted before there were results"));
     }
     let named = request.named.get(job.number).unwrap_or(&job.path);
@@ -111,7 +112,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     // At an interruption nobody is waited for.
     let is_free = interrupt::wait_for(&job.folder).is_ok();
-    let interrupted = interrupt::asked();
+    let interrupted = summary.is_cut || interrupt::asked();
     let folder = match !is_free || interrupted && !request.overwrite && holds_complete_results(&job.folder) {
         true => beside(&job.folder),
         false => job.folder.clone(),

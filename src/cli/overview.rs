@@ -342,6 +342,7 @@ mod tests {
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,
+            is_cut: false,
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
         let text = overview(&summary, Path::new("results/slider_crank"), &files);

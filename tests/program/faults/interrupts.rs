@@ -3,8 +3,9 @@
 #![cfg(unix)]
 
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::place::Place;
 
@@ -26,17 +27,30 @@ fn begin(place: &Place, arguments: &str) -> Child {
     place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
+/// Sends a signal when standard error tells of this stage, and awaits the end, which would come minutes later. The
+/// status, and what standard error has told.
+fn interrupted(place: &Place, arguments: &str, stage: &str, name: &str) -> (Option<i32>, String) {
+    let mut run = begin(place, arguments);
+    let mut told = String::new();
+    let mut errors = BufReader::new(run.stderr.take().unwrap());
+    while !told.contains(stage) {
+        assert!(errors.read_line(&mut told).unwrap() > 0, "{told}");
+    }
+    signal(&run, name);
+    let asked = Instant::now();
+    let status = run.wait().unwrap().code();
+    assert!(asked.elapsed() < Duration::from_secs(10), "{:?}", asked.elapsed());
+    errors.read_to_string(&mut told).unwrap();
+    (status, told)
+}
+
 #[test]
 fn what_is_finished_at_a_ctrl_c_is_written() {
     let place = Place::new();
     long(&place);
-    let run = begin(&place, "run -q --yes crank.yaml -o out");
-    std::thread::sleep(Duration::from_millis(1500));
-    signal(&run, "-INT");
-    let ended = run.wait_with_output().unwrap();
-    let errors = String::from_utf8(ended.stderr).unwrap();
-    assert_eq!(ended.status.code(), Some(130), "{errors}");
-    assert!(errors.starts_with("error: crank: interrupted"), "{errors}");
+    let (status, errors) = interrupted(&place, "run --yes crank.yaml -o out", "crank: scan", "-INT");
+    assert_eq!(status, Some(130), "{errors}");
+    assert!(errors.contains("error: crank: interrupted"), "{errors}");
     let table = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
     // The scan of 40 000 samples was not done: where it stands, it is said to be unknown.
     let (heading, last) = (table.lines().next().unwrap(), table.lines().last().unwrap());
@@ -83,6 +97,66 @@ fn compiling_ends_at_a_ctrl_c() {
     let ended = check.wait_with_output().unwrap();
     assert_eq!(ended.status.code(), Some(130), "{ended:?}");
     assert!(ended.stdout.is_empty());
+}
+
+/// A spring with so many quantiles of its motion that they take minutes.
+fn quantiles(place: &Place) {
+    let shares: Vec<String> = (1..2000).map(|share| format!("{}", f64::from(share) / 2000.0)).collect();
+    let text = format!(
+        "model: spring\n\
+         parameters: {{ k: {{ interval: [9, 11], unit: N/m, distribution: normal }} }}\n\
+         bodies: {{ block: {{ mass: 1, coordinates: [x] }} }}\n\
+         effects: {{ spring: {{ spring_damper: {{ between: [ground, block], along: x, stiffness: k, free_length: 0 }} }} }}\n\
+         initial: {{ block.x: 1 }}\n\
+         outputs: {{ x: block.x, v: block.vx }}\n\
+         simulation: {{ duration: 10, step: 1e-2, output_step: 0.01 }}\n\
+         statistics: {{ quantiles: [{}] }}\n\
+         bounds: {{ chebyshev: {{ order: 3 }} }}\n",
+        shares.join(", ")
+    );
+    fs::write(place.path().join("spring.yaml"), text).unwrap();
+}
+
+/// Statistics are a stage of their own after the bounds, which are kept.
+#[test]
+fn statistics_end_at_a_sigterm() {
+    let place = Place::new();
+    quantiles(&place);
+    let arguments = "run --yes --no-report spring.yaml -o out";
+    let (status, told) = interrupted(&place, arguments, "spring: statistics of outputs", "-TERM");
+    assert_eq!(status, Some(130), "{told}");
+    assert!(told.contains("error: spring: interrupted before statistics were done"), "{told}");
+    let table = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
+    assert!(!table.contains("NaN"), "bounds are done");
+}
+
+/// While another run writes into the folder, this is said; what there is then stands beside.
+#[test]
+fn waiting_for_a_folder_ends_at_a_ctrl_c() {
+    let place = Place::new();
+    place.model("crank");
+    let out = place.path().join("out");
+    fs::create_dir(&out).unwrap();
+    for is_interrupted in [false, true] {
+        let folder = fs::File::open(&out).unwrap();
+        folder.lock().unwrap();
+        let mut run = begin(&place, "run -q --yes crank.yaml -o out");
+        let mut errors = BufReader::new(run.stderr.take().unwrap());
+        let mut told = String::new();
+        errors.read_line(&mut told).unwrap();
+        assert_eq!(told, "waiting for another run that writes into out\n");
+        if is_interrupted {
+            fs::remove_file(out.join("bounds.csv")).unwrap();
+            signal(&run, "-INT");
+            assert_eq!(run.wait().unwrap().code(), Some(130));
+            assert!(!out.join("bounds.csv").exists());
+            assert!(place.path().join("out.interrupted/bounds.csv").exists());
+        } else {
+            drop(folder);
+            assert_eq!(run.wait().unwrap().code(), Some(0));
+            assert!(out.join("bounds.csv").exists());
+        }
+    }
 }
 
 #[test]

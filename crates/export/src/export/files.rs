@@ -206,6 +206,7 @@ mod tests {
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,
+            is_cut: false,
         };
         (bounds, summary)
     }

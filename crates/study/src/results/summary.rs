@@ -93,6 +93,9 @@ pub struct Summary {
     /// Set when the run stopped early: what happened, and up to which time results were kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
+    /// Whether it ended before it was done, since it was asked to or took too long.
+    #[serde(skip)]
+    pub is_cut: bool,
 }
 
 impl Summary {

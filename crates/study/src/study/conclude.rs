@@ -198,5 +198,6 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         not_simulated: Vec::new(),
         subsystems: Vec::new(),
         failure,
+        is_cut: false,
     }
 }

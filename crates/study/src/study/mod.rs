@@ -10,6 +10,7 @@
 //! whoever evaluates them after the run, as `statistics` does, and `allocate`, which looks for tolerances.
 
 mod allocate;
+mod allowance;
 mod analysis;
 mod assemblies;
 mod bands;
@@ -62,6 +63,7 @@ use crate::store::PartStore;
 use prepared::Prepared;
 
 pub use allocate::{AllocateError, AllocateOptions, allocate};
+pub use allowance::Allowance;
 pub use assemblies::of as assemblies;
 pub use cost::{CostOptions, cost};
 pub use drawing::drawing;
@@ -89,8 +91,11 @@ pub struct Options<'a> {
     pub certify_time: bool,
     /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
     pub skip_infeasible: bool,
-    /// Whether to run what takes long without being allowed by the model.
+    /// Whether to run what takes long without being allowed by the model; where not, a run ends that takes much longer
+    /// than was estimated.
     pub costly: bool,
+    /// Of a run that nobody has allowed to take long.
+    pub allowance: Option<&'a Allowance>,
     /// Where simulations are stored, if they are.
     pub store: Option<&'a PartStore>,
     /// Told, where simulations are stored, how many bytes they may take on the disk, before the first is made.
@@ -112,6 +117,7 @@ impl Default for Options<'_> {
             certify_time: false,
             skip_infeasible: false,
             costly: true,
+            allowance: None,
             store: None,
             disk: &|_| (),
             progress: &|_| (),
@@ -159,6 +165,9 @@ pub enum RunError {
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
+    let allowance = Allowance::begin();
+    let interrupted = || (options.interrupted)() || (!options.costly && allowance.is_spent());
+    let options = Options { interrupted: &interrupted, allowance: Some(&allowance), ..options };
     let found = pool.install(|| {
         if model.statistics.asked {
             return statistics::run(&model, description.outputs.len(), &options);
@@ -166,7 +175,12 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
         let (bounds, summary, _) = reduced::run(&model, &options, false)?;
         Ok((bounds, summary))
     });
-    Ok(reduced::shown(description, &model, found?))
+    let (bounds, mut summary) = reduced::shown(description, &model, found?);
+    summary.is_cut = interrupted();
+    if let Some(why) = allowance.ended() {
+        summary.failure = Some(why);
+    }
+    Ok((bounds, summary))
 }
 
 /// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole

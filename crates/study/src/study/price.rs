@@ -9,7 +9,7 @@ use crate::simulate::Schedule;
 const MOST_SIMULATIONS: f64 = 20_000.0;
 
 /// Most time that is spent unasked, s.
-const MOST_SECONDS: f64 = 60.0;
+pub(super) const MOST_SECONDS: f64 = 60.0;
 
 /// Time in which a value of a surrogate is fitted and bounded, s: from 0.6 to 6 µs were measured with 625 to 4913
 /// samples of three to seven parameters.
@@ -26,6 +26,8 @@ const VALUE_SECONDS: f64 = 5e-7;
 pub struct Price {
     simulations: f64,
     seconds: f64,
+    /// With all simulations that the budget allows where a tolerance decides, s.
+    at_most: f64,
     threads: usize,
 }
 
@@ -33,7 +35,7 @@ impl Price {
     /// What the methods' own numbers of samples come to; where a tolerance decides, the budget does.
     pub(super) fn of(studies: &[Study]) -> Self {
         let threads = rayon::current_num_threads();
-        let (mut simulations, mut seconds) = (0.0, 0.0);
+        let (mut simulations, mut seconds, mut at_most) = (0.0, 0.0, 0.0);
         for study in studies {
             let of_study = study.planned_simulations();
             let simulation = &study.description.simulation;
@@ -47,10 +49,23 @@ impl Price {
             };
             let of_step = instructions_of_step(&study.simulator);
             simulations += of_study;
-            let simulated = of_study * steps * of_step * INSTRUCTION_SECONDS;
-            seconds += (simulated + study.planned_values() * VALUE_SECONDS) / threads as f64;
+            let of_sample = steps * of_step * INSTRUCTION_SECONDS;
+            let planned = (of_study * of_sample + study.planned_values() * VALUE_SECONDS) / threads as f64;
+            seconds += planned;
+            at_most += planned + study.decided_simulations() * of_sample / threads as f64;
         }
-        Self { simulations, seconds, threads }
+        Self { simulations, seconds, at_most, threads }
+    }
+
+    /// An estimate of so many seconds.
+    #[cfg(test)]
+    pub(super) fn of_seconds(seconds: f64) -> Self {
+        Self { simulations: 1.0, seconds, at_most: seconds, threads: 1 }
+    }
+
+    /// What is estimated where a tolerance takes all that the budget allows, s.
+    pub(super) fn at_most(&self) -> f64 {
+        self.at_most
     }
 
     /// Whether it is to be asked for, where a model allows so many simulations.
@@ -61,7 +76,7 @@ impl Price {
 }
 
 /// A time with two digits or more, in the unit that people would give it in.
-fn in_words(&seconds: &f64) -> String {
+pub(super) fn in_words(&seconds: &f64) -> String {
     const UNITS: [(f64, &str); 5] = [(1e-3, "ms"), (1.0, "s"), (60.0, "min"), (3600.0, "h"), (86_400.0, "days")];
     if seconds < 1e-3 {
         return "1 ms".to_owned();

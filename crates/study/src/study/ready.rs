@@ -68,6 +68,9 @@ pub(super) fn studied<T>(
     if let Some(price) = studied.asked(description).filter(|_| !options.costly) {
         return Err(RunError::Costly(price));
     }
+    if let Some(allowance) = options.allowance {
+        allowance.expect(&price, &description.bounds.budget);
+    }
     match Memory::lacking(&studies) {
         Some(lacking) => Err(RunError::Memory(lacking)),
         None => then(&studied),

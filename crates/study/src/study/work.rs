@@ -14,6 +14,13 @@ impl Study<'_> {
         parts * methods.into_iter().filter_map(|(_, method)| method.samples()).sum::<f64>()
     }
 
+    /// Simulations, at most, of the methods whose samples a tolerance decides.
+    pub(super) fn decided_simulations(&self) -> f64 {
+        let decided =
+            |(method, asked): &(Method, &dyn BoundingMethod)| method.about().is_sampled && asked.samples().is_none();
+        self.request.methods().iter().filter(|own| decided(own)).count() as f64 * self.request.budget.simulations as f64
+    }
+
     /// Values that are fitted and bounded: of every output, row and sample of a method that has a surrogate.
     pub(super) fn planned_values(&self) -> f64 {
         let samples = |(method, asked): (Method, &dyn BoundingMethod)| {
