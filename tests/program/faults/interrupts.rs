@@ -220,7 +220,7 @@ fn nothing_is_asked_of_a_terminal() {
 fn a_dear_run_is_refused_before_it_begins() {
     let place = Place::new();
     long(&place);
-    let begun = std::time::Instant::now();
+    let begun = Instant::now();
     let (_, errors) = place.run("run -q crank.yaml -o out", 2);
     assert!(
         errors.contains(" simulations are asked for") && errors.contains("--yes") && errors.contains("tolerance"),
