@@ -43,7 +43,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => Self::Plain(run.watching()),
             Self::Extrapolated(run) => Self::Extrapolated(run.watching()),
-            Self::Explicit(run) => Self::Explicit(run),
+            Self::Explicit(run) => Self::Explicit(run.watching()),
         }
     }
 
@@ -126,7 +126,10 @@ impl<'s> SampleRun<'s> {
 
     /// See [`EnsembleRun::parted`].
     pub fn parted(&self) -> Option<SimulationError> {
-        self.levels().first().and_then(EnsembleRun::parted)
+        match self {
+            Self::Explicit(run) => run.parted(),
+            _ => self.levels().first().and_then(EnsembleRun::parted),
+        }
     }
 
     /// See [`EnsembleRun::open_constraint`].

@@ -4,11 +4,11 @@
 use symdiff::Expr;
 
 use crate::assemble::{ConstraintId, ResidualUnit};
+use crate::compile::Layout;
 use crate::simulate::error::SimulationError;
 use crate::simulate::motion_values::motion_values;
 use crate::simulate::residual_text::residual_text;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::step::Stepper;
 
 /// A residual beyond this is open, for an angle of 1 rad or the length of the model. Schemes that fulfil velocities
 /// drift by less.
@@ -25,10 +25,11 @@ pub struct Parted {
     residual: f64,
 }
 
-/// Search for constraints that open, over the steps of the first lane of a tile.
+/// Search for constraints that open, along the motion of one sample.
 #[derive(Clone, Debug)]
 pub struct PartingWatch<'s> {
     simulator: &'s Simulator,
+    layout: &'s Layout,
     /// The redundant constraints, and their residuals.
     constraints: Vec<ConstraintId>,
     residuals: Vec<Expr>,
@@ -39,7 +40,8 @@ pub struct PartingWatch<'s> {
 
 impl<'s> PartingWatch<'s> {
     /// Nothing where no constraint is redundant, or none depends on the time: those that agree then stay in agreement.
-    pub fn new(simulator: &'s Simulator, stepper: &Stepper) -> Option<Self> {
+    /// `state` is that of the sample (the layout's registers).
+    pub fn new(simulator: &'s Simulator, layout: &'s Layout, state: Vec<f64>) -> Option<Self> {
         let all = &simulator.system.constraint;
         let of_positions = |id: &ConstraintId| Some((*id, *all.get(id.number())?));
         let (constraints, residuals): (Vec<_>, Vec<_>) =
@@ -47,20 +49,19 @@ impl<'s> PartingWatch<'s> {
         if constraints.is_empty() {
             return None;
         }
-        let state = stepper.lane(0);
-        let [first, others @ ..] = TIMES.map(|time| values(simulator, all, &state, time));
+        let [first, others @ ..] = TIMES.map(|time| values(simulator, layout, all, (&state, time)));
         let changes = others.iter().any(|values| values != &first);
-        changes.then_some(Self { simulator, constraints, residuals, state, found: None })
+        changes.then_some(Self { simulator, layout, constraints, residuals, state, found: None })
     }
 
-    /// Examines the step that has just ended.
-    pub fn look(&mut self, stepper: &Stepper, time: f64) {
+    /// Examines the state at a time, which `read` writes into the layout's registers.
+    pub fn look(&mut self, time: f64, read: impl FnOnce(&mut Vec<f64>)) {
         if self.found.is_some() {
             return;
         }
-        stepper.copy_lane(0, &mut self.state);
+        read(&mut self.state);
         let system = &self.simulator.system;
-        let residuals = values(self.simulator, &self.residuals, &self.state, time);
+        let residuals = values(self.simulator, self.layout, &self.residuals, (&self.state, time));
         self.found = self.constraints.iter().zip(residuals).find_map(|(&constraint, residual)| {
             let size = if system[constraint].unit == ResidualUnit::Length { system.length } else { 1.0 };
             (residual.abs() > OPEN * size).then_some(Parted { constraint, time, residual })
@@ -77,7 +78,7 @@ impl<'s> PartingWatch<'s> {
 }
 
 /// Values of expressions of positions, velocities and the time.
-fn values(simulator: &Simulator, exprs: &[Expr], state: &[f64], time: f64) -> Vec<f64> {
-    let values = motion_values(&simulator.system, &simulator.program.layout, state, time);
+fn values(simulator: &Simulator, layout: &Layout, exprs: &[Expr], (state, time): (&[f64], f64)) -> Vec<f64> {
+    let values = motion_values(&simulator.system, layout, state, time);
     simulator.system.graph.evaluate(exprs, |symbol| values.get(&symbol).copied().unwrap_or(0.0))
 }

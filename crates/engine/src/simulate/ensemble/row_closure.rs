@@ -7,7 +7,7 @@
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
 use super::jets::{add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
-use crate::compile::{StartProgram, Tapes};
+use crate::compile::{Layout, StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
@@ -65,6 +65,11 @@ impl<'s> RowClosure<'s> {
     /// The memory, with the state that was closed last.
     pub fn tile(&self) -> &Tile {
         self.assembly.tile()
+    }
+
+    /// The registers of the state.
+    pub fn layout(&self) -> &'s Layout {
+        &self.program.layout
     }
 
     /// Makes a motion (2n lines, q and v, lane by lane) consistent at a time.

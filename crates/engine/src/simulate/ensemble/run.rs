@@ -114,7 +114,7 @@ impl<'s> EnsembleRun<'s> {
     pub fn watching(mut self) -> Self {
         if let Some(tile) = self.tiles.first_mut() {
             tile.watch = Some(SingularWatch::new(self.simulator, &tile.stepper));
-            tile.parting = PartingWatch::new(self.simulator, &tile.stepper);
+            tile.parting = PartingWatch::new(self.simulator, &self.simulator.program.layout, tile.stepper.lane(0));
         }
         self
     }
@@ -312,7 +312,7 @@ impl TileRun<'_> {
                     watch.look(&self.stepper, end);
                 }
                 if let Some(parting) = &mut self.parting {
-                    parting.look(&self.stepper, end);
+                    parting.look(end, |state| self.stepper.copy_lane(0, state));
                 }
                 if let Some(switches) = &mut self.switches {
                     switches.end(&self.stepper, h);

@@ -10,14 +10,16 @@
 //! - `movement`: how far the motion has gone, which errors count against;
 //! - `controlling`: the samples that decide on the steps, and where their equations switch;
 //! - `steps`: the steps that a tolerance asks for, and what stands against the method;
-//! - `run`: samples and jets over a schedule.
+//! - `run`: samples over a schedule, and `jets`: a jet over it.
 
 mod controlling;
+mod jets;
 mod movement;
 mod run;
 mod runge_kutta;
 mod steps;
 mod tableau;
 
-pub use run::{ExplicitJets, ExplicitRun};
+pub use jets::ExplicitJets;
+pub use run::ExplicitRun;
 pub use steps::{ExplicitObstacle, explicit_schedule};

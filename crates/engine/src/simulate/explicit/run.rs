@@ -1,13 +1,14 @@
-//! Samples, and a jet, over a schedule whose steps pass over its rows.
+//! Samples over a schedule whose steps pass over its rows.
 
 use rayon::prelude::*;
-use symdiff::{WIDTHS, jet::JetSpace};
+use symdiff::WIDTHS;
 
 use super::runge_kutta::{Motion, RungeKutta};
 use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
-use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
+use crate::simulate::diagnostics::PartingWatch;
+use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
@@ -33,20 +34,6 @@ impl Motion for RowClosure<'_> {
     }
 }
 
-impl Motion for JetClosure<'_> {
-    fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
-        JetClosure::rate(self, time, state, into);
-    }
-
-    fn close(&mut self, time: f64, state: &mut [f64]) {
-        JetClosure::close(self, time, state);
-    }
-
-    fn sample(&mut self, time: f64, state: &mut [f64]) -> bool {
-        JetClosure::sample(self, time, state)
-    }
-}
-
 /// A tile of samples between two steps.
 #[derive(Debug)]
 pub(super) struct Tile<'s> {
@@ -68,6 +55,8 @@ pub(super) struct Tile<'s> {
     interruption: Interruption<'s>,
     /// Whether it ended at an interruption.
     is_cut: bool,
+    /// Search for constraints that the first lane leaves open.
+    parting: Option<PartingWatch<'s>>,
 }
 
 /// Samples in tiles for so many threads, assembled.
@@ -99,6 +88,7 @@ pub(super) fn tiles<'s>(
             reduction: None,
             interruption: Interruption::default(),
             is_cut: false,
+            parting: None,
         })
     };
     let chunks: Vec<(usize, &[Sample])> = samples.chunks(at_once).enumerate().collect();
@@ -131,6 +121,22 @@ impl<'s> ExplicitRun<'s> {
             tile.reduction = Some(Reduction::new(channels, outputs, tile.alive.len()));
         }
         self
+    }
+
+    /// Also searches for constraints that the first sample leaves open, in its rows.
+    #[must_use]
+    pub fn watching(mut self) -> Self {
+        if let Some(tile) = self.tiles.first_mut() {
+            let layout = tile.rows.layout();
+            let state = (0..layout.registers()).map(|register| tile.rows.tile().lane(register)[0]).collect();
+            tile.parting = PartingWatch::new(self.simulator, layout, state);
+        }
+        self
+    }
+
+    /// See [`EnsembleRun::parted`](crate::simulate::EnsembleRun::parted).
+    pub fn parted(&self) -> Option<SimulationError> {
+        self.tiles.iter().find_map(|tile| tile.parting.as_ref()?.error())
     }
 
     /// As [`EnsembleRun::heeding`](crate::simulate::EnsembleRun::heeding).
@@ -229,6 +235,13 @@ impl Tile<'_> {
                 return (values, stops);
             }
             self.rows.close(time, &mut state);
+            if let Some(parting) = &mut self.parting {
+                let (layout, tile) = (self.rows.layout(), self.rows.tile());
+                let read = |into: &mut Vec<f64>| {
+                    (layout.q.start..layout.v.end).for_each(|register| into[register] = tile.lane(register)[0]);
+                };
+                parting.look(time, read);
+            }
             let outputs = match observed {
                 Observed::Outputs => &mut *of_row,
                 _ => {
@@ -275,7 +288,7 @@ type Stepped<'f, M> = dyn FnMut(&mut RungeKutta, &mut M, f64) -> bool + 'f;
 
 /// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is
 /// called after each, before the run goes on from its end; where it says so, the run goes no further.
-fn reach<M: Motion>(
+pub(super) fn reach<M: Motion>(
     run: &mut RungeKutta,
     motion: &mut M,
     (steps, ends): (&mut usize, &[f64]),
@@ -308,82 +321,4 @@ fn reach<M: Motion>(
         run.accept(motion, end);
     }
     state.copy_from_slice(&run.state);
-}
-
-/// The run of one jet.
-#[derive(Debug)]
-pub struct ExplicitJets<'s> {
-    simulator: &'s Simulator,
-    motion: JetClosure<'s>,
-    run: RungeKutta,
-    steps: usize,
-    coordinates: usize,
-    interruption: Interruption<'s>,
-    is_cut: bool,
-}
-
-impl<'s> ExplicitJets<'s> {
-    /// Assembles the jet around `center`; the parameters' half widths are its first derivatives.
-    ///
-    /// # Errors
-    /// Where the centre cannot be assembled.
-    pub fn start(
-        simulator: &'s Simulator,
-        space: &'s JetSpace,
-        (center, half_width): (&[f64], &[f64]),
-    ) -> Result<Self, SimulationError> {
-        let start = simulator.assemble(1, 0.0, |_| center.iter().copied().collect())?;
-        let mut motion = JetClosure::new(simulator, space, (center, half_width), &start)?;
-        let state = motion.start(simulator, space, (center, half_width))?;
-        let run = RungeKutta::start(&mut motion, 0.0, state);
-        Ok(Self {
-            simulator,
-            motion,
-            run,
-            steps: 0,
-            coordinates: simulator.system.q.len(),
-            interruption: Interruption::default(),
-            is_cut: false,
-        })
-    }
-
-    /// As [`JetRun::heeding`](crate::simulate::JetRun::heeding).
-    #[must_use]
-    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
-        Self { interruption, ..self }
-    }
-
-    /// As [`JetRun::is_cut`](crate::simulate::JetRun::is_cut).
-    pub fn is_cut(&self) -> bool {
-        self.is_cut
-    }
-
-    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
-    /// output, coefficient by coefficient. Returns where the run stopped, if it did.
-    pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
-        into.clear();
-        let ends = schedule.ending_at(Instants::of(self.simulator)).ends();
-        let mut state = vec![0.0; self.run.state.len()];
-        for row in rows {
-            let time = schedule.time(row);
-            let steps = (&mut self.steps, &ends[..]);
-            let (interruption, is_cut) = (self.interruption, &mut self.is_cut);
-            let mut stepped = |_: &mut RungeKutta, _: &mut JetClosure, _| {
-                *is_cut |= interruption.is_asked();
-                !*is_cut
-            };
-            reach(&mut self.run, &mut self.motion, steps, time, (&mut state, &mut stepped));
-            if self.is_cut {
-                return None;
-            }
-            if let Some(place) = state.iter().position(|value| !value.is_finite()) {
-                let place = place * 2 * self.coordinates / state.len() % self.coordinates.max(1);
-                let equation = EquationId::new(place);
-                return Some(Stop { sample: 0, row, time, equation, open: None, singular: true });
-            }
-            self.motion.close(time, &mut state);
-            self.motion.observe(into);
-        }
-        None
-    }
 }
