@@ -55,8 +55,8 @@ pub mod simulate {
 
 pub mod study {
     pub use crate::study::{
-        AllocateOptions, CostOptions, Evaluator, Kept, Options, allocate, cost, explain, language_costs, prepare, run,
-        run_keeping,
+        AllocateOptions, CostOptions, Evaluator, Kept, Options, allocate, cost, explain, language_costs, prepare,
+        ready, run, run_keeping,
     };
 }
 

@@ -7,6 +7,7 @@ mod allocate;
 mod analyses;
 mod bad_models;
 mod book;
+mod check_and_run;
 mod cli;
 mod cost;
 mod declared_units;

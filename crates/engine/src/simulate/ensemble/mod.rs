@@ -1,6 +1,7 @@
 //! Samples over a step schedule: many at once, or one as a polynomial in the uncertain parameters.
 
 mod extrapolated;
+mod jet_states;
 mod jets;
 mod lane_steps;
 mod observed;

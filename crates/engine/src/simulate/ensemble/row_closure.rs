@@ -6,7 +6,7 @@
 
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
-use super::jets::{add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
+use super::jet_states::{add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
 use crate::compile::{Layout, StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;

@@ -1,11 +1,12 @@
-//! The run of one jet under a schedule.
+//! The run of one jet under a schedule, about the middle of the box.
 
 use std::ops::Range as Rows;
+use std::sync::atomic::Ordering;
 
 use symdiff::jet::JetSpace;
 
-use super::effort;
-use crate::methods::Effort;
+use super::{Motions, effort, stopped_at};
+use crate::methods::{Effort, JET_WORK, Simulated};
 use crate::simulate::{
     ExplicitJets, ExtrapolatedJets, Integration, Interruption, JetRun, Schedule, SimulationError, Simulator, Stop,
 };
@@ -77,5 +78,47 @@ impl<'s> SampleJet<'s> {
             }
             Self::Explicit(_) => Effort::default(),
         }
+    }
+}
+
+/// Rows of a block.
+const BLOCK: usize = 64;
+
+impl Motions<'_> {
+    /// As [`Ensemble::jets`](crate::methods::Ensemble::jets).
+    ///
+    /// # Errors
+    /// Where the middle of the box cannot be assembled.
+    pub(super) fn jet_about_middle(
+        &self,
+        space: &JetSpace,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, SimulationError> {
+        let parameters = 0..self.domain.dimension();
+        let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
+        let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
+        if self.simulator.system.analysis.visits() {
+            return self.visit_jets(space, &center.into(), &half_widths, reduce);
+        }
+        let box_of_jet = (&center[..], &half_widths[..]);
+        let jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
+        let mut jet = jet.heeding(Interruption::new(self.interrupted));
+        let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
+        while next < self.schedule.rows && stop.is_none() {
+            let rows = next..(next + BLOCK).min(self.schedule.rows);
+            stop = jet.advance(self.schedule, rows.clone(), &mut values);
+            if jet.is_cut() {
+                break;
+            }
+            reduce(rows.clone(), &values);
+            self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
+            next = rows.end;
+        }
+        if next == self.schedule.rows || stop.is_some() {
+            self.over.fetch_add(1, Ordering::Relaxed);
+        }
+        let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
+        let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
+        Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
     }
 }

@@ -19,14 +19,13 @@ use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, Until};
+use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated, Until};
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
     SimulationError, Simulator, Steps, Stop, choose_independent,
 };
 
-use jet::SampleJet;
 pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
 use told::effort;
@@ -315,34 +314,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
-        let parameters = 0..self.domain.dimension();
-        let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
-        let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
-        if self.simulator.system.analysis.visits() {
-            return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
-        }
-        let box_of_jet = (&center[..], &half_widths[..]);
-        let jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
-        let mut jet = jet.heeding(Interruption::new(self.interrupted));
-        let mut values = Vec::new();
-        let mut stop = None;
-        let mut next = 0;
-        while next < self.schedule.rows && stop.is_none() && !self.is_interrupted() {
-            let rows = next..(next + MOST_ROWS).min(self.schedule.rows);
-            stop = jet.advance(self.schedule, rows.clone(), &mut values);
-            if jet.is_cut() {
-                break;
-            }
-            reduce(rows.clone(), &values);
-            self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
-            next = rows.end;
-        }
-        if next == self.schedule.rows || stop.is_some() {
-            self.over.fetch_add(1, Ordering::Relaxed);
-        }
-        let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
-        let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
-        Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
+        Ok(self.jet_about_middle(space, reduce)?)
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {
