@@ -16,4 +16,4 @@ pub const CONTRADICTED: usize = 0;
 
 /// Draws of shares that fail and of allocations, and how many are known to be missed.
 pub const SHARES: (u64, usize) = (12, 0);
-pub const ALLOCATIONS: (u64, usize) = (24, 2);
+pub const ALLOCATIONS: (u64, usize) = (24, 0);
