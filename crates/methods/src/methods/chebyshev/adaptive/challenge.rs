@@ -93,8 +93,12 @@ impl Scale {
         let first: Vec<f64> = (0..k).map(first).collect();
         let most = first.iter().copied().fold(0.0, f64::max);
         let weight = |own: f64| if most > 0.0 { own / most } else { 1.0 };
-        let highest = sub_box.degrees().into_iter().max().unwrap_or(0);
-        Self { weights: first.into_iter().map(weight).collect(), near: NEAR / f64::from(highest.max(1)) }
+        let degrees = sub_box.degrees();
+        let highest = degrees.iter().copied().max().unwrap_or(0).max(1);
+        // An axis that matters little may still be off along it by more than is allowed: its nodes say how much.
+        let weight = |(own, degree): (f64, u8)| weight(own).max(f64::from(degree) / f64::from(highest));
+        let weights = first.into_iter().zip(degrees).map(weight).collect();
+        Self { weights, near: NEAR / f64::from(highest) }
     }
 
     fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
