@@ -39,7 +39,7 @@ fn a_bump_in_two_parameters_is_covered() {
     }
 }
 
-/// A start that is largest on a ring, which the budget is too small to follow: what was refined last is challenged, too.
+/// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too.
 #[test]
 fn a_ring_that_the_budget_does_not_resolve_is_flagged_or_covered() {
     let bounds = run(&read(

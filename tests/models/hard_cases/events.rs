@@ -148,7 +148,8 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.05 }
         failure.contains("`sign(block.vx)` in the motion of `block.x`") && failure.contains("joint_friction"),
         "{failure}"
     );
-    // Half a period takes the block from 0.5 m to −0.5 + 2 · 0.3 = 0.1 m, where the spring's 10 N are less than the friction's 30 N.
+    // Half a period takes the block from 0.5 m to −0.5 + 2 · 0.3 = 0.1 m, where the spring's 10 N are less than the
+    // friction's 30 N.
     let time: f64 = failure.split("t = ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((time - PI / 10.0).abs() < 0.01, "{failure}");
 }

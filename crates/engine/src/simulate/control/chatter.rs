@@ -46,7 +46,7 @@ impl Chatter {
     }
 
     /// A lane of those that run, its switch, and since when, s, it chatters, where that would take too many steps from
-    /// this time on for what is left, s, of the run.
+    /// this time on for the rest, s, of the run.
     pub fn endless(&self, running: &[bool], time: f64, left: f64) -> Option<(usize, usize, f64)> {
         let too_many = |lane: &Lane| left * lane.steps as f64 > MOST_CHATTERING as f64 * (time - lane.since);
         let endless =

@@ -184,7 +184,7 @@ impl<'s> Control<'s> {
         } else if attempt.accepted {
             self.count += 1;
             if let Some((lane, term, since)) = self.steps.endless(attempt.end) {
-                return Outcome::Ended(self.chattering(lane, term, (since, attempt.step)));
+                return Outcome::Ended(self.chattering(lane, term, since, attempt.step));
             }
             if let Some(sampling) = &mut self.sampling {
                 sampling.end(&mut self.steps.stepper, attempt.end);
@@ -222,7 +222,7 @@ impl<'s> Control<'s> {
     }
 
     /// Why no sample goes on: the term of the equations that switches to and fro in a lane is that of all others.
-    fn chattering(&self, lane: usize, term: Expr, (time, step): (f64, f64)) -> SimulationError {
+    fn chattering(&self, lane: usize, term: Expr, time: f64, step: f64) -> SimulationError {
         let system = &self.simulator.system;
         let LocalError { coordinate, change, .. } = self.steps.stepper.local_errors()[lane];
         let cause = format!(

@@ -123,8 +123,8 @@ impl<'s> SwitchWatch<'s> {
     }
 }
 
-/// Where (of switch 0) the cubic through (value, rate) at both ends of a step first changes its sign; the line where rates are
-/// unknown. A value of zero has the sign that follows.
+/// Where the cubic through (value, rate) at both ends of a step first changes its sign, as of switch 0; the line where
+/// rates are unknown. A value of zero has the sign that follows.
 fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64) -> Option<Crossing> {
     if !start.is_finite() || !end.is_finite() || start == 0.0 {
         return None;

@@ -108,9 +108,9 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     // Where worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all
     // requirements hold.
     let is_flat = slack.power() == Power::First && is_flat(slack, &from, tightest);
-    let starts = if is_flat { flat_starts(slack, items, (tightest, &priced), &from) } else { vec![from] };
+    let starts = if is_flat { flat_starts(slack, items, tightest, &priced, &from) } else { vec![from] };
     let cost = |multiples: &[f64]| priced.iter().filter_map(|&i| items[i].cost(multiples[i])).sum::<f64>();
-    let found = starts.into_iter().map(|start| settled(slack, items, (tightest, &priced), start));
+    let found = starts.into_iter().map(|start| settled(slack, items, tightest, &priced, start));
     let cheaper = |a: Vec<f64>, b: Vec<f64>| if cost(&b) < cost(&a) { b } else { a };
     found.reduce(cheaper).unwrap_or_else(|| tightest.to_vec())
 }
@@ -120,7 +120,8 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
 fn flat_starts(
     slack: &mut dyn Slack,
     items: &[Item],
-    (tightest, priced): (&[f64], &[usize]),
+    tightest: &[f64],
+    priced: &[usize],
     from: &[f64],
 ) -> Vec<Vec<f64>> {
     let mut starts = Vec::new();
@@ -145,7 +146,8 @@ fn flat_starts(
 fn settled(
     slack: &mut dyn Slack,
     items: &[Item],
-    (tightest, priced): (&[f64], &[usize]),
+    tightest: &[f64],
+    priced: &[usize],
     mut multiples: Vec<f64>,
 ) -> Vec<f64> {
     let costs: Vec<f64> = priced.iter().filter_map(|&i| items[i].cost(1.0)).collect();

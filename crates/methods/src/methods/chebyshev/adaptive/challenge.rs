@@ -96,8 +96,8 @@ impl Scale {
         let degrees = sub_box.degrees();
         let highest = degrees.iter().copied().max().unwrap_or(0).max(1);
         // An axis that matters little may still be off along it by more than is allowed: its nodes say how much.
-        let weight = |(own, degree): (f64, u8)| weight(own).max(f64::from(degree) / f64::from(highest));
-        let weights = first.into_iter().zip(degrees).map(weight).collect();
+        let weight = |own: f64, degree: u8| weight(own).max(f64::from(degree) / f64::from(highest));
+        let weights = first.into_iter().zip(degrees).map(|(own, degree)| weight(own, degree)).collect();
         Self { weights, near: NEAR / f64::from(highest) }
     }
 
