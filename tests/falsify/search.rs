@@ -30,10 +30,23 @@ pub fn ranges(term: &Term, times: &[f64], level: u32) -> Vec<Vec<Range>> {
     (0..channels).map(|channel| (0..times.len()).map(|row| range(channel, row)).collect()).collect()
 }
 
+/// Whether the curves change with a parameter, in the middle of the others' intervals or at their ends: a grid has the
+/// more points the fewer parameters it has.
+fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -> bool {
+    let curves = |others: usize, own: usize| {
+        let value = |(i, parameter): (usize, &Parameter)| {
+            let [lower, upper] = parameter.interval();
+            [lower, upper, parameter.value][if i == which { own } else { others }]
+        };
+        (term.curves)(&parameters.iter().enumerate().map(value).collect::<Vec<f64>>(), times)
+    };
+    parameters[which].half > 0.0 && (0..3).any(|others| curves(others, 0) != curves(others, 1))
+}
+
 impl<'t> Grid<'t> {
     fn new(term: &'t Term, times: &[f64], level: u32) -> Self {
         let parameters = term.seen();
-        let uncertain: Vec<usize> = (0..parameters.len()).filter(|&i| parameters[i].half > 0.0).collect();
+        let uncertain: Vec<usize> = (0..parameters.len()).filter(|&i| matters(term, &parameters, i, times)).collect();
         let few = match (uncertain.len(), term.integrated) {
             (0 | 1, false) => 512,
             (0 | 1, true) => 96,

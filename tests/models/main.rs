@@ -32,6 +32,7 @@ mod formulas;
 mod formulations;
 mod hard_cases;
 mod honesty;
+mod honesty_adaptive;
 mod honesty_jumps;
 mod honesty_search;
 mod humanoid;

@@ -187,6 +187,43 @@ bounds: { chebyshev: { order: 5 } }
     assert_eq!(requirement(&summary, "occurs").verdict, Verdict::Violated);
 }
 
+/// Humps that pass from one window of the time to another: a channel is far off where another one is larger, and the
+/// error of the maximum is that of the maximum.
+#[test]
+fn a_maximum_of_humps_that_move_over_the_time_is_off_by_little() {
+    let text = "
+parameters: { k: { interval: [95, 105], unit: N/m }, w: { interval: [8, 12], unit: rad/s } }
+bodies: { m: { mass: 1 kg, coordinates: [x] } }
+effects: { s: { force: { on: m, value: [\"-k*m.x - 0.5 N*s/m*m.vx + 1 N*sin(w*t)\", 0] } } }
+initial: { m.x: 0, m.vx: 0 }
+outputs: { x: m.x, top: { max: m.x } }
+simulation: { duration: 4, step: 0.002, output_step: 0.02 }
+bounds: { chebyshev: { order: 6 } }
+";
+    let summary = summary(&read(text));
+    let band = &reduced(&summary, "top").bands[0];
+    let (mut lower, mut upper) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (i, j) in (0..=50).flat_map(|i| (0..=50).map(move |j| (f64::from(i) / 50.0, f64::from(j) / 50.0))) {
+        let (k, w, decay) = (95.0 + 10.0 * i, 8.0 + 4.0 * j, 0.25);
+        // x = a sin(ωt) + b cos(ωt) + e^(−δt) (c cos(νt) + d sin(νt)), at rest at 0.
+        let (tuned, loss) = (k - w * w, 2.0 * decay * w);
+        let [a, b] = [tuned, -loss].map(|part| part / (tuned * tuned + loss * loss));
+        let own = (k - decay * decay).sqrt();
+        let (c, d) = (-b, -(a * w + decay * b) / own);
+        let x = |t: f64| {
+            let free = c * (own * t).cos() + d * (own * t).sin();
+            a * (w * t).sin() + b * (w * t).cos() + (-decay * t).exp() * free
+        };
+        let top = (0..=800).map(|row| x(0.005 * f64::from(row))).fold(f64::NEG_INFINITY, f64::max);
+        (lower, upper) = (f64::min(lower, top), f64::max(upper, top));
+    }
+    println!("[{lower}, {upper}] {band:?}");
+    // What the grids miss of the truth.
+    let missed = 1e-4;
+    let off = (band.lower - lower).abs().max((band.upper - upper).abs());
+    assert!(off <= band.error + missed && band.error < 0.05, "{band:?} instead of [{lower}, {upper}]");
+}
+
 /// Thrown up at 3 m/s under 9 m/s² it rises to 0.5 m, which is no more than 0.5 m, whatever rounding says.
 #[test]
 fn what_meets_its_limit_exactly_is_not_violated() {

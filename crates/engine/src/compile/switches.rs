@@ -30,6 +30,10 @@ pub struct Switch {
     pub rate: Option<usize>,
     /// Places of switches of whole numbers at which the value jumps itself.
     pub jumps_with: Vec<usize>,
+    /// The term of the system's equations that jumps or has a kink there; of a condition, the condition.
+    pub of: Expr,
+    /// Whether its value depends on velocities.
+    pub of_velocity: bool,
 }
 
 impl Tapes for SwitchProgram {
@@ -48,8 +52,8 @@ impl SwitchProgram {
 /// The switches of a system's equations; `None` where there are none.
 pub fn compile_switches(system: &System) -> Option<SwitchProgram> {
     let mut graph = system.graph.clone();
-    let (values, jumps_with) = arguments(system, &mut graph);
-    compile_values(system, graph, &values, jumps_with)
+    let (values, terms) = arguments(system, &mut graph);
+    compile_values(system, graph, &values, terms)
 }
 
 /// Gaps of all surfaces that may not overlap too deeply, and then what is left of these overlaps, in the order of the
@@ -59,15 +63,15 @@ pub fn compile_overlaps(system: &System) -> Option<SwitchProgram> {
     let mut graph = system.graph.clone();
     let mut values: Vec<Expr> = overlaps.iter().map(|overlap| overlap.gap).collect();
     values.extend(overlaps.iter().map(|overlap| graph.add(overlap.gap, overlap.deepest)));
-    let jumps_with = vec![Vec::new(); values.len()];
-    compile_values(system, graph, &values, jumps_with)
+    let terms = values.iter().map(|&value| (value, Vec::new())).collect();
+    compile_values(system, graph, &values, terms)
 }
 
 fn compile_values(
     system: &System,
     mut graph: Graph,
     values: &[Expr],
-    jumps_with: Vec<Vec<usize>>,
+    terms: Vec<(Expr, Vec<usize>)>,
 ) -> Option<SwitchProgram> {
     if values.is_empty() {
         return None;
@@ -82,39 +86,47 @@ fn compile_values(
     let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &[kernel]);
     let mut registers = lowered.outputs[0].iter().map(|&register| register as usize);
     let of_values: Vec<usize> = registers.by_ref().take(values.len()).collect();
-    let switches = of_values.into_iter().zip(has_rate).zip(jumps_with).map(|((value, known), jumps_with)| Switch {
+    let of_velocity = values.iter().map(|&value| depends(&graph, value, &system.v));
+    let switches = of_values.into_iter().zip(has_rate).zip(terms).zip(of_velocity);
+    let switches = switches.map(|(((value, known), (of, jumps_with)), of_velocity)| Switch {
         value,
         rate: if known { registers.next() } else { None },
         jumps_with,
+        of,
+        of_velocity,
     });
     let switches = switches.collect();
     Some(SwitchProgram { layout, switches, lowered })
 }
 
-/// The arguments that change during a motion, each once, and of each the places of those at which it jumps.
-fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<Vec<usize>>) {
+/// The arguments that change during a motion, each once, and of each the term that has it and the places of those at
+/// which it jumps.
+fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<(Expr, Vec<usize>)>) {
     let constraints = system.named_constraints().map(|(value, _)| value);
     let roots: Vec<Expr> = system.force.iter().chain(&system.inertia).copied().chain(constraints).collect();
     let mut found = Vec::new();
     let mut of_floor: FxHashMap<Expr, Expr> = FxHashMap::default();
+    let mut terms: FxHashMap<Expr, Expr> = FxHashMap::default();
     let values = reachable_values(graph, &roots);
     for expr in graph.reachable(&roots) {
         let kinks = |node| matches!(node, Node::Unary(Unary::Abs, _) | Node::Binary(Binary::Min | Binary::Max, ..));
         if kinks(graph.node(expr)) && !values.contains(&expr) {
             continue;
         }
-        found.push(match graph.node(expr) {
-            Node::Unary(Unary::Abs | Unary::Sign, a) => a,
-            Node::Binary(Binary::Select | Binary::SelectElse, condition, _) => condition,
-            Node::Binary(Binary::Min | Binary::Max, a, b) => graph.sub(a, b),
+        let (argument, term) = match graph.node(expr) {
+            Node::Unary(Unary::Abs | Unary::Sign, a) => (a, expr),
+            Node::Binary(Binary::Select | Binary::SelectElse, condition, _) => (condition, condition),
+            Node::Binary(Binary::Min | Binary::Max, a, b) => (graph.sub(a, b), expr),
             Node::Unary(Unary::Floor, a) => {
                 let turns = graph.scale(PI, a);
                 let sine = graph.sin(turns);
                 of_floor.insert(expr, sine);
-                sine
+                (sine, expr)
             }
             _ => continue,
-        });
+        };
+        found.push(argument);
+        terms.entry(argument).or_insert(term);
     }
     let moving: Vec<Expr> = [system.time]
         .iter()
@@ -129,8 +141,9 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<Vec<usize>>)
     // What only jumps does so where something else switches.
     found.retain(|&argument| graph.changes_steadily(argument, &moving));
     let place = |of: Expr| of_floor.get(&of).and_then(|sine| found.binary_search(sine).ok());
-    let jumps_with = found.iter().map(|&of| graph.reachable(&[of]).into_iter().filter_map(place).collect()).collect();
-    (found, jumps_with)
+    let jumps_with = |of: Expr| graph.reachable(&[of]).into_iter().filter_map(place).collect();
+    let terms = found.iter().map(|&of| (terms[&of], jumps_with(of))).collect();
+    (found, terms)
 }
 
 /// What the roots are made of but for conditions, of which the sign alone counts: a kink in one is none of theirs.

@@ -66,6 +66,21 @@ pub fn motion_name(coordinate: Coordinate, order: TimeOrder) -> &'static str {
     MOTIONS.iter().find(|(_, c, o)| (*c, *o) == (coordinate, order)).map_or("", |(name, ..)| name)
 }
 
+/// The name of a derivative of a coordinate of a body or a joint: `block.vx` for `block.x`. The coordinate's own, where
+/// its derivatives have none.
+pub fn derivative_name(coordinate: &str, order: TimeOrder) -> String {
+    let derivative = coordinate.rsplit_once('.').and_then(|(owner, position)| {
+        let of_body = MOTIONS.iter().find(|(name, ..)| *name == position).map(|(_, of, _)| motion_name(*of, order));
+        let of_joint = || {
+            let (_, of, _) = JOINT_MOTIONS.iter().find(|(name, ..)| *name == position)?;
+            JOINT_MOTIONS.iter().find(|(_, c, o)| (c, *o) == (of, order)).map(|(name, ..)| *name)
+        };
+        let name = of_body.or_else(of_joint).filter(|name| !name.is_empty())?;
+        Some(format!("{owner}.{name}"))
+    });
+    derivative.unwrap_or_else(|| coordinate.to_owned())
+}
+
 /// The dimension of a joint's coordinate and of its derivatives.
 pub fn joint_dimension(coordinate: JointCoordinate, order: TimeOrder) -> Dimension {
     match coordinate {

@@ -198,6 +198,12 @@ pub trait Ensemble: Sync {
     /// Whether an output's formula has kinks.
     fn has_kink(&self, output: usize) -> bool;
 
+    /// Whether an output is the largest or the least of some coordinates, or made of both: coordinates that are far off
+    /// where they do not count leave it as it is.
+    fn is_extreme(&self, _output: usize) -> bool {
+        false
+    }
+
     /// Whether an output's formula jumps.
     fn jumps(&self, output: usize) -> bool;
 

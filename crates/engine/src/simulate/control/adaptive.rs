@@ -1,5 +1,8 @@
 //! Steps whose size follows the local errors of a tile's samples, together.
 
+use symdiff::Expr;
+
+use super::chatter::Chatter;
 use super::controller::Controller;
 use super::switch_watch::{Crossing, SwitchWatch};
 use crate::simulate::features::FeatureWatch;
@@ -32,6 +35,7 @@ pub struct Adaptive<'s> {
     time: usize,
     /// Lanes whose equations switched in the step before.
     switched: Vec<bool>,
+    chatter: Chatter,
 }
 
 /// A step that was tried.
@@ -54,8 +58,9 @@ impl<'s> Adaptive<'s> {
         stepper.estimate_errors();
         let watch = simulator.switches().map(|program| SwitchWatch::new(program, stepper.tile()));
         let switched = vec![false; stepper.alive().len()];
+        let chatter = Chatter::new(switched.len());
         let features = simulator.features().map(FeatureWatch::new);
-        Self { controller, stepper, h, watch, features, time: simulator.program.layout.time, switched }
+        Self { controller, stepper, h, watch, features, time: simulator.program.layout.time, switched, chatter }
     }
 
     /// The equations have just switched in all lanes.
@@ -71,6 +76,14 @@ impl<'s> Adaptive<'s> {
     /// Whether a sample has just passed a switch.
     pub fn has_switched(&self) -> bool {
         self.switched.contains(&true)
+    }
+
+    /// A lane that has been switching to and fro up to `time`, s, and would take too many steps up to the end of the
+    /// run; the term of the equations that jumps, and since when, s.
+    pub fn endless(&self, time: f64) -> Option<(usize, Expr, f64)> {
+        let (lane, switch, since) =
+            self.chatter.endless(self.stepper.alive(), time, self.controller.duration - time)?;
+        self.watch.as_ref().map(|watch| (lane, watch.switch(switch).of, since))
     }
 
     /// Tries a step from `time` towards a goal. One that is not accepted is to be [rejected](Self::reject).
@@ -114,6 +127,10 @@ impl<'s> Adaptive<'s> {
         };
         if accepted {
             self.switched = crossings.iter().map(Option::is_some).collect();
+            let watch = &self.watch;
+            let of_velocity = |&index: &usize| watch.as_ref().is_some_and(|watch| watch.switch(index).of_velocity);
+            let switch = |crossing: &Option<Crossing>| crossing.map(|crossing| crossing.switch).filter(of_velocity);
+            self.chatter.note(crossings.iter().map(switch), end);
         }
         Attempt { step, end, ratios, accepted, before }
     }

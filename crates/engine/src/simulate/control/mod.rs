@@ -2,6 +2,7 @@
 //! of the time ask for it.
 
 mod adaptive;
+mod chatter;
 mod controller;
 mod division;
 mod instants;

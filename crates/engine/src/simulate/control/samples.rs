@@ -1,11 +1,13 @@
 //! A step schedule from a tolerance: controlling samples, stepped together, decide the steps that all samples take.
 
-use symdiff::WIDTHS;
+use symdiff::{Expr, WIDTHS};
 
 use super::adaptive::{Adaptive, Attempt};
+use super::chatter::MOST_CHATTERING;
 use super::controller::Controller;
 use super::schedule::Schedule;
 use crate::numerics::Sample;
+use crate::simulate::diagnostics::{place_of, written};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
@@ -179,6 +181,9 @@ impl<'s> Control<'s> {
             Outcome::Dropped(self.drop_failing(&attempt, time, goal))
         } else if attempt.accepted {
             self.count += 1;
+            if let Some((lane, term, since)) = self.steps.endless(attempt.end) {
+                return Outcome::Ended(self.chattering(lane, term, since, attempt.step));
+            }
             if let Some(sampling) = &mut self.sampling {
                 sampling.end(&mut self.steps.stepper, attempt.end);
             }
@@ -212,6 +217,20 @@ impl<'s> Control<'s> {
         self.dropped.extend(failing.into_iter().filter(|&lane| lane < self.samples.len()));
         self.steps.h = FIRST_STEP * self.output_step;
         error
+    }
+
+    /// Why no sample goes on: the term of the equations that switches to and fro in a lane is that of all others.
+    fn chattering(&self, lane: usize, term: Expr, time: f64, step: f64) -> SimulationError {
+        let system = &self.simulator.system;
+        let LocalError { coordinate, change, .. } = self.steps.stepper.local_errors()[lane];
+        let cause = format!(
+            "{} jumps to and fro and changes the acceleration of `{}` by {change:.3e}, as `sign` of a velocity does at \
+             rest; a smooth law holds it: `tanh(v/v0)` in place of `sign(v)`, with a small speed v0, or the effect \
+             `joint_friction`",
+            place_of(system, term, &written(&system.graph, term)),
+            system[coordinate].name,
+        );
+        SimulationError::TooManySteps { steps: MOST_CHATTERING, step, time, cause }
     }
 
     /// Why a lane misses its tolerance: an equation that does not converge, or the acceleration that changes most.

@@ -27,6 +27,8 @@ pub struct Crossing {
     pub share: f64,
     /// Whether the ends of the step do not show it: it changed back.
     pub hidden: bool,
+    /// The index of the switch.
+    pub switch: usize,
 }
 
 impl Crossing {
@@ -97,12 +99,17 @@ impl<'s> SwitchWatch<'s> {
         }
     }
 
+    /// The switch at an index.
+    pub fn switch(&self, index: usize) -> &Switch {
+        &self.program.switches[index]
+    }
+
     /// The first crossing of a lane in the step of length h between [`begin`](Self::begin) and [`end`](Self::end).
     pub fn crossing(&self, lane: usize, h: f64) -> Option<Crossing> {
         let width = self.tile.width();
         let of_switch = |switch: usize| {
             let place = switch * width + lane;
-            crossing(self.before[place], self.after[place], h)
+            crossing(self.before[place], self.after[place], h).map(|crossing| Crossing { switch, ..crossing })
         };
         // What jumps where a whole number is passed has no crossing of its own there.
         let jumps = |switch: &usize| {
@@ -116,15 +123,15 @@ impl<'s> SwitchWatch<'s> {
     }
 }
 
-/// Where the cubic through (value, rate) at both ends of a step first changes its sign; the line where rates are
-/// unknown. A value of zero has the sign that follows.
+/// Where the cubic through (value, rate) at both ends of a step first changes its sign, as of switch 0; the line where
+/// rates are unknown. A value of zero has the sign that follows.
 fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64) -> Option<Crossing> {
     if !start.is_finite() || !end.is_finite() || start == 0.0 {
         return None;
     }
     let changes = start * end <= 0.0;
     if !(start_rate.is_finite() && end_rate.is_finite()) {
-        return changes.then(|| Crossing { share: start / (start - end), hidden: false });
+        return changes.then(|| Crossing { share: start / (start - end), hidden: false, switch: 0 });
     }
     // Without a change of sign at the ends, it has to approach zero first and to leave it last.
     let approaches = start * start_rate < 0.0 && end * end_rate > 0.0;
@@ -147,7 +154,7 @@ fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64) ->
             low = middle;
         }
     }
-    Some(Crossing { share: high, hidden: !changes })
+    Some(Crossing { share: high, hidden: !changes, switch: 0 })
 }
 
 #[cfg(test)]

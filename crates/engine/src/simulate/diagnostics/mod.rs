@@ -11,7 +11,7 @@ mod singular;
 mod undetermined;
 
 pub use cannot_close::OpenConstraint;
-pub use not_finite::{not_finite, written};
+pub use not_finite::{not_finite, place_of, written};
 pub use outside::outside;
 pub use over_constrained::over_constrained;
 pub use overlap::{OverlapWatch, TooDeep};

@@ -4,6 +4,8 @@ use symdiff::{Binary, Expr, Graph, Node, Unary};
 
 use crate::assemble::System;
 use crate::compile::Layout;
+use crate::grammar::TimeOrder;
+use crate::grammar::motions::derivative_name;
 use crate::simulate::motion_values::motion_values;
 
 /// Operations of a term that are written out; deeper ones are left out.
@@ -36,6 +38,17 @@ pub fn not_finite(system: &System, layout: &Layout, state: &[f64], time: f64) ->
     Some(format!("`{}` in {place}", written(graph, term)))
 }
 
+/// A formula, and the motion or the joint that the term `of` is part of.
+pub fn place_of(system: &System, of: Expr, formula: &str) -> String {
+    let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());
+    let named = motion.map(|(&root, coordinate)| (root, format!("the motion of `{}`", coordinate.name)));
+    let mut named = named.chain(system.named_constraints().map(|(root, info)| (root, format!("`{}`", info.name))));
+    match named.find(|&(root, _)| system.graph.reachable(&[root]).contains(&of)) {
+        Some((_, place)) => format!("`{formula}` in {place}"),
+        None => format!("`{formula}`"),
+    }
+}
+
 /// A term as a formula.
 pub fn written(graph: &Graph, expr: Expr) -> String {
     written_to(graph, expr, DEEPEST)
@@ -54,8 +67,13 @@ fn written_to(graph: &Graph, expr: Expr, depth: usize) -> String {
         Node::Constant(bits) => f64::from_bits(bits).to_string(),
         Node::Symbol(_) => {
             let name = graph.symbol_name(expr).unwrap_or_default();
-            // `q:rod.angle`, `p:length`.
-            name.split_once(':').map_or(name, |(_, name)| name).to_owned()
+            // `q:rod.angle`, `v:rod.angle`, `p:length`.
+            match name.split_once(':') {
+                Some(("v", coordinate)) => derivative_name(coordinate, TimeOrder::Velocity),
+                Some(("w", coordinate)) => derivative_name(coordinate, TimeOrder::Acceleration),
+                Some((_, name)) => name.to_owned(),
+                None => name.to_owned(),
+            }
         }
         Node::Unary(Unary::Neg, a) => format!("-{}", part(a)),
         Node::Unary(Unary::Spline(..), a) => format!("table({})", written_to(graph, a, depth.saturating_sub(1))),

@@ -3,6 +3,7 @@
 
 use super::resolution::{RESOLVED, TOO_FAST, TimeFunctions, Work};
 use crate::assemble::System;
+use crate::simulate::diagnostics::place_of;
 use crate::simulate::error::SimulationError;
 
 /// Functions enclosed over a box before a search is given up: a minute or two.
@@ -110,16 +111,5 @@ impl ResolvingSteps {
             None => ("a function of the time".to_owned(), h),
         };
         SimulationError::TooFast { function, period, step, time, steps: self.functions.duration() / step, most }
-    }
-}
-
-/// A formula, and the motion or the joint that it is part of.
-fn place_of(system: &System, of: symdiff::Expr, formula: &str) -> String {
-    let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());
-    let named = motion.map(|(&root, coordinate)| (root, format!("the motion of `{}`", coordinate.name)));
-    let mut named = named.chain(system.named_constraints().map(|(root, info)| (root, format!("`{}`", info.name))));
-    match named.find(|&(root, _)| system.graph.reachable(&[root]).contains(&of)) {
-        Some((_, place)) => format!("`{formula}` in {place}"),
-        None => format!("`{formula}`"),
     }
 }

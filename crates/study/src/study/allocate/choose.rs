@@ -103,20 +103,54 @@ fn continuous(slack: &mut dyn Slack, items: &[Item], tightest: &[f64], start: &[
     if priced.is_empty() {
         return tightest.to_vec();
     }
-    let costs: Vec<f64> = priced.iter().filter_map(|&i| items[i].cost(1.0)).collect();
-    let mut multiples = tightest.to_vec();
-    priced.iter().for_each(|&i| multiples[i] = start[i].clamp(tightest[i], items[i].widest));
+    let mut from = tightest.to_vec();
+    priced.iter().for_each(|&i| from[i] = start[i].clamp(tightest[i], items[i].widest));
     // Where worst cases lie inside of the box, sizes hardly change them: the linearisation begins where all
     // requirements hold.
-    if slack.power() == Power::First && is_flat(slack, &multiples, tightest) {
-        let from = multiples.clone();
+    let is_flat = slack.power() == Power::First && is_flat(slack, &from, tightest);
+    let starts = if is_flat { flat_starts(slack, items, tightest, &priced, &from) } else { vec![from] };
+    let cost = |multiples: &[f64]| priced.iter().filter_map(|&i| items[i].cost(multiples[i])).sum::<f64>();
+    let found = starts.into_iter().map(|start| settled(slack, items, tightest, &priced, start));
+    let cheaper = |a: Vec<f64>, b: Vec<f64>| if cost(&b) < cost(&a) { b } else { a };
+    found.reduce(cheaper).unwrap_or_else(|| tightest.to_vec())
+}
+
+/// Where all requirements hold: with all sizes smaller by a factor, and, since one that passes its worst case costs
+/// nothing more of a margin, with each at its widest and the others smaller.
+fn flat_starts(
+    slack: &mut dyn Slack,
+    items: &[Item],
+    tightest: &[f64],
+    priced: &[usize],
+    from: &[f64],
+) -> Vec<Vec<f64>> {
+    let mut starts = Vec::new();
+    for wide in std::iter::once(None).chain(priced.iter().map(|&wide| Some(wide))) {
         let with = |factor: f64| -> Vec<f64> {
-            let of = |i: usize| if priced.contains(&i) { (factor * from[i]).max(tightest[i]) } else { from[i] };
+            let of = |i: usize| match wide == Some(i) {
+                true => items[i].widest,
+                false if priced.contains(&i) => (factor * from[i]).max(tightest[i]),
+                false => from[i],
+            };
             (0..items.len()).map(of).collect()
         };
         let least = priced.iter().map(|&i| tightest[i] / from[i]).fold(1.0, f64::min);
-        multiples = with(largest(slack, least, 1.0, &with));
+        if wide.is_none() || is_good(slack, &with(least)) {
+            starts.push(with(largest(slack, least, 1.0, &with)));
+        }
     }
+    starts
+}
+
+/// The cheapest multiples near to some, by linearisation.
+fn settled(
+    slack: &mut dyn Slack,
+    items: &[Item],
+    tightest: &[f64],
+    priced: &[usize],
+    mut multiples: Vec<f64>,
+) -> Vec<f64> {
+    let costs: Vec<f64> = priced.iter().filter_map(|&i| items[i].cost(1.0)).collect();
     let which = usize::from(slack.power() == Power::Second);
     let (rounds, settled) = (ROUNDS[which], SETTLED[which]);
     let pick = |all: &[f64]| -> Vec<f64> { priced.iter().map(|&i| all[i]).collect() };

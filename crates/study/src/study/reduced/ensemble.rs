@@ -155,6 +155,10 @@ impl Ensemble for ReducedEnsemble<'_> {
         false
     }
 
+    fn is_extreme(&self, output: usize) -> bool {
+        self.store.plan.is_extreme(output)
+    }
+
     fn jumps(&self, _: usize) -> bool {
         false
     }

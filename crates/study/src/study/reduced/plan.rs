@@ -104,6 +104,11 @@ impl Plan {
         self.values.len()
     }
 
+    /// Whether a value is made of the largest or the least of some channels.
+    pub fn is_extreme(&self, value: usize) -> bool {
+        matches!(self.values[value], Value::Greatest(_) | Value::Least(_) | Value::Range(..) | Value::Magnitude(..))
+    }
+
     /// Which values are parts of a requirement's margin.
     pub fn parts(&self, requirement: usize) -> std::ops::Range<usize> {
         self.margins[requirement].clone()

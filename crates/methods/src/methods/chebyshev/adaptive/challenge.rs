@@ -15,9 +15,11 @@ use crate::methods::chebyshev::sub_box::SubBox;
 use crate::methods::ensemble::EnsembleError;
 use crate::numerics::{Surrogate, spread};
 
-/// Samples where outputs are least or largest, at most, and so many times the parameters where these are many.
+/// Samples where outputs are least or largest, at most; so many times the parameters where these are many, and one for
+/// so many nodes where these are: a polynomial of high degree has its tips anywhere.
 const ENDS: usize = 16;
 const ENDS_A_PARAMETER: usize = 2;
+const NODES_AN_END: usize = 4;
 
 /// Two ends are one where they are nearer to each other than this share of what nodes are apart.
 const NEAR: f64 = 0.5;
@@ -25,7 +27,7 @@ const NEAR: f64 = 0.5;
 impl Adaptation<'_> {
     /// Simulations that the next challenge of a sub-box may take.
     pub(super) fn reserve(sub_box: &SubBox) -> usize {
-        if sub_box.challenged { 0 } else { most_ends(sub_box.domain.dimension()) + sub_box.spread_wanted() }
+        if sub_box.challenged { 0 } else { most_ends(sub_box) + sub_box.spread_wanted() }
     }
 
     /// Adds to a sub-box's validation samples as many new ones as there is room for.
@@ -64,12 +66,12 @@ impl Adaptation<'_> {
         let places = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, 1), look)?;
         let known = surrogate.samples().iter().chain(sub_box.points.iter());
         let scale = Scale::of(sub_box);
-        Ok(scale.cover(&places.concat(), known, most_ends(sub_box.domain.dimension())))
+        Ok(scale.cover(&places.concat(), known, most_ends(sub_box)))
     }
 }
 
-fn most_ends(k: usize) -> usize {
-    ENDS.max(ENDS_A_PARAMETER * k)
+fn most_ends(sub_box: &SubBox) -> usize {
+    ENDS.max(ENDS_A_PARAMETER * sub_box.domain.dimension()).max(sub_box.grid.len() / NODES_AN_END)
 }
 
 /// How far apart points are for a sub-box's surrogate.
@@ -91,8 +93,12 @@ impl Scale {
         let first: Vec<f64> = (0..k).map(first).collect();
         let most = first.iter().copied().fold(0.0, f64::max);
         let weight = |own: f64| if most > 0.0 { own / most } else { 1.0 };
-        let highest = sub_box.degrees().into_iter().max().unwrap_or(0);
-        Self { weights: first.into_iter().map(weight).collect(), near: NEAR / f64::from(highest.max(1)) }
+        let degrees = sub_box.degrees();
+        let highest = degrees.iter().copied().max().unwrap_or(0).max(1);
+        // An axis that matters little may still be off along it by more than is allowed: its nodes say how much.
+        let weight = |own: f64, degree: u8| weight(own).max(f64::from(degree) / f64::from(highest));
+        let weights = first.into_iter().zip(degrees).map(|(own, degree)| weight(own, degree)).collect();
+        Self { weights, near: NEAR / f64::from(highest) }
     }
 
     fn distance(&self, a: &[f64], b: &[f64]) -> f64 {

@@ -34,7 +34,7 @@ const ADDED: f64 = 0.3;
 const TOGETHER: usize = 8;
 const GROWTH: usize = 8;
 
-/// Largest share of the remaining budget that is reserved for new validation samples.
+/// One in so many simulations of the budget, at most, is reserved for new validation samples.
 const KEPT_FREE: usize = 2;
 
 /// A surrogate that a value contradicts which was simulated elsewhere is refined until its nodes have grown by this
@@ -141,6 +141,8 @@ impl<'r> Adaptation<'r> {
             if (met && !doubted) || stopped || self.is_spent() {
                 return self.conclude(boxes);
             }
+            // A box that is refined is to be challenged again.
+            boxes[worst].challenged = false;
             let reserve = boxes.iter().map(Self::reserve).sum();
             if doubted {
                 let enough = boxes[worst].grid.len() + boxes[worst].grid.len().div_ceil(DOUBTED);
@@ -250,7 +252,7 @@ impl<'r> Adaptation<'r> {
     /// samples.
     fn refine(&mut self, sub_box: &mut SubBox, reserve: usize) -> Result<(), EnsembleError> {
         let left = self.goal.budget.simulations.saturating_sub(self.goal.spent);
-        let room = left - reserve.min(left / KEPT_FREE);
+        let room = left.saturating_sub(reserve.min(self.goal.budget.simulations / KEPT_FREE));
         let wanted = TOGETHER.max(sub_box.grid.len() / GROWTH);
         let mut generations = sub_box.next(ADDED, wanted);
         let mut count = 0;
@@ -260,6 +262,7 @@ impl<'r> Adaptation<'r> {
             count += added.len();
         }
         generations.retain(|added| !added.is_empty());
+        self.exhausted |= room == 0;
         if generations.is_empty() {
             return Ok(());
         }

@@ -68,10 +68,21 @@ impl Row<'_> {
                 let between = if self.ensemble.has_kink(output) { BETWEEN_KINKS } else { 1.0 };
                 return found.gap + largest([between * surrogate_error(&own, &simulated), tail]);
             }
+            let compared = self.compared_extreme(output, points, &simulated);
+            let moved = if compared < moved { compared } else { moved };
             let outside = simulated.into_iter().map(|value| found.range.distance(value));
             found.gap + largest(outside.chain([moved]))
         };
         extents.iter().zip(moved).enumerate().map(error).collect()
+    }
+
+    /// How far off an extreme of coordinates is wherever it is compared, and between these points: no end of it is off
+    /// by more, however far off a coordinate is where another one is larger. Infinite for other outputs.
+    fn compared_extreme(&self, output: usize, points: &[Vec<f64>], simulated: &[f64]) -> f64 {
+        if !self.ensemble.is_extreme(output) {
+            return f64::INFINITY;
+        }
+        BETWEEN_KINKS * surrogate_error(&self.predict_some(&[output], points), simulated)
     }
 
     /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as
