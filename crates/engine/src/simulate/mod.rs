@@ -10,6 +10,7 @@
 //! - `sampling`: states that change at instants, at which steps end;
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
 //! - `closure`: the motion from independent coordinates, without integration;
+//! - `events`: instants at which equations switch, and motions cut there;
 //! - `unmet_switch`: contacts and kinks that some parameter values meet and no sample does;
 //! - `features`: bumps, waves and tables in space that a step may pass over;
 //! - `modes`: fast modes that the start excites and the steps damp;
@@ -22,6 +23,7 @@ mod diagnostics;
 mod enclosure;
 mod ensemble;
 mod error;
+mod events;
 mod excitations;
 mod explicit;
 mod fast_states;

@@ -1,7 +1,8 @@
 //! Steps whose size follows the local errors of a tile's samples, together.
 
 use super::controller::Controller;
-use super::switch_watch::{Crossing, SwitchWatch};
+use super::switch_watch::SwitchWatch;
+use crate::simulate::events::locate::Crossing;
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
