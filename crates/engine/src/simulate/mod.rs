@@ -49,6 +49,7 @@ pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetRun, Observed, Stop};
 pub use error::SimulationError;
+pub use events::{SegmentRun, segments_of};
 pub use explicit::{ExplicitJets, ExplicitObstacle, explicit_schedule};
 pub use modal::is_one_number;
 pub use modes::{ExcitedMode, excited_modes};

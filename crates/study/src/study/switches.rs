@@ -20,6 +20,10 @@ impl Study<'_> {
         if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
+        // All samples of such a schedule have been held against its events.
+        if steps.schedule.segments().is_some() {
+            return Ok(None);
+        }
         (self.stage)("searching for switches");
         let begun = Instant::now();
         let at_rows = steps.schedule.ending_at_rows();

@@ -40,10 +40,24 @@ impl<'s> SwitchWatch<'s> {
         self.after = values;
     }
 
+    /// Goes on from a step's end: the next begins there.
+    pub fn go_on(&mut self) {
+        std::mem::swap(&mut self.before, &mut self.after);
+    }
+
     /// (value, rate) of a switch at the step's beginning and at its end.
     pub fn ends(&self, switch: usize, lane: usize) -> [[f64; 2]; 2] {
-        let place = switch * self.tile.width() + lane;
-        [self.before[place], self.after[place]]
+        [self.at_beginning(switch, lane), self.at_end(switch, lane)]
+    }
+
+    /// (value, rate) of a switch at the step's beginning.
+    pub fn at_beginning(&self, switch: usize, lane: usize) -> [f64; 2] {
+        self.before[switch * self.tile.width() + lane]
+    }
+
+    /// (value, rate) of a switch at the step's end.
+    pub fn at_end(&self, switch: usize, lane: usize) -> [f64; 2] {
+        self.after[switch * self.tile.width() + lane]
     }
 
     /// The least and the largest value that a switch has in the step between [`begin`](Self::begin) and

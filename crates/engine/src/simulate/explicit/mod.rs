@@ -13,9 +13,9 @@
 //! - `run`: samples and jets over a schedule.
 
 mod controlling;
-mod movement;
+pub(in crate::simulate) mod movement;
 mod run;
-mod runge_kutta;
+pub(in crate::simulate) mod runge_kutta;
 mod steps;
 mod tableau;
 

@@ -257,6 +257,10 @@ impl BoundingMethod for Chebyshev {
         if self.expand == Expand::Coordinates && problem.composes { Observed::Motion } else { Observed::Outputs }
     }
 
+    fn follows_events(&self, problem: &Problem) -> bool {
+        self.observes(problem) == Observed::Motion
+    }
+
     fn bound(
         &self,
         ensemble: &dyn Ensemble,
