@@ -48,8 +48,7 @@ impl<'s> SegmentRun<'s> {
         let at_once = samples.len().div_ceil(rayon::current_num_threads().max(1)).clamp(1, WIDTH);
         let of_tile = |(place, samples): (usize, &[Sample])| {
             let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
-            let tile =
-                SegmentTile::start(simulator, (program, segments), (place * at_once, samples, width), duration)?;
+            let tile = SegmentTile::start(simulator, (program, segments), (place * at_once, samples, width), duration)?;
             let start = simulator.assemble(width, 0.0, |lane| samples[lane.min(samples.len() - 1)].clone())?;
             let rows = RowClosure::new(simulator, &start)?;
             Ok(RowTile { tile, rows, alive: vec![true; width], deviates: None })

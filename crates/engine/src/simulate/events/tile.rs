@@ -148,7 +148,8 @@ impl<'s> SegmentTile<'s> {
                 _ => self.guesses[lane][number],
             };
         }
-        let mut solved: Vec<bool> = self.motion.length.iter().map(|length| event.is_none() || length.is_nan()).collect();
+        let mut solved: Vec<bool> =
+            self.motion.length.iter().map(|length| event.is_none() || length.is_nan()).collect();
         let mut nodes = self.pass(number);
         for _ in 0..CORRECTIONS {
             for lane in (0..width).filter(|&lane| !solved[lane]).collect::<Vec<_>>() {

@@ -117,7 +117,8 @@ fn shared(all: &[Followed], duration: f64) -> Option<(Vec<Event>, Option<f64>, V
     }
     let steps = |segment: usize| {
         let of = |followed: &Followed| {
-            followed.shares(segment, followed.events[..count].get(segment).map_or(tail.unwrap_or(duration), |own| own.1))
+            followed
+                .shares(segment, followed.events[..count].get(segment).map_or(tail.unwrap_or(duration), |own| own.1))
         };
         // Those of the sample that takes most.
         all.iter().map(of).reduce(|a, b| if b.len() > a.len() { b } else { a })

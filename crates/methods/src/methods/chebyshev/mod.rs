@@ -11,6 +11,7 @@ mod estimator;
 mod outputs_alone;
 mod polynomials;
 mod range_search;
+mod segments;
 mod sensitivity;
 mod sub_box;
 
@@ -274,6 +275,12 @@ impl BoundingMethod for Chebyshev {
         let surrogate = Surrogate::tensor(order, nodes);
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
+        if composes
+            && self.expand == Expand::Coordinates
+            && let Some((bands, simulated)) = through_events(ensemble, &surrogate, &samples, validation)?
+        {
+            return Ok(bands.finish(samples.len(), simulated));
+        }
         let mut kept_rows = request.keep.then(Vec::new);
         let (bands, simulated) = match self.expand {
             Expand::Coordinates if composes => {
@@ -286,6 +293,19 @@ impl BoundingMethod for Chebyshev {
         };
         let kept = kept_rows.map(|rows| KeptSurrogate::of_box(ensemble.domain(), surrogate.basis(), rows));
         Ok(MethodResult { kept, ..bands.finish(samples.len(), simulated) })
+    }
+}
+
+/// By segments between events, where the ensemble's motions are cut there.
+fn through_events(
+    ensemble: &dyn Ensemble,
+    surrogate: &Surrogate,
+    samples: &[Sample],
+    validation: &Validation,
+) -> Result<Option<(BandBuilder, Simulated)>, EnsembleError> {
+    match ensemble.segments(samples)? {
+        Some(motions) => segments::composed(ensemble, surrogate, &motions, validation),
+        None => Ok(None),
     }
 }
 

@@ -20,10 +20,10 @@ use super::reduced::{Store, steps_of};
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
 use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, Until};
-use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
+use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
-    Certifier, Channel, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SimulationError,
-    Simulator, Steps, Stop, choose_independent,
+    Certifier, Channel, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SegmentRun,
+    SimulationError, Simulator, Steps, Stop, choose_independent,
 };
 
 use jet::SampleJet;
@@ -298,6 +298,14 @@ impl Ensemble for Motions<'_> {
 
     fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
         Ok(self.dense(samples)?)
+    }
+
+    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
+        let Some(segments) = self.schedule.segments() else { return Ok(None) };
+        let run = SegmentRun::start(self.simulator, samples, segments, self.schedule.end())?;
+        self.progress.advance(samples.len() * self.schedule.rows);
+        self.over.fetch_add(samples.len(), Ordering::Relaxed);
+        Ok(run.motions(segments))
     }
 
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
