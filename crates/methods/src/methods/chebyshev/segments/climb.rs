@@ -1,7 +1,9 @@
 //! Ranges of the outputs at a time: the extremes over each part of the box that is in a segment, its surfaces included.
 //!
-//! Within such a part an output is smooth. A climb moves by a linear programme in a trust region: the steepest way that
-//! leaves neither the box nor, to first order, the part; then it is moved back onto the surface that it has left.
+//! Within such a part an output is smooth, but it may change much faster with the share of the segment than along a
+//! surface on which that is the same: a contact is short beside the spread of its instants. A climb moves by a linear
+//! programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that leaves
+//! neither the box nor the segment. Then it is moved to the surface that it was to reach.
 
 use super::row::SegmentRow;
 use super::seeds::Lattice;
@@ -12,19 +14,24 @@ use crate::numerics::{Extent, Range};
 const CLIMBS: usize = 3;
 const APART: f64 = 0.3;
 
-/// Radius of the first trust region, and where a climb ends.
+/// Radii of the first trust region, in ξ and in the share of the segment, and where a climb ends.
 const RADIUS: f64 = 0.15;
-const LEAST_RADIUS: f64 = 1e-5;
+const OF_SHARE: f64 = 0.25;
+const LEAST_RADIUS: f64 = 1e-4;
+
+/// Radii after a move that was none, and after one, over those before it.
+const SHRINKS: (f64, f64) = (0.5, 0.25);
+const GROWS: (f64, f64) = (2.0, 1.5);
 
 /// Moves of a climb, at most.
-const MOVES: usize = 40;
+const MOVES: usize = 60;
 
-/// Difference by which gradients are taken.
-const DIFFERENCE: f64 = 1e-4;
+/// Difference by which slopes are taken.
+const DIFFERENCE: f64 = 1e-6;
 
-/// Moves back onto a surface, and how far beyond it a point may stay, s.
+/// Moves to a surface, and by how much of a segment it may be missed.
 const RETURNS: usize = 4;
-const BEYOND: f64 = 1e-12;
+const MISSED: f64 = 1e-11;
 
 /// A place on the way to an extreme.
 struct Climb {
@@ -35,6 +42,22 @@ struct Climb {
     point: Point,
     value: f64,
     radius: f64,
+    of_share: f64,
+}
+
+impl Climb {
+    /// The share of the segment that a point is at.
+    fn share(&self, point: &Point, time: f64) -> f64 {
+        let [begin, end] = [point.times[self.segment], point.times[self.segment + 1]];
+        (time - begin) / (end - begin)
+    }
+}
+
+/// A move: where to, the share that is to be reached there, and the share's slopes.
+struct Move {
+    xi: Vec<f64>,
+    share: f64,
+    slopes: Vec<f64>,
 }
 
 /// The outputs' ranges, with the places of their ends.
@@ -95,7 +118,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
             }
             climbs.extend(chosen.into_iter().map(|seed| {
                 let (segment, point) = seeds[seed].clone();
-                Climb { output, sign, segment, point, value: values[seed], radius: RADIUS }
+                Climb { output, sign, segment, point, value: values[seed], radius: RADIUS, of_share: OF_SHARE }
             }));
         }
     }
@@ -121,38 +144,36 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     let at: Vec<(&Point, usize, f64)> =
         around.iter().enumerate().map(|(place, point)| (point, going[place / k].segment, row.time)).collect();
     let values = row.outputs_on(&at);
-    let mut tried = Vec::with_capacity(going.len());
+    let mut moves = Vec::with_capacity(going.len());
     for (place, climb) in going.iter().enumerate() {
         let own = &around[place * k..][..k];
-        let slope = |of: &dyn Fn(&Point, usize) -> f64, here: f64| -> Vec<f64> {
-            let along = |axis: usize| (of(&own[axis], axis) - here) / inward(climb.point.xi[axis]);
-            (0..k).map(along).collect()
+        let slopes = |of: &dyn Fn(usize) -> f64, here: f64| -> Vec<f64> {
+            (0..k).map(|axis| (of(axis) - here) / inward(climb.point.xi[axis])).collect()
         };
-        let value = |_: &Point, axis: usize| climb.sign * values[climb.output * at.len() + place * k + axis];
-        let ascent = slope(&value, climb.sign * climb.value);
-        let [begin, end] = [climb.segment, climb.segment + 1];
-        let of_begin = slope(&|point, _| -point.times[begin], -climb.point.times[begin]);
-        let of_end = slope(&|point, _| point.times[end], climb.point.times[end]);
-        let room = [row.time - climb.point.times[begin], climb.point.times[end] - row.time];
-        let surfaces = [(of_begin, room[0]), (of_end, room[1])];
+        let value = |axis: usize| climb.sign * values[climb.output * at.len() + place * k + axis];
+        let ascent = slopes(&value, climb.sign * climb.value);
+        let share = climb.share(&climb.point, row.time);
+        let slopes = slopes(&|axis| climb.share(&own[axis], row.time), share);
+        let opposite: Vec<f64> = slopes.iter().map(|slope| -slope).collect();
+        let room = [share.min(climb.of_share), (1.0 - share).min(climb.of_share)];
         let limits = climb.point.xi.iter().map(|xi| [(-1.0 - xi).max(-climb.radius), (1.0 - xi).min(climb.radius)]);
-        let way = steepest(&ascent, &limits.collect::<Vec<_>>(), &surfaces);
-        let xi = climb.point.xi.iter().zip(way).map(|(xi, by)| (xi + by).clamp(-1.0, 1.0)).collect::<Vec<f64>>();
-        tried.push((xi, surfaces.map(|(slope, _)| slope)));
+        let way = steepest(&ascent, &limits.collect::<Vec<_>>(), [(&slopes, room[0]), (&opposite, room[1])]);
+        let by: f64 = slopes.iter().zip(&way).map(|(slope, by)| slope * by).sum();
+        let xi = climb.point.xi.iter().zip(way).map(|(xi, by)| (xi + by).clamp(-1.0, 1.0)).collect();
+        moves.push(Move { xi, share: (share + by).clamp(0.0, 1.0), slopes });
     }
-    let mut points = row.surrogate.points(tried.iter().map(|(xi, _)| xi.clone()).collect());
+    let points_of = |moves: &[Move]| row.surrogate.points(moves.iter().map(|to| to.xi.clone()).collect());
+    let mut points = points_of(&moves);
     for _ in 0..RETURNS {
         let mut moved = false;
-        for ((climb, (xi, slopes)), point) in going.iter().zip(&mut tried).zip(&points) {
-            let room = [row.time - point.times[climb.segment], point.times[climb.segment + 1] - row.time];
-            for (room, slope) in room.into_iter().zip(slopes) {
-                moved |= room < -BEYOND && back(xi, slope, -room);
-            }
+        for ((climb, to), point) in going.iter().zip(&mut moves).zip(&points) {
+            let lacks = to.share - climb.share(point, row.time);
+            moved |= lacks.abs() > MISSED && back(&mut to.xi, &to.slopes, lacks);
         }
         if !moved {
             break;
         }
-        points = row.surrogate.points(tried.iter().map(|(xi, _)| xi.clone()).collect());
+        points = points_of(&moves);
     }
     let at: Vec<(&Point, usize, f64)> =
         points.iter().zip(&going).map(|(point, climb)| (point, climb.segment, row.time)).collect();
@@ -160,13 +181,13 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     let count = going.len();
     for (place, (climb, point)) in going.iter_mut().zip(&points).enumerate() {
         let value = values[climb.output * count + place];
-        let inside = point.times[climb.segment] <= row.time + 2.0 * BEYOND
-            && point.times[climb.segment + 1] >= row.time - 2.0 * BEYOND;
-        if inside && climb.sign * value > climb.sign * climb.value {
-            (climb.value, climb.point, climb.radius) = (value, point.clone(), 1.5 * climb.radius);
-        } else {
-            climb.radius *= 0.35;
+        let inside = (-2.0 * MISSED..=1.0 + 2.0 * MISSED).contains(&climb.share(point, row.time));
+        let rises = inside && climb.sign * value > climb.sign * climb.value;
+        if rises {
+            (climb.value, climb.point) = (value, point.clone());
         }
+        let (of_xi, of_share) = if rises { GROWS } else { SHRINKS };
+        (climb.radius, climb.of_share) = ((of_xi * climb.radius).min(1.0), (of_share * climb.of_share).min(OF_SHARE));
     }
     true
 }
@@ -176,8 +197,8 @@ fn inward(xi: f64) -> f64 {
     if xi > 0.0 { -DIFFERENCE } else { DIFFERENCE }
 }
 
-/// The move within limits that ascends most and leaves no surface: along each, what is left is at least −room.
-fn steepest(ascent: &[f64], limits: &[[f64; 2]], surfaces: &[(Vec<f64>, f64); 2]) -> Vec<f64> {
+/// The move within limits that ascends most, and along the slopes of each surface by no less than −room.
+fn steepest(ascent: &[f64], limits: &[[f64; 2]], surfaces: [(&[f64], f64); 2]) -> Vec<f64> {
     let favoured = |slope: f64, [low, high]: [f64; 2]| if slope > 0.0 { high } else { low };
     let mut way: Vec<f64> = ascent.iter().zip(limits).map(|(&slope, &limits)| favoured(slope, limits)).collect();
     for (slopes, room) in surfaces {
@@ -223,10 +244,10 @@ mod tests {
     #[test]
     fn moves_keep_to_the_side_of_a_surface() {
         let limits = [[-1.0, 1.0]; 2];
-        let free = (vec![0.0, 0.0], 1.0);
-        let way = steepest(&[2.0, 1.0], &limits, &[(vec![-1.0, -1.0], 0.5), free.clone()]);
+        let free = (&[0.0, 0.0][..], 1.0);
+        let way = steepest(&[2.0, 1.0], &limits, [(&[-1.0, -1.0], 0.5), free]);
         assert_eq!(way, [1.0, -0.5]);
-        assert_eq!(steepest(&[2.0, 1.0], &limits, &[free.clone(), free]), [1.0, 1.0]);
+        assert_eq!(steepest(&[2.0, 1.0], &limits, [free, free]), [1.0, 1.0]);
         let mut xi = [1.0, 0.8];
         assert!(back(&mut xi, &[-1.0, -1.0], 1.0));
         assert!((xi[0] + xi[1] - 0.8).abs() < 1e-15);
