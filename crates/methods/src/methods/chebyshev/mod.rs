@@ -23,7 +23,7 @@ use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, Sample, Surrogate, largest};
+use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
 use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, Row};
@@ -35,6 +35,9 @@ use sensitivity::SensitivityAnalysis;
 
 /// The least share of a tolerance that is left to the surrogate, whatever the steps take.
 const LEAST_SHARE: f64 = 0.25;
+
+/// Degrees that are tried between events.
+const THROUGH_EVENTS: [usize; 6] = [2, 3, 4, 6, 8, 12];
 
 /// Highest degree, and most nodes along an axis.
 pub(super) const MOST_ORDER: usize = 200;
@@ -328,6 +331,9 @@ fn adapted(
         let time = largest(time[..resolved].iter().copied());
         goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
     }
+    if let Some(found) = adapted_through_events(ensemble, &goal, validation)? {
+        return Ok(found);
+    }
     let adapted = Adaptation::new(ensemble, goal, validation, request.keep).search()?;
     let outputs = ensemble.outputs();
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
@@ -336,6 +342,37 @@ fn adapted(
     }
     let result = bands.finish(adapted.simulations - spent, adapted.simulated);
     Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), kept: adapted.kept, ..result })
+}
+
+/// To the degree that the goal asks for, by segments between events, where the ensemble's motions are cut there.
+fn adapted_through_events(
+    ensemble: &dyn Ensemble,
+    goal: &Goal,
+    validation: &Validation,
+) -> Result<Option<MethodResult>, EnsembleError> {
+    let k = ensemble.domain().dimension();
+    let (mut spent, mut best) = (0, None);
+    if !can_compose(k, ensemble.scales().len()) {
+        return Ok(None);
+    }
+    for order in THROUGH_EVENTS {
+        let count = (order + 1).checked_pow(k as u32);
+        let Some(count) = count.filter(|count| goal.spent + spent + count <= goal.budget.simulations) else { break };
+        let surrogate = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
+        let samples = ensemble.domain().samples(surrogate.samples());
+        let Some((bands, simulated)) = through_events(ensemble, &surrogate, &samples, validation)? else { break };
+        spent += count;
+        let result = bands.finish(spent, simulated);
+        let rows = |(errors, allowed): (&Vec<f64>, &f64)| {
+            errors.iter().take(goal.rows).all(|error| SAFETY_OF_SURROGATE * error <= *allowed)
+        };
+        let is_enough = result.surrogate.iter().zip(&goal.allowed).all(rows);
+        best = Some(MethodResult { order: Some(vec![order; k]), ..result });
+        if is_enough || ensemble.is_interrupted() {
+            break;
+        }
+    }
+    Ok(best)
 }
 
 /// The outputs follow from the expanded independent coordinates.
