@@ -51,8 +51,8 @@ const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 6.0;
 
-/// Steps that are tried at most.
-const MOST_STEPS: usize = 20_000;
+/// Steps that are tried at most: motions that are worth cutting take hundreds.
+const MOST_STEPS: usize = 3000;
 
 /// A motion that cannot be followed: it is stiff, not finite, or grazes a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

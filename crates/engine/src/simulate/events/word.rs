@@ -46,6 +46,12 @@ impl Followed {
         Ok(followed)
     }
 
+    /// Whether another motion meets the same events up to a time, as far as both meet any.
+    fn agrees(&self, other: &Self, end: f64) -> bool {
+        let both = self.events.iter().zip(&other.events);
+        both.take_while(|(own, other)| own.1.min(other.1) < end).all(|(own, other)| own.0 == other.0)
+    }
+
     /// When a segment begins, s.
     fn begin(&self, segment: usize) -> f64 {
         segment.checked_sub(1).map_or(0.0, |before| self.events[before].1)
@@ -63,7 +69,7 @@ impl Followed {
 /// different ones, or the explicit method cannot follow them.
 ///
 /// # Errors
-/// Where a sample cannot be assembled.
+/// Where the first sample cannot be assembled.
 pub fn segments_of(
     simulator: &Simulator,
     samples: &[Sample],
@@ -81,8 +87,9 @@ pub fn segments_of(
     if first.events.first().is_none_or(|(_, time)| *time >= duration) {
         return Ok(None);
     }
-    let others: Vec<Result<Followed, Lost>> = others.par_iter().map(follow).collect::<Result<_, _>>()?;
-    let Ok(others) = others.into_iter().collect::<Result<Vec<Followed>, Lost>>() else { return Ok(None) };
+    // The first sample of another word ends the search, and one that cannot be assembled does.
+    let of_other = |sample: &Sample| follow(sample).ok()?.ok().filter(|other| first.agrees(other, duration));
+    let Some(others) = others.par_iter().map(of_other).collect::<Option<Vec<Followed>>>() else { return Ok(None) };
     let all: Vec<Followed> = std::iter::once(first).chain(others).collect();
     Ok(shared(&all, duration).map(|(events, tail, steps)| Segments { events, tail, steps, tolerance }))
 }
