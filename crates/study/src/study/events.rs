@@ -45,11 +45,17 @@ impl Study<'_> {
     fn may_be_cut(&self) -> bool {
         let problem = problem(self.description, &self.simulator);
         let reduces = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
+        let methods = self.request.methods();
+        // What depends on nothing keeps the steps that it is given.
+        let within = match self.domain.dimension() {
+            0 => self.request.tolerance.is_some() || !problem.has_fixed_steps,
+            _ => methods.iter().all(|(_, method)| method.follows_events(&problem)),
+        };
         self.may_extrapolate()
-            && !self.request.is_empty()
+            && within
+            && !methods.is_empty()
             && !self.request.keep
             && self.stored.is_none()
             && !reduces
-            && self.request.methods().iter().all(|(_, method)| method.follows_events(&problem))
     }
 }
