@@ -15,6 +15,9 @@ const REACH: f64 = 1.25;
 /// An event so close to the end, as a share of the duration, may be before it for other samples.
 const BESIDE: f64 = 0.02;
 
+/// Instants that differ by no more than this share of the duration are the same.
+const SAME: f64 = 1e-9;
+
 /// Most events of a motion.
 const MOST_EVENTS: usize = 64;
 
@@ -65,7 +68,7 @@ impl Followed {
     }
 }
 
-/// The events that all samples meet up to a time, at least one, and steps between them; `None` where samples meet
+/// The events that all samples meet up to a time, at least one of them not at the same instant, and steps between them; `None` where samples meet
 /// different ones, or the explicit method cannot follow them.
 ///
 /// # Errors
@@ -117,6 +120,14 @@ fn shared(all: &[Followed], duration: f64) -> Option<(Vec<Event>, Option<f64>, V
         () if all.iter().all(|followed| followed.events.len() == most) => (most, Some(REACH * duration)),
         () => return None,
     };
+    // Instants that are the same in all samples are kinks in time, none in the parameters.
+    let differs = |event: usize| {
+        let times = || all.iter().map(|followed| followed.events[event].1);
+        times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min) > SAME * duration
+    };
+    if all.len() > 1 && !(0..count).any(differs) {
+        return None;
+    }
     let word = |followed: &Followed| followed.events.iter().map(|(event, _)| *event).take(count).collect();
     let events: Vec<Event> = word(&all[0]);
     if all.iter().any(|followed| word(followed) != events) {

@@ -23,7 +23,7 @@ use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, Sample, Surrogate, largest};
 use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, Row};
@@ -35,9 +35,6 @@ use sensitivity::SensitivityAnalysis;
 
 /// The least share of a tolerance that is left to the surrogate, whatever the steps take.
 const LEAST_SHARE: f64 = 0.25;
-
-/// Degrees that are tried between events.
-const THROUGH_EVENTS: [usize; 6] = [2, 3, 4, 6, 8, 12];
 
 /// Highest degree, and most nodes along an axis.
 pub(super) const MOST_ORDER: usize = 200;
@@ -280,7 +277,7 @@ impl BoundingMethod for Chebyshev {
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
         if composes
             && self.expand == Expand::Coordinates
-            && let Some((bands, simulated)) = through_events(ensemble, &surrogate, &samples, validation)?
+            && let Some((bands, simulated)) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
         {
             return Ok(bands.finish(samples.len(), simulated));
         }
@@ -296,19 +293,6 @@ impl BoundingMethod for Chebyshev {
         };
         let kept = kept_rows.map(|rows| KeptSurrogate::of_box(ensemble.domain(), surrogate.basis(), rows));
         Ok(MethodResult { kept, ..bands.finish(samples.len(), simulated) })
-    }
-}
-
-/// By segments between events, where the ensemble's motions are cut there.
-fn through_events(
-    ensemble: &dyn Ensemble,
-    surrogate: &Surrogate,
-    samples: &[Sample],
-    validation: &Validation,
-) -> Result<Option<(BandBuilder, Simulated)>, EnsembleError> {
-    match ensemble.segments(samples)? {
-        Some(motions) => segments::composed(ensemble, surrogate, &motions, validation),
-        None => Ok(None),
     }
 }
 
@@ -331,7 +315,7 @@ fn adapted(
         let time = largest(time[..resolved].iter().copied());
         goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
     }
-    if let Some(found) = adapted_through_events(ensemble, &goal, validation)? {
+    if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
         return Ok(found);
     }
     let adapted = Adaptation::new(ensemble, goal, validation, request.keep).search()?;
@@ -342,37 +326,6 @@ fn adapted(
     }
     let result = bands.finish(adapted.simulations - spent, adapted.simulated);
     Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), kept: adapted.kept, ..result })
-}
-
-/// To the degree that the goal asks for, by segments between events, where the ensemble's motions are cut there.
-fn adapted_through_events(
-    ensemble: &dyn Ensemble,
-    goal: &Goal,
-    validation: &Validation,
-) -> Result<Option<MethodResult>, EnsembleError> {
-    let k = ensemble.domain().dimension();
-    let (mut spent, mut best) = (0, None);
-    if !can_compose(k, ensemble.scales().len()) {
-        return Ok(None);
-    }
-    for order in THROUGH_EVENTS {
-        let count = (order + 1).checked_pow(k as u32);
-        let Some(count) = count.filter(|count| goal.spent + spent + count <= goal.budget.simulations) else { break };
-        let surrogate = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
-        let samples = ensemble.domain().samples(surrogate.samples());
-        let Some((bands, simulated)) = through_events(ensemble, &surrogate, &samples, validation)? else { break };
-        spent += count;
-        let result = bands.finish(spent, simulated);
-        let rows = |(errors, allowed): (&Vec<f64>, &f64)| {
-            errors.iter().take(goal.rows).all(|error| SAFETY_OF_SURROGATE * error <= *allowed)
-        };
-        let is_enough = result.surrogate.iter().zip(&goal.allowed).all(rows);
-        best = Some(MethodResult { order: Some(vec![order; k]), ..result });
-        if is_enough || ensemble.is_interrupted() {
-            break;
-        }
-    }
-    Ok(best)
 }
 
 /// The outputs follow from the expanded independent coordinates.

@@ -1,6 +1,7 @@
 //! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
 
 pub(in crate::study) mod closure;
+mod cut;
 mod dense;
 mod jet;
 mod nominal;
@@ -22,11 +23,10 @@ use crate::grammar::quantity::Dimension;
 use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
-    Certifier, Channel, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SegmentRun,
-    SimulationError, Simulator, Steps, Stop, choose_independent,
+    Certifier, Channel, Controller, Enclosure, EnclosureError, Observed, SampleRun, Schedule, SimulationError,
+    Simulator, Steps, Stop, choose_independent,
 };
 
-use jet::SampleJet;
 pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
 use told::effort;
@@ -301,11 +301,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
-        let Some(segments) = self.schedule.segments() else { return Ok(None) };
-        let run = SegmentRun::start(self.simulator, samples, segments, self.schedule.end())?;
-        self.progress.advance(samples.len() * self.schedule.rows);
-        self.over.fetch_add(samples.len(), Ordering::Relaxed);
-        Ok(run.motions(segments))
+        Ok(self.cut(samples)?)
     }
 
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
@@ -323,7 +319,8 @@ impl Ensemble for Motions<'_> {
             return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
         }
         let box_of_jet = (&center[..], &half_widths[..]);
-        let mut jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
+        let mut jet =
+            jet::SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;

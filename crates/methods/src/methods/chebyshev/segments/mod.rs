@@ -13,20 +13,75 @@ mod surrogate;
 
 use rayon::prelude::*;
 
+use super::adaptive::Goal;
+use super::composition::can_compose;
 use super::sensitivity::SensitivityAnalysis;
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Simulated};
-use crate::methods::result::{BandBuilder, Estimate};
+use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
-use crate::numerics::{SegmentMotions, Surrogate, largest};
+use crate::numerics::{SAFETY_OF_SURROGATE, Sample, SegmentMotions, Surrogate, largest};
 use row::SegmentRow;
 use seeds::Lattice;
 use surrogate::{SegmentErrors, SegmentSurrogate};
+
+/// Degrees that are tried to a tolerance.
+const DEGREES: [usize; 6] = [2, 3, 4, 6, 8, 12];
+
+/// By segments between events, where the ensemble's motions are cut there.
+///
+/// # Errors
+/// Where a sample cannot be assembled, or a closure not be compiled.
+pub(super) fn of_degree(
+    ensemble: &dyn Ensemble,
+    surrogate: &Surrogate,
+    samples: &[Sample],
+    validation: &Validation,
+) -> Result<Option<(BandBuilder, Simulated)>, EnsembleError> {
+    match ensemble.segments(samples)? {
+        Some(motions) => composed(ensemble, surrogate, &motions, validation),
+        None => Ok(None),
+    }
+}
+
+/// To the degree that the goal asks for, by segments between events, where the ensemble's motions are cut there.
+///
+/// # Errors
+/// Where a sample cannot be assembled, or a closure not be compiled.
+pub(super) fn adapted(
+    ensemble: &dyn Ensemble,
+    goal: &Goal,
+    validation: &Validation,
+) -> Result<Option<MethodResult>, EnsembleError> {
+    let k = ensemble.domain().dimension();
+    let (mut spent, mut best) = (0, None);
+    if !can_compose(k, ensemble.scales().len()) {
+        return Ok(None);
+    }
+    for order in DEGREES {
+        let count = (order + 1).checked_pow(k as u32);
+        let Some(count) = count.filter(|count| goal.spent + spent + count <= goal.budget.simulations) else { break };
+        let surrogate = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
+        let samples = ensemble.domain().samples(surrogate.samples());
+        let Some((bands, simulated)) = of_degree(ensemble, &surrogate, &samples, validation)? else { break };
+        spent += count;
+        let result = bands.finish(spent, simulated);
+        let rows = |(errors, allowed): (&Vec<f64>, &f64)| {
+            errors.iter().take(goal.rows).all(|error| SAFETY_OF_SURROGATE * error <= *allowed)
+        };
+        let is_enough = result.surrogate.iter().zip(&goal.allowed).all(rows);
+        best = Some(MethodResult { order: Some(vec![order; k]), ..result });
+        if is_enough || ensemble.is_interrupted() {
+            break;
+        }
+    }
+    Ok(best)
+}
 
 /// Bounds from the motions of a surrogate's samples, cut at their events; `None` where validation samples meet others.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled.
-pub(super) fn composed(
+fn composed(
     ensemble: &dyn Ensemble,
     tensor: &Surrogate,
     motions: &SegmentMotions,
