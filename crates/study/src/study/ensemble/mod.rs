@@ -321,9 +321,7 @@ impl Ensemble for Motions<'_> {
         let box_of_jet = (&center[..], &half_widths[..]);
         let mut jet =
             jet::SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
-        let mut values = Vec::new();
-        let mut stop = None;
-        let mut next = 0;
+        let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
         while next < self.schedule.rows && stop.is_none() && !self.is_interrupted() {
             let rows = next..(next + MOST_ROWS).min(self.schedule.rows);
             stop = jet.advance(self.schedule, rows.clone(), &mut values);
