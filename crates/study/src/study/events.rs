@@ -1,9 +1,11 @@
 //! Whether motions are cut at events, and the steps between them.
 
+use super::outcome::Switches;
 use super::single::{Study, problem};
 use crate::model::Stepping;
 use crate::numerics::{Sample, spread};
-use crate::simulate::{Schedule, SimulationError, segments_of};
+use crate::results::MethodSummary;
+use crate::simulate::{Counters, Schedule, SimulationError, SwitchSearch, segments_of};
 
 /// A step may err by this share of how far the motion has gone: steps of order 8 that are so accurate cost little.
 const OF_STEPS: f64 = 1e-10;
@@ -32,6 +34,24 @@ impl Study<'_> {
         let tolerance = asked.fold(OF_STEPS, f64::min);
         let segments = segments_of(&self.simulator, &self.event_samples(), times.0, tolerance)?;
         Ok(segments.map(|segments| Schedule::segmented(times, segments)))
+    }
+
+    /// The search for events, as a line of the summary: no sample met others.
+    pub(super) fn event_search(&self, schedule: &Schedule) -> Switches {
+        let simulations = self.event_samples().len();
+        let found = SwitchSearch { unmet_from: None, switched_from: None, simulations, counters: Counters::default() };
+        let summary = MethodSummary {
+            method: "switches".to_owned(),
+            simulations,
+            steps: schedule.steps_before(schedule.rows - 1),
+            newton_iterations: 0,
+            rank_revealing_solves: 0,
+            order: None,
+            boxes: None,
+            expanded_outputs: Vec::new(),
+            seconds: None,
+        };
+        (found, summary)
     }
 
     /// Samples that show the events: the controlling ones, and some spread over the box.

@@ -20,9 +20,8 @@ impl Study<'_> {
         if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
-        // All samples of such a schedule have been held against its events.
         if steps.schedule.segments().is_some() {
-            return Ok(None);
+            return Ok(Some(self.event_search(steps.schedule)));
         }
         (self.stage)("searching for switches");
         let begun = Instant::now();

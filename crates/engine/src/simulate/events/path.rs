@@ -182,7 +182,7 @@ impl<'s> Path<'s> {
                 break;
             }
             end += change;
-            if !(end > begin) {
+            if end <= begin || end.is_nan() {
                 return None;
             }
             ratio = self.attempt(end);

@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, PathStep};
+use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, PathStep, ROUNDED};
 use super::segments::Segments;
 use super::stretched::Stretched;
 use crate::compile::SwitchProgram;
@@ -53,7 +53,7 @@ pub(super) struct SegmentTile<'s> {
     /// Segments that rows may lie in.
     pub recorded: VecDeque<Recorded>,
     alone: Vec<Option<Alone<'s>>>,
-    /// When a lane first meets another event than the others, s.
+    /// When a lane first meets another event than the others, or an instant cannot be solved for, s.
     pub deviates: Option<f64>,
     /// First sample, and how many lanes are samples.
     pub first: usize,
@@ -133,7 +133,7 @@ impl<'s> SegmentTile<'s> {
     /// Whether the segments so far reach a time in all lanes.
     fn reaches(&self, time: f64) -> bool {
         // NaN, of lanes that go on alone, is beyond.
-        self.recorded.back().is_some_and(|last| last.ends().all(|end| !(end < time)))
+        self.recorded.back().is_some_and(|last| last.ends().all(|end| end >= time || end.is_nan()))
     }
 
     /// Goes through the next segment.
@@ -165,6 +165,17 @@ impl<'s> SegmentTile<'s> {
                 break;
             }
             nodes = self.pass(number);
+        }
+        if let Some(event) = event {
+            let is_off = |lane: &usize| {
+                let [value, rate] = self.watch.at_end(event.switch, *lane);
+                let off = (value / rate).abs();
+                !self.motion.length[*lane].is_nan() && (off > ROUNDED * self.duration || off.is_nan())
+            };
+            if let Some(lane) = (0..self.count).find(is_off) {
+                let time = self.motion.begin[lane];
+                self.deviates = Some(self.deviates.map_or(time, |first| first.min(time)));
+            }
         }
         let (begin, length) = (self.motion.begin.clone(), self.motion.length.clone());
         self.motion.begin.iter_mut().zip(&length).for_each(|(begin, length)| *begin += length);

@@ -106,7 +106,10 @@ fn can_be_cut(simulator: &Simulator) -> bool {
 }
 
 /// The events, the end of a last segment without one, and the steps of each segment.
-fn shared(all: &[Followed], duration: f64) -> Option<(Vec<Event>, Option<f64>, Vec<Vec<f64>>)> {
+type Shared = (Vec<Event>, Option<f64>, Vec<Vec<f64>>);
+
+/// What some motions share up to a time.
+fn shared(all: &[Followed], duration: f64) -> Option<Shared> {
     let before = |followed: &Followed, end: f64| followed.events.iter().take_while(|(_, time)| *time < end).count();
     let [least, most] = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| {
         let counts = all.iter().map(|followed| before(followed, share * duration));
@@ -143,4 +146,46 @@ fn shared(all: &[Followed], duration: f64) -> Option<(Vec<Event>, Option<f64>, V
     };
     let segments = count + usize::from(tail.is_some());
     Some((events, tail, (0..segments).filter_map(steps).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Events at these times, with two equal steps in each segment.
+    fn followed(times: &[f64]) -> Followed {
+        let event = |place: usize| Event { switch: 0, rises: place.is_multiple_of(2) };
+        let events = times.iter().enumerate().map(|(place, &time)| (event(place), time)).collect();
+        let begins = std::iter::once(0.0).chain(times.iter().copied());
+        let ends = times.iter().copied().chain([REACH]);
+        let steps = begins.zip(ends).map(|(begin, end)| vec![0.5 * (begin + end), end]).collect();
+        Followed { events, steps }
+    }
+
+    #[test]
+    fn what_all_meet_before_the_end_is_shared() {
+        let (events, tail, steps) = shared(&[followed(&[0.4, 0.6]), followed(&[0.5, 0.7, 1.2])], 1.0).unwrap();
+        assert_eq!((events.len(), tail), (2, Some(1.0)));
+        assert_eq!(steps[..2], [vec![0.5, 1.0], vec![0.5, 1.0]]);
+        assert_eq!(steps[2].last(), Some(&1.0));
+    }
+
+    #[test]
+    fn beside_the_end_all_go_on() {
+        let both = [followed(&[0.4, 0.99, 1.1]), followed(&[0.5, 1.01, 1.2])];
+        let (events, tail, steps) = shared(&both, 1.0).unwrap();
+        assert_eq!((events.len(), tail, steps.len()), (3, None, 3));
+        let (events, tail, _) = shared(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01])], 1.0).unwrap();
+        assert_eq!((events.len(), tail), (2, Some(REACH)));
+        assert!(shared(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01, 1.2])], 1.0).is_none());
+    }
+
+    #[test]
+    fn other_words_and_the_same_instants_are_not_cut() {
+        assert!(shared(&[followed(&[0.4, 0.6]), followed(&[0.5])], 1.0).is_none());
+        assert!(shared(&[followed(&[0.4]), followed(&[0.4])], 1.0).is_none());
+        let mut other = followed(&[0.5]);
+        other.events[0].0.switch = 1;
+        assert!(shared(&[followed(&[0.4]), other], 1.0).is_none());
+    }
 }

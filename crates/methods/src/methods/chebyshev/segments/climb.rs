@@ -227,7 +227,7 @@ fn back(xi: &mut [f64], slope: &[f64], lacks: f64) -> bool {
     let is_free = |(xi, slope): (&f64, &f64)| if *slope > 0.0 { *xi < 1.0 } else { *xi > -1.0 };
     let free: Vec<bool> = xi.iter().zip(slope).map(is_free).collect();
     let square: f64 = slope.iter().zip(&free).filter(|(_, free)| **free).map(|(slope, _)| slope * slope).sum();
-    if !(square > 0.0) {
+    if square <= 0.0 || square.is_nan() {
         return false;
     }
     for ((xi, slope), _) in xi.iter_mut().zip(slope).zip(free).filter(|(_, free)| *free) {
