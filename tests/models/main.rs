@@ -75,6 +75,7 @@ mod statistics;
 mod step_control;
 mod switches;
 mod tables;
+mod through_events;
 mod time_steps;
 mod tolerance;
 mod urdf;

@@ -4,6 +4,7 @@ use super::control::{Controller, Integration, Schedule};
 use super::diagnostics::{OpenConstraint, SingularPass, TooDeep};
 use super::ensemble::{Channel, EnsembleRun, ExtrapolatedRun, Observed, Stop};
 use super::error::SimulationError;
+use super::events::SegmentRun;
 use super::explicit::ExplicitRun;
 use super::interruption::Interruption;
 use super::simulator::Simulator;
@@ -19,6 +20,8 @@ pub enum SampleRun<'s> {
     Extrapolated(ExtrapolatedRun<'s>),
     /// By the explicit method.
     Explicit(ExplicitRun<'s>),
+    /// By the explicit method between events.
+    Segments(SegmentRun<'s>),
 }
 
 impl<'s> SampleRun<'s> {
@@ -26,14 +29,21 @@ impl<'s> SampleRun<'s> {
     ///
     /// # Errors
     /// The first sample that cannot be assembled.
-    pub fn start(simulator: &'s Simulator, samples: &[Sample], schedule: &Schedule) -> Result<Self, SimulationError> {
+    pub fn start(
+        simulator: &'s Simulator,
+        samples: &[Sample],
+        schedule: &'s Schedule,
+    ) -> Result<Self, SimulationError> {
+        if let Some(segments) = schedule.segments() {
+            return Ok(Self::Segments(SegmentRun::start(simulator, samples, segments, schedule.end())?));
+        }
         let first_step = schedule.first_step();
         Ok(match schedule.integration {
             Integration::Plain => Self::Plain(EnsembleRun::start(simulator, samples, first_step)?),
             Integration::Extrapolated { levels } => {
                 Self::Extrapolated(ExtrapolatedRun::start(simulator, samples, first_step, levels)?)
             }
-            Integration::Explicit => Self::Explicit(ExplicitRun::start(simulator, samples)?),
+            Integration::Explicit | Integration::Segments => Self::Explicit(ExplicitRun::start(simulator, samples)?),
         })
     }
 
@@ -44,6 +54,7 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => Self::Plain(run.watching()),
             Self::Extrapolated(run) => Self::Extrapolated(run.watching()),
             Self::Explicit(run) => Self::Explicit(run.watching()),
+            Self::Segments(_) => self,
         }
     }
 
@@ -54,6 +65,8 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => Self::Plain(run.reducing(channels)),
             Self::Extrapolated(run) => Self::Extrapolated(run.reducing(channels)),
             Self::Explicit(run) => Self::Explicit(run.reducing(channels)),
+            // Outputs are reduced over steps that all samples share.
+            Self::Segments(run) => Self::Segments(run),
         }
     }
 
@@ -64,6 +77,7 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => Self::Plain(run.heeding(interruption)),
             Self::Extrapolated(run) => Self::Extrapolated(run.heeding(interruption)),
             Self::Explicit(run) => Self::Explicit(run.heeding(interruption)),
+            Self::Segments(run) => Self::Segments(run.heeding(interruption)),
         }
     }
 
@@ -73,6 +87,7 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => run.is_cut(),
             Self::Extrapolated(run) => run.is_cut(),
             Self::Explicit(run) => run.is_cut(),
+            Self::Segments(run) => run.is_cut(),
         }
     }
 
@@ -83,6 +98,7 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => run.reduced(),
             Self::Extrapolated(run) => run.reduced(),
             Self::Explicit(run) => run.reduced(),
+            Self::Segments(_) => Vec::new(),
         }
     }
 
@@ -99,6 +115,7 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => run.advance(schedule, rows, tolerance, observed, into),
             Self::Extrapolated(run) => run.advance(schedule, rows, tolerance, observed, into),
             Self::Explicit(run) => run.advance(schedule, rows, observed, into),
+            Self::Segments(run) => run.advance(schedule, rows, observed, into),
         }
     }
 
@@ -107,7 +124,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => std::slice::from_ref(run),
             Self::Extrapolated(run) => run.levels(),
-            Self::Explicit(_) => &[],
+            Self::Explicit(_) | Self::Segments(_) => &[],
         }
     }
 
@@ -142,8 +159,11 @@ impl<'s> SampleRun<'s> {
         self.levels().first().and_then(EnsembleRun::too_deep)
     }
 
-    /// See [`EnsembleRun::beyond_tolerance_from`].
+    /// See [`EnsembleRun::beyond_tolerance_from`]; also the first row behind an event that others do not meet.
     pub fn beyond_tolerance_from(&self) -> Option<usize> {
+        if let Self::Segments(run) = self {
+            return run.deviates_from();
+        }
         self.levels().iter().filter_map(EnsembleRun::beyond_tolerance_from).min()
     }
 

@@ -10,7 +10,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use crate::multibody::{ConstraintId, EquationId};
-use crate::numerics::{EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
+use crate::numerics::{EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -242,6 +242,16 @@ pub trait Ensemble: Sync {
     /// # Errors
     /// Where a sample cannot be assembled.
     fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
+        let _ = samples;
+        Ok(None)
+    }
+
+    /// Motions of samples, cut at the events that all of them meet; `None` where motions are not cut, or a sample meets
+    /// others.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
         let _ = samples;
         Ok(None)
     }

@@ -145,6 +145,11 @@ pub trait BoundingMethod: Debug {
         Observed::Outputs
     }
 
+    /// Whether it bounds motions that are cut at events, whose instants depend on the parameters.
+    fn follows_events(&self, _problem: &Problem) -> bool {
+        false
+    }
+
     /// Bounds all outputs.
     ///
     /// # Errors

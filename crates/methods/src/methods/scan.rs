@@ -95,6 +95,10 @@ impl BoundingMethod for Scan {
         request::pick(&mut self.points, kept);
     }
 
+    fn follows_events(&self, _problem: &Problem) -> bool {
+        true
+    }
+
     /// The points of a part lie as close as in the whole.
     fn restrict(&mut self, part: &ParameterBox, whole: &ParameterBox) {
         for (axis, points) in self.points.iter_mut().enumerate() {

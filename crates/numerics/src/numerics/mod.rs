@@ -7,6 +7,7 @@
 //!   [`SparseBasis`], for many parameters → [`SobolDecomposition`];
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
+//! - [`SegmentMotions`]: responses cut at events;
 //! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
 
 mod along;
@@ -37,6 +38,7 @@ mod samples;
 mod scan;
 mod scan_grid;
 mod search;
+mod segments;
 mod separation;
 mod sobol;
 mod sparse_basis;
@@ -68,6 +70,7 @@ pub use samples::{TensorGrid, corners, spread, step_validation, validation};
 pub use scan::ScanBounds;
 pub use scan_grid::ScanGrid;
 pub use search::{ExtremeSearch, Extremes};
+pub use segments::{STEP_NODES, SegmentMotions, step_nodes, step_weights};
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;
 pub use sparse_basis::{SparseBasis, SparseWork};

@@ -194,7 +194,8 @@ pub(super) fn decision(description: &Description, simulator: &Simulator) -> Opti
     };
     if simulator.switches().is_some() {
         return Some(by_scheme(
-            "equations switch, which ends the steps of an explicit method of high order".to_owned(),
+            "equations switch, which ends the steps of an explicit method of high order; it is taken between events that all samples meet"
+                .to_owned(),
         ));
     }
     let step = match simulation.stepping {

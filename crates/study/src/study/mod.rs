@@ -24,6 +24,7 @@ mod drawing;
 mod effect_costs;
 mod effort;
 mod ensemble;
+mod events;
 mod explain;
 mod explicit;
 mod feasible;

@@ -157,6 +157,9 @@ impl<'a> Study<'a> {
 
     /// Runs every method.
     pub(super) fn run(&self) -> Result<Ran, RunError> {
+        if let Some(schedule) = self.segmented()? {
+            return Ok(self.conclude(self.methods(&schedule, None)?, None));
+        }
         let simulation = &self.description.simulation;
         match simulation.stepping {
             Stepping::Fixed(step) => {

@@ -43,7 +43,9 @@ impl Study<'_> {
         match self.description.simulation.stepping {
             // The explicit method damps nothing.
             Stepping::Fixed(_)
-                if has_steps && !self.request.is_empty() && schedule.integration != Integration::Explicit =>
+                if has_steps
+                    && !self.request.is_empty()
+                    && !matches!(schedule.integration, Integration::Explicit | Integration::Segments) =>
             {
                 // The finest level has the most weight.
                 let halvings = schedule.integration.order() - 2;
@@ -69,7 +71,8 @@ impl Study<'_> {
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
         let observed = if motion { Observed::Motion } else { Observed::Outputs };
-        if let Some(allowed) = self.request.tolerance.filter(|_| self.may_be_explicit()) {
+        let is_open = self.may_be_explicit() && schedule.segments().is_none();
+        if let Some(allowed) = self.request.tolerance.filter(|_| is_open) {
             match self.balance_explicit(schedule, allowed, observed, progress)? {
                 Ok((schedule, validation)) => {
                     return Ok((Divided { schedule, unresolved_from: None }, None, validation));

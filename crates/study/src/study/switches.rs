@@ -20,6 +20,9 @@ impl Study<'_> {
         if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
+        if steps.schedule.segments().is_some() {
+            return Ok(Some(self.event_search(steps.schedule)));
+        }
         (self.stage)("searching for switches");
         let begun = Instant::now();
         let at_rows = steps.schedule.ending_at_rows();

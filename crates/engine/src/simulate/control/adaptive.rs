@@ -4,7 +4,8 @@ use symdiff::Expr;
 
 use super::chatter::Chatter;
 use super::controller::Controller;
-use super::switch_watch::{Crossing, SwitchWatch};
+use super::switch_watch::SwitchWatch;
+use crate::simulate::events::locate::Crossing;
 use crate::simulate::features::FeatureWatch;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
@@ -109,7 +110,10 @@ impl<'s> Adaptive<'s> {
             watch.end(self.stepper.tile());
         }
         let passes = self.passes(&converged, (step, end));
-        let crossings: Vec<Option<Crossing>> = (0..converged.len()).map(|lane| self.crossing(lane, step)).collect();
+        let switched: Vec<Option<(usize, Crossing)>> =
+            (0..converged.len()).map(|lane| self.crossing(lane, step)).collect();
+        let crossings: Vec<Option<Crossing>> =
+            switched.iter().map(|found| found.map(|(_, crossing)| crossing)).collect();
         let ratios = self.ratios(&converged, &crossings, &passes, step);
         let largest = ratios.iter().copied().fold(0.0, f64::max);
         let accepted = largest <= 1.0;
@@ -129,8 +133,8 @@ impl<'s> Adaptive<'s> {
             self.switched = crossings.iter().map(Option::is_some).collect();
             let watch = &self.watch;
             let of_velocity = |&index: &usize| watch.as_ref().is_some_and(|watch| watch.switch(index).of_velocity);
-            let switch = |crossing: &Option<Crossing>| crossing.map(|crossing| crossing.switch).filter(of_velocity);
-            self.chatter.note(crossings.iter().map(switch), end);
+            let switches = switched.iter().map(|found| found.map(|(switch, _)| switch).filter(of_velocity));
+            self.chatter.note(switches, end);
         }
         Attempt { step, end, ratios, accepted, before }
     }
@@ -152,7 +156,7 @@ impl<'s> Adaptive<'s> {
         passes
     }
 
-    fn crossing(&self, lane: usize, step: f64) -> Option<Crossing> {
+    fn crossing(&self, lane: usize, step: f64) -> Option<(usize, Crossing)> {
         let running = self.stepper.alive()[lane];
         self.watch.as_ref().filter(|_| running)?.crossing(lane, step)
     }

@@ -16,6 +16,8 @@ pub enum Integration {
     },
     /// By Dormand and Prince's explicit method of order 8.
     Explicit,
+    /// By the same method in segments that end at events.
+    Segments,
 }
 
 impl Integration {
@@ -27,7 +29,7 @@ impl Integration {
     /// Steps that are taken for each of the schedule's.
     pub fn steps(self) -> usize {
         match self {
-            Self::Plain | Self::Explicit => 1,
+            Self::Plain | Self::Explicit | Self::Segments => 1,
             Self::Extrapolated { levels } => (1 << levels) - 1,
         }
     }
@@ -37,7 +39,7 @@ impl Integration {
         match self {
             Self::Plain => 2,
             Self::Extrapolated { levels } => levels + 1,
-            Self::Explicit => 8,
+            Self::Explicit | Self::Segments => 8,
         }
     }
 
@@ -47,6 +49,7 @@ impl Integration {
             Self::Plain => None,
             Self::Extrapolated { levels } => Some(format!("HHT-I3 extrapolated over {levels} levels")),
             Self::Explicit => Some("Dormand–Prince 8(5,3), explicit".to_owned()),
+            Self::Segments => Some("Dormand–Prince 8(5,3), explicit, between events".to_owned()),
         }
     }
 }

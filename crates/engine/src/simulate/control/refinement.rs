@@ -1,6 +1,7 @@
 //! Schedules of the same rows with more steps, by which errors are told.
 
 use super::schedule::{LastSteps, Schedule, Steps};
+use crate::simulate::events::segments::divided;
 
 /// Steps for each of those that they are at odds with.
 const FINER: f64 = 2.7;
@@ -13,18 +14,6 @@ fn odd_to(count: usize) -> usize {
 
 fn are_coprime(a: usize, b: usize) -> bool {
     if b == 0 { a == 1 } else { are_coprime(b, a % b) }
-}
-
-/// So many steps instead of those that end at these times after the first, as dense as they are.
-fn divided(times: &[f64], others: usize) -> impl Iterator<Item = f64> {
-    let count = times.len() - 1;
-    (1..=others).map(move |other| {
-        let (whole, part) = (other * count / others, other * count % others);
-        match part {
-            0 => times[whole],
-            _ => times[whole] + (times[whole + 1] - times[whole]) * part as f64 / others as f64,
-        }
-    })
 }
 
 /// The same for steps of which some ends are kept; `others` says how many there are between two of these instead of so
@@ -62,6 +51,7 @@ impl Schedule {
                 },
             },
             Steps::Passing { ends, kept } => divided_between(ends, kept, |count| count * parts),
+            Steps::Segmented(segments) => Steps::Segmented(segments.with_steps(|count| count * parts)),
             Steps::Listed(ends) => {
                 let refine = |row: usize| {
                     self.steps_to(row)
@@ -83,6 +73,7 @@ impl Schedule {
         let steps = match &self.steps {
             Steps::Fixed { .. } => return self.with_steps_per_row(odd_to(self.steps_per_row().unwrap_or(1))),
             Steps::Passing { ends, kept } => divided_between(ends, kept, odd_to),
+            Steps::Segmented(segments) => Steps::Segmented(segments.with_steps(odd_to)),
             Steps::Listed(ends) => {
                 let of_row = |row: usize| {
                     let mut times = vec![self.time(row - 1)];

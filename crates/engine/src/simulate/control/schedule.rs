@@ -6,6 +6,8 @@
 use super::integration::Integration;
 use serde::{Deserialize, Serialize};
 
+use crate::simulate::events::segments::Segments;
+
 /// Rows of output, and the steps that lead from row to row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Schedule {
@@ -29,6 +31,8 @@ pub(super) enum Steps {
     /// The times at which steps end, which pass over rows; the last is the end of the run. Those by these numbers are
     /// times at which equations switch: all schedules of the motion keep them.
     Passing { ends: Vec<f64>, kept: Vec<usize> },
+    /// Those between events, whose times are each sample's own.
+    Segmented(Segments),
 }
 
 /// Steps before the last row: whole ones, then so many of the length `rest`, s.
@@ -90,9 +94,23 @@ impl Schedule {
         Self { output_step, rows, end: duration, steps, integration: Integration::Plain }
     }
 
+    /// Steps between the events that all samples meet.
+    pub fn segmented((duration, output_step): (f64, f64), segments: Segments) -> Self {
+        let (rows, steps) = (rows(duration, output_step), Steps::Segmented(segments));
+        Self { output_step, rows, end: duration, steps, integration: Integration::Segments }
+    }
+
+    /// The events between which steps are taken, with these, where they are.
+    pub fn segments(&self) -> Option<&Segments> {
+        match &self.steps {
+            Steps::Segmented(segments) => Some(segments),
+            _ => None,
+        }
+    }
+
     /// Whether steps pass over rows.
     pub fn passes_rows(&self) -> bool {
-        matches!(self.steps, Steps::Passing { .. })
+        matches!(self.steps, Steps::Passing { .. } | Steps::Segmented(_))
     }
 
     /// The same with steps that end at the rows too.
@@ -126,6 +144,7 @@ impl Schedule {
                 let first = ends.first().copied().unwrap_or(0.0);
                 ends.windows(2).map(|pair| pair[1] - pair[0]).fold(first, f64::max)
             }
+            Steps::Segmented(segments) => self.end / segments.count() as f64,
         }
     }
 
@@ -133,7 +152,7 @@ impl Schedule {
     pub fn steps_per_row(&self) -> Option<usize> {
         match &self.steps {
             Steps::Fixed { per_row, .. } => Some(*per_row),
-            Steps::Listed(_) | Steps::Passing { .. } => None,
+            Steps::Listed(_) | Steps::Passing { .. } | Steps::Segmented(_) => None,
         }
     }
 
@@ -177,10 +196,11 @@ impl Schedule {
             Steps::Fixed { step, .. } => *step,
             Steps::Listed(ends) => ends.first().and_then(|ends| ends.first()).copied().unwrap_or(self.output_step),
             Steps::Passing { ends, .. } => ends.first().copied().unwrap_or(self.output_step),
+            Steps::Segmented(_) => self.longest_step(),
         }
     }
 
-    /// The steps that lead to a row: (length, time at the end).
+    /// The steps that lead to a row: (length, time at the end). Those between events lead to none.
     pub fn steps_to(&self, row: usize) -> impl Iterator<Item = (f64, f64)> {
         let count = match &self.steps {
             _ if row == 0 => 0,
@@ -188,6 +208,7 @@ impl Schedule {
             Steps::Fixed { per_row, .. } => *per_row,
             Steps::Listed(ends) => ends[row - 1].len(),
             Steps::Passing { .. } => self.steps_before(row) - self.steps_before(row - 1),
+            Steps::Segmented(_) => 0,
         };
         (0..count).map(move |index| match &self.steps {
             Steps::Fixed { last, .. } if row + 1 == self.rows && index >= last.whole => {
@@ -203,10 +224,11 @@ impl Schedule {
                 let before = if place == 0 { 0.0 } else { ends[place - 1] };
                 (ends[place] - before, ends[place])
             }
+            Steps::Segmented(_) => (0.0, self.end),
         })
     }
 
-    /// Number of steps up to a row.
+    /// Number of steps up to a row; of those between events, the row's share of all.
     pub fn steps_before(&self, row: usize) -> usize {
         match &self.steps {
             Steps::Fixed { per_row, last, .. } if row > 0 && row + 1 == self.rows => {
@@ -218,6 +240,7 @@ impl Schedule {
                 let time = self.time(row);
                 ends.partition_point(|&end| end <= time)
             }
+            Steps::Segmented(segments) => segments.count() * row / (self.rows - 1).max(1),
         }
     }
 }

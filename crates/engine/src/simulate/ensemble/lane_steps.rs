@@ -85,6 +85,7 @@ impl<'s> LaneSteps<'s> {
         let mut failures = Vec::new();
         for lane in (0..converged.len()).filter(|&lane| stepper.alive()[lane]).collect::<Vec<_>>() {
             let crossing = self.watch.as_ref().filter(|_| converged[lane]).and_then(|watch| watch.crossing(lane, h));
+            let crossing = crossing.map(|(_, crossing)| crossing);
             let error = stepper.local_errors()[lane];
             let size = if crossing.is_some() { error.whole } else { error.size };
             let ratio = self.controller.error_ratio(size, h);

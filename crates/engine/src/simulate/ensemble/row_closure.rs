@@ -72,13 +72,23 @@ impl<'s> RowClosure<'s> {
         &self.program.layout
     }
 
+    /// The lanes' times, s.
+    pub fn times_mut(&mut self) -> &mut [f64] {
+        self.assembly.tile_mut().lane_mut(self.program.layout.time)
+    }
+
     /// Makes a motion (2n lines, q and v, lane by lane) consistent at a time.
     pub fn close(&mut self, time: f64, motion: &mut [f64]) {
+        self.times_mut().fill(time);
+        self.close_at_times(motion);
+    }
+
+    /// The same at the lanes' [times](Self::times_mut).
+    pub fn close_at_times(&mut self, motion: &mut [f64]) {
         let layout = &self.program.layout;
         let width = self.assembly.tile().width();
         let registers = layout.q.start * width..layout.v.end * width;
         self.assembly.tile_mut().values_mut()[registers.clone()].copy_from_slice(motion);
-        self.assembly.tile_mut().lane_mut(layout.time).fill(time);
         if !self.needs.closure {
             return;
         }
@@ -97,11 +107,16 @@ impl<'s> RowClosure<'s> {
 
     /// Rates (v, w; 2n lines) of a state (q, v) at a time, which need not be consistent.
     pub fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        self.times_mut().fill(time);
+        self.rate_at_times(state, into);
+    }
+
+    /// The same at the lanes' [times](Self::times_mut).
+    pub fn rate_at_times(&mut self, state: &[f64], into: &mut [f64]) {
         let layout = &self.program.layout;
         let width = self.assembly.tile().width();
         let tile = self.assembly.tile_mut();
         tile.values_mut()[layout.q.start * width..layout.v.end * width].copy_from_slice(state);
-        tile.lane_mut(layout.time).fill(time);
         if self.needs.linear {
             tile.run(self.program.acceleration());
             let (known, corrections) = tile.values_mut().split_at_mut(layout.correction.start * width);

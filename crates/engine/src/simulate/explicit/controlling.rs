@@ -59,7 +59,7 @@ impl<'s> Tiles<'s> {
 
     /// The first switch in a step of length h that was tried, as a share of it.
     pub fn crossing(&self, h: f64) -> Option<f64> {
-        self.watch.as_ref()?.crossing(0, h).map(|crossing| crossing.share)
+        self.watch.as_ref()?.crossing(0, h).map(|(_, crossing)| crossing.share)
     }
 
     /// Tries a step of all; the worst lane's error.

@@ -14,9 +14,9 @@
 
 mod controlling;
 mod jets;
-mod movement;
+pub(in crate::simulate) mod movement;
 mod run;
-mod runge_kutta;
+pub(in crate::simulate) mod runge_kutta;
 mod steps;
 mod tableau;
 

@@ -10,7 +10,7 @@ const REST: f64 = 1e-9;
 
 /// The farthest that each line of a state, positions and then velocities, has gone.
 #[derive(Clone, Debug)]
-pub(super) struct Movement {
+pub(in crate::simulate) struct Movement {
     /// Distance from the start, or speed.
     farthest: Vec<f64>,
     /// Least that counts, and what lines are of a kind: metres, angles, their rates; nothing depends on a coordinate

@@ -6,7 +6,7 @@ use symdiff::{Vectorise, vectorised};
 use super::tableau::{DENSE, FIFTH, Row, STAGES, THIRD, TIMES, WEIGHTS, WITH_DENSE};
 
 /// Integrated system.
-pub(super) trait Motion {
+pub(in crate::simulate) trait Motion {
     /// Rates v, w (2n lines) of a state q, v at a time.
     fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]);
 
@@ -22,7 +22,7 @@ const TERMS: usize = 3 + DENSE.len();
 
 /// The state between steps, and the stages of the step that was tried last.
 #[derive(Clone, Debug)]
-pub(super) struct RungeKutta {
+pub(in crate::simulate) struct RungeKutta {
     /// At the step's beginning.
     pub time: f64,
     pub state: Vec<f64>,
@@ -36,7 +36,7 @@ pub(super) struct RungeKutta {
 
 /// Largest error over the allowance, and the stiffness of the step, in one lane.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StepError {
+pub(in crate::simulate) struct StepError {
     /// 1 where the error equals the allowance.
     pub ratio: f64,
     /// h times the largest eigenvalue, as far as the last stages show it.

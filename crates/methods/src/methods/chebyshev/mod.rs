@@ -11,6 +11,7 @@ mod estimator;
 mod outputs_alone;
 mod polynomials;
 mod range_search;
+mod segments;
 mod sensitivity;
 mod sub_box;
 
@@ -257,6 +258,10 @@ impl BoundingMethod for Chebyshev {
         if self.expand == Expand::Coordinates && problem.composes { Observed::Motion } else { Observed::Outputs }
     }
 
+    fn follows_events(&self, problem: &Problem) -> bool {
+        self.observes(problem) == Observed::Motion
+    }
+
     fn bound(
         &self,
         ensemble: &dyn Ensemble,
@@ -270,6 +275,12 @@ impl BoundingMethod for Chebyshev {
         let surrogate = Surrogate::tensor(order, nodes);
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
+        if composes
+            && self.expand == Expand::Coordinates
+            && let Some((bands, simulated)) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
+        {
+            return Ok(bands.finish(samples.len(), simulated));
+        }
         let mut kept_rows = request.keep.then(Vec::new);
         let (bands, simulated) = match self.expand {
             Expand::Coordinates if composes => {
@@ -303,6 +314,9 @@ fn adapted(
         goal.rows = goal.rows.min(if span > 0.0 { resolved } else { goal.rows });
         let time = largest(time[..resolved].iter().copied());
         goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
+    }
+    if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
+        return Ok(found);
     }
     let adapted = Adaptation::new(ensemble, goal, validation, request.keep).search()?;
     let outputs = ensemble.outputs();

@@ -18,7 +18,7 @@ impl Motions<'_> {
     /// # Errors
     /// Where a sample cannot be assembled.
     pub(super) fn dense(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, SimulationError> {
-        if !self.schedule.passes_rows() {
+        if !self.schedule.passes_rows() || self.schedule.segments().is_some() {
             return Ok(None);
         }
         let (end, ends) = (self.schedule.end(), self.schedule.ends());

@@ -36,7 +36,7 @@ impl<'s> SampleJet<'s> {
                 let jets = ExtrapolatedJets::start(simulator, space, (center, half_widths), first_step, levels)?;
                 Self::Extrapolated(Box::new(jets))
             }
-            Integration::Explicit => {
+            Integration::Explicit | Integration::Segments => {
                 Self::Explicit(Box::new(ExplicitJets::start(simulator, space, (center, half_widths))?))
             }
         })

@@ -1,6 +1,7 @@
 //! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
 
 pub(in crate::study) mod closure;
+mod cut;
 mod dense;
 mod jet;
 mod nominal;
@@ -20,7 +21,7 @@ use super::reduced::{Store, steps_of};
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
 use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated, Until};
-use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
+use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
     SimulationError, Simulator, Steps, Stop, choose_independent,
@@ -304,6 +305,10 @@ impl Ensemble for Motions<'_> {
 
     fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
         Ok(self.dense(samples)?)
+    }
+
+    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
+        Ok(self.cut(samples)?)
     }
 
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {

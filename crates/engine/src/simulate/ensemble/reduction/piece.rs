@@ -1,5 +1,7 @@
 //! An output between two steps: the cubic through the values at four steps.
 
+use crate::simulate::events::locate::bisected;
+
 /// A place in a piece, as a share of its length, and the value there.
 pub(super) type Place = (f64, f64);
 
@@ -91,16 +93,7 @@ impl Piece {
 
     /// Where the value becomes positive on the way from a share at which it is negative to one at which it is not.
     fn crossing(&self, below: f64, above: f64) -> f64 {
-        let (mut below, mut above) = (below, above);
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (below + above);
-            if self.at(middle) >= 0.0 {
-                above = middle;
-            } else {
-                below = middle;
-            }
-        }
-        above
+        bisected((below, above), BISECTIONS, |share| self.at(share) >= 0.0)
     }
 
     /// The integral of a function of the value over a part, by Gauss' rule of four nodes: exact up to degree 7.

@@ -1,0 +1,240 @@
+//! The motion of one sample by the explicit method, with steps of its own that end at events.
+//!
+//! The instant of an event is solved to rounding: the step that crosses it is taken again with its length as the
+//! unknown, by Newton's method on the switch's value and rate at the step's end. It ends beyond the event by so little
+//! that what follows begins on the event's other side.
+
+use symdiff::math;
+
+use super::segments::Event;
+use crate::compile::SwitchProgram;
+use crate::numerics::Sample;
+use crate::simulate::control::SwitchWatch;
+use crate::simulate::ensemble::RowClosure;
+use crate::simulate::error::SimulationError;
+use crate::simulate::explicit::movement::Movement;
+use crate::simulate::explicit::runge_kutta::RungeKutta;
+use crate::simulate::simulator::Simulator;
+
+/// The first step and the longest, as shares of the duration.
+const FIRST_STEP: f64 = 1e-4;
+const LONGEST: f64 = 1.0 / 16.0;
+
+/// The smallest step, as a share of the duration.
+const SMALLEST: f64 = 1e-13;
+
+/// A crossing behind this share of a step, or so little beyond its end, is solved for by Newton's method; before it, the
+/// step is cut short first.
+const NEAR: f64 = 0.98;
+
+/// How far beyond an event a step ends, as a share of the duration, and how closely that is solved.
+pub(super) const BEYOND: f64 = 16.0 * f64::EPSILON;
+pub(super) const LOCATED: f64 = 4.0 * f64::EPSILON;
+
+/// What is left of an event's instant by rounding of the switch, at most, as a share of the duration.
+pub(super) const ROUNDED: f64 = 1e-9;
+
+/// Corrections of an event's instant.
+pub(super) const CORRECTIONS: usize = 12;
+
+/// A switch that stays within this share of its largest value crosses by rounding.
+const ZERO: f64 = 1e-13;
+
+/// Switches that cross so soon after an event, as a share of the duration, are a part of it.
+const SAME: f64 = 1e-10;
+
+/// Least share that a step is cut to at once where its error is large.
+const LEAST_SHARE: f64 = 0.3;
+
+/// Safety of the step size, and the limits of its change at once.
+const SAFETY: f64 = 0.9;
+const LEAST_FACTOR: f64 = 0.2;
+const LARGEST_FACTOR: f64 = 6.0;
+
+/// Steps that are tried at most: motions that are worth cutting take hundreds.
+const MOST_STEPS: usize = 3000;
+
+/// A motion that cannot be followed: it is stiff, not finite, or grazes a switch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lost;
+
+/// A step that was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathStep {
+    /// Its beginning and its end, s.
+    pub begin: f64,
+    pub end: f64,
+    /// The event at its end.
+    pub event: Option<Event>,
+}
+
+/// One sample on its way.
+#[derive(Debug)]
+pub struct Path<'s> {
+    closure: RowClosure<'s>,
+    run: RungeKutta,
+    watch: SwitchWatch<'s>,
+    movement: Movement,
+    start: Vec<f64>,
+    /// Largest value of each switch so far.
+    sizes: Vec<f64>,
+    duration: f64,
+    tolerance: f64,
+    /// Length of the step to try next, s.
+    h: f64,
+    /// When the last event was, s.
+    event: f64,
+    tries: usize,
+}
+
+impl<'s> Path<'s> {
+    /// At the start of a sample; each step errs by at most `tolerance` of how far the motion has gone.
+    ///
+    /// # Errors
+    /// Where the sample cannot be assembled.
+    pub fn start(
+        simulator: &'s Simulator,
+        program: &'s SwitchProgram,
+        sample: &Sample,
+        (duration, tolerance): (f64, f64),
+    ) -> Result<Self, SimulationError> {
+        let assembled = simulator.assemble(1, 0.0, |_| sample.clone())?;
+        let mut closure = RowClosure::new(simulator, &assembled)?;
+        let layout = &simulator.start.layout;
+        let start = assembled.values()[layout.q.start..layout.v.end].to_vec();
+        let run = RungeKutta::start(&mut closure, 0.0, start.clone());
+        let mut watch = SwitchWatch::new(program, closure.tile());
+        watch.begin(closure.tile());
+        let sizes = (0..program.switches.len()).map(|switch| watch.at_beginning(switch, 0)[0].abs()).collect();
+        let movement = Movement::new(&simulator.system.coordinates, duration);
+        let h = FIRST_STEP * duration;
+        Ok(Self { closure, run, watch, movement, start, sizes, duration, tolerance, h, event: 0.0, tries: 0 })
+    }
+
+    /// Takes a step that ends at `goal` at the latest, from which [`go_on`](Self::go_on) goes on.
+    ///
+    /// # Errors
+    /// Where no step can be taken.
+    pub fn step(&mut self, goal: f64) -> Result<PathStep, Lost> {
+        let begin = self.run.time;
+        // The length of a step that a crossing cut short, and the switch that crosses.
+        let mut cut: Option<(f64, usize)> = None;
+        loop {
+            self.tries += 1;
+            if self.tries > MOST_STEPS || self.h < SMALLEST * self.duration {
+                return Err(Lost);
+            }
+            let step = self.h.min(LONGEST * self.duration);
+            let mut end = if begin + step * (1.0 + 1e-9) >= goal { goal } else { begin + step };
+            let step = end - begin;
+            let mut ratio = self.attempt(end);
+            let crossing = self.crossing(begin, step);
+            if let Some((switch, share)) = crossing.filter(|(_, share)| *share < NEAR) {
+                self.closure.forget();
+                cut = Some(cut.map_or((self.h, switch), |(uncut, _)| (uncut, switch)));
+                // Where the step does not resolve what follows, its end says little of when that begins.
+                self.h = step * if ratio <= 1.0 { share } else { share.max(LEAST_SHARE) };
+                continue;
+            }
+            let near = |(_, switch): &(f64, usize)| {
+                let [value, rate] = self.watch.at_end(*switch, 0);
+                value * rate < 0.0 && (value / rate).abs() < (1.0 - NEAR) * step
+            };
+            let switch = crossing.map(|(switch, _)| switch).or(cut.filter(near).map(|(_, switch)| switch));
+            let mut event = None;
+            if let Some(switch) = switch {
+                match self.located(switch, begin, end) {
+                    Some(found) => (end, ratio, event) = found,
+                    None => ratio = f64::INFINITY,
+                }
+            }
+            let factor = SAFETY * math::pow(ratio.max(1e-12), -0.125);
+            if ratio > 1.0 {
+                self.closure.forget();
+                self.h = step * if ratio.is_finite() { factor.clamp(LEAST_FACTOR, SAFETY) } else { LEAST_FACTOR };
+                cut = None;
+                continue;
+            }
+            self.h = match cut {
+                Some((uncut, _)) if event.is_some() => uncut,
+                // A step cut short at the goal is no reason against the longer one.
+                _ if end == goal && step < self.h => self.h,
+                _ => step * factor.clamp(LEAST_FACTOR, LARGEST_FACTOR),
+            };
+            return Ok(PathStep { begin, end, event });
+        }
+    }
+
+    /// Takes the step again until it ends at the event: its end, its error over the tolerance, and the event; `None`
+    /// where the switch does not pass zero there.
+    fn located(&mut self, switch: usize, begin: f64, mut end: f64) -> Option<(f64, f64, Option<Event>)> {
+        let rises = self.watch.at_beginning(switch, 0)[0] < 0.0;
+        let (mut ratio, mut is_located) = (f64::INFINITY, false);
+        for _ in 0..CORRECTIONS {
+            let [value, rate] = self.watch.at_end(switch, 0);
+            // Written so that an unknown rate ends it, too.
+            if !(if rises { rate > 0.0 } else { rate < 0.0 }) {
+                return None;
+            }
+            let change = BEYOND * self.duration - value / rate;
+            is_located = change.abs() <= ROUNDED * self.duration;
+            if change.abs() <= LOCATED * self.duration && ratio.is_finite() {
+                break;
+            }
+            end += change;
+            if end <= begin || end.is_nan() {
+                return None;
+            }
+            ratio = self.attempt(end);
+        }
+        is_located.then_some((end, ratio, Some(Event { switch, rises })))
+    }
+
+    /// Tries a step: its error over the tolerance.
+    fn attempt(&mut self, end: f64) -> f64 {
+        let Self { run, closure, watch, .. } = self;
+        run.attempt(closure, end);
+        run.finish(closure, end);
+        watch.end(closure.tile());
+        let sizes = self.movement.clone().reaching(&self.start, &self.run.next, 1).sizes();
+        self.run.errors(end, &sizes, self.tolerance, 1)[0].ratio
+    }
+
+    /// The first switch that crosses in the step that was tried, and when, as a share of it.
+    fn crossing(&self, begin: f64, step: f64) -> Option<(usize, f64)> {
+        let counts = |(switch, share): &(usize, f64)| {
+            let [start, end] = [self.watch.at_beginning(*switch, 0), self.watch.at_end(*switch, 0)];
+            let moves = start[0].abs().max(end[0].abs()) > ZERO * self.sizes[*switch];
+            moves && begin + share * step - self.event > SAME * self.duration
+        };
+        let found: Vec<(usize, f64)> =
+            self.watch.crossings(0, step).map(|(switch, crossing)| (switch, crossing.share)).filter(counts).collect();
+        let first = found.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
+        // Of those that cross at once, the first by number.
+        let at_once = |(_, share): &(usize, f64)| (share - first) * step <= SAME * self.duration;
+        found.into_iter().find(at_once)
+    }
+
+    /// Prepares [`interpolate`](Self::interpolate) in the step that was taken.
+    pub fn prepare_dense(&mut self, step: PathStep) {
+        self.run.prepare_dense(&mut self.closure, step.end);
+    }
+
+    /// Positions and velocities (2n) at a share of the step that was taken.
+    pub fn interpolate(&self, share: f64, into: &mut [f64]) {
+        self.run.interpolate(share, into);
+    }
+
+    /// Goes on from the end of the step that was taken.
+    pub fn go_on(&mut self, step: PathStep) {
+        self.watch.go_on();
+        for (switch, size) in self.sizes.iter_mut().enumerate() {
+            *size = size.max(self.watch.at_beginning(switch, 0)[0].abs());
+        }
+        if step.event.is_some() {
+            self.event = step.end;
+        }
+        self.run.accept(&mut self.closure, step.end);
+        self.movement = self.movement.clone().reaching(&self.start, &self.run.state, 1);
+    }
+}

@@ -1,0 +1,255 @@
+//! Ranges of the outputs at a time: the extremes over each part of the box that is in a segment, its surfaces included.
+//!
+//! Within such a part an output is smooth, but it may change much faster with the share of the segment than along a
+//! surface on which that is the same: a contact is short beside the spread of its instants. A climb moves by a linear
+//! programme in a trust region that is as narrow across these surfaces as it has to be: the steepest way that leaves
+//! neither the box nor the segment. Then it is moved to the surface that it was to reach.
+
+use super::row::SegmentRow;
+use super::seeds::Lattice;
+use super::surrogate::Point;
+use crate::numerics::{Extent, Range};
+
+/// Climbs for either end of an output, and how far apart they begin along some axis where they are in one segment.
+const CLIMBS: usize = 3;
+const APART: f64 = 0.3;
+
+/// Radii of the first trust region, in ξ and in the share of the segment, and where a climb ends.
+const RADIUS: f64 = 0.15;
+const OF_SHARE: f64 = 0.25;
+const LEAST_RADIUS: f64 = 1e-4;
+
+/// Radii after a move that was none, and after one, over those before it.
+const SHRINKS: (f64, f64) = (0.5, 0.25);
+const GROWS: (f64, f64) = (2.0, 1.5);
+
+/// Moves of a climb, at most.
+const MOVES: usize = 60;
+
+/// Difference by which slopes are taken.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Moves to a surface, and by how much of a segment it may be missed.
+const RETURNS: usize = 4;
+const MISSED: f64 = 1e-11;
+
+/// A place on the way to an extreme.
+struct Climb {
+    output: usize,
+    /// −1 for the least value, 1 for the largest.
+    sign: f64,
+    segment: usize,
+    point: Point,
+    value: f64,
+    radius: f64,
+    of_share: f64,
+}
+
+impl Climb {
+    /// The share of the segment that a point is at.
+    fn share(&self, point: &Point, time: f64) -> f64 {
+        let [begin, end] = [point.times[self.segment], point.times[self.segment + 1]];
+        (time - begin) / (end - begin)
+    }
+}
+
+/// A move: where to, the share that is to be reached there, and the share's slopes.
+struct Move {
+    xi: Vec<f64>,
+    share: f64,
+    slopes: Vec<f64>,
+}
+
+/// The outputs' ranges, with the places of their ends.
+pub(super) fn extents(row: &SegmentRow, lattice: &Lattice) -> Vec<Extent> {
+    let mut climbs = begun(row, lattice);
+    for _ in 0..MOVES {
+        if !step(row, &mut climbs) {
+            break;
+        }
+    }
+    let of_output = |output: usize| {
+        let best = |sign: f64| {
+            let own = climbs.iter().filter(|climb| climb.output == output && climb.sign == sign);
+            own.reduce(|a, b| if sign * b.value > sign * a.value { b } else { a })
+        };
+        match (best(-1.0), best(1.0)) {
+            (Some(least), Some(most)) => {
+                let range = Range { lower: least.value, upper: most.value };
+                Extent::at(range, 0.0, [least, most].map(|climb| climb.point.xi.clone()))
+            }
+            _ => Extent::unknown(row.ensemble.domain().dimension()),
+        }
+    };
+    (0..row.ensemble.outputs()).map(of_output).collect()
+}
+
+/// Climbs from the best of all places that are looked at.
+fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
+    let time = row.time;
+    let mut seeds: Vec<(usize, Point)> =
+        lattice.points.iter().map(|point| (point.segment(time), point.clone())).collect();
+    for segment in 0..row.surrogate.segments() {
+        for share in [0.0, 0.5, 1.0] {
+            // The start and the end of the motion are no surfaces.
+            let is_end = segment == 0 && share == 0.0 || segment + 1 == row.surrogate.segments() && share == 1.0;
+            let found = if is_end { Vec::new() } else { lattice.on_surface(row.surrogate, (segment, share), time) };
+            seeds.extend(found.into_iter().map(|point| (segment, point)));
+        }
+    }
+    let at: Vec<(&Point, usize, f64)> = seeds.iter().map(|(segment, point)| (point, *segment, time)).collect();
+    let values = row.outputs_on(&at);
+    let mut climbs = Vec::new();
+    for (output, values) in values.chunks_exact(seeds.len()).enumerate() {
+        for sign in [-1.0, 1.0] {
+            let mut order: Vec<usize> = (0..seeds.len()).filter(|&seed| values[seed].is_finite()).collect();
+            order.sort_by(|&a, &b| (sign * values[b]).total_cmp(&(sign * values[a])));
+            let mut chosen: Vec<usize> = Vec::new();
+            for seed in order {
+                let (segment, point) = &seeds[seed];
+                let differs = |&other: &usize| {
+                    let (of_other, other) = &seeds[other];
+                    let is_apart = point.xi.iter().zip(&other.xi).any(|(a, b)| (a - b).abs() > APART);
+                    segment != of_other || is_apart
+                };
+                if chosen.len() < CLIMBS && chosen.iter().all(differs) {
+                    chosen.push(seed);
+                }
+            }
+            climbs.extend(chosen.into_iter().map(|seed| {
+                let (segment, point) = seeds[seed].clone();
+                Climb { output, sign, segment, point, value: values[seed], radius: RADIUS, of_share: OF_SHARE }
+            }));
+        }
+    }
+    climbs
+}
+
+/// Moves all climbs that have not ended; whether there are any.
+fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
+    let mut going: Vec<&mut Climb> = climbs.iter_mut().filter(|climb| climb.radius > LEAST_RADIUS).collect();
+    if going.is_empty() {
+        return false;
+    }
+    let k = row.ensemble.domain().dimension();
+    let beside = |climb: &&mut Climb| {
+        let xi = climb.point.xi.clone();
+        (0..k).map(move |axis| {
+            let mut xi = xi.clone();
+            xi[axis] += inward(xi[axis]);
+            xi
+        })
+    };
+    let around = row.surrogate.points(going.iter().flat_map(beside).collect());
+    let at: Vec<(&Point, usize, f64)> =
+        around.iter().enumerate().map(|(place, point)| (point, going[place / k].segment, row.time)).collect();
+    let values = row.outputs_on(&at);
+    let mut moves = Vec::with_capacity(going.len());
+    for (place, climb) in going.iter().enumerate() {
+        let own = &around[place * k..][..k];
+        let slopes = |of: &dyn Fn(usize) -> f64, here: f64| -> Vec<f64> {
+            (0..k).map(|axis| (of(axis) - here) / inward(climb.point.xi[axis])).collect()
+        };
+        let value = |axis: usize| climb.sign * values[climb.output * at.len() + place * k + axis];
+        let ascent = slopes(&value, climb.sign * climb.value);
+        let share = climb.share(&climb.point, row.time);
+        let slopes = slopes(&|axis| climb.share(&own[axis], row.time), share);
+        let opposite: Vec<f64> = slopes.iter().map(|slope| -slope).collect();
+        let room = [share.min(climb.of_share), (1.0 - share).min(climb.of_share)];
+        let limits = climb.point.xi.iter().map(|xi| [(-1.0 - xi).max(-climb.radius), (1.0 - xi).min(climb.radius)]);
+        let way = steepest(&ascent, &limits.collect::<Vec<_>>(), [(&slopes, room[0]), (&opposite, room[1])]);
+        let by: f64 = slopes.iter().zip(&way).map(|(slope, by)| slope * by).sum();
+        let xi = climb.point.xi.iter().zip(way).map(|(xi, by)| (xi + by).clamp(-1.0, 1.0)).collect();
+        moves.push(Move { xi, share: (share + by).clamp(0.0, 1.0), slopes });
+    }
+    let points_of = |moves: &[Move]| row.surrogate.points(moves.iter().map(|to| to.xi.clone()).collect());
+    let mut points = points_of(&moves);
+    for _ in 0..RETURNS {
+        let mut moved = false;
+        for ((climb, to), point) in going.iter().zip(&mut moves).zip(&points) {
+            let lacks = to.share - climb.share(point, row.time);
+            moved |= lacks.abs() > MISSED && back(&mut to.xi, &to.slopes, lacks);
+        }
+        if !moved {
+            break;
+        }
+        points = points_of(&moves);
+    }
+    let at: Vec<(&Point, usize, f64)> =
+        points.iter().zip(&going).map(|(point, climb)| (point, climb.segment, row.time)).collect();
+    let values = row.outputs_on(&at);
+    let count = going.len();
+    for (place, (climb, point)) in going.iter_mut().zip(&points).enumerate() {
+        let value = values[climb.output * count + place];
+        let inside = (-2.0 * MISSED..=1.0 + 2.0 * MISSED).contains(&climb.share(point, row.time));
+        let rises = inside && climb.sign * value > climb.sign * climb.value;
+        if rises {
+            (climb.value, climb.point) = (value, point.clone());
+        }
+        let (of_xi, of_share) = if rises { GROWS } else { SHRINKS };
+        (climb.radius, climb.of_share) = ((of_xi * climb.radius).min(1.0), (of_share * climb.of_share).min(OF_SHARE));
+    }
+    true
+}
+
+/// A difference that stays in the box.
+fn inward(xi: f64) -> f64 {
+    if xi > 0.0 { -DIFFERENCE } else { DIFFERENCE }
+}
+
+/// The move within limits that ascends most, and along the slopes of each surface by no less than −room.
+fn steepest(ascent: &[f64], limits: &[[f64; 2]], surfaces: [(&[f64], f64); 2]) -> Vec<f64> {
+    let favoured = |slope: f64, [low, high]: [f64; 2]| if slope > 0.0 { high } else { low };
+    let mut way: Vec<f64> = ascent.iter().zip(limits).map(|(&slope, &limits)| favoured(slope, limits)).collect();
+    for (slopes, room) in surfaces {
+        let mut lacks = -room.max(0.0) - slopes.iter().zip(&way).map(|(slope, by)| slope * by).sum::<f64>();
+        if lacks <= 0.0 {
+            continue;
+        }
+        // What costs least ascent goes first: a linear programme with one constraint.
+        let mut order: Vec<usize> = (0..way.len()).filter(|&axis| slopes[axis] != 0.0).collect();
+        let cost = |axis: &usize| (ascent[*axis] / slopes[*axis]).abs();
+        order.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+        for axis in order {
+            let most = favoured(slopes[axis], limits[axis]) - way[axis];
+            let share = (lacks / (slopes[axis] * most)).clamp(0.0, 1.0);
+            if share.is_finite() && lacks > 0.0 {
+                way[axis] += share * most;
+                lacks -= share * slopes[axis] * most;
+            }
+        }
+    }
+    way
+}
+
+/// Moves a point back by what it lacks along a slope, within the box; whether it could be.
+fn back(xi: &mut [f64], slope: &[f64], lacks: f64) -> bool {
+    let is_free = |(xi, slope): (&f64, &f64)| if *slope > 0.0 { *xi < 1.0 } else { *xi > -1.0 };
+    let free: Vec<bool> = xi.iter().zip(slope).map(is_free).collect();
+    let square: f64 = slope.iter().zip(&free).filter(|(_, free)| **free).map(|(slope, _)| slope * slope).sum();
+    if square <= 0.0 || square.is_nan() {
+        return false;
+    }
+    for ((xi, slope), _) in xi.iter_mut().zip(slope).zip(free).filter(|(_, free)| *free) {
+        *xi = (*xi + lacks * slope / square).clamp(-1.0, 1.0);
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Greatest ascent of (2, 1) in the square, with x + y ≤ 0.5 left: the vertex where x is largest.
+    #[test]
+    fn moves_keep_to_the_side_of_a_surface() {
+        let limits = [[-1.0, 1.0]; 2];
+        let free = (&[0.0, 0.0][..], 1.0);
+        let way = steepest(&[2.0, 1.0], &limits, [(&[-1.0, -1.0], 0.5), free]);
+        assert_eq!(way, [1.0, -0.5]);
+        assert_eq!(steepest(&[2.0, 1.0], &limits, [free, free]), [1.0, 1.0]);
+        let mut xi = [1.0, 0.8];
+        assert!(back(&mut xi, &[-1.0, -1.0], 1.0));
+        assert!((xi[0] + xi[1] - 0.8).abs() < 1e-15);
+    }
+}

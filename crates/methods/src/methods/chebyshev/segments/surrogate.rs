@@ -1,0 +1,125 @@
+//! Polynomials of the instants of events, and of the motion between them.
+
+use crate::numerics::{
+    STEP_NODES, SegmentMotions, SparseBasis, SparseWork, Surrogate, SurrogateWork, largest, step_weights, truncation,
+};
+
+/// Motions cut at events, as functions of the parameters.
+pub(super) struct SegmentSurrogate<'a> {
+    basis: &'a SparseBasis,
+    /// Ends of the steps of each segment, as shares of its length.
+    steps: &'a [Vec<f64>],
+    /// Coefficients of the times at which segments begin, and at which the last ends.
+    times: Vec<Vec<f64>>,
+    /// Coefficients of each of the 2n lines, by segment and node.
+    nodes: Vec<Vec<Vec<f64>>>,
+    lines: usize,
+}
+
+/// A point of the box with what does not depend on the time.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    pub xi: Vec<f64>,
+    /// Values of the basis.
+    terms: Vec<f64>,
+    /// When segments begin, and when the last ends, s.
+    pub times: Vec<f64>,
+}
+
+/// Largest errors at validation samples, or what the polynomials lack.
+pub(super) struct SegmentErrors {
+    /// Of the instants, s.
+    pub times: Vec<f64>,
+    /// Of each line, by segment.
+    pub lines: Vec<Vec<f64>>,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl<'a> SegmentSurrogate<'a> {
+    pub fn new(surrogate: &'a Surrogate, motions: &'a SegmentMotions) -> Self {
+        let mut work = SurrogateWork::default();
+        let mut coefficients = |values: &[f64]| surrogate.coefficients(values, &mut work);
+        let times = motions.times.iter().map(|times| coefficients(times)).collect();
+        let nodes: Vec<Vec<Vec<f64>>> =
+            motions.nodes.iter().map(|nodes| nodes.iter().map(|node| coefficients(node)).collect()).collect();
+        let basis = surrogate.basis();
+        let lines = nodes.first().and_then(|nodes| nodes.first()).map_or(0, |node| node.len() / basis.len());
+        Self { basis, steps: &motions.steps, times, nodes, lines }
+    }
+
+    /// Number of positions and velocities, 2n.
+    pub fn lines(&self) -> usize {
+        self.lines
+    }
+
+    /// Number of segments.
+    pub fn segments(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Points with the instants of their events.
+    pub fn points(&self, xi: Vec<Vec<f64>>) -> Vec<Point> {
+        let terms = self.basis.len();
+        let mut unit = vec![0.0; terms * terms];
+        (0..terms).for_each(|term| unit[term * terms + term] = 1.0);
+        let mut values = vec![0.0; terms * xi.len()];
+        self.basis.values(&xi, &unit, &mut values, &mut SparseWork::default());
+        let count = xi.len();
+        let point = |(place, xi): (usize, Vec<f64>)| {
+            let terms: Vec<f64> = values.iter().skip(place).step_by(count).copied().collect();
+            let times = self.times.iter().map(|time| dot(time, &terms)).collect();
+            Point { xi, terms, times }
+        };
+        xi.into_iter().enumerate().map(point).collect()
+    }
+
+    /// The motion (2n) of a point at a time on the branch of a segment, which goes on beyond its ends.
+    pub fn motion(&self, point: &Point, segment: usize, time: f64) -> impl Iterator<Item = f64> {
+        let [begin, end] = [point.times[segment], point.times[segment + 1]];
+        let (step, weights) = step_weights(&self.steps[segment], (time - begin) / (end - begin));
+        let nodes = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
+        let terms = point.terms.clone();
+        (0..self.lines).map(move |line| {
+            let value = |node: &Vec<f64>| dot(&node[line * terms.len()..][..terms.len()], &terms);
+            weights.iter().zip(nodes).map(|(weight, node)| weight * value(node)).sum()
+        })
+    }
+
+    /// The motion (2n) of some ξ at a time.
+    pub fn motion_at(&self, xi: &[f64], time: f64) -> Vec<f64> {
+        let points = self.points(vec![xi.to_vec()]);
+        points.iter().flat_map(|point| self.motion(point, point.segment(time), time)).collect()
+    }
+}
+
+impl Point {
+    /// The segment that it is in at a time.
+    pub fn segment(&self, time: f64) -> usize {
+        let inner = &self.times[1..self.times.len() - 1];
+        inner.iter().take_while(|&&begin| begin <= time).count()
+    }
+}
+
+impl SegmentErrors {
+    /// At samples that were cut at the same events.
+    pub fn new(surrogate: &SegmentSurrogate, xi: &[Vec<f64>], direct: &SegmentMotions) -> Self {
+        let points = surrogate.points(xi.to_vec());
+        let differences = |coefficients: &[f64], values: &[f64]| {
+            let own = points.iter().zip(values).map(|(point, value)| dot(coefficients, &point.terms) - value);
+            largest(own.chain([truncation(surrogate.basis, coefficients)]))
+        };
+        let times = surrogate.times.iter().zip(&direct.times).map(|(own, values)| differences(own, values)).collect();
+        let terms = surrogate.basis.len();
+        let of_line = |(own, values): (&Vec<Vec<f64>>, &Vec<Vec<f64>>), line: usize| {
+            largest(own.iter().zip(values).map(|(own, values)| {
+                differences(&own[line * terms..][..terms], &values[line * points.len()..][..points.len()])
+            }))
+        };
+        let of_segment = |nodes| (0..surrogate.lines).map(|line| of_line(nodes, line)).collect();
+        let lines = surrogate.nodes.iter().zip(&direct.nodes).map(of_segment).collect();
+        Self { times, lines }
+    }
+}

@@ -1,0 +1,74 @@
+//! Motions cut at events: segments between them, on a time of their own that runs from 0 to 1.
+//!
+//! All samples divide a segment at the same shares of its length into steps. Within a step a motion is the polynomial
+//! through its values at Chebyshev–Lobatto nodes, so that segments of different lengths have their nodes at the same
+//! shares, and what is at a node is a smooth function of the sample.
+
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+use symdiff::math;
+
+/// Nodes of a step, both ends included: those of a dense output of order 7.
+pub const STEP_NODES: usize = 8;
+
+/// Motions of some samples, cut at the events that all of them have.
+#[derive(Clone, Debug, Default)]
+pub struct SegmentMotions {
+    /// Ends of the steps of each segment, as shares of its length; the last is 1.
+    pub steps: Vec<Vec<f64>>,
+    /// Times at which segments begin, and at which the last ends, s: by segment, each of all samples.
+    pub times: Vec<Vec<f64>>,
+    /// Positions and velocities at the nodes: by segment, by node (neighbouring steps share one), line by line, sample
+    /// by sample.
+    pub nodes: Vec<Vec<Vec<f64>>>,
+}
+
+static NODES: LazyLock<[f64; STEP_NODES]> =
+    LazyLock::new(|| std::array::from_fn(|node| 0.5 * (1.0 - math::cos(PI * node as f64 / (STEP_NODES - 1) as f64))));
+
+/// Shares of a step at which its nodes are.
+pub fn step_nodes() -> [f64; STEP_NODES] {
+    *NODES
+}
+
+/// The step of a segment that holds a share, and the weights of its nodes there; a share beyond the segment's ends is
+/// extrapolated.
+pub fn step_weights(ends: &[f64], share: f64) -> (usize, [f64; STEP_NODES]) {
+    let step = ends.partition_point(|&end| end < share).min(ends.len().saturating_sub(1));
+    let begin = if step == 0 { 0.0 } else { ends[step - 1] };
+    let local = (share - begin) / (ends[step] - begin);
+    let nodes = step_nodes();
+    if let Some(node) = nodes.iter().position(|&node| node == local) {
+        let mut weights = [0.0; STEP_NODES];
+        weights[node] = 1.0;
+        return (step, weights);
+    }
+    // Barycentric weights of Chebyshev–Lobatto nodes: alternating signs, halved at the ends.
+    let mut weights: [f64; STEP_NODES] = std::array::from_fn(|node| {
+        let end = node == 0 || node + 1 == STEP_NODES;
+        let sign = if node % 2 == 0 { 1.0 } else { -1.0 };
+        sign * if end { 0.5 } else { 1.0 } / (local - nodes[node])
+    });
+    let sum: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|weight| *weight /= sum);
+    (step, weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_of_degree_seven_are_met() {
+        let ends = [0.3, 1.0];
+        let f = |s: f64| 1.0 + s * (2.0 - s * s * s) + s.powi(7);
+        for share in [0.0, 0.1, 0.3, 0.31, 0.9, 1.0, 1.05] {
+            let (step, weights) = step_weights(&ends, share);
+            let (begin, end) = if step == 0 { (0.0, 0.3) } else { (0.3, 1.0) };
+            let values = step_nodes().map(|node| f(begin + (end - begin) * node));
+            let value: f64 = weights.iter().zip(values).map(|(weight, value)| weight * value).sum();
+            assert!((value - f(share)).abs() < 1e-12, "{share}: {value}");
+        }
+    }
+}

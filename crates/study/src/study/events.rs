@@ -1,0 +1,83 @@
+//! Whether motions are cut at events, and the steps between them.
+
+use super::outcome::Switches;
+use super::single::{Study, problem};
+use crate::model::Stepping;
+use crate::numerics::{Sample, spread};
+use crate::results::MethodSummary;
+use crate::simulate::{Counters, Schedule, SimulationError, SwitchSearch, segments_of};
+
+/// A step may err by this share of how far the motion has gone: steps of order 8 that are so accurate cost little.
+const OF_STEPS: f64 = 1e-10;
+
+/// The same as a share of a tolerance that is given.
+const OF_TOLERANCE: f64 = 1e-5;
+
+/// Samples spread over the box for each parameter, of which each has to meet the same events.
+const SPREAD: usize = 24;
+
+impl Study<'_> {
+    /// Steps between the events that all samples meet, if there are any and all that is asked for follows from motions
+    /// that are cut there.
+    pub(super) fn segmented(&self) -> Result<Option<Schedule>, SimulationError> {
+        if !self.may_be_cut() {
+            return Ok(None);
+        }
+        (self.stage)("searching for events");
+        let simulation = &self.description.simulation;
+        let times = (simulation.duration, simulation.output_step);
+        let of_steps = match simulation.stepping {
+            Stepping::Tolerance(tolerance) => Some(tolerance),
+            Stepping::Fixed(_) => None,
+        };
+        let asked = of_steps.into_iter().chain(self.request.tolerance).map(|tolerance| OF_TOLERANCE * tolerance);
+        let tolerance = asked.fold(OF_STEPS, f64::min);
+        let segments = segments_of(&self.simulator, &self.event_samples(), times.0, tolerance)?;
+        Ok(segments.map(|segments| Schedule::segmented(times, segments)))
+    }
+
+    /// The search for events, as a line of the summary: no sample met others.
+    pub(super) fn event_search(&self, schedule: &Schedule) -> Switches {
+        let simulations = self.event_samples().len();
+        let found = SwitchSearch { unmet_from: None, switched_from: None, simulations, counters: Counters::default() };
+        let summary = MethodSummary {
+            method: "switches".to_owned(),
+            simulations,
+            steps: schedule.steps_before(schedule.rows - 1),
+            newton_iterations: 0,
+            rank_revealing_solves: 0,
+            order: None,
+            boxes: None,
+            expanded_outputs: Vec::new(),
+            seconds: None,
+        };
+        (found, summary)
+    }
+
+    /// Samples that show the events: the controlling ones, and some spread over the box.
+    fn event_samples(&self) -> Vec<Sample> {
+        let mut samples = self.controlling_samples();
+        let k = self.domain.dimension();
+        samples.extend(self.domain.samples(&spread(k, SPREAD * k)));
+        samples
+    }
+
+    fn may_be_cut(&self) -> bool {
+        let problem = problem(self.description, &self.simulator);
+        let reduces = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
+        let methods = self.request.methods();
+        // What depends on nothing keeps the steps that it is given.
+        let within = match self.domain.dimension() {
+            0 => self.request.tolerance.is_some() || !problem.has_fixed_steps,
+            _ => methods.iter().all(|(_, method)| method.follows_events(&problem)),
+        };
+        self.may_extrapolate()
+            && within
+            && !methods.is_empty()
+            && !self.request.keep
+            && self.stored.is_none()
+            && !reduces
+            // Constraints that open later are not watched for.
+            && self.simulator.mobility.redundant.is_empty()
+    }
+}

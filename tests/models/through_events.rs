@@ -1,0 +1,163 @@
+//! Bounds through impacts: motions are cut at their events. Truths are closed forms of flights and oscillations between
+//! them, and another integrator.
+
+use std::f64::consts::PI;
+
+use mbint::inner::results::{Bounds, Method, Summary};
+
+use crate::common::dormand_prince::dormand_prince;
+use crate::common::{Vary, band, largest, output, read, run_methods};
+
+/// A ball that bounces without loss.
+const ELASTIC: &str = "
+parameters: { g: 9.81 m/s^2, K: { value: 1e5, unit: N/m, tolerance: 5% }, h0: { value: 1, unit: m, tolerance: 2% } }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  ground: { force: { on: ball, value: [0, \"K*max(-ball.y, 0)\"] } }
+initial: { ball.y: h0, ball.vy: 0 }
+outputs: { y: ball.y, v: ball.vy }
+simulation: { duration: 2, step: 1e-3, output_step: 0.02 }
+bounds: { chebyshev: { order: 3 } }
+";
+
+/// A ball whose contact dissipates.
+const BOUNCE: &str = "
+parameters: { h0: { value: 1, unit: m, tolerance: 2% }, d: { value: 0.1, unit: s/m, tolerance: 5% } }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  floor: { contact: { between: [ground, ball], plane: y, impact: { stiffness: 1e5, exponent: 1, dissipation: d } } }
+initial: { ball.y: h0, ball.vy: 0 }
+outputs: { y: ball.y, v: ball.vy }
+simulation: { duration: 2, step: 1e-4, output_step: 0.02 }
+bounds: { chebyshev: { order: 3 } }
+";
+
+/// Height and velocity of the elastic ball: y = −(u/ω) sin ωτ − (g/ω²)(1 − cos ωτ) in contact.
+fn elastic(height: f64, stiffness: f64, t: f64) -> [f64; 2] {
+    let (g, omega) = (9.81, stiffness.sqrt());
+    let speed = (2.0 * g * height).sqrt();
+    let fall = speed / g;
+    let contact = (PI + 2.0 * (g / (speed * omega)).atan()) / omega;
+    if t < fall {
+        return [height - 0.5 * g * t * t, -g * t];
+    }
+    let within = (t - fall) % (contact + 2.0 * fall);
+    if within < contact {
+        let (sin, cos) = (omega * within).sin_cos();
+        return [-speed / omega * sin - g / (omega * omega) * (1.0 - cos), -speed * cos - g / omega * sin];
+    }
+    let flight = within - contact;
+    [speed * flight - 0.5 * g * flight * flight, speed - g * flight]
+}
+
+/// Integrator of the summary, and simulations of a method.
+fn integrated(summary: &Summary, method: &str) -> (bool, usize, usize) {
+    let of_method = summary.methods.iter().find(|own| own.method == method).unwrap();
+    let between_events = summary.integration.as_ref().is_some_and(|name| name.contains("between events"));
+    (between_events, of_method.simulations, of_method.steps)
+}
+
+/// Asserts that ranges hold the truths' up to the stated errors, and are not wider than these and `slack` tell.
+#[track_caller]
+fn assert_true(bounds: &Bounds, name: &str, stated: f64, slack: f64, truth: impl Fn(f64) -> [f64; 2]) {
+    let band = band(output(bounds, name), Method::Chebyshev);
+    assert!(!band.error.unresolved.contains(&true), "{name} is flagged");
+    assert!(largest(band.error.total.iter().copied()) <= stated, "{name}: {:?}", band.error.total);
+    for (row, &t) in bounds.times.iter().enumerate() {
+        let ([lower, upper], error) = (truth(t), band.error.total[row] + 1e-12);
+        let [below, above] = [band.lower[row] - lower, upper - band.upper[row]];
+        assert!(below <= error && above <= error, "{name} at {t}: {below:e} and {above:e} beyond, {error:e} stated");
+        assert!(below >= -error - slack && above >= -error - slack, "{name} at {t}: {below:e}, {above:e}");
+    }
+}
+
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], value| [lower.min(value), upper.max(value)])
+}
+
+/// Truth over a lattice of 301 heights and 9 stiffnesses.
+fn over_box(line: usize, t: f64) -> [f64; 2] {
+    let points = (0..301 * 9).map(|place| (f64::from(place % 301) / 150.0 - 1.0, f64::from(place / 301) / 4.0 - 1.0));
+    range(points.map(|(a, b)| elastic(1.0 + 0.02 * a, 1e5 * (1.0 + 0.05 * b), t)[line]))
+}
+
+#[test]
+fn bounds_of_an_elastic_ball_are_those_of_its_closed_form() {
+    let (bounds, summary) = run_methods(&read(ELASTIC), None);
+    assert!(integrated(&summary, "chebyshev").0);
+    assert_eq!(integrated(&summary, "chebyshev").1, 16);
+    // Beside a separation the velocity falls by g times the spread of instants between neighbours of the lattice.
+    assert_true(&bounds, "v", 1e-3, 2e-3, |t| over_box(1, t));
+    assert_true(&bounds, "y", 1e-4, 2e-4, |t| over_box(0, t));
+}
+
+#[test]
+fn a_dissipating_contact_is_as_another_integrator_has_it() {
+    let (bounds, summary) = run_methods(&read(BOUNCE), None);
+    assert_eq!(integrated(&summary, "chebyshev").1, 16);
+    let mut truths = vec![[[f64::INFINITY, f64::NEG_INFINITY]; 2]; bounds.times.len()];
+    for place in 0..25 {
+        let [a, b] = [f64::from(place % 5) / 2.0 - 1.0, f64::from(place / 5) / 2.0 - 1.0];
+        let (height, d) = (1.0 + 0.02 * a, 0.1 * (1.0 + 0.05 * b));
+        let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + 1e5 * (-y).max(0.0) * (1.0 - d * v)];
+        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-12);
+        for (truth, state) in truths.iter_mut().zip(motion) {
+            for ([lower, upper], value) in truth.iter_mut().zip(state) {
+                (*lower, *upper) = (lower.min(value), upper.max(value));
+            }
+        }
+    }
+    let row = |t: f64| (t / 0.02).round() as usize;
+    // 25 samples need not be at the ends.
+    assert_true(&bounds, "v", 1e-3, f64::INFINITY, |t| truths[row(t)][1]);
+    assert_true(&bounds, "y", 1e-4, f64::INFINITY, |t| truths[row(t)][0]);
+}
+
+#[test]
+fn a_tolerance_is_met_by_few_simulations() {
+    let text = ELASTIC.replace("bounds: { chebyshev: { order: 3 } }", "bounds: { tolerance: 1e-3 }");
+    let (bounds, summary) = run_methods(&read(&text), None);
+    assert!(integrated(&summary, "chebyshev").1 <= 25);
+    assert_true(&bounds, "v", 1e-3 * 9.0, 2e-3, |t| over_box(1, t));
+}
+
+/// An event is before the end for some samples and behind it for others.
+#[test]
+fn an_event_beside_the_end_is_met() {
+    let text = ELASTIC.replace("duration: 2", "duration: 0.46").replace("output_step: 0.02", "output_step: 0.01");
+    let (bounds, summary) = run_methods(&read(&text), None);
+    assert!(integrated(&summary, "chebyshev").0);
+    assert_true(&bounds, "v", 1e-3, 2e-3, |t| over_box(1, t));
+}
+
+#[test]
+fn samples_of_different_events_are_not_cut() {
+    let text = ELASTIC.replace("tolerance: 2%", "tolerance: 60%");
+    let (_, summary) = run_methods(&read(&text), None);
+    assert!(!integrated(&summary, "chebyshev").0);
+}
+
+/// Contacts of 0.26 ms: steps of their length everywhere would be tens of thousands.
+#[test]
+fn a_single_motion_takes_few_steps() {
+    let text = ELASTIC.replace("value: 1e5, unit: N/m, tolerance: 5%", "value: 1.5e8, unit: N/m");
+    let text = text.replace("{ value: 1, unit: m, tolerance: 2% }", "1 m").replace("step: 1e-3", "tolerance: 1e-6");
+    let (bounds, summary) = run_methods(&read(&text), None);
+    let (is_cut, _, steps) = integrated(&summary, "nominal");
+    assert!(is_cut && steps < 1000, "{steps}");
+    let [y, v] = ["y", "v"].map(|name| &output(&bounds, name).nominal);
+    let off = bounds.times.iter().enumerate().map(|(row, &t)| {
+        let [height, velocity] = elastic(1.0, 1.5e8, t);
+        largest([y[row] - height, v[row] - velocity])
+    });
+    assert!(largest(off) < 1e-8);
+}
+
+/// Steps that the scheme takes are not those between events.
+#[test]
+fn a_scheme_that_is_asked_for_is_taken() {
+    let (_, summary) = run_methods(&read(ELASTIC).by_hht(), None);
+    assert!(!integrated(&summary, "chebyshev").0);
+}
