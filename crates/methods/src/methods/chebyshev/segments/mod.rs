@@ -80,7 +80,7 @@ pub(super) fn adapted(
 /// Bounds from the motions of a surrogate's samples, cut at their events; `None` where validation samples meet others.
 ///
 /// # Errors
-/// Where a sample cannot be assembled, or a closure not be compiled.
+/// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
 fn composed(
     ensemble: &dyn Ensemble,
     tensor: &Surrogate,
@@ -127,7 +127,9 @@ fn composed(
         })
         .collect()
     };
-    let found: Vec<Vec<Estimate>> = (0..ensemble.rows()).into_par_iter().map(estimate).collect();
+    let known = |row: usize| ensemble.go_on().map(|()| estimate(row));
+    let found: Vec<Vec<Estimate>> =
+        (0..ensemble.rows()).into_par_iter().map(known).collect::<Result<_, EnsembleError>>()?;
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
     for (row, estimates) in found.into_iter().enumerate() {
         estimates.into_iter().enumerate().for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
