@@ -56,7 +56,7 @@ pub fn compile_switches(system: &System) -> Option<SwitchProgram> {
     compile_values(system, graph, &values, terms)
 }
 
-/// Gaps of all surfaces that may not overlap too deeply, and then what is left of these overlaps, in the order of the
+/// Gaps of all surfaces that may not overlap too deeply, and then the rest of these overlaps, in the order of the
 /// effects; `None` where there are none.
 pub fn compile_overlaps(system: &System) -> Option<SwitchProgram> {
     let overlaps: Vec<Overlap> = system.effects.iter().filter_map(|effect| effect.overlap).collect();

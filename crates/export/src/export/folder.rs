@@ -71,7 +71,7 @@ impl<'d> AtomicFiles<'d> {
     /// but for these.
     ///
     /// # Errors
-    /// If the list of what is ours cannot be written.
+    /// If the list of our files cannot be written.
     pub fn replace_older(&mut self, scenes: Vec<String>) -> Result<(), ExportError> {
         let older = Owned::of(self.dir);
         let files = older.unchanged(self.dir).into_iter().filter(|name| !self.hashes.contains_key(name));
@@ -89,7 +89,7 @@ impl<'d> AtomicFiles<'d> {
     /// These files, all of which are there, are beside those that older runs wrote, and are as much ours.
     ///
     /// # Errors
-    /// If the list of what is ours cannot be written.
+    /// If the list of our files cannot be written.
     pub fn join_older(&mut self) -> Result<(), ExportError> {
         let mut own = Owned::of(self.dir);
         own.files.extend(self.hashes.clone());

@@ -23,7 +23,7 @@ pub struct Interrupted;
 /// Simulations that one order of a jet counts as in progress reports.
 pub const JET_WORK: usize = 5;
 
-/// What is kept of a simulation in each row.
+/// Values kept of a simulation in each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Observed {
     /// The outputs.
@@ -44,7 +44,7 @@ pub enum Until {
 /// How samples are simulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
-    /// What is kept.
+    /// Values kept.
     pub observed: Observed,
     /// When to end.
     pub until: Until,
@@ -130,7 +130,7 @@ impl TooDeep {
 /// What came of samples that were simulated together.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Simulated {
-    /// What they took.
+    /// Their effort.
     pub effort: Effort,
     /// The sample with the largest error ratio (sum of its local errors over the tolerance), and that ratio.
     pub worst_ratio: Option<(Sample, f64)>,
@@ -213,7 +213,7 @@ pub trait Ensemble: Sync {
         EMPTY
     }
 
-    /// Whether what has been found so far is enough.
+    /// Whether the results so far are enough.
     fn is_interrupted(&self) -> bool;
 
     /// An error at an interruption, for whatever is of no use before it is done.

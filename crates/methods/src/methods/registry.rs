@@ -69,7 +69,7 @@ impl Curve {
         Method::ALL.into_iter().flat_map(of)
     }
 
-    /// What it is.
+    /// Description.
     pub fn about(self) -> &'static CostCurve {
         &self.method.about().curves[self.place]
     }
@@ -80,7 +80,7 @@ impl Curve {
 pub struct About {
     /// In legends.
     pub label: &'static str,
-    /// What it does.
+    /// Effect.
     pub summary: &'static str,
     /// Where it is from.
     pub source: &'static str,

@@ -2,7 +2,7 @@
 //!
 //! All samples divide a segment at the same shares of its length into steps. Within a step a motion is the polynomial
 //! through its values at Chebyshev–Lobatto nodes, so that segments of different lengths have their nodes at the same
-//! shares, and what is at a node is a smooth function of the sample.
+//! shares, and the value at a node is a smooth function of the sample.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;

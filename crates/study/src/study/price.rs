@@ -63,7 +63,7 @@ impl Price {
         Self { simulations: 1.0, seconds, at_most: seconds, threads: 1 }
     }
 
-    /// What is estimated where a tolerance takes all that the budget allows, s.
+    /// Estimate where a tolerance takes all that the budget allows, s.
     pub(super) fn at_most(&self) -> f64 {
         self.at_most
     }

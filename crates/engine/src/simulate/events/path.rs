@@ -23,15 +23,15 @@ const LONGEST: f64 = 1.0 / 16.0;
 /// The smallest step, as a share of the duration.
 const SMALLEST: f64 = 1e-13;
 
-/// A crossing behind this share of a step, or so little beyond its end, is solved for by Newton's method; before it, the
-/// step is cut short first.
+/// A crossing behind this share of a step, or so little beyond its end, is solved for by Newton's method; before it,
+/// the step is cut short first.
 const NEAR: f64 = 0.98;
 
 /// How far beyond an event a step ends, as a share of the duration, and how closely that is solved.
 pub(super) const BEYOND: f64 = 16.0 * f64::EPSILON;
 pub(super) const LOCATED: f64 = 4.0 * f64::EPSILON;
 
-/// What is left of an event's instant by rounding of the switch, at most, as a share of the duration.
+/// Largest uncertainty of an event's instant by rounding of the switch, as a share of the duration.
 pub(super) const ROUNDED: f64 = 1e-9;
 
 /// Corrections of an event's instant.

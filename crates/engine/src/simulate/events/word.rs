@@ -68,8 +68,8 @@ impl Followed {
     }
 }
 
-/// The events that all samples meet up to a time, at least one of them not at the same instant, and steps between them; `None` where samples meet
-/// different ones, or the explicit method cannot follow them.
+/// The events that all samples meet up to a time, at least one of them not at the same instant, and steps between
+/// them; `None` where samples meet different ones, or the explicit method cannot follow them.
 ///
 /// # Errors
 /// Where the first sample cannot be assembled.

@@ -16,8 +16,7 @@ impl Simulator {
     /// first derivatives. Returns where it stopped, if it did.
     ///
     /// # Errors
-    /// Where the centre cannot be assembled, or has no equilibrium; [`SimulationError::Interrupted`] where it is asked to
-    /// end.
+    /// Where the centre cannot be assembled, or has no equilibrium; [`SimulationError::Interrupted`] where it is to end.
     pub fn visit_jets(
         &self,
         space: &JetSpace,

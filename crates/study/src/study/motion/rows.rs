@@ -27,7 +27,7 @@ pub(in crate::study) struct Rows<'a> {
     pub(super) interruption: Interruption<'a>,
 }
 
-/// What is simulated.
+/// Simulated samples.
 #[derive(Clone, Copy)]
 struct Running<'a> {
     /// Places of the samples among those that are wanted.

@@ -1,4 +1,4 @@
-//! Reduced outputs: their distribution, by samples of the surrogate of what they are reduced to.
+//! Reduced outputs: their distribution, by samples of the surrogate of their values.
 
 use super::rows::Rows;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};

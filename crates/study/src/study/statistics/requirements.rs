@@ -87,7 +87,7 @@ impl Margins<'_> {
             && let Some(rare) = self.rare(of, &errors)
         {
             let [least, most] = rare.interval.map(|fails| 1.0 - fails);
-            // Where methods contradict one another, or what was seen, that alone is stated.
+            // Where methods contradict one another, or the seen share, that share alone is stated.
             // `least` is the share that fulfils at most: what fails least leaves most.
             let agrees = least >= interval[0] && most <= interval[1];
             if agrees && (count - share < FEW || least - most < interval[1] - interval[0]) {

@@ -3,7 +3,7 @@
 //!
 //! Samples that a surrogate has been refined against say little of it. So each time it meets them, and before its error
 //! is stated, new ones are simulated, more the higher its degree, and only if it meets these too it is believed. They
-//! stay validation samples: what it is refined to afterwards has to meet them as well.
+//! stay validation samples: later refinements have to meet them as well.
 
 use std::borrow::Cow;
 
@@ -78,7 +78,7 @@ fn most_ends(sub_box: &SubBox) -> usize {
 struct Scale {
     /// Of each axis how much it matters.
     weights: Vec<f64>,
-    /// What is nearer is the same.
+    /// Nearer points are the same.
     near: f64,
 }
 

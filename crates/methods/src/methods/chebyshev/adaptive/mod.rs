@@ -203,7 +203,7 @@ impl<'r> Adaptation<'r> {
     ) -> Result<SubBox<'r>, EnsembleError> {
         let grid = SparseGrid::new(&vec![highest(domain.dimension()); domain.dimension()]);
         let surplus = FxHashMap::from_iter([(vec![0; domain.dimension()], f64::INFINITY)]);
-        // What is kept has polynomials of the coordinates themselves.
+        // Kept surrogates have polynomials of the coordinates themselves.
         let wanted = if self.kept.is_some() { Vec::new() } else { turning(&direct, &points, self.ensemble) };
         let (count, courses) = courses(self.ensemble, &domain, &wanted)?;
         self.goal.spent += count;

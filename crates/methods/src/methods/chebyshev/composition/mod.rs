@@ -325,7 +325,7 @@ impl<'r> Row<'r> {
         Functions { outputs, degrees, are_polynomials: composed.is_none(), rounding, places, evaluate }
     }
 
-    /// What of an output is too small a difference to be one.
+    /// Differences of an output below this are none.
     fn rounding(&self, output: usize) -> f64 {
         let range = Range::of(self.own_samples(output));
         // Where it is NaN, nothing is known.

@@ -222,7 +222,7 @@ fn steepest(ascent: &[f64], limits: &[[f64; 2]], surfaces: [(&[f64], f64); 2]) -
     way
 }
 
-/// Moves a point back by what it lacks along a slope, within the box; whether it could be.
+/// Moves a point back by its lack along a slope, within the box; whether it could be.
 fn back(xi: &mut [f64], slope: &[f64], lacks: f64) -> bool {
     let is_free = |(xi, slope): (&f64, &f64)| if *slope > 0.0 { *xi < 1.0 } else { *xi > -1.0 };
     let free: Vec<bool> = xi.iter().zip(slope).map(is_free).collect();

@@ -16,7 +16,7 @@ pub(super) struct SegmentSurrogate<'a> {
     lines: usize,
 }
 
-/// A point of the box with what does not depend on the time.
+/// A point of the box with its values that do not depend on the time.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
     pub xi: Vec<f64>,
