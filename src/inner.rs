@@ -48,7 +48,7 @@ pub mod results {
 
 pub mod simulate {
     pub use crate::simulate::{
-        EnsembleRun, Interruption, JetRun, Observed, Schedule, SimulationError, Simulator, Stepper,
+        EnsembleRun, Interruption, JetBox, JetRun, Observed, Schedule, SimulationError, Simulator, Stepper,
         schedule_for_tolerance,
     };
 }

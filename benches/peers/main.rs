@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use mbint::inner::numerics::Sample;
 use mbint::inner::results::Method;
-use mbint::inner::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator};
+use mbint::inner::simulate::{EnsembleRun, JetBox, JetRun, Observed, Schedule, Simulator};
 use mbint::inner::study;
 use models::STEP;
 use serde_json::{Value, json};
@@ -107,8 +107,8 @@ fn taylor() -> Value {
     let center: Vec<f64> = parameters.iter().map(|p| 0.5 * (p.lower + p.upper)).collect();
     let half_width: Vec<f64> = parameters.iter().map(|p| 0.5 * (p.upper - p.lower)).collect();
     let (seconds, _) = best(10, || {
-        let mut jet =
-            JetRun::start(&simulator, &space, &center, &half_width, STEP).expect("the centre can be assembled");
+        let mut jet = JetRun::start(&simulator, &space, JetBox { center: &center, half_width: &half_width }, STEP)
+            .expect("the centre can be assembled");
         let mut values = Vec::new();
         assert!(jet.advance(&schedule, 0..schedule.rows, &mut values).is_none());
         values

@@ -5,7 +5,7 @@ use mbint::inner::compile::Scheme;
 use mbint::inner::model::Description;
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
-    EnsembleRun, Interruption, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance,
+    EnsembleRun, Interruption, JetBox, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance,
 };
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
@@ -211,7 +211,8 @@ fn jets_are_the_derivatives_of_every_scheme() {
         let sample = nominal_sample(&simulator);
         let space = JetSpace::new(2, 1);
         let mut jets = Vec::new();
-        let mut run = JetRun::start(&simulator, &space, &sample, &[1.0, 1.0], h).unwrap();
+        let mut run =
+            JetRun::start(&simulator, &space, JetBox { center: &sample, half_width: &[1.0, 1.0] }, h).unwrap();
         assert_eq!(run.advance(&schedule, 0..schedule.rows, &mut jets), None);
         let moved = |by: f64| courses(&simulator, &schedule, vec![sample[0] + by, sample[1]].into());
         let (above, below) = (moved(half), moved(-half));

@@ -49,7 +49,7 @@ pub use closure::{Closure, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
-pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetRun, Observed, Stop};
+pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetBox, JetRun, Observed, Stop};
 pub use error::SimulationError;
 pub use events::{SegmentRun, segments_of};
 pub use explicit::{ExplicitJets, ExplicitObstacle, explicit_schedule};

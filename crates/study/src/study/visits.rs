@@ -109,7 +109,7 @@ impl Motions<'_> {
     ) -> Result<Simulated, SimulationError> {
         let (times, interruption) = (self.times(), Interruption::new(self.interrupted));
         let mut next = 0;
-        let stop = self.simulator.visit_jets(space, (center, half_widths), &times, interruption, &mut |values| {
+        let stop = self.simulator.visit_jets(space, center, half_widths, &times, interruption, &mut |values| {
             reduce(next..next + 1, values);
             self.progress.advance(JET_WORK * (space.monomials().order() + 1));
             next += 1;

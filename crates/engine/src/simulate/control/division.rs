@@ -96,7 +96,7 @@ impl Division<'_> {
             let span = (end - h, end);
             if self.functions.are_resolved(span, h, TOO_FAST, &mut self.work) {
                 ends.push(end);
-            } else if ends.len() > most || !self.divide(span, self.functions.halvings(), most, ends) {
+            } else if ends.len() > most || !self.divide(end - h, end, self.functions.halvings(), most, ends) {
                 self.unresolved_from.get_or_insert(row);
                 if ends.last().is_none_or(|&last| last < end) {
                     ends.push(end);
@@ -106,15 +106,15 @@ impl Division<'_> {
     }
 
     /// Divides a step; whether all its parts resolve the functions.
-    fn divide(&mut self, (a, b): (f64, f64), halvings: u32, most: usize, ends: &mut Vec<f64>) -> bool {
+    fn divide(&mut self, a: f64, b: f64, halvings: u32, most: usize, ends: &mut Vec<f64>) -> bool {
         let resolved = self.functions.are_resolved((a, b), b - a, RESOLVED, &mut self.work);
         if resolved || halvings == 0 || ends.len() > most {
             ends.push(b);
             return resolved;
         }
         let middle = 0.5 * (a + b);
-        let first = self.divide((a, middle), halvings - 1, most, ends);
-        let second = self.divide((middle, b), halvings - 1, most, ends);
+        let first = self.divide(a, middle, halvings - 1, most, ends);
+        let second = self.divide(middle, b, halvings - 1, most, ends);
         first && second
     }
 }

@@ -49,7 +49,7 @@ impl<'s> PartingWatch<'s> {
         if constraints.is_empty() {
             return None;
         }
-        let [first, others @ ..] = TIMES.map(|time| values(simulator, layout, all, (&state, time)));
+        let [first, others @ ..] = TIMES.map(|time| values(simulator, layout, all, &state, time));
         let changes = others.iter().any(|values| values != &first);
         changes.then_some(Self { simulator, layout, constraints, residuals, state, found: None })
     }
@@ -61,7 +61,7 @@ impl<'s> PartingWatch<'s> {
         }
         read(&mut self.state);
         let system = &self.simulator.system;
-        let residuals = values(self.simulator, self.layout, &self.residuals, (&self.state, time));
+        let residuals = values(self.simulator, self.layout, &self.residuals, &self.state, time);
         self.found = self.constraints.iter().zip(residuals).find_map(|(&constraint, residual)| {
             let size = if system[constraint].unit == ResidualUnit::Length { system.length } else { 1.0 };
             (residual.abs() > OPEN * size).then_some(Parted { constraint, time, residual })
@@ -78,7 +78,7 @@ impl<'s> PartingWatch<'s> {
 }
 
 /// Values of expressions of positions, velocities and the time.
-fn values(simulator: &Simulator, layout: &Layout, exprs: &[Expr], (state, time): (&[f64], f64)) -> Vec<f64> {
+fn values(simulator: &Simulator, layout: &Layout, exprs: &[Expr], state: &[f64], time: f64) -> Vec<f64> {
     let values = motion_values(&simulator.system, layout, state, time);
     simulator.system.graph.evaluate(exprs, |symbol| values.get(&symbol).copied().unwrap_or(0.0))
 }

@@ -14,6 +14,7 @@
 use rayon::prelude::*;
 use symdiff::{WIDTHS, jet::JetSpace};
 
+use super::jet_states::JetBox;
 use super::jets::JetRun;
 use super::observed::{Observed, Stop};
 use super::reduction::Channel;
@@ -238,18 +239,17 @@ impl<'s> ExtrapolatedJets<'s> {
     pub fn start(
         simulator: &'s Simulator,
         space: &'s JetSpace,
-        (center, half_width): (&[f64], &[f64]),
+        about: JetBox<'_>,
         first_step: f64,
         levels: usize,
     ) -> Result<Self, SimulationError> {
-        let of_level =
-            |level: u32| JetRun::start(simulator, space, center, half_width, first_step / f64::from(1_u32 << level));
-        let start = simulator.assemble(1, first_step, |_| center.iter().copied().collect())?;
+        let of_level = |level: u32| JetRun::start(simulator, space, about, first_step / f64::from(1_u32 << level));
+        let start = simulator.assemble(1, first_step, |_| about.center.iter().copied().collect())?;
         Ok(Self {
             simulator,
             levels: (0..levels as u32).map(of_level).collect::<Result<_, _>>()?,
             weights: weights(levels),
-            closure: JetClosure::new(simulator, space, (center, half_width), &start)?,
+            closure: JetClosure::new(simulator, space, about, &start)?,
             coordinates: simulator.system.q.len(),
             values: vec![Vec::new(); levels],
             motion: Vec::new(),

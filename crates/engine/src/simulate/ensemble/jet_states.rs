@@ -7,15 +7,19 @@ use crate::compile::{StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 
+/// The box about whose centre parameters are expanded: centre and half width of each parameter, in its unit.
+#[derive(Clone, Copy, Debug)]
+pub struct JetBox<'b> {
+    /// Centre.
+    pub center: &'b [f64],
+    /// Half width.
+    pub half_width: &'b [f64],
+}
+
 /// The parameters as jets about the box's centre.
-pub(super) fn set_parameters(
-    simulator: &Simulator,
-    space: &JetSpace,
-    memory: &mut JetMemory,
-    (center, half_width): (&[f64], &[f64]),
-) {
+pub(super) fn set_parameters(simulator: &Simulator, space: &JetSpace, memory: &mut JetMemory, about: JetBox<'_>) {
     for (variable, register) in simulator.start.layout.parameters.clone().enumerate() {
-        space.variable(variable, center[variable], half_width[variable], memory.jet_mut(register));
+        space.variable(variable, about.center[variable], about.half_width[variable], memory.jet_mut(register));
     }
 }
 
@@ -26,19 +30,19 @@ pub(super) fn set_parameters(
 pub(super) fn assembled_jet<'s>(
     simulator: &'s Simulator,
     space: &'s JetSpace,
-    (center, half_width): (&[f64], &[f64]),
+    about: JetBox<'_>,
     first_step: f64,
 ) -> Result<(Tile, JetMemory<'s>), SimulationError> {
-    let assembled = simulator.assemble(1, first_step, |_| center.iter().copied().collect())?;
+    let assembled = simulator.assemble(1, first_step, |_| about.center.iter().copied().collect())?;
     let mut start = JetMemory::new(space, simulator.start.registers(), simulator.start.constants());
     for register in simulator.start.layout.state() {
         start.set_constant(register, assembled.lane(register)[0]);
     }
-    set_parameters(simulator, space, &mut start, (center, half_width));
+    set_parameters(simulator, space, &mut start, about);
     if let Some(equilibrium) = &simulator.equilibrium {
         let layout = &simulator.start.layout;
         let state = assembled.values()[..layout.registers()].to_vec();
-        if let Some(found) = equilibrium.jet(space, center, half_width, &state) {
+        if let Some(found) = equilibrium.jet(space, about.center, about.half_width, &state) {
             for register in layout.q.clone() {
                 start.jet_mut(register).copy_from_slice(found.jet(register));
             }

@@ -7,7 +7,7 @@
 use symdiff::{JetMemory, jet::JetSpace};
 
 use super::jet_states::{
-    accelerate, add_correction, assembled_jet, corrections, sample_states, set_parameters, shift_accelerations,
+    JetBox, accelerate, add_correction, assembled_jet, corrections, sample_states, set_parameters, shift_accelerations,
 };
 use super::observed::Stop;
 use crate::compile::Tapes;
@@ -47,15 +47,14 @@ impl<'s> JetRun<'s> {
     pub fn start(
         simulator: &'s Simulator,
         space: &'s JetSpace,
-        center: &[f64],
-        half_width: &[f64],
+        about: JetBox<'_>,
         first_step: f64,
     ) -> Result<Self, SimulationError> {
-        let (assembled, start) = assembled_jet(simulator, space, (center, half_width), first_step)?;
+        let (assembled, start) = assembled_jet(simulator, space, about, first_step)?;
         let order = space.monomials().order();
         let program = &simulator.program;
         let mut memory = JetMemory::new(space, program.registers(), program.constants());
-        set_parameters(simulator, space, &mut memory, (center, half_width));
+        set_parameters(simulator, space, &mut memory, about);
         for register in program.layout.state() {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
         }

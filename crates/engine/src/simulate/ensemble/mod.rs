@@ -13,6 +13,7 @@ mod switch_extents;
 mod tiling;
 
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
+pub use jet_states::JetBox;
 pub use jets::JetRun;
 pub use observed::{Observed, Stop};
 pub(in crate::simulate) use reduction::Reduction;

@@ -6,7 +6,7 @@
 
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
-use super::jet_states::{add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
+use super::jet_states::{JetBox, add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
 use crate::compile::{Layout, StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
@@ -185,13 +185,13 @@ impl<'s> JetClosure<'s> {
     pub fn new(
         simulator: &'s Simulator,
         space: &'s JetSpace,
-        (center, half_width): (&[f64], &[f64]),
+        about: JetBox<'_>,
         start: &Tile,
     ) -> Result<Self, SimulationError> {
         let program = simulator.free_closure()?;
         let mut memory = JetMemory::new(space, program.registers(), program.constants());
         for (variable, register) in program.layout.parameters.clone().enumerate() {
-            space.variable(variable, center[variable], half_width[variable], memory.jet_mut(register));
+            space.variable(variable, about.center[variable], about.half_width[variable], memory.jet_mut(register));
         }
         for register in program.layout.state() {
             memory.set_constant(register, start.lane(register)[0]);
@@ -208,9 +208,9 @@ impl<'s> JetClosure<'s> {
         &mut self,
         simulator: &'s Simulator,
         space: &'s JetSpace,
-        (center, half_width): (&[f64], &[f64]),
+        about: JetBox<'_>,
     ) -> Result<Vec<f64>, SimulationError> {
-        let (_, start) = assembled_jet(simulator, space, (center, half_width), 0.0)?;
+        let (_, start) = assembled_jet(simulator, space, about, 0.0)?;
         let layout = &self.program.layout;
         for register in layout.state() {
             self.memory.jet_mut(register).copy_from_slice(start.jet(register));

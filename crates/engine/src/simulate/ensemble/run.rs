@@ -174,7 +174,7 @@ impl<'s> EnsembleRun<'s> {
         let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
             .tiles
             .par_iter_mut()
-            .map(|tile| tile.advance(schedule, rows.clone(), tolerance, (observed, outputs)))
+            .map(|tile| tile.advance(schedule, rows.clone(), tolerance, observed, outputs))
             .collect();
         into.clear();
         into.resize(rows.len() * outputs * self.samples, 0.0);
@@ -251,7 +251,8 @@ impl TileRun<'_> {
         schedule: &Schedule,
         rows: std::ops::Range<usize>,
         tolerance: Option<Controller>,
-        (observed, outputs): (Observed, usize),
+        observed: Observed,
+        outputs: usize,
     ) -> (Vec<f64>, Vec<Stop>) {
         let width = self.stepper.tile().width();
         if !std::mem::replace(&mut self.begun, true) {

@@ -86,7 +86,7 @@ impl<'s> SegmentRun<'s> {
     ) -> Vec<Stop> {
         let lines = observed.count(self.simulator);
         let interruption = self.interruption;
-        let advance = |tile: &mut RowTile| tile.advance(schedule, rows.clone(), (observed, lines), interruption);
+        let advance = |tile: &mut RowTile| tile.advance(schedule, rows.clone(), observed, lines, interruption);
         let parts: Option<Vec<(Vec<f64>, Vec<Stop>)>> = self.tiles.par_iter_mut().map(advance).collect();
         let Some(parts) = parts else {
             self.is_cut = true;
@@ -147,7 +147,8 @@ impl RowTile<'_> {
         &mut self,
         schedule: &Schedule,
         rows: std::ops::Range<usize>,
-        (observed, lines): (Observed, usize),
+        observed: Observed,
+        lines: usize,
         interruption: Interruption,
     ) -> Option<(Vec<f64>, Vec<Stop>)> {
         let width = self.tile.width();

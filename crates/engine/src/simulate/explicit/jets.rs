@@ -6,7 +6,7 @@ use super::run::reach;
 use super::runge_kutta::{Motion, RungeKutta};
 use crate::assemble::EquationId;
 use crate::simulate::control::Schedule;
-use crate::simulate::ensemble::{JetClosure, Stop};
+use crate::simulate::ensemble::{JetBox, JetClosure, Stop};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
@@ -43,14 +43,10 @@ impl<'s> ExplicitJets<'s> {
     ///
     /// # Errors
     /// Where the centre cannot be assembled.
-    pub fn start(
-        simulator: &'s Simulator,
-        space: &'s JetSpace,
-        (center, half_width): (&[f64], &[f64]),
-    ) -> Result<Self, SimulationError> {
-        let start = simulator.assemble(1, 0.0, |_| center.iter().copied().collect())?;
-        let mut motion = JetClosure::new(simulator, space, (center, half_width), &start)?;
-        let state = motion.start(simulator, space, (center, half_width))?;
+    pub fn start(simulator: &'s Simulator, space: &'s JetSpace, about: JetBox<'_>) -> Result<Self, SimulationError> {
+        let start = simulator.assemble(1, 0.0, |_| about.center.iter().copied().collect())?;
+        let mut motion = JetClosure::new(simulator, space, about, &start)?;
+        let state = motion.start(simulator, space, about)?;
         let run = RungeKutta::start(&mut motion, 0.0, state);
         Ok(Self {
             simulator,

@@ -180,7 +180,7 @@ impl<'s> ExplicitRun<'s> {
         let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
             .tiles
             .par_iter_mut()
-            .map(|tile| tile.advance(schedule, &ends, rows.clone(), (observed, lines)))
+            .map(|tile| tile.advance(schedule, &ends, rows.clone(), observed, lines))
             .collect();
         into.clear();
         into.resize(rows.len() * lines * self.samples, 0.0);
@@ -201,7 +201,8 @@ impl Tile<'_> {
         schedule: &Schedule,
         ends: &[f64],
         rows: std::ops::Range<usize>,
-        (observed, lines): (Observed, usize),
+        observed: Observed,
+        lines: usize,
     ) -> (Vec<f64>, Vec<Stop>) {
         let width = self.alive.len();
         let mut values = vec![0.0; rows.len() * lines * width];

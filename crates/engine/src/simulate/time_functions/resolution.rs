@@ -152,8 +152,7 @@ impl TimeFunctions {
     /// Whether steps of length h resolve every function from a to b, which may change by `share` of its size within a
     /// step.
     pub(in crate::simulate) fn are_resolved(&self, (a, b): (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
-        self.terms.iter().all(|term| term.is_slow(self, (a, b), h, share, work))
-            && self.jumps_are_apart((a, b), h, work)
+        self.terms.iter().all(|term| term.is_slow(self, (a, b), h, share, work)) && self.jumps_are_apart(a, b, h, work)
     }
 
     /// The functions that steps of length h do not resolve from a time on: the first of them as a formula, its
@@ -182,7 +181,7 @@ impl TimeFunctions {
     }
 
     /// Whether no more than one jump lies in a step and those beside it, for all parameters.
-    fn jumps_are_apart(&self, (a, b): (f64, f64), h: f64, work: &mut Work) -> bool {
+    fn jumps_are_apart(&self, a: f64, b: f64, h: f64, work: &mut Work) -> bool {
         if self.switches.is_empty() {
             return true;
         }

@@ -16,11 +16,12 @@ impl Simulator {
     /// first derivatives. Returns where it stopped, if it did.
     ///
     /// # Errors
-    /// Where the centre cannot be assembled, or has no equilibrium; [`SimulationError::Interrupted`] where it is to end.
+    /// Where the centre cannot be assembled, or has no equilibrium, and at an interruption.
     pub fn visit_jets(
         &self,
         space: &JetSpace,
-        (center, half_width): (&Sample, &[f64]),
+        center: &Sample,
+        half_width: &[f64],
         times: &[f64],
         interruption: Interruption<'_>,
         row: &mut dyn FnMut(&[f64]),
@@ -32,7 +33,7 @@ impl Simulator {
                 times.iter().for_each(|_| row(&unknown));
                 Ok(None)
             }
-            Analysis::Kinematics => self.kinematic_jets(space, (center, half_width), times, interruption, row),
+            Analysis::Kinematics => self.kinematic_jets(space, center, half_width, times, interruption, row),
             _ => {
                 self.jets_at_equilibrium(space, center, half_width, row)?;
                 Ok(None)
@@ -65,7 +66,8 @@ impl Simulator {
     fn kinematic_jets(
         &self,
         space: &JetSpace,
-        (center, half_width): (&Sample, &[f64]),
+        center: &Sample,
+        half_width: &[f64],
         times: &[f64],
         interruption: Interruption<'_>,
         row: &mut dyn FnMut(&[f64]),
@@ -78,7 +80,7 @@ impl Simulator {
         memory.run(start.sample());
         let order = space.monomials().order();
         let mut values = Vec::new();
-        let way = self.walk((center, times), interruption, &mut |assembly| {
+        let way = self.walk(center, times, interruption, &mut |assembly| {
             for register in layout.state().chain([layout.time]) {
                 memory.set_constant(register, assembly.tile().lane(register)[0]);
             }

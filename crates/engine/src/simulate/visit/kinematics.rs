@@ -33,7 +33,8 @@ impl Simulator {
     /// Every row; where outputs are reduced to one number, every step between rows too.
     pub(super) fn visit_kinematics(
         &self,
-        (sample, schedule): (&Sample, &Schedule),
+        sample: &Sample,
+        schedule: &Schedule,
         channels: &[Channel],
         interruption: Interruption<'_>,
     ) -> Result<Visit, SimulationError> {
@@ -49,7 +50,7 @@ impl Simulator {
         }
         let mut reduction = Reduction::new(channels, self.start.outputs.len(), 1);
         let mut place = 0;
-        let way = self.walk((sample, &times), interruption, &mut |assembly| {
+        let way = self.walk(sample, &times, interruption, &mut |assembly| {
             let outputs = self.start.outputs.iter().map(|&register| assembly.tile().lane(register)[0]);
             if !channels.is_empty() {
                 let mut values = reduction.buffer();
@@ -73,7 +74,8 @@ impl Simulator {
     /// Tells of every row, in which the outputs are observed.
     pub(super) fn walk(
         &self,
-        (sample, times): (&Sample, &[f64]),
+        sample: &Sample,
+        times: &[f64],
         interruption: Interruption<'_>,
         row: &mut dyn FnMut(&Assembly),
     ) -> Result<Way, SimulationError> {

@@ -49,10 +49,10 @@ impl Simulator {
             return Err(SimulationError::Interrupted);
         }
         if let Some(vibrations) = &self.vibrations {
-            return self.visit_modes(vibrations, (sample, steps), channels, interruption);
+            return self.visit_modes(vibrations, sample, steps, channels, interruption);
         }
         match self.system.analysis {
-            Analysis::Kinematics => self.visit_kinematics((sample, steps.schedule), channels, interruption),
+            Analysis::Kinematics => self.visit_kinematics(sample, steps.schedule, channels, interruption),
             _ => self.visit_equilibrium(sample, channels),
         }
     }

@@ -21,7 +21,8 @@ impl Simulator {
     pub(super) fn visit_modes(
         &self,
         vibrations: &Vibrations,
-        (sample, steps): (&Sample, Steps<'_>),
+        sample: &Sample,
+        steps: Steps<'_>,
         channels: &[Channel],
         interruption: Interruption<'_>,
     ) -> Result<Visit, SimulationError> {

@@ -8,7 +8,8 @@ use symdiff::jet::JetSpace;
 use super::{Motions, effort, stopped_at};
 use crate::methods::{Effort, JET_WORK, Simulated};
 use crate::simulate::{
-    ExplicitJets, ExtrapolatedJets, Integration, Interruption, JetRun, Schedule, SimulationError, Simulator, Stop,
+    ExplicitJets, ExtrapolatedJets, Integration, Interruption, JetBox, JetRun, Schedule, SimulationError, Simulator,
+    Stop,
 };
 
 /// The run of one jet, however the schedule's steps are taken.
@@ -22,22 +23,22 @@ impl<'s> SampleJet<'s> {
     pub fn start(
         simulator: &'s Simulator,
         space: &'s JetSpace,
-        (center, half_widths): (&[f64], &[f64]),
+        about: JetBox<'_>,
         schedule: &Schedule,
         controlled: bool,
     ) -> Result<Self, SimulationError> {
         let first_step = schedule.first_step();
         Ok(match schedule.integration {
             Integration::Plain => {
-                let jet = JetRun::start(simulator, space, center, half_widths, first_step)?;
+                let jet = JetRun::start(simulator, space, about, first_step)?;
                 Self::Plain(Box::new(if controlled { jet.controlled() } else { jet }))
             }
             Integration::Extrapolated { levels } => {
-                let jets = ExtrapolatedJets::start(simulator, space, (center, half_widths), first_step, levels)?;
+                let jets = ExtrapolatedJets::start(simulator, space, about, first_step, levels)?;
                 Self::Extrapolated(Box::new(jets))
             }
             Integration::Explicit | Integration::Segments => {
-                Self::Explicit(Box::new(ExplicitJets::start(simulator, space, (center, half_widths))?))
+                Self::Explicit(Box::new(ExplicitJets::start(simulator, space, about)?))
             }
         })
     }
@@ -100,8 +101,8 @@ impl Motions<'_> {
         if self.simulator.system.analysis.visits() {
             return self.visit_jets(space, &center.into(), &half_widths, reduce);
         }
-        let box_of_jet = (&center[..], &half_widths[..]);
-        let jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
+        let about = JetBox { center: &center, half_width: &half_widths };
+        let jet = SampleJet::start(self.simulator, space, about, self.schedule, self.tolerance.is_some())?;
         let mut jet = jet.heeding(Interruption::new(self.interrupted));
         let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
         while next < self.schedule.rows && stop.is_none() {

@@ -6,6 +6,8 @@
 mod piece;
 mod zone;
 
+use std::ops::Range;
+
 use piece::Piece;
 use serde::{Deserialize, Serialize};
 use zone::Zone;
@@ -182,7 +184,7 @@ fn is_last(channel: &Channel, end: f64) -> bool {
 const OF_PATH: usize = 4;
 
 fn add_path(zone: &mut Zone, x: &Piece, y: &Piece, channel: &Channel) {
-    if let Some((begin, end)) = y.part(channel.from, channel.to) {
+    if let Some(Range { start: begin, end }) = y.part(channel.from, channel.to) {
         for place in 0..=OF_PATH {
             let share = begin + (end - begin) * place as f64 / OF_PATH as f64;
             zone.add([x.at(share), y.at(share)]);
@@ -200,20 +202,20 @@ fn take(state: &mut State, piece: &Piece, channel: &Channel) {
     let Some(part) = piece.part(channel.from, channel.to) else { return };
     let add = |state: &mut State, more: f64| state.value = if state.value.is_nan() { more } else { state.value + more };
     match channel.accumulation {
-        Accumulation::Greatest | Accumulation::WhenGreatest => climb(state, piece, part, 1.0),
-        Accumulation::Least | Accumulation::WhenLeast => climb(state, piece, part, -1.0),
-        Accumulation::Integral => add(state, piece.integral(part, |value| value)),
-        Accumulation::IntegralOfSquare => add(state, piece.integral(part, |value| value * value)),
+        Accumulation::Greatest | Accumulation::WhenGreatest => climb(state, piece, &part, 1.0),
+        Accumulation::Least | Accumulation::WhenLeast => climb(state, piece, &part, -1.0),
+        Accumulation::Integral => add(state, piece.integral(&part, |value| value)),
+        Accumulation::IntegralOfSquare => add(state, piece.integral(&part, |value| value * value)),
         Accumulation::First => {
             let known = state.value;
-            climb(state, piece, part, 1.0);
-            let found = piece.first_above(part).map_or(f64::NAN, |share| piece.time(share));
+            climb(state, piece, &part, 1.0);
+            let found = piece.first_above(&part).map_or(f64::NAN, |share| piece.time(share));
             state.value = if known.is_nan() { found } else { known };
         }
         Accumulation::Last => {
             let known = state.value;
-            climb(state, piece, part, 1.0);
-            state.value = piece.last_above(part).map_or(known, |share| piece.time(share));
+            climb(state, piece, &part, 1.0);
+            state.value = piece.last_above(&part).map_or(known, |share| piece.time(share));
         }
         Accumulation::AtEnd | Accumulation::Zone { .. } => (),
     }
@@ -224,7 +226,7 @@ fn take(state: &mut State, piece: &Piece, channel: &Channel) {
 }
 
 /// Notes a higher place.
-fn climb(state: &mut State, piece: &Piece, part: (f64, f64), sign: f64) {
+fn climb(state: &mut State, piece: &Piece, part: &Range<f64>, sign: f64) {
     let (share, height) = piece.greatest(part, sign);
     if state.height.is_nan() || sign * height > sign * state.height {
         (state.height, state.time) = (height, piece.time(share));

@@ -1,5 +1,7 @@
 //! An output between two steps: the cubic through the values at four steps.
 
+use std::ops::Range;
+
 use crate::simulate::events::locate::bisected;
 
 /// A place in a piece, as a share of its length, and the value there.
@@ -59,36 +61,37 @@ impl Piece {
     }
 
     /// The part of the piece between two times, as shares; `None` where nothing is.
-    pub fn part(&self, from: f64, to: f64) -> Option<(f64, f64)> {
+    pub fn part(&self, from: f64, to: f64) -> Option<Range<f64>> {
         let share = |time: f64| ((time - self.start) / self.length).clamp(0.0, 1.0);
         let (begin, end) = (share(from), share(to));
-        (begin < end).then_some((begin, end))
+        (begin < end).then_some(begin..end)
     }
 
     /// The greatest value of a part times `sign`, and where; of equals the first.
-    pub fn greatest(&self, (begin, end): (f64, f64), sign: f64) -> Place {
-        let inside = self.peaks[usize::from(sign < 0.0)].filter(|(share, _)| (begin..end).contains(share));
+    pub fn greatest(&self, part: &Range<f64>, sign: f64) -> Place {
+        let inside = self.peaks[usize::from(sign < 0.0)].filter(|(share, _)| part.contains(share));
+        let [begin, end] = [part.start, part.end];
         let places = [Some((begin, self.at(begin))), inside, Some((end, self.at(end)))];
         let larger = |a: Place, b: Place| if sign * b.1 > sign * a.1 { b } else { a };
         places.into_iter().flatten().reduce(larger).unwrap_or((begin, f64::NAN))
     }
 
     /// Where in a part the value is first not negative.
-    pub fn first_above(&self, (begin, end): (f64, f64)) -> Option<f64> {
-        if self.at(begin) >= 0.0 {
-            return Some(begin);
+    pub fn first_above(&self, part: &Range<f64>) -> Option<f64> {
+        if self.at(part.start) >= 0.0 {
+            return Some(part.start);
         }
-        let (top, height) = self.greatest((begin, end), 1.0);
-        (height >= 0.0).then(|| self.crossing(begin, top))
+        let (top, height) = self.greatest(part, 1.0);
+        (height >= 0.0).then(|| self.crossing(part.start, top))
     }
 
     /// Where in a part the value is last not negative.
-    pub fn last_above(&self, (begin, end): (f64, f64)) -> Option<f64> {
-        if self.at(end) >= 0.0 {
-            return Some(end);
+    pub fn last_above(&self, part: &Range<f64>) -> Option<f64> {
+        if self.at(part.end) >= 0.0 {
+            return Some(part.end);
         }
-        let (top, height) = self.greatest((begin, end), 1.0);
-        (height >= 0.0).then(|| self.crossing(end, top))
+        let (top, height) = self.greatest(part, 1.0);
+        (height >= 0.0).then(|| self.crossing(part.end, top))
     }
 
     /// Where the value becomes positive on the way from a share at which it is negative to one at which it is not.
@@ -97,10 +100,10 @@ impl Piece {
     }
 
     /// The integral of a function of the value over a part, by Gauss' rule of four nodes: exact up to degree 7.
-    pub fn integral(&self, (begin, end): (f64, f64), function: impl Fn(f64) -> f64) -> f64 {
+    pub fn integral(&self, part: &Range<f64>, function: impl Fn(f64) -> f64) -> f64 {
         const NODES: [(f64, f64); 2] =
             [(0.339_981_043_584_856_3, 0.652_145_154_862_546_1), (0.861_136_311_594_052_6, 0.347_854_845_137_453_9)];
-        let (middle, half) = (0.5 * (begin + end), 0.5 * (end - begin));
+        let (middle, half) = (0.5 * (part.start + part.end), 0.5 * (part.end - part.start));
         let sum: f64 = NODES
             .iter()
             .map(|(node, weight)| {
@@ -182,18 +185,18 @@ mod tests {
             assert!((piece.at(share) - f(piece.time(share))).abs() < 1e-14);
         }
         let exact = |t: f64| t - t * t + t * t * t / 6.0 - 0.75 * t * t * t * t;
-        let integral = piece.integral((0.2, 0.9), |value| value);
+        let integral = piece.integral(&(0.2..0.9), |value| value);
         assert!((integral - (exact(piece.time(0.9)) - exact(piece.time(0.2)))).abs() < 1e-15);
     }
 
     #[test]
     fn a_smooth_peak_is_refined_and_a_jump_is_not() {
         let points = [-1.3, -0.3, 0.7, 1.7].map(|t: f64| (t, symdiff::math::cos(0.1 * t)));
-        let (share, height) = Piece::between(&points, 1).greatest((0.0, 1.0), 1.0);
+        let (share, height) = Piece::between(&points, 1).greatest(&(0.0..1.0), 1.0);
         // |f⁗| h⁴/4! times the largest |(s+1) s (s−1) (s−2)|, 9/16.
         assert!((height - 1.0).abs() < 1e-4 / 24.0 * 9.0 / 16.0 && (share - 0.3).abs() < 1e-3, "{share} {height}");
         let jump = [(0.0, 0.0), (1.0, 1.0), (2.0, 1.0), (3.0, 1.0)];
-        assert_eq!(Piece::between(&jump, 1).greatest((0.0, 1.0), 1.0).1, 1.0);
+        assert_eq!(Piece::between(&jump, 1).greatest(&(0.0..1.0), 1.0).1, 1.0);
     }
 
     #[test]
@@ -201,8 +204,8 @@ mod tests {
         // 0.01 − (t − 0.5)² between steps at which it is negative.
         let points = [-1.0, 0.0, 1.0, 2.0].map(|t: f64| (t, 0.01 - (t - 0.5) * (t - 0.5)));
         let piece = Piece::between(&points, 1);
-        assert!((piece.first_above((0.0, 1.0)).unwrap() - 0.4).abs() < 1e-12);
-        assert!((piece.last_above((0.0, 1.0)).unwrap() - 0.6).abs() < 1e-12);
-        assert_eq!(piece.first_above((0.65, 1.0)), None);
+        assert!((piece.first_above(&(0.0..1.0)).unwrap() - 0.4).abs() < 1e-12);
+        assert!((piece.last_above(&(0.0..1.0)).unwrap() - 0.6).abs() < 1e-12);
+        assert_eq!(piece.first_above(&(0.65..1.0)), None);
     }
 }
