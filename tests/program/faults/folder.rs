@@ -4,9 +4,8 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::process::{Command, Stdio};
-use std::time::Duration;
 
+use super::interrupts::interrupted;
 use crate::place::Place;
 
 #[test]
@@ -45,27 +44,19 @@ fn an_interrupted_run_does_not_replace_a_complete_one() {
     let whole = fs::read(place.path().join("out/bounds.csv")).unwrap();
     let path = place.path().join("crank.yaml");
     let text = fs::read_to_string(&path).unwrap();
-    let slow =
-        text.replace("duration: 0.1, step: 1e-3", "duration: 20, step: 1e-4").replace("points: 3", "points: 200");
+    let slow = text.replace("duration: 0.1, step: 1e-3", "duration: 4, step: 1e-4").replace("points: 3", "points: 200");
     assert_ne!(text, slow);
     fs::write(&path, slow).unwrap();
-    for signal in ["-TERM", "-HUP", "-INT"] {
-        let mut command = place.command("run -q --yes crank.yaml -o out");
-        let run = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(2500));
-        assert!(Command::new("kill").args([signal, &run.id().to_string()]).status().unwrap().success());
-        let ended = run.wait_with_output().unwrap();
-        let errors = String::from_utf8(ended.stderr).unwrap();
-        assert_eq!(ended.status.code(), Some(130), "{signal}: {errors}");
-        assert!(errors.contains("interrupted") && errors.contains("out.interrupted"), "{errors}");
-        assert!(fs::read(place.path().join("out/bounds.csv")).unwrap() == whole);
-        let summary = fs::read_to_string(place.path().join("out.interrupted/summary.json")).unwrap();
-        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
-        assert_eq!(summary["interrupted"], serde_json::Value::Bool(true));
-        // 200 × 200 samples were planned, and nobody waited for them.
-        for method in summary["methods"].as_array().unwrap() {
-            assert!(method["simulations"].as_u64().unwrap() < 20_000, "{method}");
-        }
+    let (status, errors) = interrupted(&place, "run --yes crank.yaml -o out", "crank: scan", "-HUP");
+    assert_eq!(status, Some(130), "{errors}");
+    assert!(errors.contains("interrupted") && errors.contains("out.interrupted"), "{errors}");
+    assert!(fs::read(place.path().join("out/bounds.csv")).unwrap() == whole);
+    let summary = fs::read_to_string(place.path().join("out.interrupted/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["interrupted"], serde_json::Value::Bool(true));
+    // 200 × 200 samples were planned, and nobody waited for them.
+    for method in summary["methods"].as_array().unwrap() {
+        assert!(method["simulations"].as_u64().unwrap() < 20_000, "{method}");
     }
 }
 

@@ -29,7 +29,7 @@ fn begin(place: &Place, arguments: &str) -> Child {
 
 /// Sends a signal when standard error tells of this stage, and awaits the end, which would come minutes later. The
 /// status, and what standard error has told.
-fn interrupted(place: &Place, arguments: &str, stage: &str, name: &str) -> (Option<i32>, String) {
+pub(super) fn interrupted(place: &Place, arguments: &str, stage: &str, name: &str) -> (Option<i32>, String) {
     let mut run = begin(place, arguments);
     let mut told = String::new();
     let mut errors = BufReader::new(run.stderr.take().unwrap());
