@@ -1,6 +1,7 @@
 //! One job of `mbint run`: a model or a scene, its run, its files and its report.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::console::Console;
 use super::kept_run::{KeptRun, context, expected};
@@ -57,6 +58,8 @@ pub(super) fn bounds(
         begun();
         progress.set(fraction);
     };
+    // What `check` refuses is refused with its status.
+    let has_begun = AtomicBool::new(false);
     let there = store.filter(|_| !settings.quiet).map(|(kept, _)| kept.there());
     let options = study::Options {
         methods: settings.methods.clone(),
@@ -71,7 +74,10 @@ pub(super) fn bounds(
             }
         },
         progress: &set_progress,
-        stage: &|stage| progress.stage(stage),
+        stage: &|stage| {
+            has_begun.fetch_or(stage != study::COMPILING, Ordering::Relaxed);
+            progress.stage(stage);
+        },
         interrupted: &interrupt::asked,
         ..study::Options::default()
     };
@@ -80,6 +86,7 @@ pub(super) fn bounds(
         match error {
             study::RunError::Costly(_) | study::RunError::Memory(_) => Failure::Wrong(message),
             study::RunError::Simulation(SimulationError::Deferred) => Failure::Deferred,
+            _ if !has_begun.load(Ordering::Relaxed) => Failure::Wrong(message),
             _ => Failure::Failed(message),
         }
     })

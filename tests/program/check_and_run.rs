@@ -59,3 +59,62 @@ fn both_accept_the_same_models() {
         assert!(ready.is_ok() && begun.is_ok(), "{shown}: {ready:?} {begun:?}");
     }
 }
+
+/// Nothing that moves, nothing that is uncertain, one row, no output: through every analysis, by every command that
+/// simulates. Each ends as documented, with a result or with a message, and with no error of the program.
+#[test]
+fn sizes_of_nothing_pass_every_stage() {
+    let place = Place::new();
+    let bodies = [
+        "bodies: { b: { mass: m, inertia: 1 } }\njoints: { w: { fixed: [ground, b] } }\n",
+        "bodies: { b: { mass: m, coordinates: [x] } }\neffects: { s: { spring_damper: { between: [ground, b], along: x, \
+         stiffness: 10, damping: 1, free_length: 0 } } }\n",
+        "bodies: { b: { mass: m, inertia: 1 } }\njoints: { h: { revolute: [ground, b] }, d: { motor: { on: h, position: 0*t } } }\n",
+    ];
+    let outputs = [
+        "outputs: {}\n",
+        "outputs: { c: m }\n",
+        "outputs: { z: 0*m, peak: { max: z } }\nrequirements: { r: z <= 1 }\n",
+    ];
+    let asked = [
+        "bounds: { chebyshev: { order: 1 }, taylor: { order: 1 }, scan: { points: 2 } }\n",
+        "bounds: { tolerance: 1e-2 }\n",
+        "statistics: { quantiles: [0.5] }\nbounds: { chebyshev: { order: 1 } }\n",
+    ];
+    let times = [
+        "simulation: { duration: 1e-2, step: 1e-2 }\n",
+        "simulation: { duration: 1e-2, tolerance: 1e-4, output_step: 1e-2 }\n",
+    ];
+    for (number, analysis) in ["motion", "kinematics", "statics", "modes"].into_iter().enumerate() {
+        for (bodies, outputs) in bodies.iter().flat_map(|bodies| outputs.iter().map(move |outputs| (bodies, outputs))) {
+            for (asked, parameter) in asked.iter().flat_map(|asked| [(asked, "1 kg ± 1%"), (asked, "1 kg")]) {
+                let mut text = format!("model: x\nparameters: {{ m: {parameter} }}\n{bodies}{outputs}{asked}");
+                text += match analysis {
+                    "motion" => times[number % 2],
+                    "kinematics" => times[0],
+                    _ => "",
+                };
+                if analysis != "motion" {
+                    text += &format!("analysis: {analysis}\n");
+                }
+                if analysis == "modes" {
+                    text += "modes: { number: 1 }\n";
+                }
+                fs::write(place.path().join("x.yaml"), &text).unwrap();
+                ends_as_documented(&place, &text);
+            }
+        }
+    }
+}
+
+#[track_caller]
+fn ends_as_documented(place: &Place, text: &str) {
+    let [check, run] = ["check x.yaml", "run -q --no-report x.yaml -o out"].map(|command| {
+        let done = place.command(command).output().unwrap();
+        let told = String::from_utf8(done.stderr).unwrap();
+        assert!(!told.contains("internal error") && !told.contains("panicked"), "{command}\n{text}\n{told}");
+        assert!(matches!(done.status.code(), Some(0 | 2 | 3 | 4)), "{command}: {:?}\n{text}\n{told}", done.status);
+        done.status.code() == Some(2)
+    });
+    assert_eq!(check, run, "refused by one of them\n{text}");
+}

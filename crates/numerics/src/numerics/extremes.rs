@@ -74,7 +74,7 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
                 break;
             }
         }
-        let mut found: Vec<Extent> = searches.iter().map(Search::extent).collect();
+        let mut found: Vec<Extent> = searches.iter().map(|search| search.extent(intervals.len())).collect();
         let beyond = |place: usize| {
             let range = &found[place].range;
             let beyond = lines[place].1.iter().map(|&value| range.distance(value)).fold(0.0, f64::max);
@@ -147,7 +147,8 @@ fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64
     };
     let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();
     climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
-    searches.iter().map(Search::extent).collect()
+    let dimension = known.first().map_or(0, |extent| extent.places[0].len());
+    searches.iter().map(|search| search.extent(dimension)).collect()
 }
 
 /// Search for one function.
@@ -242,8 +243,8 @@ impl Search {
         more
     }
 
-    /// From the best of all ends.
-    fn extent(&self) -> Extent {
+    /// From the best of all ends, over so many parameters.
+    fn extent(&self, dimension: usize) -> Extent {
         let best = |(sign, omitted): (f64, &Vec<(usize, f64)>)| {
             let omitted = omitted.last().map_or(f64::NEG_INFINITY, |&(_, height)| height);
             let ends = self.ends.iter().filter(|end| end.sign == sign);
@@ -254,8 +255,8 @@ impl Search {
         };
         let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], &self.omitted[end])))
         else {
-            // There is an end of either sign.
-            return Extent::unknown(0);
+            // There is none where a value is NaN.
+            return Extent::unknown(dimension);
         };
         Extent {
             range: Range { lower: least.best, upper: largest.best },

@@ -76,7 +76,7 @@ pub use kept::{Evaluator, Kept};
 pub use memory::Memory;
 pub use motion::{MotionOptions, motion};
 pub use price::Price;
-pub use ready::{Ready, built, ready};
+pub use ready::{COMPILING, Ready, built, ready};
 pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
 pub use structure::structure;

@@ -10,6 +10,9 @@ use crate::assemble;
 use crate::model::Description;
 use crate::reduce::{Reduction, Subsystem};
 
+/// The stage up to the start: a run that ends in it was not begun.
+pub const COMPILING: &str = "compiling";
+
 /// A model's subsystems as studies, none of which was begun.
 pub(super) struct Studied<'s> {
     /// Parts that no output depends on.
@@ -39,7 +42,7 @@ pub(super) fn studied<T>(
     keep: bool,
     then: impl FnOnce(&Studied) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
-    (options.stage)("compiling");
+    (options.stage)(COMPILING);
     let (Reduction { left_out, .. }, mut prepared) = prepare(description, choices(description, options))?;
     share_budget(&mut prepared);
     let count = prepared.len();

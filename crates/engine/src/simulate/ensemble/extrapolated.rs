@@ -194,13 +194,14 @@ fn closed(
     (motion, first, samples): (&[f64], usize, usize),
 ) -> Vec<f64> {
     let width = closure.tile().width();
-    let coordinates = motion.len() / (rows.len() * samples).max(1);
-    let mut state = vec![0.0; coordinates * width];
+    let of_row = motion.len() / rows.len().max(1);
+    let mut state = vec![0.0; of_row / samples.max(1) * width];
     let mut values = vec![0.0; rows.len() * lines * width];
-    for ((row, of_row), values) in
-        rows.zip(motion.chunks_exact(coordinates * samples)).zip(values.chunks_exact_mut(lines * width))
-    {
-        for (state, line) in state.chunks_exact_mut(width).zip(of_row.chunks_exact(samples)) {
+    // A mechanism that is held has no coordinates, but outputs.
+    for (place, row) in rows.enumerate() {
+        let motion = &motion[place * of_row..][..of_row];
+        let values = &mut values[place * lines * width..][..lines * width];
+        for (state, line) in state.chunks_exact_mut(width).zip(motion.chunks_exact(samples)) {
             for (lane, value) in state.iter_mut().enumerate() {
                 *value = line[(first + lane).min(samples - 1)];
             }

@@ -155,7 +155,7 @@ impl RowTile<'_> {
         let mut values = vec![0.0; rows.len() * lines * width];
         let mut stops = Vec::new();
         let mut state = vec![0.0; self.tile.lines() * width];
-        for (row, values) in rows.zip(values.chunks_exact_mut(lines * width)) {
+        for (row, values) in rows.zip(values.chunks_exact_mut((lines * width).max(1))) {
             if interruption.is_asked() {
                 return None;
             }

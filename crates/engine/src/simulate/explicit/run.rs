@@ -208,7 +208,7 @@ impl Tile<'_> {
         let mut values = vec![0.0; rows.len() * lines * width];
         let mut stops = Vec::new();
         let mut state = vec![0.0; self.run.state.len()];
-        for (row, of_row) in rows.zip(values.chunks_exact_mut(lines * width)) {
+        for (row, of_row) in rows.zip(values.chunks_exact_mut((lines * width).max(1))) {
             let time = schedule.time(row);
             let Self { motion, rows, run, steps, alive, reduction, interruption, is_cut, .. } = self;
             if row == 0 {

@@ -71,6 +71,7 @@ impl Study<'_> {
         if (description.reduced.is_empty() && description.requirements.is_empty()) || self.store.get().is_some() {
             return Ok(());
         }
+        (self.stage)("nominal motion");
         let Divided { schedule, .. } = self.divided(schedule.clone());
         let progress = Progress::new(usize::MAX, self.progress);
         let motions = self.motions(&schedule, tolerance, &progress);
