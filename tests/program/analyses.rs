@@ -164,9 +164,11 @@ fn results_that_an_analysis_does_not_find_are_refused_with_those_that_it_does() 
         ..ANALYSES[3]
     };
     fs::write(place.path().join("asked.yaml"), asked("requirements", &analysis)).unwrap();
-    let (_, error) = place.run("run asked.yaml -o out", 1);
-    assert!(
-        error.contains("`mode3.frequency` is none of the results") && error.contains("`mode1.frequency`"),
-        "{error}"
-    );
+    for command in ["check asked.yaml", "run asked.yaml -o out"] {
+        let (_, error) = place.run(command, 2);
+        assert!(
+            error.contains("`mode3.frequency` is none of the results") && error.contains("`mode1.frequency`"),
+            "{error}"
+        );
+    }
 }
