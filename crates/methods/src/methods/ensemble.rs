@@ -149,6 +149,13 @@ pub struct Simulated {
 }
 
 impl Simulated {
+    /// After an interruption no row is known from this one on.
+    pub fn end_at(&mut self, row: usize, ensemble: &dyn Ensemble) {
+        if ensemble.is_interrupted() {
+            self.missing = self.missing.max(ensemble.rows() - row);
+        }
+    }
+
     /// Adds a shard whose first sample has the number `first`.
     pub fn add(&mut self, first: usize, shard: Self) {
         self.effort += shard.effort;

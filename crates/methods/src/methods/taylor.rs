@@ -152,9 +152,7 @@ impl BoundingMethod for Taylor {
             // With a kink, too, it is furthest off at the corners, which are among the validation samples.
             bands.set_polynomials(rows, &mut found, (validation, &[]));
         })?;
-        if ensemble.is_interrupted() {
-            simulated.missing = simulated.missing.max(ensemble.rows() - reached);
-        }
+        simulated.end_at(reached, ensemble);
         Ok(bands.finish(1, simulated))
     }
 }

@@ -226,7 +226,7 @@ pub struct ContributionSummary {
 }
 
 /// What a method took. `method` is `nominal`, `validation` or a bounding method's name.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MethodSummary {
     /// Its name.
     pub method: String,

@@ -44,12 +44,7 @@ impl Study<'_> {
             method: "switches".to_owned(),
             simulations,
             steps: schedule.steps_before(schedule.rows - 1),
-            newton_iterations: 0,
-            rank_revealing_solves: 0,
-            order: None,
-            boxes: None,
-            expanded_outputs: Vec::new(),
-            seconds: None,
+            ..MethodSummary::default()
         };
         (found, summary)
     }

@@ -20,6 +20,7 @@ use super::observed::{Observed, Stop};
 use super::reduction::Channel;
 use super::row_closure::{JetClosure, RowClosure};
 use super::run::EnsembleRun;
+use super::tiling::put_lanes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::error::SimulationError;
@@ -176,10 +177,8 @@ impl<'s> ExtrapolatedRun<'s> {
         into.resize(rows.len() * lines * samples, 0.0);
         for (place, values) in parts.iter().enumerate() {
             let first = place * WIDTH;
-            let (count, width) = (WIDTH.min(samples - first), self.closures[place].tile().width());
-            for (line, lanes) in values.chunks_exact(width).enumerate() {
-                into[line * samples + first..][..count].copy_from_slice(&lanes[..count]);
-            }
+            let width = self.closures[place].tile().width();
+            put_lanes(values, width, first..(first + WIDTH).min(samples), into, samples);
         }
         stops
     }
@@ -207,15 +206,7 @@ fn closed(
             }
         }
         closure.close(schedule.time(row), &mut state);
-        let outputs = match observed {
-            Observed::Outputs => values,
-            _ => {
-                let (motion, outputs) = values.split_at_mut(state.len());
-                motion.copy_from_slice(&state);
-                outputs
-            }
-        };
-        closure.observe(outputs);
+        closure.record(observed, &state, values);
     }
     values
 }

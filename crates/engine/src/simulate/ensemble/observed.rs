@@ -1,5 +1,8 @@
 //! Values that a run records, and how it tells that a sample stopped.
 
+use std::ops::Range;
+
+use crate::assemble::EquationId;
 use crate::simulate::diagnostics::OpenConstraint;
 use crate::simulate::simulator::Simulator;
 
@@ -40,9 +43,32 @@ pub struct Stop {
     /// s
     pub time: f64,
     /// The equation with the largest scaled residual.
-    pub equation: crate::assemble::EquationId,
+    pub equation: EquationId,
     /// The constraint that cannot be closed there, if one is known.
     pub open: Option<OpenConstraint>,
     /// Whether the sample could continue, but without the invertible Newton matrix that jets need.
     pub singular: bool,
+}
+
+/// The samples that stop in a row of a tile, since their state (q and v, 2n lines, lane by lane) is not finite; their
+/// values (line, lane) become NaN. The first lanes are these samples.
+pub(in crate::simulate) fn stops_of_lost(
+    alive: &mut [bool],
+    samples: Range<usize>,
+    state: &[f64],
+    row: usize,
+    time: f64,
+    values: &mut [f64],
+) -> Vec<Stop> {
+    let (width, mut stops) = (alive.len(), Vec::new());
+    for (lane, alive) in alive.iter_mut().enumerate() {
+        let lost = state.iter().skip(lane).step_by(width).position(|value| !value.is_finite());
+        let Some(line) = lost else { continue };
+        if std::mem::replace(alive, false) && lane < samples.len() {
+            let equation = EquationId::new(line % (state.len() / width / 2).max(1));
+            stops.push(Stop { sample: samples.start + lane, row, time, equation, open: None, singular: false });
+        }
+        values.iter_mut().skip(lane).step_by(width).for_each(|value| *value = f64::NAN);
+    }
+    stops
 }

@@ -7,6 +7,7 @@
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
 use super::jet_states::{JetBox, add_correction, assembled_jet, corrections, sample_states, solve_accelerations};
+use super::observed::Observed;
 use crate::compile::{Layout, StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
@@ -153,6 +154,14 @@ impl<'s> RowClosure<'s> {
         for register in layout.w.start..layout.lambda.end {
             self.assembly.tile_mut().lane_mut(register).fill(0.0);
         }
+    }
+
+    /// Values (line, lane) of the motion that was closed last: the outputs, behind the motion itself if that is observed.
+    pub fn record(&mut self, observed: Observed, motion: &[f64], into: &mut [f64]) {
+        let own = if observed == Observed::Outputs { 0 } else { motion.len() };
+        let (before, outputs) = into.split_at_mut(own);
+        before.copy_from_slice(&motion[..own]);
+        self.observe(outputs);
     }
 
     /// Outputs (output, lane) of the state that was closed last.

@@ -7,7 +7,7 @@ use super::observed::{Observed, Stop};
 use super::reduction::{Channel, Reduction};
 use super::row_accelerations::RowAccelerations;
 use super::switch_extents::SwitchExtents;
-use super::tiling::tiles;
+use super::tiling::{put_lanes, tiles};
 use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
@@ -152,9 +152,7 @@ impl<'s> EnsembleRun<'s> {
             let found = reduction.finish();
             let width = tile.stepper.tile().width();
             values.resize(found.len() / width * self.samples, f64::NAN);
-            for (channel, lanes) in found.chunks_exact(width).enumerate() {
-                values[channel * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
-            }
+            put_lanes(&found, width, tile.first..tile.first + tile.count, &mut values, self.samples);
         }
         values
     }
@@ -181,9 +179,7 @@ impl<'s> EnsembleRun<'s> {
         let mut stops = Vec::new();
         for (tile, (values, stopped)) in self.tiles.iter().zip(parts) {
             let width = tile.stepper.tile().width();
-            for (line, lanes) in values.chunks_exact(width).enumerate() {
-                into[line * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
-            }
+            put_lanes(&values, width, tile.first..tile.first + tile.count, into, self.samples);
             stops.extend(stopped);
         }
         stops

@@ -1,5 +1,7 @@
 //! How samples are divided among tiles.
 
+use std::ops::Range;
+
 use symdiff::WIDTHS;
 
 /// Widest tile in use: a wider one's memory would leave the first-level cache.
@@ -27,6 +29,20 @@ pub(super) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(us
         first += count;
     }
     tiles
+}
+
+/// Puts the lines of a tile (line, lane) among those of all samples (line, sample), of which its lanes are these; further
+/// lanes repeat the last.
+pub(in crate::simulate) fn put_lanes(
+    values: &[f64],
+    width: usize,
+    lanes: Range<usize>,
+    into: &mut [f64],
+    samples: usize,
+) {
+    for (line, of_tile) in values.chunks_exact(width).enumerate() {
+        into[line * samples..][lanes.clone()].copy_from_slice(&of_tile[..lanes.len()]);
+    }
 }
 
 #[cfg(test)]

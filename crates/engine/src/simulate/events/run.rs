@@ -5,10 +5,9 @@ use symdiff::WIDTHS;
 
 use super::segments::Segments;
 use super::tile::SegmentTile;
-use crate::assemble::EquationId;
 use crate::numerics::{Sample, SegmentMotions};
 use crate::simulate::control::Schedule;
-use crate::simulate::ensemble::{Observed, RowClosure, Stop};
+use crate::simulate::ensemble::{Observed, RowClosure, Stop, put_lanes, stops_of_lost};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
@@ -96,9 +95,7 @@ impl<'s> SegmentRun<'s> {
         into.resize(rows.len() * lines * self.samples, 0.0);
         let mut stops = Vec::new();
         for (RowTile { tile, .. }, (values, stopped)) in self.tiles.iter().zip(parts) {
-            for (line, lanes) in values.chunks_exact(tile.width()).enumerate() {
-                into[line * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
-            }
+            put_lanes(&values, tile.width(), tile.first..tile.first + tile.count, into, self.samples);
             stops.extend(stopped);
         }
         stops
@@ -165,25 +162,15 @@ impl RowTile<'_> {
             }
             self.tile.reach(time, &mut state);
             self.rows.close(time, &mut state);
-            let outputs = match observed {
-                Observed::Outputs => &mut *values,
-                _ => {
-                    let (motion, outputs) = values.split_at_mut(state.len());
-                    motion.copy_from_slice(&state);
-                    outputs
-                }
-            };
-            self.rows.observe(outputs);
-            for lane in 0..width {
-                let lost = state.iter().skip(lane).step_by(width).position(|value| !value.is_finite());
-                let Some(line) = lost else { continue };
-                if std::mem::replace(&mut self.alive[lane], false) && lane < self.tile.count {
-                    let equation = EquationId::new(line % (state.len() / width / 2).max(1));
-                    let sample = self.tile.first + lane;
-                    stops.push(Stop { sample, row, time, equation, open: None, singular: false });
-                }
-                values.iter_mut().skip(lane).step_by(width).for_each(|value| *value = f64::NAN);
-            }
+            self.rows.record(observed, &state, values);
+            stops.extend(stops_of_lost(
+                &mut self.alive,
+                self.tile.first..self.tile.first + self.tile.count,
+                &state,
+                row,
+                time,
+                values,
+            ));
         }
         Some((values, stops))
     }

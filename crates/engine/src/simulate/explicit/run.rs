@@ -4,11 +4,10 @@ use rayon::prelude::*;
 use symdiff::WIDTHS;
 
 use super::runge_kutta::{Motion, RungeKutta};
-use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::diagnostics::PartingWatch;
-use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop};
+use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, put_lanes, stops_of_lost};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
@@ -159,9 +158,7 @@ impl<'s> ExplicitRun<'s> {
             let Some(reduction) = &mut tile.reduction else { continue };
             let (found, width) = (reduction.finish(), tile.alive.len());
             values.resize(found.len() / width * self.samples, f64::NAN);
-            for (channel, lanes) in found.chunks_exact(width).enumerate() {
-                values[channel * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
-            }
+            put_lanes(&found, width, tile.first..tile.first + tile.count, &mut values, self.samples);
         }
         values
     }
@@ -186,9 +183,7 @@ impl<'s> ExplicitRun<'s> {
         into.resize(rows.len() * lines * self.samples, 0.0);
         let mut stops = Vec::new();
         for (tile, (values, stopped)) in self.tiles.iter().zip(parts) {
-            for (line, lanes) in values.chunks_exact(tile.alive.len()).enumerate() {
-                into[line * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
-            }
+            put_lanes(&values, tile.alive.len(), tile.first..tile.first + tile.count, into, self.samples);
             stops.extend(stopped);
         }
         stops
@@ -243,32 +238,15 @@ impl Tile<'_> {
                 };
                 parting.look(time, read);
             }
-            let outputs = match observed {
-                Observed::Outputs => &mut *of_row,
-                _ => {
-                    let (motion, outputs) = of_row.split_at_mut(state.len());
-                    motion.copy_from_slice(&state);
-                    outputs
-                }
-            };
-            self.rows.observe(outputs);
-            for lane in 0..width {
-                let lost = state.iter().skip(lane).step_by(width).position(|value| !value.is_finite());
-                if let Some(line) = lost {
-                    if std::mem::replace(&mut self.alive[lane], false) && lane < self.count {
-                        let equation = EquationId::new(line % (state.len() / width / 2).max(1));
-                        stops.push(Stop {
-                            sample: self.first + lane,
-                            row,
-                            time,
-                            equation,
-                            open: None,
-                            singular: false,
-                        });
-                    }
-                    of_row.iter_mut().skip(lane).step_by(width).for_each(|value| *value = f64::NAN);
-                }
-            }
+            self.rows.record(observed, &state, of_row);
+            stops.extend(stops_of_lost(
+                &mut self.alive,
+                self.first..self.first + self.count,
+                &state,
+                row,
+                time,
+                of_row,
+            ));
         }
         (values, stops)
     }

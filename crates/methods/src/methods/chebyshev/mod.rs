@@ -373,8 +373,6 @@ fn composed(
             Err(error) => failure = Some(error),
         }
     })?;
-    if ensemble.is_interrupted() {
-        simulated.missing = simulated.missing.max(ensemble.rows() - reached);
-    }
+    simulated.end_at(reached, ensemble);
     failure.map_or(Ok((bands, simulated)), Err)
 }

@@ -134,8 +134,6 @@ pub(super) fn expanded(
             kept.extend(of_rows.map(|(row, lines)| KeptRow::of_outputs(ensemble.time(row), lines)));
         }
     })?;
-    if ensemble.is_interrupted() {
-        simulated.missing = simulated.missing.max(ensemble.rows() - reached);
-    }
+    simulated.end_at(reached, ensemble);
     Ok((bands, simulated))
 }

@@ -146,12 +146,8 @@ impl Study<'_> {
             method: "reduced outputs".to_owned(),
             simulations,
             steps: schedule.steps_before(schedule.rows - 1),
-            newton_iterations: 0,
-            rank_revealing_solves: 0,
-            order: None,
-            boxes: None,
-            expanded_outputs: Vec::new(),
             seconds: Some(begun.elapsed().as_secs_f64()),
+            ..MethodSummary::default()
         });
         Ok(Found { reduced, requirements, summary, kept })
     }

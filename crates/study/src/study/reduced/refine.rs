@@ -57,12 +57,7 @@ pub fn run(model: &Description, options: &Options, keep: bool) -> Result<(Bounds
             },
             simulations: spent,
             steps: 0,
-            newton_iterations: 0,
-            rank_revealing_solves: 0,
-            order: None,
-            boxes: None,
-            expanded_outputs: Vec::new(),
-            seconds: None,
+            ..MethodSummary::default()
         });
     }
     Ok(found)
