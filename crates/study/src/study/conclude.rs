@@ -49,7 +49,7 @@ impl Study<'_> {
             responses: Vec::new(),
         };
         let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
-        let interrupted = || (study.interrupted)().then(|| INTERRUPTED.to_owned());
+        let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());
         let stopped = stop.map(|(stop, sample)| {
             caught("a message", || failure(study, &results.schedule, &stop, &sample))
                 .unwrap_or_else(|error| error.to_string())

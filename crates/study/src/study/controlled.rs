@@ -7,7 +7,7 @@ use super::outcome::Ran;
 use super::single::{Study, simulation_error};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::numerics::{Sample, corners};
-use crate::simulate::{Controller, Interruption, Schedule, SimulationError, ToleranceSchedule, schedule_for_tolerance};
+use crate::simulate::{Controller, Schedule, SimulationError, ToleranceSchedule, schedule_for_tolerance};
 
 /// Corners of the box that join the nominal sample as controlling samples of the step size.
 const CONTROLLING_CORNERS: usize = 16;
@@ -67,13 +67,8 @@ impl Study<'_> {
         };
         let mut controller = Controller { tolerance: of_plain(tolerance), duration: times.0 };
         let schedule = |controller: Controller| -> Result<ToleranceSchedule, SimulationError> {
-            let controlled = schedule_for_tolerance(
-                &self.simulator,
-                samples,
-                times,
-                controller.tolerance,
-                Interruption::new(self.interrupted),
-            )?;
+            let controlled =
+                schedule_for_tolerance(&self.simulator, samples, times, controller.tolerance, self.interruption)?;
             Ok(ToleranceSchedule { schedule: controlled.schedule.taken(integration), ..controlled })
         };
         let mut controlled = schedule(controller)?;
@@ -81,7 +76,7 @@ impl Study<'_> {
             |controlled: &ToleranceSchedule| controlled.schedule.steps_before(controlled.schedule.rows - 1) as f64;
         let most = (MOST_GROWTH * steps(&controlled)).max(FEW_STEPS / self.simulator.system.q.len() as f64);
         for _ in 1..ROUNDS {
-            if controlled.failure.is_some() || (self.interrupted)() {
+            if controlled.failure.is_some() || self.interruption.is_asked() {
                 break;
             }
             let share = self.steps_error(&controlled.schedule, Some(controller), samples)? / tolerance;

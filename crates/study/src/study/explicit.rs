@@ -94,7 +94,7 @@ impl Study<'_> {
         let times = (self.description.simulation.duration, self.description.simulation.output_step);
         let asked = self.description.simulation.scheme == SchemeChoice::Explicit;
         let most = if asked { MOST_STEPS } else { FEW_STEPS + base.steps_before(base.rows - 1) };
-        explicit_schedule(&self.simulator, samples, times, tolerance, most, Interruption::new(self.interrupted))
+        explicit_schedule(&self.simulator, samples, times, tolerance, most, self.interruption)
     }
 
     /// A schedule whose errors at the validation samples are within the steps' share of a tolerance of the bounds.
@@ -127,7 +127,7 @@ impl Study<'_> {
                 let summary = validation_summary(&schedule, &validation, stop, begun);
                 return Ok(Ok((schedule, (validation, summary))));
             }
-            if share.is_nan() || (self.interrupted)() {
+            if share.is_nan() || self.interruption.is_asked() {
                 break;
             }
             tolerance *= (AIM / share).max(SHARPEST);
@@ -154,7 +154,7 @@ impl Study<'_> {
             if share <= 1.0 {
                 return Ok(Ok(schedule));
             }
-            if share.is_nan() || (self.interrupted)() {
+            if share.is_nan() || self.interruption.is_asked() {
                 break;
             }
             of_steps *= (AIM / share).max(SHARPEST);

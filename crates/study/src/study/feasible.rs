@@ -126,7 +126,7 @@ pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
     let pieces: Vec<Piece> = pieces.into_iter().filter(|piece| !matches!(piece.found, Found::Nothing)).collect();
     let mut ran: Vec<(Ran, &Piece)> = Vec::new();
     for (place, piece) in pieces.iter().enumerate() {
-        if (study.interrupted)() && !ran.is_empty() {
+        if study.interruption.is_asked() && !ran.is_empty() {
             break;
         }
         let progress = |fraction: f64| (study.progress)((place as f64 + fraction) / pieces.len() as f64);
@@ -150,7 +150,7 @@ fn cut(study: &Study) -> Result<Vec<Piece>, RunError> {
         Ok(Piece { domain, share, found })
     };
     let mut pieces = vec![piece(study.domain.clone(), 1.0)?];
-    while pieces.len() < MOST_PIECES && !(study.interrupted)() {
+    while pieces.len() < MOST_PIECES && !study.interruption.is_asked() {
         let gain = |piece: &Piece| match &piece.found {
             Found::Partly { lost, .. } if piece.share > SMALLEST => piece.share * lost,
             _ => 0.0,
@@ -233,6 +233,7 @@ fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
     if ran.len() > 1 {
         summary.contributions.clear();
     }
-    summary.failure = ran.iter().find_map(|(ran, _)| ran.summary.failure.clone().filter(|_| (study.interrupted)()));
+    summary.failure =
+        ran.iter().find_map(|(ran, _)| ran.summary.failure.clone().filter(|_| study.interruption.is_asked()));
     summary
 }

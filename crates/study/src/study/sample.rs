@@ -174,7 +174,7 @@ impl Trajectories<'_> {
     fn closed(&self, size: usize) -> Vec<bool> {
         let mut closed = Vec::with_capacity(self.chosen.count);
         for first in (0..self.chosen.count).step_by(size) {
-            if self.studies.iter().any(|study| (study.interrupted)()) {
+            if self.studies.iter().any(|study| study.interruption.is_asked()) {
                 break;
             }
             let samples = (self.chosen.at)(first..(first + size).min(self.chosen.count));

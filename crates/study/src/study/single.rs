@@ -35,7 +35,7 @@ pub(super) struct Study<'a> {
     /// Called with the current activity.
     pub(super) stage: &'a (dyn Fn(&str) + Sync),
     /// Whether to stop with the finished parts.
-    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+    pub(super) interruption: Interruption<'a>,
     /// Where simulations are stored, if they are.
     pub(super) stored: Option<Stored<'a>>,
 }
@@ -87,7 +87,7 @@ impl<'a> Study<'a> {
             store,
             progress,
             stage,
-            interrupted,
+            interruption: Interruption::new(interrupted),
             stored: None,
         })
     }
@@ -112,7 +112,7 @@ impl<'a> Study<'a> {
         tolerance: Option<Controller>,
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
-        let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted);
+        let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interruption);
         motions.keeping(self.store.get()).stored(self.stored)
     }
 
@@ -141,7 +141,7 @@ impl<'a> Study<'a> {
                     &samples,
                     (duration, output_step),
                     tolerance,
-                    Interruption::new(self.interrupted),
+                    self.interruption,
                 )?;
                 // The nominal sample may be of another part of the box.
                 let inside = |sample: &Sample| samples[0] != *sample || self.domain.contains(sample);
@@ -214,7 +214,7 @@ impl<'a> Study<'a> {
         if let Some((validation, _)) = &validation {
             validation.note(&seen);
             methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
-            if self.certify_time && !(self.interrupted)() {
+            if self.certify_time && !self.interruption.is_asked() {
                 let schedule = schedule.refined(2);
                 let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
                 let motions = self.motions(&schedule, halved_tolerance, &progress);
@@ -239,7 +239,7 @@ impl<'a> Study<'a> {
             internal,
             found,
         };
-        if !(self.interrupted)() {
+        if !self.interruption.is_asked() {
             results.found = match self.reduced(&results, tolerance, &progress) {
                 Err(SimulationError::Interrupted) => Found::nothing(self.description),
                 found => found?,
@@ -273,7 +273,7 @@ impl<'a> Study<'a> {
         // What follows the response is held against what the others have simulated.
         asked.sort_by_key(|(_, request)| request.samples().is_none());
         for (method, request) in asked {
-            if (self.interrupted)() {
+            if self.interruption.is_asked() {
                 break;
             }
             (self.stage)(method.name());
@@ -290,7 +290,7 @@ impl<'a> Study<'a> {
                     self.unknown(schedule, method.name())?
                 }
             };
-            if (self.interrupted)() && method.about().is_sampled {
+            if self.interruption.is_asked() && method.about().is_sampled {
                 // Not those that were planned.
                 outcome.summary.simulations = motions.over() - before;
             }

@@ -7,7 +7,7 @@ use super::outcome::Switches;
 use super::single::Study;
 use crate::methods::Validation;
 use crate::results::MethodSummary;
-use crate::simulate::{Integration, Interruption, SimulationError, Steps, unmet_switch};
+use crate::simulate::{Integration, SimulationError, Steps, unmet_switch};
 
 impl Study<'_> {
     /// Searches the box for them; `None` where the equations have none.
@@ -17,7 +17,7 @@ impl Study<'_> {
         validation: &Validation,
         internal: &mut Vec<InternalError>,
     ) -> Result<Option<Switches>, SimulationError> {
-        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
+        if self.interruption.is_asked() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
         if steps.schedule.segments().is_some() {
@@ -28,8 +28,7 @@ impl Study<'_> {
         let at_rows = steps.schedule.ending_at_rows();
         let steps = Steps { schedule: &at_rows, ..steps };
         let found = caught("the search for switches", || {
-            let interruption = Interruption::new(self.interrupted);
-            unmet_switch(&self.simulator, &self.domain, steps, &validation.points, interruption)
+            unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interruption)
         });
         let found = match found {
             Ok(found) => found?,

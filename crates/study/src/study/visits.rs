@@ -9,7 +9,7 @@ use symdiff::jet::JetSpace;
 use super::ensemble::{Motions, stopped_at};
 use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::Sample;
-use crate::simulate::{Interruption, SimulationError, SingularPass, Steps, Stop, Visit};
+use crate::simulate::{SimulationError, SingularPass, Steps, Stop, Visit};
 
 /// Samples that are visited at once.
 const BLOCK: usize = 256;
@@ -43,7 +43,6 @@ impl Motions<'_> {
         let mut stops: Vec<Stop> = Vec::new();
         let mut singular = Vec::new();
         let mut visited = 0;
-        let interruption = Interruption::new(self.interrupted);
         for (block, samples) in samples.chunks(BLOCK).enumerate() {
             if !stops.is_empty() && sampling.until == Until::FirstStop {
                 break;
@@ -55,7 +54,7 @@ impl Motions<'_> {
                         sample,
                         Steps { schedule: self.schedule, controller: self.tolerance },
                         self.channels(),
-                        interruption,
+                        self.interruption,
                     )
                 })
                 .collect();
@@ -107,9 +106,9 @@ impl Motions<'_> {
         half_widths: &[f64],
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, SimulationError> {
-        let (times, interruption) = (self.times(), Interruption::new(self.interrupted));
+        let times = self.times();
         let mut next = 0;
-        let stop = self.simulator.visit_jets(space, center, half_widths, &times, interruption, &mut |values| {
+        let stop = self.simulator.visit_jets(space, center, half_widths, &times, self.interruption, &mut |values| {
             reduce(next..next + 1, values);
             self.progress.advance(JET_WORK * (space.monomials().order() + 1));
             next += 1;

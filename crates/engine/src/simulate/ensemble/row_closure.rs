@@ -156,7 +156,7 @@ impl<'s> RowClosure<'s> {
         }
     }
 
-    /// Values (line, lane) of the motion that was closed last: the outputs, behind the motion itself if that is observed.
+    /// Values (line, lane) of the motion that was closed last: the outputs, behind the motion if it is observed.
     pub fn record(&mut self, observed: Observed, motion: &[f64], into: &mut [f64]) {
         let own = if observed == Observed::Outputs { 0 } else { motion.len() };
         let (before, outputs) = into.split_at_mut(own);

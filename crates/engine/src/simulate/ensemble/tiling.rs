@@ -31,8 +31,8 @@ pub(super) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(us
     tiles
 }
 
-/// Puts the lines of a tile (line, lane) among those of all samples (line, sample), of which its lanes are these; further
-/// lanes repeat the last.
+/// Puts the lines of a tile (line, lane) among those of all samples (line, sample). The first lanes are these samples,
+/// others are left out.
 pub(in crate::simulate) fn put_lanes(
     values: &[f64],
     width: usize,

@@ -3,7 +3,7 @@
 use super::Motions;
 use crate::methods::DenseMotions;
 use crate::numerics::Sample;
-use crate::simulate::{Interruption, Observed, SampleRun, Schedule, SimulationError};
+use crate::simulate::{Observed, SampleRun, Schedule, SimulationError};
 
 /// Times for each step at which a motion is dense.
 const DENSE: usize = 8;
@@ -24,7 +24,7 @@ impl Motions<'_> {
         let (end, ends) = (self.schedule.end(), self.schedule.ends());
         let dense = Schedule::passing((end, end / (DENSE * ends.len()) as f64), ends, Vec::new())
             .taken(self.schedule.integration);
-        let mut run = SampleRun::start(self.simulator, samples, &dense)?.heeding(Interruption::new(self.interrupted));
+        let mut run = SampleRun::start(self.simulator, samples, &dense)?.heeding(self.interruption);
         let lines = 2 * self.simulator.system.q.len() * samples.len();
         let stride = Observed::Motion.count(self.simulator) * samples.len();
         let (mut motions, mut block) = (Vec::with_capacity(dense.rows * lines), Vec::new());

@@ -103,7 +103,7 @@ impl Motions<'_> {
         }
         let about = JetBox { center: &center, half_width: &half_widths };
         let jet = SampleJet::start(self.simulator, space, about, self.schedule, self.tolerance.is_some())?;
-        let mut jet = jet.heeding(Interruption::new(self.interrupted));
+        let mut jet = jet.heeding(self.interruption);
         let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
         while next < self.schedule.rows && stop.is_none() {
             let rows = next..(next + BLOCK).min(self.schedule.rows);

@@ -50,7 +50,7 @@ pub(super) struct Motions<'a> {
     /// Of the steps' local errors, where they are controlled.
     pub(super) tolerance: Option<Controller>,
     pub(super) progress: &'a Progress<'a>,
-    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+    pub(super) interruption: Interruption<'a>,
     /// Where outputs are reduced to one number: keeps what samples are reduced to.
     store: Option<&'a Store>,
     channels: &'a [Channel],
@@ -74,7 +74,7 @@ impl<'a> Motions<'a> {
         schedule: &'a Schedule,
         tolerance: Option<Controller>,
         progress: &'a Progress<'a>,
-        interrupted: &'a (dyn Fn() -> bool + Sync),
+        interruption: Interruption<'a>,
     ) -> Self {
         let over = AtomicUsize::new(0);
         let (certifier, jumps) = (OnceLock::new(), OnceLock::new());
@@ -85,7 +85,7 @@ impl<'a> Motions<'a> {
             schedule,
             tolerance,
             progress,
-            interrupted,
+            interruption,
             store,
             channels,
             ledger,
@@ -163,7 +163,7 @@ impl<'a> Motions<'a> {
     /// Samples at their start.
     fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
         let run = SampleRun::start(self.simulator, samples, self.schedule)?;
-        Ok(run.reducing(self.channels).heeding(Interruption::new(self.interrupted)))
+        Ok(run.reducing(self.channels).heeding(self.interruption))
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -279,7 +279,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn is_interrupted(&self) -> bool {
-        (self.interrupted)()
+        self.interruption.is_asked()
     }
 
     fn simulate(

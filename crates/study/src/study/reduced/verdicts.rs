@@ -57,7 +57,7 @@ impl Study<'_> {
         ensembles: [&ReducedEnsemble; 2],
     ) -> Result<Vec<RequirementSummary>, SimulationError> {
         let requirements = self.description.requirements.iter().enumerate();
-        let verdict = |own| match (self.interrupted)() {
+        let verdict = |own| match self.interruption.is_asked() {
             true => Err(SimulationError::Interrupted),
             false => self.verdict(own, values, rows, ensembles),
         };
