@@ -46,6 +46,22 @@ fn memory_of_requirements_is_linear() {
     assert_eq!(summary.matches("\"holds\"").count(), 900);
 }
 
+/// Statistics hold the samples of few requirements at once: 50 took 168 MB, 100 took 297.
+#[test]
+fn memory_of_statistics_does_not_grow_with_requirements() {
+    let place = Place::new();
+    let limits: Vec<String> = (0..50).map(|n| format!("r{n}: {} < {} m", ["x", "2*x"][n % 2], n + 5)).collect();
+    pushed(
+        &place,
+        &format!("outputs: {{ x: b.x }}\nrequirements: {{ {} }}\nstatistics: {{}}", limits.join(", ")),
+        "duration: 4e-3, step: 1e-3",
+    );
+    let done = limited(&place, 150_000);
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    let summary = fs::read_to_string(place.path().join("out/summary.json")).unwrap();
+    assert_eq!(summary.matches("\"ppm\": 0").count(), 51);
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn what_would_not_find_room_is_refused_before_it_begins() {

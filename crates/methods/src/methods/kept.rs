@@ -46,6 +46,25 @@ impl KeptRow {
         Self { time, independent: Vec::new(), coefficients: lines.concat(), extent: Vec::new(), own }
     }
 
+    /// Some of the expanded coordinates and of the outputs alone.
+    fn only(&self, terms: usize, lines: &[usize], outputs: &[usize]) -> Self {
+        // Positions, then velocities.
+        let n = self.independent.len();
+        let lines: Vec<usize> = match n {
+            0 => Vec::new(),
+            _ => lines.iter().copied().chain(lines.iter().map(|line| n + line)).collect(),
+        };
+        let of_outputs = outputs.iter().map(|output| self.extent.len() + output);
+        let of_line = |line: usize| self.coefficients[line * terms..][..terms].iter().copied();
+        Self {
+            time: self.time,
+            independent: (0..lines.len() / 2).collect(),
+            coefficients: lines.iter().copied().chain(of_outputs).flat_map(of_line).collect(),
+            extent: lines.iter().map(|&line| self.extent[line]).collect(),
+            own: outputs.iter().map(|&output| self.own[output]).collect(),
+        }
+    }
+
     /// An output's own polynomial.
     fn of_output(&self, output: usize, terms: usize) -> &[f64] {
         &self.coefficients[(self.extent.len() + output) * terms..][..terms]
@@ -70,6 +89,16 @@ impl KeptSurrogate {
     /// Adds a sub-box.
     pub fn add(&mut self, domain: &ParameterBox, basis: &SparseBasis, rows: Vec<KeptRow>) {
         self.boxes.push(KeptBox { domain: domain.clone(), basis: basis.clone(), rows });
+    }
+
+    /// Some of the expanded coordinates and of the outputs alone, numbered in this order; `lines` ascend.
+    pub fn only(&self, lines: &[usize], outputs: &[usize]) -> Self {
+        let of_box = |part: &KeptBox| KeptBox {
+            domain: part.domain.clone(),
+            basis: part.basis.clone(),
+            rows: part.rows.iter().map(|row| row.only(part.basis.len(), lines, outputs)).collect(),
+        };
+        Self { boxes: self.boxes.iter().map(of_box).collect() }
     }
 
     /// Rows that are known over the whole box.

@@ -4,6 +4,8 @@
 //! mechanism, from which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded
 //! coordinates.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::ensemble::closure::MotionClosure;
@@ -71,6 +73,7 @@ impl Placed {
     fn margins(&self) -> Option<MarginsOfPart<'_>> {
         let kept = self.part.reduced.as_ref()?;
         let Self { parameters, reduced, requirements, .. } = self;
+        let (kept, requirements) = (Cow::Borrowed(kept), Cow::Borrowed(&requirements[..]));
         Some(MarginsOfPart { kept, parameters, reduced, requirements })
     }
 }

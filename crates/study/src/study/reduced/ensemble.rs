@@ -11,6 +11,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::plan::Plan;
+use super::values::Values;
 use crate::methods::{self, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated, Until};
 use crate::numerics::{Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
@@ -88,7 +89,7 @@ impl<'a> ReducedEnsemble<'a> {
     /// For motions whose reductions are in the store.
     pub fn new(motions: &'a dyn Ensemble, store: &'a Store, schedule: &Schedule) -> Self {
         let (steps, scales) = (steps_of(schedule), vec![1.0; store.plan.expanded]);
-        let ensemble = Self { motions, store, steps, scales, seen: Ledger::new(1, store.plan.values()) };
+        let ensemble = Self { motions, store, steps, scales, seen: Ledger::new(1, store.plan.values.count()) };
         store.samples(steps).iter().for_each(|(sample, channels)| ensemble.note(sample, channels));
         ensemble
     }
@@ -97,7 +98,7 @@ impl<'a> ReducedEnsemble<'a> {
     fn note(&self, sample: &Sample, channels: &[f64]) {
         if self.domain().contains(sample) && channels.iter().all(|value| value.is_finite()) {
             let mut values = Vec::new();
-            self.store.plan.evaluate(channels, sample, &mut values);
+            self.store.plan.values.evaluate(channels, sample, &mut values);
             self.seen.note(0, (values.len(), 1), &values);
         }
     }
@@ -136,7 +137,7 @@ impl Ensemble for ReducedEnsemble<'_> {
     }
 
     fn outputs(&self) -> usize {
-        self.store.plan.values()
+        self.store.plan.values.count()
     }
 
     fn rows(&self) -> usize {
@@ -156,7 +157,7 @@ impl Ensemble for ReducedEnsemble<'_> {
     }
 
     fn is_extreme(&self, output: usize) -> bool {
-        self.store.plan.is_extreme(output)
+        self.store.plan.values.is_extreme(output)
     }
 
     fn jumps(&self, _: usize) -> bool {
@@ -184,7 +185,7 @@ impl Ensemble for ReducedEnsemble<'_> {
         for (place, (sample, channels)) in samples.iter().zip(&channels).enumerate() {
             let coordinates = channels[..self.scales.len()].iter().take(motions);
             coordinates.enumerate().for_each(|(line, &value)| block[line * samples.len() + place] = value);
-            self.store.plan.evaluate(channels, sample, &mut values);
+            self.store.plan.values.evaluate(channels, sample, &mut values);
             for (line, &value) in values.iter().enumerate() {
                 block[(motions + line) * samples.len() + place] = value;
             }
@@ -214,13 +215,13 @@ impl Ensemble for ReducedEnsemble<'_> {
     }
 
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn methods::Closure + '_>, EnsembleError> {
-        Ok(Box::new(Composition { plan: &self.store.plan, independent }))
+        Ok(Box::new(Composition { values: &self.store.plan.values, independent }))
     }
 }
 
 /// Values from channels.
 pub(super) struct Composition<'a> {
-    pub plan: &'a Plan,
+    pub values: &'a Values,
     pub independent: Vec<usize>,
 }
 
@@ -234,14 +235,14 @@ impl methods::Closure for Composition<'_> {
     }
 
     fn outputs(&self, _: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64> {
-        let mut outputs = vec![0.0; self.plan.values() * count];
+        let mut outputs = vec![0.0; self.values.count() * count];
         let (mut channels, mut own, mut values) = (Vec::new(), Vec::new(), Vec::new());
         for point in 0..count {
             channels.clear();
             channels.extend(self.independent.iter().map(|line| motion[line * count + point]));
             own.clear();
             own.extend(parameters.iter().skip(point).step_by(count));
-            self.plan.evaluate(&channels, &own, &mut values);
+            self.values.evaluate(&channels, &own, &mut values);
             values.iter().enumerate().for_each(|(line, &value)| outputs[line * count + point] = value);
         }
         outputs

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::super::outcome::Results;
 use super::super::single::Study;
 use super::kept::KeptReduced;
-use super::plan::Plan;
+use super::values::Values;
 use crate::methods::Method;
 use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 
@@ -14,7 +14,7 @@ impl Study<'_> {
     pub(super) fn kept_reduced(
         &self,
         results: &mut Results,
-        plan: &Arc<Plan>,
+        values: &Arc<Values>,
         unreliable: bool,
     ) -> Option<KeptReduced> {
         if !self.request.keep {
@@ -24,9 +24,9 @@ impl Study<'_> {
         let surrogate = results.methods[place].1.result.kept.take().filter(|kept| kept.rows() > 0)?;
         let outcome = &results.methods[place].1;
         let (validation, _) = results.validation.as_ref()?;
-        let mut kept = KeptReduced { surrogate, plan: plan.clone(), errors: Vec::new() };
+        let mut kept = KeptReduced { surrogate, values: values.clone(), errors: Vec::new() };
         let samples: Vec<Sample> = self.domain.samples(&validation.points);
-        let every: Vec<usize> = (0..plan.values()).collect();
+        let every: Vec<usize> = (0..values.count()).collect();
         let own = kept.surrogate.values(0, (&every, &samples), &kept.closures());
         let of_value = |value: usize| {
             let direct = validation.direct.at(0, value);

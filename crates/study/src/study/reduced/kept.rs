@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::ensemble::Composition;
-use super::plan::Plan;
+use super::values::{Selection, Values};
 use crate::methods::{Closure, KeptSurrogate};
 use crate::numerics::{BandError, largest};
 
@@ -16,8 +16,8 @@ const CHUNK: usize = 512;
 #[derive(Clone, Debug)]
 pub struct KeptReduced {
     pub(super) surrogate: KeptSurrogate,
-    pub(super) plan: Arc<Plan>,
-    /// Of the values, in the plan's order.
+    pub(super) values: Arc<Values>,
+    /// Of the values.
     pub(super) errors: Vec<BandError>,
 }
 
@@ -39,25 +39,32 @@ impl KeptReduced {
 
     /// How far a requirement's margin may be from the truth anywhere in the box; unknown where it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
-        largest(self.plan.parts(requirement).map(|part| self.value_error(part)))
+        largest(self.values.parts(requirement).map(|part| self.value_error(part)))
     }
 
     /// The part of it that a better surrogate would not have.
     pub fn surrogate_error(&self, requirement: usize) -> f64 {
-        largest(self.plan.parts(requirement).map(|part| self.errors[part].surrogate))
+        largest(self.values.parts(requirement).map(|part| self.errors[part].surrogate))
     }
 
-    /// Margins of the first so many requirements at samples of the subsystem's box, requirement by requirement, sample
-    /// by sample; NaN where one is unknown. In parallel, with the same bits for any number of threads.
+    /// The margins of some requirements alone; they are numbered in this order.
+    pub fn only(&self, requirements: &[usize]) -> Self {
+        let Selection { values, of, channels } = self.values.only(requirements);
+        let errors = of.iter().map(|&value| self.errors[value].clone()).collect();
+        Self { surrogate: self.surrogate.only(&channels, &of), values: Arc::new(values), errors }
+    }
+
+    /// Margins of all `count` requirements at samples of the subsystem's box, requirement by requirement, sample by
+    /// sample; NaN where one is unknown. In parallel, with the same bits for any number of threads.
     pub fn margins<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
-        let first = if count == 0 { self.plan.values() } else { self.plan.parts(0).start };
-        let wanted: Vec<usize> = (first..self.plan.values()).collect();
+        let first = if count == 0 { self.values.count() } else { self.values.parts(0).start };
+        let wanted: Vec<usize> = (first..self.values.count()).collect();
         let closures = self.closures();
         let of_chunk = |samples: &[P]| {
             let values = self.surrogate.values(0, (&wanted, samples), &closures);
-            let margin = |place: usize| {
-                let (requirement, sample) = (place / samples.len(), place % samples.len());
-                self.plan.margin(requirement, |value| values[(value - first) * samples.len() + sample])
+            let margin = |index: usize| {
+                let (requirement, sample) = (index / samples.len(), index % samples.len());
+                self.values.margin(requirement, |value| values[(value - first) * samples.len() + sample])
             };
             (0..count * samples.len()).map(margin).collect::<Vec<f64>>()
         };
@@ -67,7 +74,8 @@ impl KeptReduced {
 
     /// By what values follow from channels.
     pub(super) fn closures(&self) -> Vec<Box<dyn Closure + '_>> {
-        let closure = |independent| Box::new(Composition { plan: &self.plan, independent }) as Box<dyn Closure + '_>;
+        let closure =
+            |independent| Box::new(Composition { values: &self.values, independent }) as Box<dyn Closure + '_>;
         self.surrogate.independent().into_iter().map(closure).collect()
     }
 }

@@ -1,14 +1,16 @@
 //! Margins of all requirements of a model, and its reduced outputs, each of the subsystem that has it.
 
+use std::borrow::Cow;
+
 use super::kept::KeptReduced;
 
 /// What a subsystem kept, and the numbers of its parameters, reduced outputs and requirements in the model.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct MarginsOfPart<'k> {
-    pub kept: &'k KeptReduced,
+    pub kept: Cow<'k, KeptReduced>,
     pub parameters: &'k [usize],
     pub reduced: &'k [usize],
-    pub requirements: &'k [usize],
+    pub requirements: Cow<'k, [usize]>,
 }
 
 impl MarginsOfPart<'_> {
@@ -69,6 +71,23 @@ impl<'k> Margins<'k> {
         };
         let places = (0..count).map(place).collect::<Option<Vec<_>>>()?;
         Some(Self { parts, places })
+    }
+
+    /// Those of some requirements alone, numbered in this order; no other is evaluated.
+    pub fn only(&self, requirements: &[usize]) -> Self {
+        let mut of_parts = vec![Vec::new(); self.parts.len()];
+        let place = |&requirement: &usize| {
+            let (part, own) = self.places[requirement];
+            of_parts[part].push(own);
+            (part, of_parts[part].len() - 1)
+        };
+        let places = requirements.iter().map(place).collect();
+        let of_part = |(part, own): (&MarginsOfPart<'k>, &Vec<usize>)| MarginsOfPart {
+            kept: Cow::Owned(part.kept.only(own)),
+            requirements: own.iter().map(|&own| part.requirements[own]).collect(),
+            ..*part
+        };
+        Self { parts: self.parts.iter().zip(&of_parts).map(of_part).collect(), places }
     }
 
     /// How many there are.

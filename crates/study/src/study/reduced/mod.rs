@@ -1,6 +1,6 @@
 //! Reduced outputs and requirements: bounds of one number a motion, and verdicts.
 //!
-//! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities and the values that follow;
+//! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities, `values` what follows from them;
 //! `ensemble` is what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it);
 //! `answers` puts those of subsystems together; `keeping`, `kept` and `margins` evaluate them after the run; `refine`
 //! runs a model until all are decided.
@@ -15,6 +15,7 @@ mod kept;
 mod margins;
 mod plan;
 mod refine;
+mod values;
 mod verdicts;
 
 pub(super) use answers::{Parameters, together};
@@ -126,7 +127,7 @@ impl Study<'_> {
         let ensembles =
             Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(&odd) };
         let mut results = self.bounds_of(ensembles, schedule, &halved)?;
-        let kept = self.kept_reduced(&mut results, &store.plan, rows.unreliable_from().is_some());
+        let kept = self.kept_reduced(&mut results, &store.plan.values, rows.unreliable_from().is_some());
         let unreliable = rows.unreliable_from().is_some();
         results.note(&direct);
         let values = self.values(&results, unreliable, store);
@@ -241,7 +242,7 @@ impl Study<'_> {
         let whole = |(sample, channels): (Sample, Vec<f64>)| {
             let is_whole = self.domain.contains(&sample) && channels.iter().all(|value| value.is_finite());
             let mut values = Vec::new();
-            store.plan.evaluate(&channels, &sample, &mut values);
+            store.plan.values.evaluate(&channels, &sample, &mut values);
             is_whole.then_some((sample, values))
         };
         let all = store.samples(steps_of(&results.schedule));

@@ -5,6 +5,9 @@
 //! the maximum is the largest of the channels' polynomials, kinks included. So it is with events: the windows lie
 //! around the humps in which they can occur.
 
+use std::sync::Arc;
+
+use super::values::{Humps, Value, Values};
 use crate::assemble::NumberFormulas;
 use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
 use crate::simulate::{Accumulation, Channel};
@@ -22,47 +25,10 @@ pub struct Plan {
     pub channels: Vec<Channel>,
     /// Number of those that the surrogate expands.
     pub expanded: usize,
-    /// Reduced outputs, then parts of the requirements' margins.
-    values: Vec<Value>,
-    /// For each requirement, which values are parts of its margin: it is the least of them. Each part is bounded alone,
-    /// so that the kinks between them do no harm.
-    margins: Vec<std::ops::Range<usize>>,
+    /// Reduced outputs and margins.
+    pub values: Arc<Values>,
     /// For each requirement over the time, the channels that say when each slack is least, and how much it is then.
     whens: Vec<Vec<(usize, usize)>>,
-}
-
-/// The extremes of an output in each window: value and time.
-#[derive(Debug)]
-struct Humps {
-    heights: Vec<usize>,
-    times: Vec<usize>,
-}
-
-/// How a value follows from channels.
-#[derive(Debug)]
-enum Value {
-    Greatest(Vec<usize>),
-    Least(Vec<usize>),
-    /// Greatest less least.
-    Range(Vec<usize>, Vec<usize>),
-    Magnitude(Vec<usize>, Vec<usize>),
-    /// A channel over a length of time.
-    Mean(usize, f64),
-    Rms(usize, f64),
-    /// The time in the window with the largest height times the sign.
-    TimeOf(Humps, f64),
-    First(Humps),
-    Last(Humps),
-    /// The same, from the beginning where there is none, unknown where it lasts to the end.
-    Settling(Humps, f64, f64),
-    Overshoot {
-        greatest: Vec<usize>,
-        least: Vec<usize>,
-        start: usize,
-        target: usize,
-    },
-    /// The least of formulas of reduced outputs (by number) and parameters.
-    Formulas(Box<NumberFormulas>),
 }
 
 /// Makes channels.
@@ -79,12 +45,12 @@ impl Plan {
     pub fn of(description: &Description, times: &[f64], nominal: &dyn Fn(usize) -> Vec<f64>) -> Self {
         let end = description.simulation.duration;
         let mut planner = Planner { channels: Vec::new(), nominal, times };
-        let mut values: Vec<Value> = description.reduced.iter().map(|reduced| planner.reduced(reduced, end)).collect();
+        let mut all: Vec<Value> = description.reduced.iter().map(|reduced| planner.reduced(reduced, end)).collect();
         let mut margins = Vec::with_capacity(description.requirements.len());
         for own in &description.requirements {
-            let first = values.len();
-            values.extend(planner.margin(description, own));
-            margins.push(first..values.len());
+            let first = all.len();
+            all.extend(planner.margin(description, own));
+            margins.push(first..all.len());
         }
         let expanded = planner.channels.len();
         let when = |own: &Requirement| match own.times {
@@ -96,36 +62,8 @@ impl Plan {
             _ => Vec::new(),
         };
         let whens = description.requirements.iter().map(when).collect();
-        Self { channels: planner.channels, expanded, values, margins, whens }
-    }
-
-    /// Number of values.
-    pub fn values(&self) -> usize {
-        self.values.len()
-    }
-
-    /// Whether a value is made of the largest or the least of some channels.
-    pub fn is_extreme(&self, value: usize) -> bool {
-        matches!(self.values[value], Value::Greatest(_) | Value::Least(_) | Value::Range(..) | Value::Magnitude(..))
-    }
-
-    /// Which values are parts of a requirement's margin.
-    pub fn parts(&self, requirement: usize) -> std::ops::Range<usize> {
-        self.margins[requirement].clone()
-    }
-
-    /// A requirement's margin, given all values; NaN where a part is unknown.
-    pub fn margin(&self, requirement: usize, value: impl Fn(usize) -> f64) -> f64 {
-        self.parts(requirement).map(value).fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
-    }
-
-    /// All values of a motion with these channels and parameters.
-    pub fn evaluate(&self, channels: &[f64], parameters: &[f64], into: &mut Vec<f64>) {
-        into.clear();
-        for value in &self.values {
-            let found = value.of(channels, parameters, into);
-            into.push(found);
-        }
+        let values = Arc::new(Values { all, margins });
+        Self { channels: planner.channels, expanded, values, whens }
     }
 
     /// When a requirement is nearest to failing in a motion; `None` without a time.
@@ -210,10 +148,19 @@ impl Planner<'_> {
             Some((from, to)) if from == to => self.windowed_at(&own.places, from),
             Some(span) => own.places.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect(),
             None => {
-                let names: Vec<&str> = description.reduced.iter().map(|own| own.name.as_str()).collect();
-                let formula =
-                    |slack| Value::Formulas(Box::new(NumberFormulas::of(&description.parameters, &names, slack)));
-                return own.slacks.iter().map(std::slice::from_ref).map(formula).collect();
+                let formula = |slack: &symdiff::Formula| {
+                    let reads = |own: &ReducedOutput| slack.names().any(|(name, _)| name == own.name);
+                    let (reduced, names): (Vec<usize>, Vec<&str>) = description
+                        .reduced
+                        .iter()
+                        .enumerate()
+                        .filter(|(_, own)| reads(own))
+                        .map(|(index, own)| (index, own.name.as_str()))
+                        .unzip();
+                    let formulas = NumberFormulas::of(&description.parameters, &names, std::slice::from_ref(slack));
+                    Value::Formulas { formulas: Box::new(formulas), reduced }
+                };
+                return own.slacks.iter().map(formula).collect();
             }
         };
         channels.into_iter().map(|channel| Value::Least(vec![channel])).collect()
@@ -260,53 +207,6 @@ impl Planner<'_> {
     }
 }
 
-impl Value {
-    /// Given the values before it.
-    fn of(&self, channels: &[f64], parameters: &[f64], before: &[f64]) -> f64 {
-        // NaN is passed on.
-        let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
-        let greatest = |places: &[usize]| places.iter().map(|&place| channels[place]).fold(f64::NEG_INFINITY, larger);
-        let least_of = |values: &mut dyn Iterator<Item = f64>| -values.fold(f64::NEG_INFINITY, |a, b| larger(a, -b));
-        let least = |places: &[usize]| least_of(&mut places.iter().map(|&place| channels[place]));
-        match self {
-            Self::Greatest(places) => greatest(places),
-            Self::Least(places) => least(places),
-            Self::Range(above, below) => greatest(above) - least(below),
-            Self::Magnitude(above, below) => larger(greatest(above), -least(below)),
-            Self::Mean(place, length) => channels[*place] / length,
-            // A polynomial may be below zero where a square is not.
-            Self::Rms(place, length) => (channels[*place] / length).max(0.0).sqrt(),
-            Self::TimeOf(humps, sign) => {
-                let height = |window: usize| sign * channels[humps.heights[window]];
-                let best = (0..humps.heights.len()).fold(0, |a, b| if height(b) > height(a) { b } else { a });
-                channels[humps.times[best]]
-            }
-            Self::First(humps) => humps.occurring(channels).next().unwrap_or(f64::NAN),
-            Self::Last(humps) => humps.occurring(channels).last().unwrap_or(f64::NAN),
-            Self::Settling(humps, from, end) => match humps.occurring(channels).last() {
-                None => *from,
-                Some(last) if last >= *end => f64::NAN,
-                Some(last) => last,
-            },
-            Self::Overshoot { greatest: above, least: below, start, target } => {
-                let (start, target) = (channels[*start], channels[*target]);
-                let beyond = if start <= target { greatest(above) - target } else { target - least(below) };
-                larger(0.0, beyond)
-            }
-            Self::Formulas(formulas) => least_of(&mut formulas.values(parameters, before).into_iter()),
-        }
-    }
-}
-
-impl Humps {
-    /// Times of the windows in which the event occurs.
-    fn occurring(&self, channels: &[f64]) -> impl Iterator<Item = f64> {
-        // NaN occurs, and is passed on.
-        let occurs = |&(height, _): &(&usize, &usize)| channels[*height] >= 0.0 || channels[*height].is_nan();
-        self.heights.iter().zip(&self.times).filter(occurs).map(|(_, &time)| channels[time])
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -326,15 +226,5 @@ mod tests {
         assert!((found[0].1 - std::f64::consts::PI).abs() < 0.05 && found[3].1.is_infinite());
         assert_eq!(windows(5.0).len(), MOST_WINDOWS);
         assert_eq!(windows(0.1), [(0.0, f64::INFINITY)]);
-    }
-
-    #[test]
-    fn an_event_that_does_not_occur_is_unknown() {
-        let humps = || Humps { heights: vec![0, 1], times: vec![2, 3] };
-        assert_eq!(Value::First(humps()).of(&[-0.1, 0.2, 1.0, 2.0], &[], &[]), 2.0);
-        assert_eq!(Value::Last(humps()).of(&[0.1, -0.2, 1.0, 2.0], &[], &[]), 1.0);
-        assert!(Value::First(humps()).of(&[-0.1, -0.2, 1.0, 2.0], &[], &[]).is_nan());
-        assert_eq!(Value::Settling(humps(), 0.5, 9.0).of(&[-0.1, -0.2, 1.0, 2.0], &[], &[]), 0.5);
-        assert_eq!(Value::TimeOf(humps(), 1.0).of(&[0.3, 0.2, 1.0, 2.0], &[], &[]), 1.0);
     }
 }

@@ -71,10 +71,11 @@ impl Study<'_> {
         rows: &Results,
         ensembles: [&ReducedEnsemble; 2],
     ) -> Result<RequirementSummary, SimulationError> {
-        let mut parts: Vec<Part> = ensembles[0].plan().parts(number).map(|place| self.part(values, place)).collect();
+        let mut parts: Vec<Part> =
+            ensembles[0].plan().values.parts(number).map(|place| self.part(values, place)).collect();
         let decided = |parts: &[Part]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
         if !decided(&parts) && !values.unreliable {
-            let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().margin(number, |place| all[place]);
+            let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().values.margin(number, |place| all[place]);
             // NaN stays, and contradicts.
             let simulated = values.samples.iter().map(margin).fold(f64::INFINITY, smaller);
             parts = match self.by_rows(own, rows, simulated) {
@@ -150,7 +151,7 @@ impl Study<'_> {
         holds: bool,
         [direct, halved]: [&ReducedEnsemble; 2],
     ) -> Result<Option<NearestCase>, SimulationError> {
-        let margin = |all: &[f64]| direct.plan().margin(number, |place| all[place]);
+        let margin = |all: &[f64]| direct.plan().values.margin(number, |place| all[place]);
         // A missing value fails more than any value.
         let key = |value: f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
         let of_sample = |(sample, all): &(Sample, Vec<f64>)| (sample.clone(), margin(all));
@@ -164,7 +165,7 @@ impl Study<'_> {
             let (mut channels, _) = ensemble.channels(sample, true).map_err(simulation_error)?;
             let channels = channels.swap_remove(0);
             let mut all = Vec::new();
-            ensemble.plan().evaluate(&channels, &sample[0], &mut all);
+            ensemble.plan().values.evaluate(&channels, &sample[0], &mut all);
             Ok::<_, SimulationError>((margin(&all), channels))
         };
         let ((least, channels), (finer, _)) = (of(direct)?, of(halved)?);
@@ -206,8 +207,8 @@ impl Study<'_> {
             let mut values = Vec::new();
             let before = best.1;
             for (sample, channels) in samples.iter().zip(&channels) {
-                ensemble.plan().evaluate(channels, sample, &mut values);
-                let margin = ensemble.plan().margin(requirement, |place| values[place]);
+                ensemble.plan().values.evaluate(channels, sample, &mut values);
+                let margin = ensemble.plan().values.margin(requirement, |place| values[place]);
                 if margin < best.1 {
                     *best = (sample.clone(), margin);
                 }

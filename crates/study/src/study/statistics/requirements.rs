@@ -22,14 +22,30 @@ const STARTS: usize = 12;
 /// What most of a requirement's name is when it stands for all of them.
 const TOGETHER: &str = "all requirements";
 
-/// Margins of samples, by requirement.
-struct Margins<'a> {
+/// Requirements whose margins at all samples are held at once.
+const AT_ONCE: usize = 16;
+
+/// Margins that are held at once in a search for points that fail.
+const MOST_MARGINS: usize = 1 << 22;
+
+/// Starts of a search, at most, for many requirements together.
+const MOST_STARTS: usize = 8 * STARTS;
+
+/// Signs of the error in a margin: errors harm, none, errors help.
+const SIGNS: [f64; 3] = [1.0, 0.0, -1.0];
+
+/// Some requirements that are to be fulfilled together, and their samples so far. Memory grows with the samples, not
+/// with samples times requirements.
+struct Together<'a> {
     rows: &'a Rows<'a>,
-    kept: &'a reduced::Margins<'a>,
-    /// By replicate, every so many of its samples.
-    fewer: usize,
-    /// By requirement, sample by sample.
-    values: Vec<Vec<f64>>,
+    name: &'a str,
+    /// Of each requirement.
+    errors: Vec<f64>,
+    scales: Vec<f64>,
+    /// Whether a sample fulfils all of them, by the sign of the errors.
+    fulfilled: Vec<[bool; 3]>,
+    /// Samples of the first replicate with the least margins: the margin in its own scale, and the sample's index.
+    least: Vec<(f64, usize)>,
 }
 
 /// All requirements, and where there are several all together.
@@ -40,51 +56,87 @@ pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary
     let Some(kept) = rows.kept.margins() else { return Ok((Vec::new(), None)) };
     rows.stage("statistics of requirements");
     let requirements = &rows.description.requirements;
+    let numbers: Vec<usize> = (0..requirements.len()).collect();
     let fewer = rows.fewer(MOST / REPLICATES);
-    let mut margins = Margins { rows, kept: &kept, fewer, values: vec![Vec::new(); requirements.len()] };
-    for replicate in 0..REPLICATES {
-        rows.go_on()?;
-        let samples = rows.points(replicate, fewer);
-        let found = kept.values(&samples);
-        for (all, own) in margins.values.iter_mut().zip(found.chunks_exact(samples.len())) {
-            all.extend_from_slice(own);
-        }
-    }
-    let alone = |number: usize| margins.summary(&requirements[number].name, &[number]);
+    let samples: Vec<Vec<&[f64]>> = (0..REPLICATES).map(|replicate| rows.points(replicate, fewer)).collect();
+    let mut together = Together::new(rows, TOGETHER, &samples);
     let mut each = Vec::with_capacity(requirements.len());
-    for (number, requirement) in requirements.iter().enumerate() {
-        rows.progress(number, requirements.len());
-        if let Some(mut summary) = alone(number) {
-            capability(rows, requirement, &margins.values[number], &mut summary)?;
-            each.push(summary);
+    for group in numbers.chunks(AT_ONCE) {
+        let values = sampled(rows, &kept.only(group), &samples)?;
+        for (&number, values) in group.iter().zip(values) {
+            rows.progress(number, requirements.len());
+            let (requirement, error) = (&requirements[number], kept.error(number));
+            let mut alone = Together::new(rows, &requirement.name, &samples);
+            alone.add(&values, error);
+            together.add(&values, error);
+            if let Some(mut summary) = alone.summary(&kept.only(&[number])) {
+                capability(rows, requirement, &values, &mut summary)?;
+                each.push(summary);
+            }
+            rows.go_on()?;
         }
-        rows.go_on()?;
     }
-    let every: Vec<usize> = (0..requirements.len()).collect();
-    let together = (every.len() > 1 && each.len() == every.len()).then(|| margins.summary(TOGETHER, &every)).flatten();
+    let together = if requirements.len() > 1 { together.summary(&kept) } else { None };
     rows.go_on()?;
     Ok((each, together))
 }
 
-impl Margins<'_> {
-    /// The share that fulfils some of the requirements.
-    fn summary(&self, name: &str, of: &[usize]) -> Option<YieldSummary> {
-        let errors: Vec<f64> = of.iter().map(|&number| self.kept.error(number)).collect();
-        if errors.iter().any(|error| !error.is_finite()) {
+/// Margins of all samples, by requirement.
+fn sampled(rows: &Rows, margins: &reduced::Margins, samples: &[Vec<&[f64]>]) -> Result<Vec<Vec<f64>>, String> {
+    let mut values = vec![Vec::new(); margins.count()];
+    for samples in samples {
+        rows.go_on()?;
+        let found = margins.values(samples);
+        values.iter_mut().zip(found.chunks_exact(samples.len())).for_each(|(all, own)| all.extend_from_slice(own));
+    }
+    Ok(values)
+}
+
+impl<'a> Together<'a> {
+    /// Of no requirement yet.
+    fn new(rows: &'a Rows, name: &'a str, samples: &[Vec<&[f64]>]) -> Self {
+        let count = samples.iter().map(Vec::len).sum();
+        let (errors, scales, least) = (Vec::new(), Vec::new(), Vec::new());
+        Self { rows, name, errors, scales, fulfilled: vec![[true; 3]; count], least }
+    }
+
+    /// Adds a requirement with the margins of all samples and their error.
+    fn add(&mut self, values: &[f64], error: f64) {
+        // NaN has no value, and fails.
+        let add = |(fulfilled, value): (&mut [bool; 3], &f64)| {
+            fulfilled.iter_mut().zip(SIGNS).for_each(|(own, sign)| *own &= *value >= sign * error);
+        };
+        self.fulfilled.par_iter_mut().zip(values).for_each(add);
+        let scale = mean_size(values);
+        let mut order: Vec<usize> = (0..values.len() / REPLICATES).collect();
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]).then(a.cmp(b));
+        if order.len() > STARTS {
+            order.select_nth_unstable_by(STARTS, by_value);
+            order.truncate(STARTS);
+        }
+        order.sort_unstable_by(by_value);
+        self.least.extend(order.iter().map(|&sample| (values[sample] / scale, sample)));
+        if self.least.len() > MOST_STARTS {
+            self.least.sort_by(|a, b| a.0.total_cmp(&b.0));
+            self.least.truncate(MOST_STARTS);
+        }
+        self.errors.push(error);
+        self.scales.push(scale);
+    }
+
+    /// The share that fulfils them, given their margins as functions; `None` where an error is unknown.
+    fn summary(&self, margins: &reduced::Margins) -> Option<YieldSummary> {
+        if self.errors.iter().any(|error| !error.is_finite()) {
             return None;
         }
-        let count = self.values[of[0]].len();
-        // NaN has no value, and fails.
-        let fulfils = |sample: &usize, sign: f64| {
-            of.iter().zip(&errors).all(|(&number, error)| self.values[number][*sample] >= sign * error)
-        };
-        let seen = |sign: f64| (0..count).into_par_iter().filter(|sample| fulfils(sample, sign)).count();
-        let (share, mut interval) =
-            (seen(0.0), [share_interval(seen(1.0), count)[0], share_interval(seen(-1.0), count)[1]]);
+        let count = self.fulfilled.len();
+        let seen = [0, 1, 2].map(|sign| self.fulfilled.iter().filter(|own| own[sign]).count());
+        let share = seen[1];
+        let mut interval = [share_interval(seen[0], count)[0], share_interval(seen[2], count)[1]];
         let mut fails = 1.0 - share as f64 / count as f64;
         let (mut samples, mut method) = (count, None);
         if count - share < MANY
-            && let Some(rare) = self.rare(of, &errors)
+            && let Some(rare) = self.rare(margins)
         {
             let [least, most] = rare.interval.map(|fails| 1.0 - fails);
             // Where methods contradict one another, or the seen share, that share alone is stated.
@@ -99,7 +151,7 @@ impl Margins<'_> {
         interval[0] *= 1.0 - self.rows.laws.left_out();
         let ppm = |share: f64| 1e6 * (1.0 - share);
         Some(YieldSummary {
-            requirement: name.to_owned(),
+            requirement: self.name.to_owned(),
             share: 1.0 - fails,
             interval,
             ppm: 1e6 * fails,
@@ -113,45 +165,41 @@ impl Margins<'_> {
     }
 
     /// The share that fails, by samples that look for it.
-    fn rare(&self, of: &[usize], errors: &[f64]) -> Option<RareShare> {
+    fn rare(&self, margins: &reduced::Margins) -> Option<RareShare> {
         let laws = self.rows.laws;
-        let scales: Vec<f64> = of.iter().map(|&number| mean_size(&self.values[number])).collect();
         // The least of all, each in its own scale, with errors that help, none, and errors that harm.
-        let slacks = |points: &[Vec<f64>]| -> Vec<[f64; 3]> {
+        let some = |points: &[Vec<f64>]| -> Vec<[f64; 3]> {
             if self.rows.go_on().is_err() {
                 // Unknown, at once: the search then ends soon.
                 return vec![[f64::NAN; 3]; points.len()];
             }
             let samples: Vec<Vec<f64>> = points.iter().map(|scores| laws.of_scores(scores)).collect();
-            let found = self.kept.values(&samples);
+            let found = margins.values(&samples);
             let of_sample = |sample: usize| {
                 [-1.0, 0.0, 1.0].map(|sign| {
-                    let slack = |place: usize| {
-                        (found[of[place] * samples.len() + sample] - sign * errors[place]) / scales[place]
+                    let slack = |index: usize| {
+                        (found[index * samples.len() + sample] - sign * self.errors[index]) / self.scales[index]
                     };
-                    (0..of.len()).map(slack).fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
+                    let less = |a: f64, b: f64| if b < a || b.is_nan() { b } else { a };
+                    (0..self.errors.len()).map(slack).fold(f64::INFINITY, less)
                 })
             };
             (0..samples.len()).map(of_sample).collect()
         };
-        rare_share(&self.starts(of), &slacks)
+        let at_once = (MOST_MARGINS / self.errors.len()).max(1);
+        rare_share(&self.starts(), &|points: &[Vec<f64>]| points.chunks(at_once).flat_map(some).collect())
     }
 
-    /// Independent normal scores of those of the first replicate's samples that have the least margins.
-    fn starts(&self, of: &[usize]) -> Vec<Vec<f64>> {
-        let each = self.values[of[0]].len() / REPLICATES;
+    /// Independent normal scores of the samples with the least margins.
+    fn starts(&self) -> Vec<Vec<f64>> {
         let k = self.rows.laws.dimension();
-        let shares = replicate(0, k, each * self.fewer);
-        let scores = |&sample: &usize| -> Vec<f64> {
-            shares[sample * self.fewer * k..][..k].iter().map(|&p| normal_quantile(p)).collect()
+        let each = self.fulfilled.len() / REPLICATES;
+        let fewer = self.rows.fewer(each);
+        let shares = replicate(0, k, each * fewer);
+        let scores = |&(_, sample): &(f64, usize)| -> Vec<f64> {
+            shares[sample * fewer * k..][..k].iter().map(|&p| normal_quantile(p)).collect()
         };
-        let of_one = |&number: &usize| -> Vec<Vec<f64>> {
-            let values = &self.values[number][..each];
-            let mut order: Vec<usize> = (0..each).collect();
-            order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-            order.iter().take(STARTS).map(scores).collect()
-        };
-        of.iter().flat_map(of_one).collect()
+        self.least.iter().map(scores).collect()
     }
 }
 
