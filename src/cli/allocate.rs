@@ -27,16 +27,25 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
         interrupted: &interrupt::asked,
         ..study::Options::default()
     };
+    // An interruption keeps what a study has confirmed.
+    interrupt::keep_results(true);
     let asked = AllocateOptions { share: args.share, widest: args.widest };
-    let found = study::allocate(&model, asked, &options).map_err(|error| {
-        let message = format!("{}: {error}", model.name);
-        match error {
-            AllocateError::Unsuitable(_) | AllocateError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
-                Failure::Wrong(message)
-            }
-            AllocateError::Run(_) => Failure::Failed(message),
+    let found = match study::allocate(&model, asked, &options) {
+        Ok(found) => found,
+        Err(AllocateError::Run(_)) if interrupt::asked() => {
+            console.error(&format!("{}: interrupted before tolerances were confirmed", model.name));
+            return Ok(Status::Interrupted);
         }
-    })?;
+        Err(error) => {
+            let message = format!("{}: {error}", model.name);
+            return Err(match error {
+                AllocateError::Unsuitable(_) | AllocateError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
+                    Failure::Wrong(message)
+                }
+                AllocateError::Run(_) => Failure::Failed(message),
+            });
+        }
+    };
     drop(progress);
     interrupt::wait_for(&folder)?;
     let files = write_allocation(&folder, &found);
@@ -63,7 +72,10 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
         console.error(&message);
     }
     Ok(match (found.not_met.is_empty(), found.is_confirmed) {
-        _ if interrupt::asked() => Status::Interrupted,
+        _ if interrupt::asked() => {
+            console.error(&format!("{}: interrupted: these tolerances hold, and cheaper ones may exist", found.model));
+            Status::Interrupted
+        }
         (false, _) => Status::NotMet,
         (true, true) => Status::Done,
         (true, false) => {

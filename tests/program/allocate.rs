@@ -1,6 +1,10 @@
 //! `mbint allocate` against closed forms, brute force and runs of what it found.
 
 use std::fs;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use mbint::inner::model::load_str;
+use mbint::inner::study::{self, AllocateOptions, Options};
 
 use crate::place::Place;
 
@@ -265,4 +269,28 @@ fn the_guides_example_is_run() {
     let after = column(&place, "after.above");
     let taken = after[0] + after[1] + 2.0 * after[2] + after[3];
     assert!(taken <= 0.35e-3 + 1e-12 && taken > 0.349e-3, "{taken}");
+}
+
+/// Tolerances that a study has confirmed are kept at an interruption, where further rounds look for cheaper ones.
+#[test]
+fn an_interruption_keeps_what_is_confirmed() {
+    let place = Place::new();
+    let law = |cost: u32| format!("cost: {{ reciprocal: {cost} }}, distribution: normal");
+    stack(&place, [&law(1), &law(4), &law(2)]);
+    let model = load_str("stack.yaml", &fs::read_to_string(place.path().join("stack.yaml")).unwrap(), &[]).unwrap();
+    let asked = AllocateOptions { share: Some(0.99999), widest: 2.0 };
+    let until = |confirmed: usize| {
+        let studies = AtomicUsize::new(0);
+        let stage = |stage: &str| {
+            studies.fetch_add(usize::from(stage == "confirming"), Ordering::Relaxed);
+        };
+        let interrupted = || studies.load(Ordering::Relaxed) > confirmed;
+        study::allocate(&model, asked, &Options { stage: &stage, interrupted: &interrupted, ..Options::default() })
+    };
+    assert!(until(0).unwrap_err().to_string().contains("interrupted"));
+    let kept = until(2).unwrap();
+    assert!(kept.is_confirmed && kept.yields[0].interval[0] >= 0.99999);
+    // Another round finds cheaper ones, or the same.
+    let whole = until(usize::MAX).unwrap();
+    assert!(whole.costs()[1] <= kept.costs()[1]);
 }

@@ -76,7 +76,7 @@ fn largest(slack: &mut dyn Slack, least: f64, most: f64, with: &dyn Fn(f64) -> V
     let mut low = (least, slack.least(&with(least)));
     let (mut weights, mut side) = ([low.1.max(0.0), high.1], 0);
     for _ in 0..SECANTS {
-        if low.1 < CLOSE || high.0 - low.0 < CLOSE * high.0 {
+        if low.1 < CLOSE || high.0 - low.0 < CLOSE * high.0 || slack.is_interrupted() {
             break;
         }
         let middle = (low.0 * weights[1] - high.0 * weights[0]) / (weights[1] - weights[0]);
@@ -135,7 +135,7 @@ fn flat_starts(
             (0..items.len()).map(of).collect()
         };
         let least = priced.iter().map(|&i| tightest[i] / from[i]).fold(1.0, f64::min);
-        if wide.is_none() || is_good(slack, &with(least)) {
+        if wide.is_none() || !slack.is_interrupted() && is_good(slack, &with(least)) {
             starts.push(with(largest(slack, least, 1.0, &with)));
         }
     }
@@ -167,7 +167,7 @@ fn settled(
         let found = cheapest(&costs, slack.power(), (&pick(&multiples), &constraints), (&least, &most));
         let moved = priced.iter().zip(&found).map(|(&i, found)| (found / multiples[i] - 1.0).abs()).fold(0.0, f64::max);
         priced.iter().zip(&found).for_each(|(&i, &found)| multiples[i] = found);
-        if moved < settled {
+        if moved < settled || slack.is_interrupted() {
             break;
         }
     }
@@ -208,7 +208,10 @@ impl Grades<'_> {
     /// Chooses for the items from `place` on; those before are chosen and cost so much.
     fn descend(&mut self, multiples: &mut Vec<f64>, place: usize, cost: f64) {
         let least: f64 = self.items[place..].iter().map(|item| item.cost(item.widest).unwrap_or(0.0)).sum();
-        if self.best.as_ref().is_some_and(|best| cost + least >= best.0) || self.tried >= MOST {
+        if self.best.as_ref().is_some_and(|best| cost + least >= best.0)
+            || self.tried >= MOST
+            || self.slack.is_interrupted()
+        {
             return;
         }
         let Some(item) = self.items.get(place) else {
@@ -255,6 +258,10 @@ mod tests {
         fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear> {
             let value = 1.0 - self.0.iter().zip(multiples).map(|(s, f)| s * f).sum::<f64>();
             vec![Linear { value, slopes: self.0.iter().map(|s| -s).collect() }]
+        }
+
+        fn is_interrupted(&self) -> bool {
+            false
         }
 
         fn power(&self) -> Power {

@@ -16,6 +16,7 @@ use super::{Options, RunError, reduced, statistics};
 use crate::model::Description;
 use crate::numerics::statistics::normal_quantile;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, NotMet, Summary, ToleranceZone, TradePoint, Verdict};
+use crate::simulate::SimulationError;
 use choose::{Chosen, choose};
 use items::{Choice, Item, items, with_tolerances};
 use share::Share;
@@ -111,12 +112,19 @@ impl Allocator<'_> {
         for _ in 0..rounds {
             (self.options.stage)("choosing tolerances");
             let Some(mut found) = choose(&mut *slack, items, &start) else { break };
+            if (self.options.interrupted)() {
+                break;
+            }
             start.clone_from(&found.multiples);
             for (multiple, item) in found.multiples.iter_mut().zip(items) {
                 *multiple = item.rounded(*multiple);
             }
             let left = slack.left(&found.multiples);
-            let summary = self.confirm(&found.multiples, &mut allocation)?;
+            let summary = match self.confirm(&found.multiples, &mut allocation) {
+                // Half a study confirms nothing.
+                _ if (self.options.interrupted)() => break,
+                summary => summary?,
+            };
             let (holds, unused) = self.compare(&summary, &left, &mut *slack, &mut may_fail);
             let cost = self.cost(&found.multiples);
             if holds && best.as_ref().is_none_or(|best| cost < best.0) {
@@ -124,12 +132,15 @@ impl Allocator<'_> {
             } else if best.is_none() {
                 chosen = Some((found.clone(), summary));
             }
-            if (holds && unused < enough) || (self.options.interrupted)() {
+            if holds && unused < enough {
                 break;
             }
             if let Some(may_fail) = may_fail {
                 slack.allow(may_fail);
             }
+        }
+        if best.is_none() && (self.options.interrupted)() {
+            return Err(RunError::from(SimulationError::Interrupted).into());
         }
         let confirmed = best.is_some();
         let last = best.map(|(_, found, summary)| (found, summary)).or(chosen);
@@ -180,9 +191,9 @@ impl Allocator<'_> {
         let Some(surface) = self.surface() else {
             return Err(AllocateError::Unsuitable("there is no surrogate over the whole box".to_owned()));
         };
-        let Some(share) = self.asked.share else { return Ok(Box::new(Worst::new(surface))) };
+        let Some(share) = self.asked.share else { return Ok(Box::new(Worst::new(surface, self.options.interrupted))) };
         let laws = statistics::laws(self.model).map_err(AllocateError::Unsuitable)?;
-        Ok(Box::new(Share::new(surface, laws, AIM * (1.0 - share))))
+        Ok(Box::new(Share::new(surface, laws, self.options.interrupted, AIM * (1.0 - share))))
     }
 
     /// A study at these multiples.

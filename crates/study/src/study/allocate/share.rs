@@ -30,6 +30,7 @@ const LEAST: usize = 64;
 pub struct Share<'s> {
     pub surface: Surface<'s>,
     laws: Laws,
+    interrupted: &'s (dyn Fn() -> bool + Sync),
     /// The share of all that may fail.
     pub may_fail: f64,
     drawn: Option<Drawn>,
@@ -44,8 +45,8 @@ struct Drawn {
 }
 
 impl<'s> Share<'s> {
-    pub fn new(surface: Surface<'s>, laws: Laws, may_fail: f64) -> Self {
-        Self { surface, laws, may_fail, drawn: None }
+    pub fn new(surface: Surface<'s>, laws: Laws, interrupted: &'s (dyn Fn() -> bool + Sync), may_fail: f64) -> Self {
+        Self { surface, laws, interrupted, may_fail, drawn: None }
     }
 
     /// A sample with these multiples of its distances from the nominal values.
@@ -151,6 +152,10 @@ impl<'s> Share<'s> {
 }
 
 impl Slack for Share<'_> {
+    fn is_interrupted(&self) -> bool {
+        (self.interrupted)()
+    }
+
     /// The quantile of each requirement's own slack.
     fn left(&mut self, multiples: &[f64]) -> Vec<f64> {
         let (slacks, weights) = self.slacks(multiples);

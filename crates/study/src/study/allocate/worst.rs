@@ -23,6 +23,9 @@ pub trait Slack {
     /// Correction subtracted from each margin, in its unit.
     fn reserves(&mut self) -> &mut [f64];
 
+    /// Whether a search is to end where it is.
+    fn is_interrupted(&self) -> bool;
+
     /// Lets another share fail, where one may.
     fn allow(&mut self, _: f64) {}
 
@@ -50,6 +53,7 @@ const ALIKE: f64 = 0.05;
 /// The worst case of every requirement.
 pub struct Worst<'s> {
     pub surface: Surface<'s>,
+    interrupted: &'s (dyn Fn() -> bool + Sync),
     search: ExtremeSearch,
     before: Vec<Extremes>,
     /// ξ of the worst cases so far, by requirement.
@@ -57,10 +61,10 @@ pub struct Worst<'s> {
 }
 
 impl<'s> Worst<'s> {
-    pub fn new(surface: Surface<'s>) -> Self {
+    pub fn new(surface: Surface<'s>, interrupted: &'s (dyn Fn() -> bool + Sync)) -> Self {
         let search = ExtremeSearch::new(surface.items.len());
         let known = vec![Vec::new(); surface.count];
-        Self { surface, search, before: Vec::new(), known }
+        Self { surface, interrupted, search, before: Vec::new(), known }
     }
 
     /// Derivatives of a requirement's slack at ξ with respect to the multiples, and its value.
@@ -81,6 +85,10 @@ impl<'s> Worst<'s> {
 }
 
 impl Slack for Worst<'_> {
+    fn is_interrupted(&self) -> bool {
+        (self.interrupted)()
+    }
+
     fn left(&mut self, multiples: &[f64]) -> Vec<f64> {
         let count = self.surface.count;
         let surface = &self.surface;
