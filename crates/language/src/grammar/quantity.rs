@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use symdiff::math;
+
 /// Exponents are counted in twelfths, so that square and cube roots stay exact.
 const ONE: i32 = 12;
 
@@ -104,6 +106,17 @@ impl Dimension {
     pub fn of_mark(mark: u64) -> Self {
         let power = |place: u32| i32::from((mark >> (16 * place)) as u16 as i16);
         Self::of(power(3), power(2), power(1), power(0))
+    }
+
+    /// A quantity of this dimension made of a length, a mass and times: of several times in a denominator, the first is
+    /// `time`, and all others are `others`.
+    pub fn size(self, [length, mass, time, others]: [f64; 4]) -> f64 {
+        let power = |base: f64, exponent: i32| math::pow(base, f64::from(exponent) / f64::from(ONE));
+        let times = match self.time {
+            below if below < -ONE => power(time, -ONE) * power(others, below + ONE),
+            own => power(time, own),
+        };
+        power(length, self.length) * power(mass, self.mass) * times
     }
 
     /// Whether quantities of the two may be added or stand for one another.

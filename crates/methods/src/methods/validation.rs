@@ -7,6 +7,10 @@ use crate::numerics::{
     step_validation, time_error, validation,
 };
 
+/// An output whose span halved steps make smaller than this share of it is conserved: a scheme of second order takes
+/// away three quarters of what is its error alone.
+const CONSERVED: f64 = 0.3;
+
 /// Width of an output's range, relative to its values, that is rounding.
 const ROUNDING: f64 = 1e-10;
 
@@ -92,20 +96,33 @@ impl ValidationTable {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
-    /// Width of an output's range over all rows and samples; zero where that is less than `least`, or than rounding of
-    /// the values.
-    fn span(&self, output: usize, least: f64) -> f64 {
+    /// Width of an output's range over all rows and some samples; zero where that is less than `least`, or than rounding
+    /// of the values.
+    fn span(&self, output: usize, samples: &[usize], least: f64) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
         let lines = lines.skip(self.motions + output).step_by(self.motions + self.outputs);
-        let (lower, upper) = lines
-            .flatten()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), &value| (lower.min(value), upper.max(value)));
+        let values = lines.flat_map(|line| samples.iter().map(|&sample| line[sample]));
+        let (lower, upper) = values
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), value| (lower.min(value), upper.max(value)));
         let least = least.max(ROUNDING * lower.abs().max(upper.abs()));
         if upper - lower <= least { 0.0 } else { (upper - lower).max(0.0) }
     }
 
-    fn spans(&self, ensemble: &dyn Ensemble) -> Vec<f64> {
-        (0..self.outputs).map(|output| self.span(output, ensemble.rounding(output))).collect()
+    /// Spans of all outputs, given some samples with shorter steps; zero where an output is conserved: these take away
+    /// most of what it changes by.
+    fn spans(&self, halved: &Self, odd: &OddSteps, ensemble: &dyn Ensemble) -> Vec<f64> {
+        let first: Vec<usize> = (0..odd.table.samples).collect();
+        let all: Vec<usize> = (0..self.samples).collect();
+        let of = |output: usize| {
+            let least = ensemble.rounding(output);
+            let [own, finer] = [self, halved].map(|table| table.span(output, &odd.places, least));
+            let is_error = |finer: f64| finer < CONSERVED * own;
+            if is_error(finer) && is_error(odd.table.span(output, &first, least)) {
+                return 0.0;
+            }
+            self.span(output, &all, least)
+        };
+        (0..self.outputs).map(of).collect()
     }
 }
 
@@ -189,7 +206,7 @@ impl Validation {
         effort += with_halved_steps.effort;
         effort += with_odd_steps;
         let simulations = points.len() + first + odd.places.len();
-        let spans = direct.spans(ensemble);
+        let spans = direct.spans(&halved, &odd, ensemble);
         Ok(Self { points, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
@@ -208,7 +225,7 @@ impl Validation {
         let (halved, simulated) = ValidationTable::of(halved, &samples, Observed::Outputs, true)?;
         let (odd, with_odd_steps) = OddSteps::run(ensembles, &points, true)?;
         let simulations = points.len() + odd.places.len();
-        let spans = direct.spans(ensemble);
+        let spans = direct.spans(&halved, &odd, ensemble);
         let mut effort = simulated.effort;
         effort += with_odd_steps;
         Ok(Self { points, direct, halved, odd, simulations, effort, simulated: Simulated::default(), spans })

@@ -42,6 +42,9 @@ const MOST_ROWS: usize = 64;
 /// iteration ends at 1e-12 or so.
 const AT_REST: f64 = 1e-10;
 
+/// The same of a number whose size nothing tells.
+const NUMBER_AT_REST: f64 = 1e-12;
+
 /// A mechanism under one schedule.
 pub(super) struct Motions<'a> {
     pub(super) simulator: &'a Simulator,
@@ -242,23 +245,15 @@ impl Ensemble for Motions<'_> {
     }
 
     fn rounding(&self, output: usize) -> f64 {
-        let length = self.simulator.system.length;
+        let system = &self.simulator.system;
         let duration = self.schedule.output_step * self.schedule.rows as f64;
         // Accelerations are second differences over steps, and forces are what these do to all masses.
-        let step = self.schedule.first_step();
-        let force = self.simulator.system.mass_of_bodies * length / (duration * step);
-        AT_REST
-            * match self.simulator.system.outputs[output].dimension {
-                Some(Dimension::ANGLE) => 1.0,
-                Some(Dimension::LENGTH) => length,
-                Some(Dimension::ANGULAR_VELOCITY) => 1.0 / duration,
-                Some(Dimension::VELOCITY) => length / duration,
-                Some(Dimension::ANGULAR_ACCELERATION) => 1.0 / (duration * step),
-                Some(Dimension::ACCELERATION) => length / (duration * step),
-                Some(Dimension::FORCE) => force,
-                Some(Dimension::TORQUE) => force * length,
-                _ => 0.0,
-            }
+        let sizes = [system.length, system.mass_of_bodies, duration, self.schedule.first_step()];
+        let share = match system.outputs[output].dimension {
+            None | Some(Dimension::NUMBER) => NUMBER_AT_REST,
+            Some(dimension) => AT_REST * dimension.size(sizes),
+        };
+        if share.is_finite() { share } else { 0.0 }
     }
 
     fn has_kink(&self, output: usize) -> bool {
