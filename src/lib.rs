@@ -5,7 +5,9 @@
 mod api;
 mod cli;
 
-pub use api::{Band, Error, Model, ModelBuilder, Output, Study, StudyResult, Value};
+pub use api::{Axis, Band, Error, Model, ModelBuilder, Output, Samples, Study, StudyResult, Sweep, Value};
+/// Results as data: what `summary.json` holds, allocations, statistics and studies of costs.
+pub use mbint_study::results;
 #[doc(inline)]
 pub use methods::Method;
 #[doc(inline)]
@@ -20,7 +22,7 @@ use mbint_language::{grammar, syntax};
 use mbint_methods::methods;
 use mbint_model::{elements, model};
 use mbint_numerics::numerics;
-use mbint_study::{results, store, study};
+use mbint_study::{store, study};
 
 #[doc(hidden)]
 pub mod inner;

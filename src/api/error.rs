@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::export::ExportError;
 use crate::model::UnknownScene;
-use crate::study::RunError;
+use crate::study::{AllocateError, CostError, RunError};
 use crate::syntax::Diagnostics;
 
 /// Why there is no model, or nothing of it could be run.
@@ -20,6 +20,23 @@ pub enum Error {
     /// The mechanism cannot be built, assembled or stepped.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The model has nothing that could be allocated.
+    #[error("{0}")]
+    Unsuitable(String),
+    /// The reference of a study of costs cannot be had.
+    #[error(transparent)]
+    Cost(Box<CostError>),
+    /// A point to be sampled, by its index, does not have a finite value for each of the uncertain parameters.
+    #[error("point {index} needs a finite value for each of {}", .parameters.join(", "))]
+    Point {
+        /// Index of the point.
+        index: usize,
+        /// Names of the uncertain parameters, in their order.
+        parameters: Vec<String>,
+    },
+    /// It was asked to stop before there was a result.
+    #[error("interrupted before there were results")]
+    Interrupted,
     /// The files could not be written.
     #[error(transparent)]
     Write(#[from] ExportError),
@@ -29,6 +46,24 @@ pub enum Error {
 impl fmt::Debug for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, formatter)
+    }
+}
+
+impl From<AllocateError> for Error {
+    fn from(error: AllocateError) -> Self {
+        match error {
+            AllocateError::Unsuitable(message) => Self::Unsuitable(message),
+            AllocateError::Run(error) => Self::Run(error),
+        }
+    }
+}
+
+impl From<CostError> for Error {
+    fn from(error: CostError) -> Self {
+        match error {
+            CostError::Run(error) => Self::Run(error),
+            error => Self::Cost(Box::new(error)),
+        }
     }
 }
 

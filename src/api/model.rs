@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Error, Study};
+use super::{Axis, Error, Study, Sweep};
 use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
 use crate::syntax::Diagnostics;
 
@@ -119,6 +119,16 @@ impl Model {
     /// A study of the model, with the methods that its `bounds:` ask for until others are chosen.
     pub fn study(&self) -> Study<'static> {
         Study::new(self.description.clone())
+    }
+
+    /// Runs a study for each combination of values of some parameters. `ask` chooses methods and options, as
+    /// `|study| study.chebyshev(3)`; `|study| study` takes the model's.
+    ///
+    /// # Errors
+    /// [`Error::Model`]: the model does not have a parameter, or a value does not fit it. A run that fails leaves its
+    /// point without results.
+    pub fn sweep(&self, axes: &[Axis], ask: impl Fn(Study<'static>) -> Study<'static>) -> Result<Sweep, Error> {
+        Sweep::of(self, axes, ask)
     }
 
     /// The checked model behind this one.

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use super::Error;
 use crate::export;
 use crate::methods::Method;
-use crate::results::{self, Bounds, OutputBounds, Provenance, Summary, foremost};
+use crate::results::{
+    self, Bounds, OutputBounds, Provenance, ReducedSummary, RequirementSummary, StatisticsResult, Summary, foremost,
+};
 
 /// Bounds of every output over time, with their errors.
 #[derive(Clone, Debug)]
@@ -58,6 +60,26 @@ impl StudyResult {
     /// Record of the run and its cost, as in `summary.json`.
     pub fn summary(&self) -> &Summary {
         &self.summary
+    }
+
+    /// Reduced outputs (maxima, ranges, times …) with their bounds.
+    pub fn reduced(&self) -> &[ReducedSummary] {
+        &self.summary.reduced
+    }
+
+    /// Requirements with their verdicts, margins and errors.
+    pub fn verdicts(&self) -> &[RequirementSummary] {
+        &self.summary.requirements
+    }
+
+    /// Quantiles, yields and contributions, where the model asks for `statistics:`.
+    pub fn statistics(&self) -> Option<&StatisticsResult> {
+        self.summary.statistics.as_deref()
+    }
+
+    /// Bounds in ten rows to five digits, the text that `mbint snapshot` keeps and compares.
+    pub fn snapshot(&self) -> String {
+        export::snapshot_table(&self.bounds)
     }
 
     /// Writes `bounds.csv`, `summary.json` and plots into a folder, and gives their paths.

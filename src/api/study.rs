@@ -1,9 +1,10 @@
 //! A study: which methods bound a model, and how they run.
 
-use super::{Error, StudyResult};
+use super::{Error, Samples, StudyResult};
 use crate::methods::{BoundsRequest, Certified, Chebyshev, Scan, Taylor};
 use crate::model::{Description, Stepping};
-use crate::study::{Options, run};
+use crate::results::{Allocation, CostStudy, Criterion};
+use crate::study::{AllocateOptions, CostOptions, Options, allocate, cost, run};
 
 /// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
 pub struct Study<'a> {
@@ -98,6 +99,20 @@ impl<'a> Study<'a> {
         self
     }
 
+    /// The time steps' error by all samples with halved steps, instead of a few.
+    #[must_use]
+    pub fn certify_steps(mut self) -> Self {
+        self.options.certify_time = true;
+        self
+    }
+
+    /// Runs also what takes more than 20 000 simulations or about a minute.
+    #[must_use]
+    pub fn allow_costly(mut self) -> Self {
+        self.options.costly = true;
+        self
+    }
+
     /// Calls a function now and then with the fraction that is done.
     #[must_use]
     pub fn progress(mut self, progress: &'a (dyn Fn(f64) + Sync)) -> Self {
@@ -110,6 +125,38 @@ impl<'a> Study<'a> {
     pub fn interrupted(mut self, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
         self.options.interrupted = interrupted;
         self
+    }
+
+    /// The cheapest, or loosest, tolerances with which all requirements hold in every case or in a share of the
+    /// production; none is more than `widest` times the model's. A study of its own confirms them.
+    ///
+    /// # Errors
+    /// [`Error::Unsuitable`]: the model has no requirement, or no tolerance that may change. [`Error::Run`]: it cannot be
+    /// run.
+    pub fn allocate(self, criterion: Criterion, widest: f64) -> Result<Allocation, Error> {
+        let share = match criterion {
+            Criterion::WorstCase => None,
+            Criterion::Share(share) => Some(share),
+        };
+        Ok(allocate(&self.description, AllocateOptions { share, widest }, &self.options)?)
+    }
+
+    /// Outputs over time at points: for each a value, SI, of each of [`Model::uncertain`](super::Model::uncertain).
+    ///
+    /// # Errors
+    /// [`Error::Point`]: a point has too few or too many values. [`Error::Run`]: the mechanism cannot be stepped.
+    pub fn sample(self, points: &[Vec<f64>]) -> Result<Samples, Error> {
+        Samples::of(&self.description, points, &self.options)
+    }
+
+    /// What accuracy costs in time: settings of all methods, their errors against a reference, and the cheapest for an
+    /// error relative to each output's range. `budget` is in seconds, about.
+    ///
+    /// # Errors
+    /// [`Error::Run`]: the model cannot be run. [`Error::Cost`]: a reference takes too long.
+    pub fn cost(self, tolerance: f64, budget: f64) -> Result<CostStudy, Error> {
+        let Options { threads, progress, interrupted, .. } = self.options;
+        Ok(cost(&self.description, &CostOptions { tolerance, budget, threads, progress, interrupted })?)
     }
 
     /// Runs every method. A simulation that fails on its way ends the bounds that need it there:

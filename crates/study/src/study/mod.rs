@@ -66,7 +66,7 @@ use prepared::Prepared;
 pub use allocate::{AllocateError, AllocateOptions, allocate};
 pub use allowance::Allowance;
 pub use assemblies::of as assemblies;
-pub use cost::{CostOptions, cost};
+pub use cost::{CostError, CostOptions, cost};
 pub use drawing::drawing;
 pub use effect_costs::language_costs;
 pub use explain::explain;

@@ -145,6 +145,9 @@ impl Trajectories<'_> {
         let lines = self.columns.iter().map(Vec::len).sum();
         let size = samples_of_part(lines, self.times.len());
         let closed = self.closed(size);
+        if closed.len() < self.chosen.count {
+            return Ok(None);
+        }
         match self.store(&motions, size, &closed) {
             Err(SimulationError::Interrupted) => return Ok(None),
             done => done.map_err(RunError::from)?,
@@ -170,7 +173,7 @@ impl Trajectories<'_> {
         Ok(Some(Sampled { closed: closed.into_iter().filter(|closed| *closed).count(), stopped }))
     }
 
-    /// Whether each sample cannot be assembled.
+    /// Whether each sample cannot be assembled; of fewer samples after an interruption.
     fn closed(&self, size: usize) -> Vec<bool> {
         let mut closed = Vec::with_capacity(self.chosen.count);
         for first in (0..self.chosen.count).step_by(size) {

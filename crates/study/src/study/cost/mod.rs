@@ -50,10 +50,18 @@ pub enum CostError {
     Reference(String),
     /// A reference would take most of the budget, or more.
     #[error("even a coarse reference takes {seconds:.1} s")]
-    TooCostly { seconds: f64 },
+    TooCostly {
+        /// What it takes, s.
+        seconds: f64,
+    },
     /// A reference would take too many simulations.
     #[error("{parameters} uncertain parameters: even a coarse reference takes {simulations:.1e} simulations")]
-    TooMany { parameters: usize, simulations: f64 },
+    TooMany {
+        /// Number of uncertain parameters.
+        parameters: usize,
+        /// Simulations of the reference.
+        simulations: f64,
+    },
 }
 
 /// Shares of the progress bar: the reference is done, the bounds are done.

@@ -1,0 +1,118 @@
+//! Every question of the command line, asked from Rust.
+
+use mbint::results::{Criterion, Verdict};
+use mbint::{Axis, Error, Method, Model};
+
+/// A gap c − a − 2b of 1 mm, whose normal parts add to σ² = (0.1² + 0.4² + 0.1²)/9 mm².
+const STACK: &str = "
+model: stack
+parameters:
+  a: { value: 30 mm, tolerance: 0.1 mm, cost: { reciprocal: 1 }, distribution: normal }
+  b: { value: 10 mm, tolerance: 0.2 mm, cost: { reciprocal: 4 }, distribution: normal }
+  c: { value: 51 mm, tolerance: 0.1 mm, cost: { reciprocal: 2 }, distribution: normal }
+bodies: { block: { mass: 1, coordinates: [x] } }
+initial: { block.x: c - a - 2*b, block.vx: 0 }
+outputs: { gap: block.x, widest: { max: gap } }
+requirements: { fits: { output: gap, min: 0.4 mm, max: 1.5 mm } }
+simulation: { duration: 0.02, step: 0.01 }
+bounds: { chebyshev: { order: 1 } }
+statistics: { quantiles: [0.5] }
+";
+
+fn stack() -> Model {
+    Model::from_yaml_str("stack.yaml", STACK).unwrap()
+}
+
+#[track_caller]
+fn near(found: f64, wanted: f64) {
+    assert!((found - wanted).abs() <= 1e-6 * wanted.abs().max(1e-3), "{found} {wanted}");
+}
+
+#[test]
+fn bounds_verdicts_and_statistics_of_a_stack_are_those_of_sums() {
+    let result = stack().study().run().unwrap();
+    let gap = result.output("gap").unwrap();
+    let band = gap.band(Method::Chebyshev).unwrap();
+    near(band.lower()[0], 0.4e-3);
+    near(band.upper()[0], 1.6e-3);
+    let [fits] = result.verdicts() else { panic!("{:?}", result.verdicts()) };
+    assert_eq!(fits.verdict, Verdict::Violated);
+    near(fits.margin, -0.1e-3);
+    let [widest] = result.reduced() else { panic!("{:?}", result.reduced()) };
+    near(widest.nominal, 1e-3);
+    let statistics = result.statistics().unwrap();
+    let deviation = statistics.outputs[0].deviation[0];
+    let off = (deviation.value - (0.01_f64 + 0.16 + 0.01).sqrt() / 3.0 * 1e-3).abs();
+    assert!(off <= 3.0 * deviation.sampling + deviation.error, "{deviation:?}");
+    assert!(result.snapshot().contains("gap [m]"), "{}", result.snapshot());
+    assert_eq!(result.summary().model, "stack");
+}
+
+#[test]
+fn tolerances_that_meet_requirements_fill_the_margin() {
+    let found = stack().study().allocate(Criterion::WorstCase, 3.0).unwrap();
+    assert!(found.is_confirmed && found.not_met.is_empty());
+    let after: Vec<f64> = found.tolerances.iter().map(|own| own.after.above).collect();
+    // All of the 0.5 mm to the nearer limit, and to a part in a thousand.
+    let taken = after[0] + 2.0 * after[1] + after[2];
+    assert!(taken <= 0.5e-3 && taken > 0.4995e-3, "{after:?}");
+    let error = Model::from_yaml_str("stack.yaml", &STACK.replace("requirements:", "# ")).unwrap();
+    let error = error.study().allocate(Criterion::Share(0.99), 3.0).unwrap_err();
+    assert!(matches!(error, Error::Unsuitable(_)), "{error}");
+}
+
+#[test]
+fn samples_and_sweeps_are_of_chosen_values() {
+    let model = stack();
+    let names: Vec<&str> = model.uncertain().map(|(name, _)| name).collect();
+    assert_eq!(names, ["a", "b", "c"]);
+    let samples = model.study().sample(&[vec![0.03, 0.01, 0.051], vec![0.0301, 0.0102, 0.051]]).unwrap();
+    near(samples.course(0, "gap").unwrap()[0], 1e-3);
+    near(samples.course(1, "gap").unwrap()[0], 0.5e-3);
+    assert_eq!((samples.course(2, "gap"), samples.course(0, "gaps")), (None, None));
+    assert_eq!((samples.not_assembled(), samples.stopped()), (0, 0));
+    let error = model.study().sample(&[vec![0.03]]).unwrap_err();
+    assert_eq!(error.to_string(), "point 0 needs a finite value for each of a, b, c");
+
+    let axes = [Axis::new("a", &[29.8, 30.2]).with("mm"), Axis::new("b", &[10.0, 10.1]).with("mm ± 0.1 mm")];
+    let sweep = model.sweep(&axes, |study| study.chebyshev(1).threads(1)).unwrap();
+    let widest = |index: usize| {
+        let (values, summary) = sweep.points().nth(index).unwrap();
+        (values.to_vec(), summary.unwrap().reduced[0].nominal)
+    };
+    // The last parameter changes fastest.
+    assert_eq!(widest(1).0, [29.8, 10.1]);
+    near(widest(1).1, 51e-3 - 29.8e-3 - 20.2e-3);
+    near(widest(2).1, 51e-3 - 30.2e-3 - 20e-3);
+}
+
+#[test]
+fn costs_are_measured_against_a_reference() {
+    let text = "
+parameters: { k: 9 N/m ± 5% }
+bodies: { b: { mass: 1, coordinates: [x] } }
+effects: { s: { spring_damper: { between: [ground, b], along: x, stiffness: k, free_length: 0 } } }
+initial: { b.x: 1 }
+outputs: { x: b.x }
+simulation: { duration: 2, step: 1e-3 }
+bounds: { chebyshev: { order: 3 } }
+";
+    let model = Model::from_yaml_str("oscillator.yaml", text).unwrap();
+    let study = model.study().threads(1).cost(1e-2, 6.0).unwrap();
+    // On a busy machine the budget may not allow a reference: then nothing is measured, which is said.
+    assert_eq!(study.has_reference(), !study.trajectories.is_empty());
+    assert!(study.has_reference() || !study.left_out.is_empty());
+    assert!(study.trajectories.iter().filter(|point| point.failure.is_none()).all(|point| point.seconds > 0.0));
+}
+
+#[test]
+fn what_is_interrupted_says_so() {
+    let error = stack().study().interrupted(&|| true).sample(&[vec![0.03, 0.01, 0.051]]).unwrap_err();
+    assert!(error.to_string().contains("interrupted"), "{error}");
+}
+
+#[test]
+fn models_with_errors_show_their_lines() {
+    let error = Model::from_yaml_str("stack.yaml", &STACK.replace("block.x,", "blok.x,")).unwrap_err();
+    assert!(error.to_string().contains("stack.yaml:9:17"), "{error}");
+}
