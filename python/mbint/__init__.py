@@ -8,8 +8,23 @@ The command ``mbint`` does the work; this package writes its input and reads its
 """
 
 from ._command import MbintError, command, version
+from .questions import Allocation, allocate, check, cost, snapshot, sweep
 from .result import Result
 from .samples import sample
 from .study import Study, run
 
-__all__ = ["MbintError", "Result", "Study", "command", "run", "sample", "version"]
+__all__ = [
+    "Allocation",
+    "MbintError",
+    "Result",
+    "Study",
+    "allocate",
+    "check",
+    "command",
+    "cost",
+    "run",
+    "sample",
+    "snapshot",
+    "sweep",
+    "version",
+]

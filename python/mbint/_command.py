@@ -10,8 +10,12 @@ import sysconfig
 from collections.abc import Sequence
 from pathlib import Path
 
-#: Exit statuses of ``mbint run`` after which there are results (see docs/reference/exit-codes.md).
-WITH_RESULTS = frozenset({0, 3, 4})
+#: Exit status where a number is not to be relied on, and where a requirement is not met (see docs/reference/exit-codes.md).
+UNRESOLVED = 3
+NOT_MET = 4
+
+#: Exit statuses of ``mbint run`` after which there are results.
+WITH_RESULTS = frozenset({0, UNRESOLVED, NOT_MET})
 
 #: Exit status of ``mbint merge`` where another round of shards is needed.
 ANOTHER_ROUND = 75

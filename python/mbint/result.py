@@ -23,10 +23,12 @@ class Result:
 
     Args:
         folder: where ``mbint run`` wrote them.
+        owner: what removes the folder when it is gone itself: it stays as long as the result does.
     """
 
-    def __init__(self, folder: str | Path) -> None:
+    def __init__(self, folder: str | Path, owner: object = None) -> None:
         self.folder = Path(folder)
+        self._owner = owner
 
     def __repr__(self) -> str:
         return f"Result({self.summary['model']!r}, outputs={list(self.units)}, folder={str(self.folder)!r})"
@@ -69,6 +71,25 @@ class Result:
         frame = frame.astype(dict.fromkeys(numbers, float)).set_index("t")
         frame.attrs["units"] = {column["column"]: column["unit"] for column in self.columns}
         return frame
+
+    @cached_property
+    def verdicts(self) -> pd.DataFrame:
+        """Requirements: verdict, margin and its error, SI; empty without requirements."""
+        return pd.DataFrame(self.summary.get("requirements", []))
+
+    @cached_property
+    def reduced(self) -> pd.DataFrame:
+        """``reduced.csv``: reduced outputs with their bounds, SI; empty without reduced outputs."""
+        return self._table("reduced.csv")
+
+    @cached_property
+    def statistics(self) -> pd.DataFrame:
+        """``statistics.csv``: mean, deviation and quantiles of each output over time; empty if the model asks for none."""
+        return self._table("statistics.csv")
+
+    def _table(self, name: str) -> pd.DataFrame:
+        path = self.folder / name
+        return pd.read_csv(path) if path.is_file() else pd.DataFrame()
 
     @cached_property
     def nominal(self) -> xr.DataArray:

@@ -130,12 +130,12 @@ class Study:
             FileNotFoundError: the study was not run.
         """
         if (self.folder / "summary.json").is_file():
-            alone = Result(self.folder)
+            alone = Result(self.folder, self._temporary)
             return {alone.summary["model"]: alone}
         if not (self.folder / "scenes.json").is_file():
             raise FileNotFoundError(f"there are no results in {self.folder}; call run() first")
         scenes = json.loads((self.folder / "scenes.json").read_text(encoding="utf-8"))
-        return {scene: Result(self.folder / scene) for scene in scenes["scenes"]}
+        return {scene: Result(self.folder / scene, self._temporary) for scene in scenes["scenes"]}
 
     @cached_property
     def result(self) -> Result:

@@ -1,0 +1,79 @@
+"""Questions beside bounds over time, against sums of tolerances. The variable MBINT names the command."""
+
+from pathlib import Path
+
+import pytest
+
+import mbint
+
+#: A gap c - a - 2b of 1 mm, known to 0.6 mm.
+STACK = {
+    "model": "stack",
+    "parameters": {
+        "a": {"value": "30 mm", "tolerance": "0.1 mm"},
+        "b": {"value": "10 mm", "tolerance": "0.2 mm"},
+        "c": {"value": "51 mm", "tolerance": "0.1 mm"},
+    },
+    "bodies": {"block": {"mass": 1, "coordinates": ["x"]}},
+    "initial": {"block.x": "c - a - 2*b", "block.vx": 0},
+    "outputs": {"gap": "block.x", "widest": {"max": "gap"}},
+    "requirements": {"fits": {"output": "gap", "min": "0.5 mm", "max": "1.5 mm"}},
+    "simulation": {"duration": 0.02, "step": 0.01},
+    "bounds": {"chebyshev": {"order": 1}},
+}
+
+
+def test_a_model_is_checked() -> None:
+    found = mbint.check(STACK)
+    assert (found["coordinates"], found["uncertain_parameters"]) == (1, ["a", "b", "c"])
+    with pytest.raises(mbint.MbintError, match="unknown body or joint `blok`"):
+        mbint.check(STACK | {"outputs": {"gap": "blok.x"}})
+
+
+def test_verdicts_and_reduced_outputs_are_tables() -> None:
+    study = mbint.run(STACK | {"statistics": {"quantiles": [0.5]}}).result
+    (fits,) = study.verdicts.itertuples()
+    assert fits.verdict == "violated"
+    assert fits.margin == pytest.approx(-1e-4)
+    assert study.reduced.loc[0, "upper"] == pytest.approx(1.6e-3)
+    assert study.statistics["gap.mean"][0] == pytest.approx(1e-3)
+    assert mbint.run(STACK | {"outputs": {"gap": "block.x"}, "requirements": {}}).result.reduced.empty
+
+
+def test_values_are_swept() -> None:
+    table = mbint.sweep(STACK, {"a": (29.9, 30.1, 2, "mm"), "b": (9.9, 10.0, 3, "mm ± 0.1 mm")})
+    assert list(table["b"][:3]) == pytest.approx([9.9, 9.95, 10.0])
+    margins = [0.5 - abs(51 - a - 2 * b - 1) - 0.3 for a in (29.9, 30.1) for b in (9.9, 9.95, 10.0)]
+    assert list(table["fits.margin"]) == pytest.approx([1e-3 * margin for margin in margins], abs=1e-12)
+
+
+def test_tolerances_are_allocated() -> None:
+    found = mbint.allocate(STACK)
+    assert found.met
+    assert found.confirmed
+    # One factor for all: 0.5 mm of 0.6.
+    assert found.tolerances.loc["b", "after.above"] == pytest.approx(0.2e-3 * 5 / 6, rel=1e-3)
+    assert mbint.run(STACK, set=found.overlay).result.verdicts["verdict"][0] == "holds"
+    tight = {"fits": {"output": "gap", "max": "0.9 mm"}}
+    assert not mbint.allocate(STACK | {"requirements": tight}).met
+
+
+def test_bounds_are_recorded_and_compared(tmp_path: Path) -> None:
+    assert not mbint.snapshot(STACK, tmp_path, check=True)
+    assert mbint.snapshot(STACK, tmp_path)
+    assert mbint.snapshot(STACK, tmp_path, check=True)
+    moved = STACK | {"initial": {"block.x": "c - a - 2*b + 1 mm", "block.vx": 0}}
+    assert not mbint.snapshot(moved, tmp_path, check=True)
+
+
+def test_costs_are_measured() -> None:
+    spring = {"between": ["ground", "b"], "along": "x", "stiffness": 9, "free_length": 0}
+    oscillator = {
+        "bodies": {"b": {"mass": 1, "coordinates": ["x"]}},
+        "effects": {"s": {"spring_damper": spring}},
+        "initial": {"b.x": 1},
+        "outputs": {"x": "b.x"},
+        "simulation": {"duration": 0.5, "step": 1e-2},
+    }
+    table = mbint.cost(oscillator, budget=5)
+    assert {"method", "seconds", "error"} <= set(table)
