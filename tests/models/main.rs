@@ -30,6 +30,7 @@ mod features;
 mod first_correction;
 mod formulas;
 mod formulations;
+mod gradients;
 mod hard_cases;
 mod honesty;
 mod honesty_adaptive;
