@@ -24,6 +24,9 @@ const ROWS: usize = 4;
 /// Largest difference, relative to the largest derivative of the output by a parameter over its interval.
 const DIFFERENCE: f64 = 1e-9;
 
+/// An influence on an output that is less than this (SI) counts as this much: rounding of outputs of size one.
+const SMALL: f64 = 1e-5;
+
 /// The models and the examples of the documentation.
 fn files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples");
@@ -92,7 +95,7 @@ fn compared(simulator: &Simulator, schedule: &Schedule) -> Found {
                 if !jet.is_finite() {
                     continue;
                 }
-                let difference = (gradient - jet).abs() / scale.max(f64::MIN_POSITIVE);
+                let difference = (gradient - jet).abs() / scale.max(SMALL);
                 if !(difference <= worst) {
                     worst = difference;
                     if !(difference <= DIFFERENCE) {

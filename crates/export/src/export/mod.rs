@@ -32,6 +32,7 @@ mod statistics;
 mod stems;
 mod sweep;
 mod sweep_files;
+mod witnesses;
 
 pub use self::csv::bounds_csv;
 pub use allocation::{OVERLAY, shown_unit, write_allocation};
@@ -59,3 +60,4 @@ pub use snapshot::{Moved, Snapshot, moved, snapshot_file, snapshot_table, write_
 pub use stems::file_stem;
 pub use sweep::{Swept, SweptBounds, TradeAxis, TradeMark, sweep_svg, trade_svg};
 pub use sweep_files::{Sweep, SweepAxis, SweepPoint, write_sweep};
+pub use witnesses::POINTS;

@@ -23,7 +23,7 @@ mod summary;
 pub use crate::methods::{Method, TooDeep};
 pub use allocation::{AllocatedTolerance, Allocation, Criterion, NotMet, ToleranceZone, TradePoint};
 pub use analysis::{AnalysisSummary, ValueSummary};
-pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, foremost};
+pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, Witness, foremost};
 #[doc(hidden)]
 pub use cost::example as cost_example;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integrator, cost_curves, pareto};

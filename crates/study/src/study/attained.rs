@@ -83,7 +83,7 @@ impl Study<'_> {
     /// The simulations are noted by `motions`.
     ///
     /// # Errors
-    /// At an interruption.
+    /// Where a sample cannot be simulated.
     pub(super) fn attained(
         &self,
         motions: &Motions,
@@ -102,22 +102,26 @@ impl Study<'_> {
             let result = MethodResult { simulations: search.simulations, ..MethodResult::default() };
             Ok((MethodResult { simulated: search.simulated, ..result }, search.attained))
         });
-        found.map(Some)
+        match found {
+            // Shards, or nobody, simulate what is missing.
+            Err(SimulationError::Deferred | SimulationError::Interrupted) => Ok(None),
+            found => found.map(Some),
+        }
     }
 }
 
 /// The search.
-struct AttainedSearch<'s> {
-    study: &'s Study<'s>,
-    motions: &'s Motions<'s>,
+struct AttainedSearch<'s, 'm> {
+    study: &'s Study<'m>,
+    motions: &'s dyn Ensemble,
     schedule: &'s Schedule,
     attained: Attained,
     simulations: usize,
     simulated: Simulated,
 }
 
-impl<'s> AttainedSearch<'s> {
-    fn new(study: &'s Study, motions: &'s Motions, schedule: &'s Schedule) -> Self {
+impl<'s, 'm> AttainedSearch<'s, 'm> {
+    fn new(study: &'s Study<'m>, motions: &'s dyn Ensemble, schedule: &'s Schedule) -> Self {
         let attained = Attained::new(motions.rows(), motions.outputs());
         Self { study, motions, schedule, attained, simulations: 0, simulated: Simulated::default() }
     }

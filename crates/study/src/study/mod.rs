@@ -13,6 +13,7 @@ mod allocate;
 mod allowance;
 mod analysis;
 mod assemblies;
+mod attained;
 mod bands;
 mod comparison;
 mod conclude;

@@ -34,6 +34,8 @@ pub(super) struct Results {
     /// Absent where no method is asked for.
     pub validation: Option<(Validation, MethodSummary)>,
     pub methods: Vec<(Method, Outcome)>,
+    /// Ends that were found along gradients, where they were searched for.
+    pub attained: Option<(Outcome, Attained)>,
     /// The same with halved steps, where asked for.
     pub halved: Vec<(Method, Outcome)>,
     /// What this program did wrong; of what failed nothing is known.

@@ -35,11 +35,8 @@ impl<'s> RowAdjoints<'s> {
     pub fn pull(&mut self, time: f64, state: &[f64], outputs: &[Option<usize>], values: &mut [f64]) -> Vec<f64> {
         let (program, layout) = (self.memory.program(), self.memory.layout());
         self.memory.set(time, layout.q.start, state);
+        let closing = self.closes.then(|| self.memory.close());
         let assembly = self.memory.assembly();
-        if self.closes {
-            assembly.correct_until_settled(program.position(), layout.q.start);
-            assembly.project_velocities();
-        }
         if self.accelerates {
             assembly.accelerate();
         }
@@ -58,9 +55,8 @@ impl<'s> RowAdjoints<'s> {
         if self.accelerates {
             self.memory.pull_acceleration(false);
         }
-        if self.closes {
-            self.memory.pull_projection();
-            self.memory.pull_position();
+        if let Some(closing) = &closing {
+            self.memory.pull_closing(closing);
         }
         self.memory.take(layout.state())
     }

@@ -2,7 +2,9 @@
 //!
 //! A correction x ← x + c(x, y) that has settled is a fixed point. Its tape is followed backwards at that point, as
 //! often as a jet of first order takes it forwards: x̄ ← x̄ + c_xᵀ x̄, ȳ ← ȳ + c_yᵀ x̄. Where one correction solves for
-//! x, nothing is left of x̄ after the first, and ȳ = −R_yᵀ J⁻ᵀ x̄ with the factors of the tape.
+//! x, nothing is left of x̄ after the first, and ȳ = −R_yᵀ J⁻ᵀ x̄ with the factors of the tape. Where the result depends on
+//! the point that corrections begin at, as a closed position does on the one that was not, they are followed from point
+//! to point.
 
 use std::ops::Range;
 
@@ -54,10 +56,14 @@ impl<'s> StartAdjoints<'s> {
 
     /// Sets values of registers from this one on, and the time.
     pub fn set(&mut self, time: f64, first: usize, values: &[f64]) {
+        self.set_values(first, values);
+        self.assembly.tile_mut().lane_mut(self.program.layout.time).fill(time);
+    }
+
+    fn set_values(&mut self, first: usize, values: &[f64]) {
         let tile = self.assembly.tile_mut();
         let start = first * tile.width();
         tile.values_mut()[start..start + values.len()].copy_from_slice(values);
-        tile.lane_mut(self.program.layout.time).fill(time);
     }
 
     /// The adjoints.
@@ -103,16 +109,41 @@ impl<'s> StartAdjoints<'s> {
         self.take(unknowns);
     }
 
-    /// Through the velocities of a motion that were made consistent, to those that were given.
-    pub fn pull_projection(&mut self) {
-        let v = self.program.layout.v.clone();
-        self.pull_corrections(self.program.projection(), v.start, v.len(), corrections(1));
+    /// Moves the motion in the tile onto the constraints, and remembers the way.
+    pub fn close(&mut self) -> Closing {
+        let (program, layout) = (self.program, self.layout());
+        let positions = self.correct(program.position(), &layout.q);
+        let velocities = self.correct(program.projection(), &layout.v);
+        Closing { positions, velocities }
     }
 
-    /// Through positions that were closed, to those that were given.
-    pub fn pull_position(&mut self) {
-        let q = self.program.layout.q.clone();
-        self.pull_corrections(self.program.position(), q.start, q.len(), corrections(1));
+    /// Through the closure of a motion, to the one that was not closed.
+    pub fn pull_closing(&mut self, closing: &Closing) {
+        let (program, layout) = (self.program, self.layout());
+        self.pull_way(program.projection(), layout.v.start, &closing.velocities);
+        self.pull_way(program.position(), layout.q.start, &closing.positions);
+    }
+
+    /// Corrects values. Returns those before each correction.
+    fn correct(&mut self, tape: &Tape, unknowns: &Range<usize>) -> Vec<Vec<f64>> {
+        let correction = self.program.layout.correction.start;
+        let step = |_| {
+            let before = self.values(unknowns.clone()).to_vec();
+            self.assembly.tile_mut().run(tape);
+            let changes = self.values(correction..correction + unknowns.len());
+            let after: Vec<f64> = before.iter().zip(changes).map(|(value, change)| value + change).collect();
+            self.set_values(unknowns.start, &after);
+            before
+        };
+        (0..corrections(1)).map(step).collect()
+    }
+
+    /// Back through corrections, given the values before each.
+    fn pull_way(&mut self, tape: &Tape, first: usize, way: &[Vec<f64>]) {
+        for before in way.iter().rev() {
+            self.set_values(first, before);
+            self.pull_corrections(tape, first, before.len() / self.assembly.tile().width(), 1);
+        }
     }
 
     /// Through a = w(t + shift), as [`Assembly::shift_accelerations`] makes it of the state in the tile.
@@ -193,6 +224,13 @@ impl<'s> StartAdjoints<'s> {
         self.pull(self.program.sample());
         self.take(self.program.layout.parameters.clone())
     }
+}
+
+/// Positions and velocities before each of the corrections that closed a motion.
+#[derive(Debug, Default)]
+pub(in crate::simulate) struct Closing {
+    positions: Vec<Vec<f64>>,
+    velocities: Vec<Vec<f64>>,
 }
 
 /// Further corrections of a start that is nearest to rest: least squares converge linearly, though fast.

@@ -36,7 +36,9 @@ pub(super) struct Steps<'s> {
 impl<'s> Steps<'s> {
     /// From an assembled tile.
     pub fn new(simulator: &'s Simulator, start: &Tile, steps: Vec<(f64, f64)>) -> Self {
-        let stepper = Stepper::new(&simulator.program, start);
+        let mut stepper = Stepper::new(&simulator.program, start);
+        // Rounding of accelerations is that of positions over h², and so is that of derivatives.
+        stepper.refine(true);
         let lost = vec![None; start.width()];
         Self { simulator, stepper, sampling: Sampling::new(simulator, start), steps, lost }
     }

@@ -156,7 +156,7 @@ impl<'s> ExplicitAdjoints<'s> {
                 let by_next = self.pull_stage(STAGES - 1, end);
                 add(&mut adjoints, 1.0, &by_next);
             }
-            self.pull_closure(end, &next, &mut adjoints);
+            self.pull_closure(end, h, &state, &mut adjoints);
             self.share(STAGES - 1, h, &adjoints, &mut by_state);
             for stage in (0..STAGES - 1).rev() {
                 let by_stage = self.pull_stage(stage, begin + TIMES[stage] * h);
@@ -223,16 +223,20 @@ impl<'s> ExplicitAdjoints<'s> {
         }
     }
 
-    /// Through the closure of a state.
-    fn pull_closure(&mut self, time: f64, closed: &[f64], adjoints: &mut [f64]) {
+    /// Through the closure of a step's end, given the state at its beginning.
+    fn pull_closure(&mut self, end: f64, h: f64, state: &[f64], adjoints: &mut [f64]) {
         if !self.closes {
             return;
         }
         let layout = self.memory.layout();
-        self.memory.set(time, layout.q.start, closed);
+        let mut next = state.to_vec();
+        for &(stage, weight) in WEIGHTS[STAGES - 1] {
+            self.add_rate(&mut next, h * weight, stage);
+        }
+        self.memory.set(end, layout.q.start, &next);
+        let closing = self.memory.close();
         self.memory.add(layout.q.start, adjoints);
-        self.memory.pull_projection();
-        self.memory.pull_position();
+        self.memory.pull_closing(&closing);
         adjoints.copy_from_slice(&self.memory.take(layout.q.start..layout.v.end));
     }
 
