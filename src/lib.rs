@@ -9,7 +9,7 @@ pub use api::{Band, Error, Model, ModelBuilder, Output, Study, StudyResult, Valu
 #[doc(inline)]
 pub use methods::Method;
 #[doc(inline)]
-pub use results::Summary;
+pub use results::{GradientParameter, Gradients, OutputGradients, Summary};
 #[doc(inline)]
 pub use syntax::Diagnostics;
 

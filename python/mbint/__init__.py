@@ -8,8 +8,9 @@ The command ``mbint`` does the work; this package writes its input and reads its
 """
 
 from ._command import MbintError, command, version
+from .gradients import gradient
 from .result import Result
 from .samples import sample
 from .study import Study, run
 
-__all__ = ["MbintError", "Result", "Study", "command", "run", "sample", "version"]
+__all__ = ["MbintError", "Result", "Study", "command", "gradient", "run", "sample", "version"]

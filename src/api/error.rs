@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::export::ExportError;
 use crate::model::UnknownScene;
-use crate::study::RunError;
+use crate::study::{GradientError, RunError};
 use crate::syntax::Diagnostics;
 
 /// Why there is no model, or nothing of it could be run.
@@ -20,6 +20,9 @@ pub enum Error {
     /// The mechanism cannot be built, assembled or stepped.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// Outputs have no derivatives by the parameters.
+    #[error(transparent)]
+    Gradient(#[from] GradientError),
     /// The files could not be written.
     #[error(transparent)]
     Write(#[from] ExportError),

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::{Error, Study};
 use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
+use crate::results::Gradients;
+use crate::study::{self, Options};
 use crate::syntax::Diagnostics;
 
 /// A mechanism with its uncertain parameters and outputs, free of errors.
@@ -119,6 +121,14 @@ impl Model {
     /// A study of the model, with the methods that its `bounds:` ask for until others are chosen.
     pub fn study(&self) -> Study<'static> {
         Study::new(self.description.clone())
+    }
+
+    /// Derivatives of all outputs over time by all uncertain parameters, at their nominal values.
+    ///
+    /// # Errors
+    /// [`Error::Gradient`]: the mechanism cannot be run, nothing in it is uncertain, or its motion has no derivatives.
+    pub fn gradients(&self) -> Result<Gradients, Error> {
+        Ok(study::gradient(&self.description, &Options::default())?)
     }
 
     /// The checked model behind this one.

@@ -36,7 +36,9 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
         found => found.map_err(|error| {
             let message = format!("{}: {error}", model.name);
             match error {
-                GradientError::NoParameter | GradientError::NoOutput | GradientError::None(_) => Failure::Wrong(message),
+                GradientError::NoParameter | GradientError::NoOutput | GradientError::None(_) => {
+                    Failure::Wrong(message)
+                }
                 GradientError::Run(RunError::Costly(_) | RunError::Memory(_)) => Failure::Wrong(message),
                 GradientError::Run(_) | GradientError::Lost { .. } => Failure::Failed(message),
             }

@@ -13,6 +13,7 @@ mod common;
 
 mod accelerations;
 mod assembly;
+mod attained;
 mod bounds_laws;
 mod car_axis;
 mod certify;

@@ -76,10 +76,8 @@ pub fn by_influence(gradients: &Gradients, output: usize, row: usize) -> Vec<(us
 
 /// A derivative in the units in which people see both, and their quotient: `mm/mm`.
 pub fn shown_derivative(output: &OutputGradients, parameter: &GradientParameter, by: f64) -> (f64, String) {
-    let [above, below] = [
-        ShownUnit::of(&output.display, &output.unit),
-        ShownUnit::of(&parameter.display, &parameter.unit),
-    ];
+    let [above, below] =
+        [ShownUnit::of(&output.display, &output.unit), ShownUnit::of(&parameter.display, &parameter.unit)];
     let unit = match (above.text, below.text) {
         ("", "") => String::new(),
         (above, "") => above.to_owned(),

@@ -79,10 +79,7 @@ mod tests {
         };
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
         let table = text(witnesses_csv(&bounds, std::slice::from_ref(&parameter)).unwrap());
-        assert_eq!(
-            table,
-            "t,output,end,value,point,m\n0,x,lower,1,1,0.9\n0,x,upper,2,2,1.1\n0.5,x,lower,3,2,1.1\n"
-        );
+        assert_eq!(table, "t,output,end,value,point,m\n0,x,lower,1,1,0.9\n0,x,upper,2,2,1.1\n0.5,x,lower,3,2,1.1\n");
         assert_eq!(text(points_csv(&bounds, &[parameter]).unwrap()), "m\n0.9\n1.1\n");
     }
 }

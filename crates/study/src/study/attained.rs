@@ -89,8 +89,7 @@ impl Study<'_> {
         motions: &Motions,
         schedule: &Schedule,
     ) -> Result<Option<(Outcome, Attained)>, SimulationError> {
-        let is_adaptive =
-            matches!(&self.request.chebyshev, Some(Chebyshev { degree: Degree::Adaptive, .. }));
+        let is_adaptive = matches!(&self.request.chebyshev, Some(Chebyshev { degree: Degree::Adaptive, .. }));
         let has_motion = !self.simulator.system.analysis.visits() && schedule.segments().is_none();
         if !is_adaptive || !has_motion || self.domain.dimension() < MANY || self.interruption.is_asked() {
             return Ok(None);
@@ -165,11 +164,8 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         self.simulate(std::slice::from_ref(&middle))?;
         let (rows, outputs) = (self.motions.rows(), self.motions.outputs());
         let every = (2 * rows * outputs).div_ceil(FOLLOWED).max(1);
-        let wanted: Vec<(usize, usize, usize)> = (0..rows)
-            .rev()
-            .step_by(every)
-            .flat_map(|row| (0..outputs).map(move |output| (0, row, output)))
-            .collect();
+        let wanted: Vec<(usize, usize, usize)> =
+            (0..rows).rev().step_by(every).flat_map(|row| (0..outputs).map(move |output| (0, row, output))).collect();
         let Some(found) = self.slopes(std::slice::from_ref(&middle), &wanted)? else { return Ok(Vec::new()) };
         let ends = wanted.into_iter().zip(found).flat_map(|((_, row, output), (value, slope))| {
             let reach: f64 = slope.iter().map(|slope| slope.abs()).sum();
@@ -193,7 +189,8 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     fn simulate(&mut self, points: &[Vec<f64>]) -> Result<(), SimulationError> {
         let samples = self.study.domain.samples(points);
         let can = self.study.simulator.can_assemble(&samples);
-        let samples: Vec<Sample> = samples.into_iter().zip(can).filter_map(|(sample, can)| can.then_some(sample)).collect();
+        let samples: Vec<Sample> =
+            samples.into_iter().zip(can).filter_map(|(sample, can)| can.then_some(sample)).collect();
         if samples.is_empty() {
             return Ok(());
         }
@@ -215,8 +212,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     ) -> Result<Option<Vec<(f64, Vec<f64>)>>, SimulationError> {
         let study = self.study;
         let samples = study.domain.samples(points);
-        let wanted: Vec<Wanted> =
-            wanted.iter().map(|&(sample, row, output)| Wanted { sample, row, output }).collect();
+        let wanted: Vec<Wanted> = wanted.iter().map(|&(sample, row, output)| Wanted { sample, row, output }).collect();
         self.simulations += COST * wanted.len();
         let found = match gradients(&study.simulator, self.schedule, &samples, &wanted, study.interruption) {
             Err(NoGradient::Simulation(SimulationError::Interrupted)) => return Err(SimulationError::Interrupted),

@@ -23,7 +23,9 @@ pub enum GradientError {
         time: f64,
     },
     /// Nothing to differentiate by.
-    #[error("no parameter is uncertain: give an interval or a tolerance to those by which outputs are to be differentiated")]
+    #[error(
+        "no parameter is uncertain: give an interval or a tolerance to those by which outputs are to be differentiated"
+    )]
     NoParameter,
     /// Nothing to differentiate.
     #[error("the model has no outputs over time")]

@@ -16,7 +16,8 @@ use crate::model::{Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
 use crate::results::{
-    Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary, Witness,
+    Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
+    Witness,
 };
 use crate::simulate::SimulationError;
 

@@ -153,8 +153,7 @@ impl<'s> StartAdjoints<'s> {
         let state = self.values(layout.state()).to_vec();
         let by_shifted = self.take(layout.a.clone());
         let others = self.take(layout.state());
-        let [speeds, accelerations, algorithmic] =
-            [&v, &w, &layout.a].map(|block| self.values(block.clone()).to_vec());
+        let [speeds, accelerations, algorithmic] = [&v, &w, &layout.a].map(|block| self.values(block.clone()).to_vec());
         let moved: Vec<f64> = speeds.iter().zip(&accelerations).map(|(v, w)| shift * (v + 0.5 * shift * w)).collect();
         let tile = self.assembly.tile_mut();
         let width = tile.width();
@@ -172,8 +171,7 @@ impl<'s> StartAdjoints<'s> {
         self.add(layout.q.start, &others);
         self.add(q.start, &by_q);
         let by_speed: Vec<f64> = by_v.iter().zip(&by_q).map(|(v, q)| v + shift * q).collect();
-        let by_acceleration: Vec<f64> =
-            by_v.iter().zip(&by_q).map(|(v, q)| shift * (v + 0.5 * shift * q)).collect();
+        let by_acceleration: Vec<f64> = by_v.iter().zip(&by_q).map(|(v, q)| shift * (v + 0.5 * shift * q)).collect();
         self.add(v.start, &by_speed);
         self.add(w.start, &by_acceleration);
     }

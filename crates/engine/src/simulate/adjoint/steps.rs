@@ -173,8 +173,7 @@ impl<'s> StepAdjoints<'s> {
             }
         }
         let end_state = unchanged.unwrap_or(after);
-        values[layout.iterate.start * width..layout.iterate.end * width]
-            .copy_from_slice(&end_state[block(&layout.w)]);
+        values[layout.iterate.start * width..layout.iterate.end * width].copy_from_slice(&end_state[block(&layout.w)]);
         values[layout.lambda.start * width..layout.lambda.end * width]
             .copy_from_slice(&end_state[block(&layout.lambda)]);
         self.tile.lane_mut(layout.time).fill(end);

@@ -165,7 +165,10 @@ impl TileOf<'_> {
             let mut steps = Vec::new();
             for row in 0..=rows.first().copied().unwrap_or(0) {
                 steps.extend(refined.steps_to(row).flat_map(|step| instants.divide(step)));
-                rows.iter().zip(&mut ends_of_rows).filter(|(known, _)| **known == row).for_each(|(_, end)| *end = steps.len());
+                rows.iter()
+                    .zip(&mut ends_of_rows)
+                    .filter(|(known, _)| **known == row)
+                    .for_each(|(_, end)| *end = steps.len());
             }
             let count = steps.len();
             motions.resize(rows.len(), vec![0.0; layout.state().len() * self.lanes.len()]);

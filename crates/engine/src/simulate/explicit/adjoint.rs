@@ -89,11 +89,7 @@ impl<'s> ExplicitAdjoints<'s> {
     ///
     /// # Errors
     /// Where the closure's equations have no factors.
-    pub fn new(
-        simulator: &'s Simulator,
-        start: &Tile,
-        path: Path<ExplicitSteps<'s>>,
-    ) -> Result<Self, SimulationError> {
+    pub fn new(simulator: &'s Simulator, start: &Tile, path: Path<ExplicitSteps<'s>>) -> Result<Self, SimulationError> {
         let (needs, size) = (Needs::of(simulator), path.start().len());
         let memory = StartAdjoints::new(simulator, simulator.free_closure()?, start);
         let unknowns = (memory.layout().lambda.end - memory.layout().w.start) * start.width();
@@ -131,7 +127,7 @@ impl<'s> ExplicitAdjoints<'s> {
             let next = unchanged.unwrap_or(after);
             let is_dense = rows.peek().is_some_and(|row| row.time > begin);
             let h = end - begin;
-            self.evaluate(&state, &next, (begin, h), if is_dense { WITH_DENSE } else { STAGES - 1 });
+            self.evaluate(&state, &next, begin, h, if is_dense { WITH_DENSE } else { STAGES - 1 });
             self.by_rates.iter_mut().for_each(|by_rate| by_rate.fill(0.0));
             let mut by_state = vec![0.0; state.len()];
             while let Some(row) = rows.next_if(|row| row.time > begin) {
@@ -179,7 +175,7 @@ impl<'s> ExplicitAdjoints<'s> {
     }
 
     /// The stages of a step, given the states at its ends.
-    fn evaluate(&mut self, state: &[f64], next: &[f64], (begin, h): (f64, f64), count: usize) {
+    fn evaluate(&mut self, state: &[f64], next: &[f64], begin: f64, h: f64, count: usize) {
         let layout = self.memory.layout();
         for stage in 0..count {
             let mut at = if stage == STAGES - 1 { next.to_vec() } else { state.to_vec() };

@@ -166,7 +166,9 @@ unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory
                 Op::Binary(Binary::Sub) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a - b),
                 Op::Binary(Binary::Mul) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a * b),
                 Op::Select => each::<W, C, 4, K>(operands, memory, keep, functions::select),
-                Op::Binary(Binary::Select) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::select(a, b, 0.0)),
+                Op::Binary(Binary::Select) => {
+                    each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::select(a, b, 0.0))
+                }
                 Op::Binary(Binary::SelectElse) => {
                     each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::select(a, 0.0, b))
                 }
@@ -176,8 +178,12 @@ unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory
                 Op::Unary(Unary::Neg) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| -a),
                 Op::Unary(Unary::Abs) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a.abs()),
                 Op::Unary(Unary::Sqrt) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a.sqrt()),
-                Op::Unary(function) => each::<W, 1, 2, K>(operands, memory, keep, |a, _, _| functions::unary(function, a)),
-                Op::Binary(function) => each::<W, 1, 3, K>(operands, memory, keep, |a, b, _| functions::binary(function, a, b)),
+                Op::Unary(function) => {
+                    each::<W, 1, 2, K>(operands, memory, keep, |a, _, _| functions::unary(function, a))
+                }
+                Op::Binary(function) => {
+                    each::<W, 1, 3, K>(operands, memory, keep, |a, b, _| functions::binary(function, a, b))
+                }
                 Op::SinCos => sin_cos::<W, C, K>(operands, memory, keep),
             }
         }
