@@ -63,37 +63,48 @@ impl Adjoints {
     /// # Panics
     /// If the tape names a register that the tile does not have, or the tile is another one than these are of.
     pub fn pull(&mut self, tape: &Tape, tile: &mut Tile) {
-        assert!(tile.width() == self.width && tile.values().len() == self.values.len(), "adjoints of another tile");
-        tile.run_recorded(tape, &mut self.record);
-        match self.width {
-            1 => self.reverse::<1>(tape, tile),
-            4 => self.reverse::<4>(tape, tile),
-            8 => self.reverse::<8>(tape, tile),
-            16 => self.reverse::<16>(tape, tile),
-            32 => self.reverse::<32>(tape, tile),
-            _ => self.reverse::<64>(tape, tile),
-        }
+        self.record(tape, tile);
+        self.pull_last(tape, tile);
     }
 
-    fn reverse<const W: usize>(&mut self, tape: &Tape, tile: &mut Tile) {
-        let Self { values: adjoints, record, .. } = self;
-        vectorised(Reverse::<W> {
-            tape,
-            values: tile.values_mut().as_chunks_mut().0,
-            adjoints: adjoints.as_chunks_mut().0,
-            replaced: record.replaced.as_chunks().0,
-            parts: &record.parts,
-        });
+    /// Runs a tape, to be followed backwards by [`pull_last`](Self::pull_last) later. Tapes that are recorded after it
+    /// are followed before it; between, the tile's registers change by them alone, or back to what they were.
+    ///
+    /// # Panics
+    /// As [`pull`](Self::pull).
+    pub fn record(&mut self, tape: &Tape, tile: &mut Tile) {
+        assert!(tile.width() == self.width && tile.values().len() == self.values.len(), "adjoints of another tile");
+        tile.run_recorded(tape, &mut self.record);
+    }
+
+    /// Pulls adjoints back through the tape that was recorded last.
+    ///
+    /// # Panics
+    /// If it is another tape, or the tile is another one than these are of.
+    pub fn pull_last(&mut self, tape: &Tape, tile: &mut Tile) {
+        assert!(tile.width() == self.width && tile.values().len() == self.values.len(), "adjoints of another tile");
+        let (replaced, parts) = self.record.last();
+        assert!(tape.registers() <= tile.registers() && replaced.len() <= tape.written() * self.width);
+        let (memory, adjoints) = (tile.values_mut().as_mut_ptr(), self.values.as_mut_ptr());
+        match self.width {
+            1 => vectorised(Reverse::<1, 1> { tape, memory, adjoints, replaced, parts }),
+            4 => vectorised(Reverse::<4, 4> { tape, memory, adjoints, replaced, parts }),
+            8 => vectorised(Reverse::<8, 8> { tape, memory, adjoints, replaced, parts }),
+            16 => vectorised(Reverse::<16, 8> { tape, memory, adjoints, replaced, parts }),
+            32 => vectorised(Reverse::<32, 8> { tape, memory, adjoints, replaced, parts }),
+            _ => vectorised(Reverse::<64, 8> { tape, memory, adjoints, replaced, parts }),
+        }
+        self.record.end();
     }
 }
 
-/// A tape to be followed backwards.
-struct Reverse<'r, const W: usize> {
+/// A tape to be followed backwards over `W` lanes in chunks of `C`. Values and adjoints have all registers of the tape.
+struct Reverse<'r, const W: usize, const C: usize> {
     tape: &'r Tape,
-    values: &'r mut [[f64; W]],
-    adjoints: &'r mut [[f64; W]],
+    memory: *mut f64,
+    adjoints: *mut f64,
     /// Replaced values that are not restored yet.
-    replaced: &'r [[f64; W]],
+    replaced: &'r [f64],
     parts: &'r [usize],
 }
 
@@ -103,7 +114,7 @@ fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
-impl<const W: usize> Vectorise for Reverse<'_, W> {
+impl<const W: usize, const C: usize> Vectorise for Reverse<'_, W, C> {
     type Output = ();
 
     #[inline(always)]
@@ -111,81 +122,96 @@ impl<const W: usize> Vectorise for Reverse<'_, W> {
         for &place in self.parts.iter().rev() {
             let Some(Part::Run(op, operands)) = self.tape.part(&mut { place }) else { continue };
             match op {
-                Op::Copy => self.each::<2>(operands, |_, _| [1.0, 0.0, 0.0]),
-                Op::MulAdd => self.each::<4>(operands, |[a, b, _], _| [b, a, 1.0]),
-                Op::MulSub => self.each::<4>(operands, |[a, b, _], _| [b, a, -1.0]),
-                Op::NegMulAdd => self.each::<4>(operands, |[a, b, _], _| [-b, -a, 1.0]),
-                Op::Select => self.each::<4>(operands, |[a, _, _], _| {
-                    [0.0, functions::select(a, 1.0, 0.0), functions::select(a, 0.0, 1.0)]
+                Op::Copy => self.each::<2>(operands, |_, _, by| [by, 0.0, 0.0]),
+                Op::MulAdd => self.each::<4>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), by]),
+                Op::MulSub => self.each::<4>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), -by]),
+                Op::NegMulAdd => self.each::<4>(operands, |[a, b, _], _, by| [-times(by, b), -times(by, a), by]),
+                Op::Select => self.each::<4>(operands, |[a, _, _], _, by| {
+                    [0.0, functions::select(a, by, 0.0), functions::select(a, 0.0, by)]
                 }),
                 Op::SinCos => self.sin_cos(operands),
-                Op::Binary(Binary::Add) => self.each::<3>(operands, |_, _| [1.0, 1.0, 0.0]),
-                Op::Binary(Binary::Sub) => self.each::<3>(operands, |_, _| [1.0, -1.0, 0.0]),
-                Op::Binary(Binary::Mul) => self.each::<3>(operands, |[a, b, _], _| [b, a, 0.0]),
-                Op::Binary(Binary::Div) => self.each::<3>(operands, |[_, b, _], d| [1.0 / b, -(d / b), 0.0]),
-                Op::Unary(Unary::Neg) => self.each::<2>(operands, |_, _| [-1.0, 0.0, 0.0]),
-                Op::Unary(Unary::Sqrt) => self.each::<2>(operands, |_, d| [0.5 / d, 0.0, 0.0]),
-                Op::Unary(function) => self.each::<2>(operands, |[a, _, _], d| [slope(function, a, d), 0.0, 0.0]),
-                Op::Binary(function) => self.each::<3>(operands, |[a, b, _], d| {
+                Op::Binary(Binary::Add) => self.each::<3>(operands, |_, _, by| [by, by, 0.0]),
+                Op::Binary(Binary::Sub) => self.each::<3>(operands, |_, _, by| [by, -by, 0.0]),
+                Op::Binary(Binary::Mul) => {
+                    self.each::<3>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), 0.0])
+                }
+                Op::Binary(Binary::Div) => self.each::<3>(operands, |[_, b, _], d, by| {
+                    let by_a = times(by, 1.0 / b);
+                    [by_a, -times(by_a, d), 0.0]
+                }),
+                Op::Unary(Unary::Neg) => self.each::<2>(operands, |_, _, by| [-by, 0.0, 0.0]),
+                Op::Unary(Unary::Sqrt) => self.each::<2>(operands, |_, d, by| [times(by, 0.5 / d), 0.0, 0.0]),
+                Op::Unary(function) => {
+                    self.each::<2>(operands, |[a, _, _], d, by| [times(by, slope(function, a, d)), 0.0, 0.0]);
+                }
+                Op::Binary(function) => self.each::<3>(operands, |[a, b, _], d, by| {
                     let [by_a, by_b] = slopes(function, [a, b], d);
-                    [by_a, by_b, 0.0]
+                    [times(by, by_a), times(by, by_b), 0.0]
                 }),
             }
         }
     }
 }
 
-impl<const W: usize> Reverse<'_, W> {
-    /// Takes back what an instruction wrote into a register. Returns what it was.
+impl<const W: usize, const C: usize> Reverse<'_, W, C> {
+    /// The values of a register that are restored next.
     #[inline(always)]
-    fn restore(&mut self, register: u32) -> [f64; W] {
-        let (&last, rest) = self.replaced.split_last().expect("each instruction was recorded as it ran");
+    fn next(&mut self) -> &[f64] {
+        let (rest, last) = self.replaced.split_at(self.replaced.len() - W);
         self.replaced = rest;
-        std::mem::replace(&mut self.values[register as usize], last)
+        last
     }
 
-    /// Takes the adjoints of a result.
+    /// Instructions of one operation (of `A` registers): what a result and its adjoint do to the adjoints of a, b, c.
     #[inline(always)]
-    fn take(&mut self, register: u32) -> [f64; W] {
-        std::mem::replace(&mut self.adjoints[register as usize], [0.0; W])
-    }
-
-    #[inline(always)]
-    fn add(&mut self, register: u32, change: [f64; W]) {
-        for (adjoint, change) in self.adjoints[register as usize].iter_mut().zip(change) {
-            *adjoint += change;
-        }
-    }
-
-    /// Instructions of one operation (of `A` registers), whose derivatives by a, b, c follow from these and the result.
-    #[inline(always)]
-    fn each<const A: usize>(&mut self, operands: &[u32], slopes: impl Fn([f64; 3], f64) -> [f64; 3]) {
+    fn each<const A: usize>(&mut self, operands: &[u32], shares: impl Fn([f64; 3], f64, f64) -> [f64; 3]) {
+        let (memory, adjoints) = (self.memory, self.adjoints);
         for Operands { a, b, c, d } in operands.chunks_exact(A).rev().map(Operands::of) {
-            let (result, adjoint) = (self.restore(d), self.take(d));
-            let [x, y, z] = [a, b, c].map(|register| self.values[register as usize]);
-            let mut by = [[0.0; W]; 3];
-            for lane in 0..W {
-                let of_lane = slopes([x[lane], y[lane], z[lane]], result[lane]);
-                for operand in 0..A - 1 {
-                    by[operand][lane] = times(adjoint[lane], of_lane[operand]);
+            let restored = self.next().as_ptr();
+            for lane in (0..W).step_by(C) {
+                let at = |register: u32| register as usize * W + lane;
+                // SAFETY: values and adjoints have all registers of the tape (whoever made this has seen to it), the
+                // restored values are those of `W` lanes, and `lane + C ≤ W`.
+                unsafe {
+                    let result = memory.add(at(d)).cast::<[f64; C]>().read();
+                    memory.add(at(d)).cast::<[f64; C]>().write(restored.add(lane).cast::<[f64; C]>().read());
+                    let by = adjoints.add(at(d)).cast::<[f64; C]>().read();
+                    adjoints.add(at(d)).cast::<[f64; C]>().write([0.0; C]);
+                    let [x, y, z] = [a, b, c].map(|register| memory.add(at(register)).cast::<[f64; C]>().read());
+                    let mut changes = [[0.0; C]; 3];
+                    for i in 0..C {
+                        let own = shares([x[i], y[i], z[i]], result[i], by[i]);
+                        for operand in 0..A - 1 {
+                            changes[operand][i] = own[operand];
+                        }
+                    }
+                    for (register, change) in [a, b, c].into_iter().zip(changes).take(A - 1) {
+                        let mut sum = adjoints.add(at(register)).cast::<[f64; C]>().read();
+                        sum.iter_mut().zip(change).for_each(|(sum, change)| *sum += change);
+                        adjoints.add(at(register)).cast::<[f64; C]>().write(sum);
+                    }
                 }
-            }
-            for (register, change) in [a, b, c].into_iter().zip(by).take(A - 1) {
-                self.add(register, change);
             }
         }
     }
 
     #[inline(always)]
     fn sin_cos(&mut self, operands: &[u32]) {
+        let (memory, adjoints) = (self.memory, self.adjoints);
         for Operands { a, b, d, .. } in operands.chunks_exact(Op::SinCos.arity()).rev().map(Operands::of) {
-            let (cosine, by_cosine) = (self.restore(b), self.take(b));
-            let (sine, by_sine) = (self.restore(d), self.take(d));
-            let mut change = [0.0; W];
+            let [cosine_before, sine_before] = [0, 1].map(|_| self.next().as_ptr());
             for lane in 0..W {
-                change[lane] = times(by_sine[lane], cosine[lane]) - times(by_cosine[lane], sine[lane]);
+                let at = |register: u32| register as usize * W + lane;
+                // SAFETY: as in `each`.
+                unsafe {
+                    let (sine, cosine) = (memory.add(at(d)).read(), memory.add(at(b)).read());
+                    memory.add(at(b)).write(cosine_before.add(lane).read());
+                    memory.add(at(d)).write(sine_before.add(lane).read());
+                    let by_cosine = adjoints.add(at(b)).replace(0.0);
+                    let by_sine = adjoints.add(at(d)).replace(0.0);
+                    *adjoints.add(at(a)) += times(by_sine, cosine) - times(by_cosine, sine);
+                }
             }
-            self.add(a, change);
         }
     }
 }

@@ -16,36 +16,35 @@ pub(in crate::simulate) trait Stepping {
     fn advance(&mut self, step: usize) -> Option<Vec<f64>>;
 }
 
-/// A state between two steps.
-#[derive(Clone, Debug)]
-struct Between {
-    state: Vec<f64>,
-    /// Before it changed at the instant.
-    unchanged: Option<Vec<f64>>,
-}
-
 /// The path of a tile.
 #[derive(Debug)]
 pub(in crate::simulate) struct Path<S> {
     stepping: S,
     steps: usize,
+    /// Values of a state.
+    size: usize,
     /// Steps between states that are kept.
     every: usize,
-    kept: Vec<Vec<f64>>,
-    /// The states from this one on.
+    /// Those states, one after the other.
+    kept: Vec<f64>,
+    /// The states from this one on, one after the other.
     first: usize,
-    window: Vec<Between>,
+    window: Vec<f64>,
+    /// By the number of steps before: states before they changed at instants.
+    unchanged: Vec<(usize, Vec<f64>)>,
 }
 
 impl<S: Stepping> Path<S> {
     /// Takes all steps; `visit` gets every state with the number of steps before it.
     pub fn new(stepping: S, steps: usize, visit: &mut dyn FnMut(usize, &[f64])) -> Self {
-        let of_one = size_of_val(stepping.state()).max(1);
+        let size = stepping.state().len();
+        let of_one = (size * size_of::<f64>()).max(1);
         let every = if (steps + 1) * of_one <= ROOM { steps.max(1) } else { steps.isqrt() + 1 };
-        let mut path = Self { stepping, steps, every, kept: Vec::new(), first: 0, window: Vec::new() };
+        let (kept, window, unchanged) = (Vec::new(), Vec::new(), Vec::new());
+        let mut path = Self { stepping, steps, size, every, kept, first: 0, window, unchanged };
         visit(0, path.stepping.state());
         for first in (0..steps.max(1)).step_by(every) {
-            path.kept.push(path.stepping.state().to_vec());
+            path.kept.extend_from_slice(path.stepping.state());
             path.fill(first, visit);
         }
         path
@@ -65,29 +64,30 @@ impl<S: Stepping> Path<S> {
     fn fill(&mut self, first: usize, visit: &mut dyn FnMut(usize, &[f64])) {
         self.first = first;
         self.window.clear();
-        self.window.push(Between { state: self.stepping.state().to_vec(), unchanged: None });
+        self.unchanged.clear();
+        self.window.extend_from_slice(self.stepping.state());
         for step in first..(first + self.every).min(self.steps) {
             let unchanged = self.stepping.advance(step);
             visit(step + 1, self.stepping.state());
-            self.window.push(Between { state: self.stepping.state().to_vec(), unchanged });
+            self.window.extend_from_slice(self.stepping.state());
+            self.unchanged.extend(unchanged.map(|state| (step + 1, state)));
         }
     }
 
     /// The state before a step, the one after it, and that before it changed at an instant, where it did.
     pub fn around(&mut self, step: usize) -> (&[f64], &[f64], Option<&[f64]>) {
-        if step < self.first || step + 1 >= self.first + self.window.len() {
+        if step < self.first || (step + 2 - self.first) * self.size > self.window.len() {
             let number = step / self.every;
-            let state = std::mem::take(&mut self.kept[number]);
-            self.stepping.restore(number * self.every, &state);
-            self.kept[number] = state;
+            self.stepping.restore(number * self.every, &self.kept[number * self.size..][..self.size]);
             self.fill(number * self.every, &mut |_, _| {});
         }
-        let [before, after] = [step, step + 1].map(|step| &self.window[step - self.first]);
-        (&before.state, &after.state, after.unchanged.as_deref())
+        let both = &self.window[(step - self.first) * self.size..][..2 * self.size];
+        let unchanged = self.unchanged.iter().find(|(before, _)| *before == step + 1);
+        (&both[..self.size], &both[self.size..], unchanged.map(|(_, state)| state.as_slice()))
     }
 
     /// The state at the start.
     pub fn start(&self) -> &[f64] {
-        &self.kept[0]
+        &self.kept[..self.size]
     }
 }

@@ -2,7 +2,7 @@
 
 use super::start::StartAdjoints;
 use crate::compile::StartProgram;
-use crate::simulate::ensemble::Needs;
+use crate::simulate::ensemble::{Needs, corrections};
 use crate::simulate::simulator::Simulator;
 use symdiff::Tile;
 
@@ -35,7 +35,7 @@ impl<'s> RowAdjoints<'s> {
     pub fn pull(&mut self, time: f64, state: &[f64], outputs: &[Option<usize>], values: &mut [f64]) -> Vec<f64> {
         let (program, layout) = (self.memory.program(), self.memory.layout());
         self.memory.set(time, layout.q.start, state);
-        let closing = self.closes.then(|| self.memory.close());
+        let closing = self.closes.then(|| self.memory.close(corrections(1)));
         let assembly = self.memory.assembly();
         if self.accelerates {
             assembly.accelerate();
@@ -53,7 +53,7 @@ impl<'s> RowAdjoints<'s> {
         }
         self.memory.pull(program.observe());
         if self.accelerates {
-            self.memory.pull_acceleration(false);
+            self.memory.pull_acceleration();
         }
         if let Some(closing) = &closing {
             self.memory.pull_closing(closing);

@@ -101,19 +101,41 @@ impl<'s> StartAdjoints<'s> {
         }
     }
 
-    /// Through accelerations and multipliers, which the tile holds, to positions and velocities.
-    pub fn pull_acceleration(&mut self, is_linear: bool) {
-        let unknowns = self.program.layout.w.start..self.program.layout.lambda.end;
-        let times = if is_linear { 1 } else { corrections(1) };
-        self.pull_corrections(self.program.acceleration(), unknowns.start, unknowns.len(), times);
+    /// Solves for accelerations and multipliers by one correction, which is all where forces are linear in them.
+    /// [`pull_solved`](Self::pull_solved) follows it backwards.
+    pub fn solve_acceleration(&mut self) {
+        let Self { program, assembly, adjoints } = self;
+        let (layout, tile) = (&program.layout, assembly.tile_mut());
+        adjoints.record(program.acceleration(), tile);
+        let width = tile.width();
+        let (known, corrections) = tile.values_mut().split_at_mut(layout.correction.start * width);
+        let unknowns = &mut known[layout.w.start * width..layout.lambda.end * width];
+        unknowns.iter_mut().zip(corrections).for_each(|(value, correction)| *value += *correction);
+    }
+
+    /// Through the accelerations and multipliers that were solved for last, to positions and velocities. The tile holds
+    /// the state from before, and has run no other tape since.
+    pub fn pull_solved(&mut self) {
+        let layout = self.layout();
+        let unknowns = layout.w.start..layout.lambda.end;
+        let seeds = self.take(unknowns.clone());
+        self.add(layout.correction.start, &seeds);
+        self.adjoints.pull_last(self.program.acceleration(), self.assembly.tile_mut());
         self.take(unknowns);
     }
 
-    /// Moves the motion in the tile onto the constraints, and remembers the way.
-    pub fn close(&mut self) -> Closing {
+    /// Through accelerations and multipliers, which the tile holds, to positions and velocities.
+    pub fn pull_acceleration(&mut self) {
+        let unknowns = self.program.layout.w.start..self.program.layout.lambda.end;
+        self.pull_corrections(self.program.acceleration(), unknowns.start, unknowns.len(), corrections(1));
+        self.take(unknowns);
+    }
+
+    /// Moves the motion in the tile onto the constraints by so many corrections, and remembers the way.
+    pub fn close(&mut self, times: usize) -> Closing {
         let (program, layout) = (self.program, self.layout());
-        let positions = self.correct(program.position(), &layout.q);
-        let velocities = self.correct(program.projection(), &layout.v);
+        let positions = self.correct(program.position(), &layout.q, times);
+        let velocities = self.correct(program.projection(), &layout.v, times);
         Closing { positions, velocities }
     }
 
@@ -125,7 +147,7 @@ impl<'s> StartAdjoints<'s> {
     }
 
     /// Corrects values. Returns those before each correction.
-    fn correct(&mut self, tape: &Tape, unknowns: &Range<usize>) -> Vec<Vec<f64>> {
+    fn correct(&mut self, tape: &Tape, unknowns: &Range<usize>, times: usize) -> Vec<Vec<f64>> {
         let correction = self.program.layout.correction.start;
         let step = |_| {
             let before = self.values(unknowns.clone()).to_vec();
@@ -135,7 +157,7 @@ impl<'s> StartAdjoints<'s> {
             self.set_values(unknowns.start, &after);
             before
         };
-        (0..corrections(1)).map(step).collect()
+        (0..times).map(step).collect()
     }
 
     /// Back through corrections, given the values before each.
@@ -165,7 +187,7 @@ impl<'s> StartAdjoints<'s> {
         self.set(time + shift, w.start, &algorithmic);
         self.assembly.accelerate();
         self.add(w.start, &by_shifted);
-        self.pull_acceleration(false);
+        self.pull_acceleration();
         let (by_q, by_v) = (self.take(q.clone()), self.take(v.clone()));
         self.set(time, layout.q.start, &state);
         self.add(layout.q.start, &others);
@@ -181,7 +203,7 @@ impl<'s> StartAdjoints<'s> {
     pub fn pull_anew(&mut self, time: f64, state: &[f64], shift: f64) {
         self.set(time, self.layout().q.start, state);
         self.pull_shift(time, shift);
-        self.pull_acceleration(false);
+        self.pull_acceleration();
     }
 
     /// Through the new values of states that change at a time, to the state before (all but a: q, v and w, λ).
@@ -207,7 +229,7 @@ impl<'s> StartAdjoints<'s> {
             self.assembly.tile_mut().run(program.given());
             self.assembly.accelerate();
             self.pull_sampling(0.0);
-            self.pull_acceleration(false);
+            self.pull_acceleration();
         }
         let times = corrections(1) + if program.open.is_any() { OPEN } else { 0 };
         self.pull_corrections(program.velocity(), layout.v.start, layout.v.len(), times);

@@ -96,6 +96,8 @@ pub(super) struct StepAdjoints<'s> {
     /// Of the start, and of instants at which states change.
     start: StartAdjoints<'s>,
     shift: f64,
+    /// Adjoints of the step's solution.
+    seeds: Vec<f64>,
 }
 
 impl<'s> StepAdjoints<'s> {
@@ -105,7 +107,15 @@ impl<'s> StepAdjoints<'s> {
         let tile = path.stepping().stepper.tile().clone();
         let adjoints = Adjoints::new(&tile);
         let shift = program.coefficients.shift();
-        Self { program, path, tile, adjoints, start: StartAdjoints::new(simulator, &simulator.start, start), shift }
+        Self {
+            program,
+            path,
+            tile,
+            adjoints,
+            start: StartAdjoints::new(simulator, &simulator.start, start),
+            shift,
+            seeds: Vec::new(),
+        }
     }
 
     /// From the rows, the last first, to the start: adjoints of the start's positions (n lines) and of the parameters (k
@@ -180,15 +190,16 @@ impl<'s> StepAdjoints<'s> {
         self.tile.run(self.program.step());
         self.tile.run(self.program.factor());
         self.adjoints.pull(self.program.advance(), &mut self.tile);
-        let mut seeds = self.adjoints.block(layout.iterate.clone()).to_vec();
-        seeds.extend_from_slice(self.adjoints.block(layout.lambda.clone()));
+        self.seeds.clear();
+        self.seeds.extend_from_slice(self.adjoints.block(layout.iterate.clone()));
+        self.seeds.extend_from_slice(self.adjoints.block(layout.lambda.clone()));
         // The correction does not depend on what it starts from.
         let forget = |adjoints: &mut Adjoints| {
             adjoints.block_mut(layout.iterate.clone()).fill(0.0);
             adjoints.block_mut(layout.lambda.clone()).fill(0.0);
         };
         forget(&mut self.adjoints);
-        self.adjoints.block_mut(layout.correction.clone()).copy_from_slice(&seeds);
+        self.adjoints.block_mut(layout.correction.clone()).copy_from_slice(&self.seeds);
         self.adjoints.pull(self.program.correct(), &mut self.tile);
         forget(&mut self.adjoints);
         self.adjoints.pull(self.program.step(), &mut self.tile);

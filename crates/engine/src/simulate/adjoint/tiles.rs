@@ -17,8 +17,8 @@ use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
-/// Memories of a tile, in units of that of its steps: values, adjoints, and what a tape replaces.
-const MEMORIES: usize = 4;
+/// Memories of a tile, in units of that of its steps: values and adjoints.
+const MEMORIES: usize = 2;
 
 /// A gradient that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

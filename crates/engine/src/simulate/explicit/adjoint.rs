@@ -70,16 +70,23 @@ pub(in crate::simulate) struct ExplicitRow {
     pub outputs: Vec<Option<usize>>,
 }
 
+/// Corrections that close a step's end: each squares what it misses the constraints by.
+const CLOSING: usize = 2;
+
 /// Goes backwards over a path.
 #[derive(Debug)]
 pub(in crate::simulate) struct ExplicitAdjoints<'s> {
     path: Path<ExplicitSteps<'s>>,
+    /// Of the stages, and of closures.
     memory: StartAdjoints<'s>,
+    closures: StartAdjoints<'s>,
     is_linear: bool,
     closes: bool,
-    /// Of the step that is followed: states of the stages (q and v), and what follows from them (w and λ).
+    /// Of the step that is followed: states of the stages (q and v), what follows from them (w and λ), and what that was
+    /// corrected from.
     stages: Vec<Vec<f64>>,
     unknowns: Vec<Vec<f64>>,
+    guesses: Vec<Vec<f64>>,
     /// Adjoints of the stages' rates.
     by_rates: Vec<Vec<f64>>,
 }
@@ -91,15 +98,18 @@ impl<'s> ExplicitAdjoints<'s> {
     /// Where the closure's equations have no factors.
     pub fn new(simulator: &'s Simulator, start: &Tile, path: Path<ExplicitSteps<'s>>) -> Result<Self, SimulationError> {
         let (needs, size) = (Needs::of(simulator), path.start().len());
-        let memory = StartAdjoints::new(simulator, simulator.free_closure()?, start);
+        let program = simulator.free_closure()?;
+        let [memory, closures] = [0, 1].map(|_| StartAdjoints::new(simulator, program, start));
         let unknowns = (memory.layout().lambda.end - memory.layout().w.start) * start.width();
         Ok(Self {
             path,
             memory,
+            closures,
             is_linear: needs.linear,
             closes: needs.closure,
             stages: vec![vec![0.0; size]; WITH_DENSE],
             unknowns: vec![vec![0.0; unknowns]; WITH_DENSE],
+            guesses: vec![vec![0.0; unknowns]; WITH_DENSE],
             by_rates: vec![vec![0.0; size]; WITH_DENSE],
         })
     }
@@ -171,7 +181,9 @@ impl<'s> ExplicitAdjoints<'s> {
 
     /// The adjoints of the parameters, k lines.
     pub fn finish(&mut self) -> Vec<f64> {
-        self.memory.finish()
+        let mut total = self.memory.finish();
+        add(&mut total, 1.0, &self.closures.finish());
+        total
     }
 
     /// The stages of a step, given the states at its ends.
@@ -183,8 +195,14 @@ impl<'s> ExplicitAdjoints<'s> {
                 self.add_rate(&mut at, h * weight, other);
             }
             self.memory.set(begin + TIMES[stage] * h, layout.q.start, &at);
-            self.memory.assembly().accelerate();
-            self.unknowns[stage].copy_from_slice(self.memory.values(layout.w.start..layout.lambda.end));
+            let unknowns = layout.w.start..layout.lambda.end;
+            self.guesses[stage].copy_from_slice(self.memory.values(unknowns.clone()));
+            if self.is_linear {
+                self.memory.solve_acceleration();
+            } else {
+                self.memory.assembly().accelerate();
+            }
+            self.unknowns[stage].copy_from_slice(self.memory.values(unknowns));
             self.stages[stage] = at;
         }
     }
@@ -197,15 +215,20 @@ impl<'s> ExplicitAdjoints<'s> {
         add(velocities, factor, &self.unknowns[stage][..half]);
     }
 
-    /// Adjoints of a stage's state, from those of its rate.
+    /// Adjoints of a stage's state, from those of its rate. Of the stages that were evaluated the last comes first.
     fn pull_stage(&mut self, stage: usize, time: f64) -> Vec<f64> {
         let layout = self.memory.layout();
         let by_rate = &self.by_rates[stage];
         let half = by_rate.len() / 2;
         self.memory.set(time, layout.q.start, &self.stages[stage]);
-        self.memory.set(time, layout.w.start, &self.unknowns[stage]);
         self.memory.add(layout.w.start, &by_rate[half..]);
-        self.memory.pull_acceleration(self.is_linear);
+        if self.is_linear {
+            self.memory.set(time, layout.w.start, &self.guesses[stage]);
+            self.memory.pull_solved();
+        } else {
+            self.memory.set(time, layout.w.start, &self.unknowns[stage]);
+            self.memory.pull_acceleration();
+        }
         let mut by_stage = self.memory.take(layout.q.start..layout.v.end);
         add(&mut by_stage[half..], 1.0, &self.by_rates[stage][..half]);
         by_stage
@@ -224,27 +247,27 @@ impl<'s> ExplicitAdjoints<'s> {
         if !self.closes {
             return;
         }
-        let layout = self.memory.layout();
+        let layout = self.closures.layout();
         let mut next = state.to_vec();
         for &(stage, weight) in WEIGHTS[STAGES - 1] {
             self.add_rate(&mut next, h * weight, stage);
         }
-        self.memory.set(end, layout.q.start, &next);
-        let closing = self.memory.close();
-        self.memory.add(layout.q.start, adjoints);
-        self.memory.pull_closing(&closing);
-        adjoints.copy_from_slice(&self.memory.take(layout.q.start..layout.v.end));
+        self.closures.set(end, layout.q.start, &next);
+        let closing = self.closures.close(CLOSING);
+        self.closures.add(layout.q.start, adjoints);
+        self.closures.pull_closing(&closing);
+        adjoints.copy_from_slice(&self.closures.take(layout.q.start..layout.v.end));
     }
 
     /// Through the change of states at an instant, given the state before.
     fn pull_sampling(&mut self, time: f64, unchanged: &[f64], adjoints: &mut [f64]) {
-        let layout = self.memory.layout();
-        self.memory.set(time, layout.q.start, unchanged);
-        self.memory.assembly().accelerate();
-        self.memory.add(layout.q.start, adjoints);
-        self.memory.pull_sampling(time);
-        self.memory.pull_acceleration(false);
-        adjoints.copy_from_slice(&self.memory.take(layout.q.start..layout.v.end));
+        let layout = self.closures.layout();
+        self.closures.set(time, layout.q.start, unchanged);
+        self.closures.assembly().accelerate();
+        self.closures.add(layout.q.start, adjoints);
+        self.closures.pull_sampling(time);
+        self.closures.pull_acceleration();
+        adjoints.copy_from_slice(&self.closures.take(layout.q.start..layout.v.end));
     }
 }
 

@@ -101,7 +101,7 @@ impl Tile {
 
     /// The same, and records what the tape replaces.
     pub(crate) fn run_recorded(&mut self, tape: &Tape, record: &mut Record) {
-        record.clear();
+        record.begin(tape, self.width);
         self.interpret(tape, InstructionSet::detect(), record);
     }
 

@@ -1,4 +1,6 @@
-//! What a run of a tape replaces, so that the tape can be followed backwards.
+//! What runs of tapes replace, so that the tapes can be followed backwards.
+
+use crate::lower::tape::Tape;
 
 /// Keeps values before they are replaced.
 pub(super) trait Keep {
@@ -8,7 +10,7 @@ pub(super) trait Keep {
     /// A register of `W` lanes is about to be replaced.
     ///
     /// # Safety
-    /// The memory has the register.
+    /// The memory has the register, and there is room for it: see [`Record::begin`].
     unsafe fn register<const W: usize>(&mut self, memory: *const f64, register: u32);
 }
 
@@ -23,20 +25,37 @@ impl Keep for Nothing {
     unsafe fn register<const W: usize>(&mut self, _: *const f64, _: u32) {}
 }
 
-/// Replaced values and the parts of the tape that were run, in the order of the run.
+/// Replaced values and parts of the tapes that were run, in the order of the runs: the last run is the first to be taken
+/// back.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record {
     /// Values of all lanes of a register, one register after the other.
-    pub replaced: Vec<f64>,
-    /// Parts of the tape.
-    pub parts: Vec<usize>,
+    replaced: Vec<f64>,
+    /// Parts of the tapes.
+    parts: Vec<usize>,
+    /// Where each run begins in both.
+    runs: Vec<(usize, usize)>,
 }
 
 impl Record {
+    /// A run of a tape in a memory of so many lanes begins.
+    pub fn begin(&mut self, tape: &Tape, width: usize) {
+        self.runs.push((self.replaced.len(), self.parts.len()));
+        self.replaced.reserve(tape.written() * width);
+    }
+
+    /// What the last run replaced, and the parts that it ran.
+    pub fn last(&self) -> (&[f64], &[usize]) {
+        let (replaced, parts) = self.runs.last().copied().unwrap_or_default();
+        (&self.replaced[replaced..], &self.parts[parts..])
+    }
+
     /// Forgets the last run, and keeps its room.
-    pub fn clear(&mut self) {
-        self.replaced.clear();
-        self.parts.clear();
+    pub fn end(&mut self) {
+        if let Some((replaced, parts)) = self.runs.pop() {
+            self.replaced.truncate(replaced);
+            self.parts.truncate(parts);
+        }
     }
 }
 
@@ -48,8 +67,13 @@ impl Keep for Record {
 
     #[inline(always)]
     unsafe fn register<const W: usize>(&mut self, memory: *const f64, register: u32) {
-        // SAFETY: the memory has the register (the caller's promise), and a register has `W` values.
-        let values = unsafe { memory.add(register as usize * W).cast::<[f64; W]>().read() };
-        self.replaced.extend_from_slice(&values);
+        let length = self.replaced.len();
+        debug_assert!(length + W <= self.replaced.capacity(), "room was made for what the tape writes");
+        // SAFETY: the memory has the register, of `W` values, and `begin` made room for all that the tape writes.
+        unsafe {
+            let values = memory.add(register as usize * W).cast::<[f64; W]>();
+            self.replaced.as_mut_ptr().add(length).cast::<[f64; W]>().copy_from_nonoverlapping(values, 1);
+            self.replaced.set_len(length + W);
+        }
     }
 }
