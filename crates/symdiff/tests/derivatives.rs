@@ -187,7 +187,7 @@ proptest! {
     }
 
     /// Adjoints of a tape, in lanes at several points at once, are the coefficients of jets of first order; the tile
-    /// holds what it held before.
+    /// holds its values from before.
     #[test]
     fn adjoints_are_jets_of_first_order(
         trees in prop::array::uniform2(tree()),

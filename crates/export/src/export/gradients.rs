@@ -92,7 +92,7 @@ fn bracketed(unit: &str) -> String {
     if unit.contains(['*', '/', ' ']) { format!("({unit})") } else { unit.to_owned() }
 }
 
-/// What each parameter does to an output at a row over its interval, as far as the derivative tells, as an SVG document.
+/// Influences of the parameters on an output at a row, over half of their intervals, as an SVG document.
 pub fn tornado_svg(gradients: &Gradients, output: usize, row: usize) -> String {
     let own = &gradients.outputs[output];
     let mut bars = by_influence(gradients, output, row);

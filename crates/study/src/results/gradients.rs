@@ -34,7 +34,7 @@ pub struct OutputGradients {
 }
 
 impl OutputGradients {
-    /// How much the parameters may change the output at a time, as far as derivatives tell: Σ |∂/∂p| times half widths.
+    /// Influence of all parameters on the output at a time: Σ |∂/∂p| times half widths.
     pub fn reach(&self, row: usize, parameters: &[GradientParameter]) -> f64 {
         let terms = self.by_parameters[row].iter().zip(parameters);
         terms.map(|(by, parameter)| (by * parameter.half_width).abs()).sum()

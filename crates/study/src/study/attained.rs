@@ -5,8 +5,8 @@
 //! extreme between them: it goes where the secant of the derivative vanishes, which is a quasi-Newton step with a
 //! diagonal matrix, within the box. A step that does not improve the end is shortened.
 //!
-//! What is found was simulated, so that bands are widened to it, and rows are distrusted in which it lies beyond a
-//! band's error. Each sample serves all rows, whichever it was found for.
+//! All of it is simulated, so that bands are widened to it, and rows are distrusted in which it lies beyond a band's
+//! error. Each sample serves all rows, whichever it was found for.
 
 use super::ensemble::Motions;
 use super::outcome::{Attained, Outcome};
@@ -24,7 +24,7 @@ const FOLLOWED: usize = 128;
 /// Rounds of gradients and steps.
 const ROUNDS: usize = 8;
 
-/// A step that promises less than this share of what the parameters do is left out.
+/// A step that promises less than this share of all parameters' influence is left out.
 const WORTH: f64 = 1e-3;
 
 /// Simulations that a gradient costs, for the count.
@@ -51,13 +51,13 @@ struct End {
     other: Option<Known>,
     /// Of the whole step.
     share: f64,
-    /// What the parameters do to the output in the middle, as far as its gradient tells.
+    /// Influence of all parameters on the output in the middle, by its gradient.
     reach: f64,
     is_done: bool,
 }
 
 impl End {
-    /// The next point, and what it promises; `None` where nothing is to be gained.
+    /// The next point; `None` where nothing is to be gained.
     fn step(&self) -> Option<Vec<f64>> {
         let Known { point, slope } = &self.best;
         let target = (0..point.len()).map(|axis| {
@@ -102,7 +102,7 @@ impl Study<'_> {
             Ok((MethodResult { simulated: search.simulated, ..result }, search.attained))
         });
         match found {
-            // Shards, or nobody, simulate what is missing.
+            // Shards, or nobody, simulate the rest.
             Err(SimulationError::Deferred | SimulationError::Interrupted) => Ok(None),
             found => found.map(Some),
         }
@@ -216,7 +216,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         self.simulations += COST * wanted.len();
         let found = match gradients(&study.simulator, self.schedule, &samples, &wanted, study.interruption) {
             Err(NoGradient::Simulation(SimulationError::Interrupted)) => return Err(SimulationError::Interrupted),
-            // Some corner cannot be assembled: what is known so far is kept.
+            // Some corner cannot be assembled: the ends so far are kept.
             Err(_) => return Ok(None),
             Ok(found) => found,
         };

@@ -11,9 +11,9 @@
 //! and the register of d takes back the value that it had before. So a tape that solves a linear system with given
 //! factors becomes, backwards, the transposed solve with the same factors; none is made anew.
 //!
-//! Kinks have the derivatives of [`Graph::derivative`](crate::Graph::derivative). Zero times anything is zero: what
-//! does not count has no derivative, whether its own slope is finite or not. This is also why lanes that a region of a
-//! tape does not concern may hold any value there.
+//! Kinks have the derivatives of [`Graph::derivative`](crate::Graph::derivative). Zero times anything is zero: a value
+//! that does not count has no derivative, whether its own slope is finite or not. This is also why lanes that a region
+//! of a tape does not concern may hold any value there.
 //!
 //! Griewank & Walther, *Evaluating Derivatives* (2nd ed., 2008), ch. 3 and 4.
 
@@ -57,7 +57,7 @@ impl Adjoints {
         &mut self.values[registers.start * self.width..registers.end * self.width]
     }
 
-    /// Pulls adjoints of what a tape makes back to what it reads. The tile holds the values that the tape reads, before
+    /// Pulls adjoints of a tape's results back to its operands. The tile holds the values that the tape reads, before
     /// and after.
     ///
     /// # Panics
@@ -68,7 +68,7 @@ impl Adjoints {
     }
 
     /// Runs a tape, to be followed backwards by [`pull_last`](Self::pull_last) later. Tapes that are recorded after it
-    /// are followed before it; between, the tile's registers change by them alone, or back to what they were.
+    /// are followed before it; between, the tile's registers change by them alone, or back to their values.
     ///
     /// # Panics
     /// As [`pull`](Self::pull).

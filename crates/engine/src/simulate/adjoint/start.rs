@@ -1,10 +1,10 @@
-//! Adjoints of a consistent state: of what is solved for by Newton's corrections, and of the start.
+//! Adjoints of a consistent state: of solutions by Newton's corrections, and of the start.
 //!
 //! A correction x ← x + c(x, y) that has settled is a fixed point. Its tape is followed backwards at that point, as
 //! often as a jet of first order takes it forwards: x̄ ← x̄ + c_xᵀ x̄, ȳ ← ȳ + c_yᵀ x̄. Where one correction solves for
-//! x, nothing is left of x̄ after the first, and ȳ = −R_yᵀ J⁻ᵀ x̄ with the factors of the tape. Where the result depends on
-//! the point that corrections begin at, as a closed position does on the one that was not, they are followed from point
-//! to point.
+//! x, nothing is left of x̄ after the first, and ȳ = −R_yᵀ J⁻ᵀ x̄ with the factors of the tape. Where the result
+//! depends on the point that corrections begin at, as a closed position does on the open one, they are followed from
+//! point to point.
 
 use std::ops::Range;
 
@@ -199,7 +199,7 @@ impl<'s> StartAdjoints<'s> {
     }
 
     /// Through accelerations that follow from the positions and velocities of a state (q, v, a, w, λ), and a. Their
-    /// adjoints, and what they add to those of positions and velocities, are in the adjoints.
+    /// adjoints, and their shares of those of positions and velocities, are in the adjoints.
     pub fn pull_anew(&mut self, time: f64, state: &[f64], shift: f64) {
         self.set(time, self.layout().q.start, state);
         self.pull_shift(time, shift);
@@ -217,7 +217,7 @@ impl<'s> StartAdjoints<'s> {
         self.pull(program.sampling());
     }
 
-    /// Through the start, given its state (q, v, a, w, λ) and the shift of a, if steps have one. What is left are the
+    /// Through the start, given its state (q, v, a, w, λ) and the shift of a, if steps have one. It leaves the
     /// adjoints of the positions that it begins with, and those of parameters.
     pub fn pull_start(&mut self, state: &[f64], shift: Option<f64>) {
         let (program, layout) = (self.program, self.layout());

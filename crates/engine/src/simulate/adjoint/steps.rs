@@ -28,8 +28,8 @@ pub(super) struct Steps<'s> {
     sampling: Option<Sampling<'s>>,
     /// Length and end of each step, s.
     steps: Vec<(f64, f64)>,
-    /// The end of the first step that a lane did not take as its jet would: it did not converge, or its Newton matrix is
-    /// singular.
+    /// The end of the first step that a lane did not take as its jet would: it did not converge, or its Newton matrix
+    /// is singular.
     lost: Vec<Option<f64>>,
 }
 
@@ -118,8 +118,8 @@ impl<'s> StepAdjoints<'s> {
         }
     }
 
-    /// From the rows, the last first, to the start: adjoints of the start's positions (n lines) and of the parameters (k
-    /// lines).
+    /// From the rows, the last first, to the start: adjoints of the start's positions (n lines) and of the parameters
+    /// (k lines).
     pub fn pull(&mut self, rows: &[RowSeeds<'_>]) -> (Vec<f64>, Vec<f64>) {
         let layout = &self.program.layout;
         let mut rows = rows.iter().peekable();
@@ -193,7 +193,7 @@ impl<'s> StepAdjoints<'s> {
         self.seeds.clear();
         self.seeds.extend_from_slice(self.adjoints.block(layout.iterate.clone()));
         self.seeds.extend_from_slice(self.adjoints.block(layout.lambda.clone()));
-        // The correction does not depend on what it starts from.
+        // The solution does not depend on the prediction.
         let forget = |adjoints: &mut Adjoints| {
             adjoints.block_mut(layout.iterate.clone()).fill(0.0);
             adjoints.block_mut(layout.lambda.clone()).fill(0.0);

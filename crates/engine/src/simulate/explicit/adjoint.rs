@@ -1,8 +1,8 @@
 //! Backwards over steps of the explicit method.
 //!
 //! A step's end is y + h Σ bᵢ kᵢ, moved onto the constraints, with kᵢ = f(t + cᵢ h, Yᵢ) and Yᵢ = y + h Σ aᵢⱼ kⱼ. The
-//! stages are evaluated once more, and followed from the last to the first: k̄ᵢ = h bᵢ ȳ₊ + h Σⱼ aⱼᵢ Ȳⱼ, Ȳᵢ = f_yᵀ k̄ᵢ. Rows
-//! within a step are sums of the same kind.
+//! stages are evaluated once more, and followed from the last to the first: k̄ᵢ = h bᵢ ȳ₊ + h Σⱼ aⱼᵢ Ȳⱼ, Ȳᵢ = f_yᵀ k̄ᵢ.
+//! Rows within a step are sums of the same kind.
 
 use symdiff::Tile;
 
@@ -70,7 +70,7 @@ pub(in crate::simulate) struct ExplicitRow {
     pub outputs: Vec<Option<usize>>,
 }
 
-/// Corrections that close a step's end: each squares what it misses the constraints by.
+/// Corrections that close a step's end: each squares its distance from the constraints.
 const CLOSING: usize = 2;
 
 /// Goes backwards over a path.
@@ -82,8 +82,8 @@ pub(in crate::simulate) struct ExplicitAdjoints<'s> {
     closures: StartAdjoints<'s>,
     is_linear: bool,
     closes: bool,
-    /// Of the step that is followed: states of the stages (q and v), what follows from them (w and λ), and what that was
-    /// corrected from.
+    /// Of the step that is followed: states of the stages (q and v), their accelerations and multipliers (w and λ), and
+    /// the guesses of these.
     stages: Vec<Vec<f64>>,
     unknowns: Vec<Vec<f64>>,
     guesses: Vec<Vec<f64>>,
@@ -234,7 +234,7 @@ impl<'s> ExplicitAdjoints<'s> {
         by_stage
     }
 
-    /// Shares adjoints of a stage's state, or of the step's end, among what it is a sum of.
+    /// Shares adjoints of a stage's state, or of the step's end, among the terms of its sum.
     fn share(&mut self, stage: usize, h: f64, by_stage: &[f64], by_state: &mut [f64]) {
         add(by_state, 1.0, by_stage);
         for &(other, weight) in WEIGHTS[stage] {
@@ -276,7 +276,8 @@ fn add(to: &mut [f64], factor: f64, values: &[f64]) {
     to.iter_mut().zip(values).for_each(|(to, value)| *to += factor * value);
 }
 
-/// Dense output at a share of the step as a sum: the weight of the change over the step, and those of the rates times h.
+/// Dense output at a share of the step as a sum: the weight of the change over the step, and those of the rates times
+/// h.
 fn interpolation(share: f64) -> (f64, [f64; WITH_DENSE]) {
     let rest = 1.0 - share;
     let mut powers = [share; 3 + DENSE.len()];

@@ -1,4 +1,4 @@
-//! What runs of tapes replace, so that the tapes can be followed backwards.
+//! Values that runs of tapes replace, so that the tapes can be followed backwards.
 
 use crate::lower::tape::Tape;
 
@@ -25,8 +25,8 @@ impl Keep for Nothing {
     unsafe fn register<const W: usize>(&mut self, _: *const f64, _: u32) {}
 }
 
-/// Replaced values and parts of the tapes that were run, in the order of the runs: the last run is the first to be taken
-/// back.
+/// Replaced values and parts of the tapes that were run, in the order of the runs: the last run is the first to be
+/// taken back.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record {
     /// Values of all lanes of a register, one register after the other.
@@ -44,7 +44,7 @@ impl Record {
         self.replaced.reserve(tape.written() * width);
     }
 
-    /// What the last run replaced, and the parts that it ran.
+    /// Values that the last run replaced, and the parts that it ran.
     pub fn last(&self) -> (&[f64], &[usize]) {
         let (replaced, parts) = self.runs.last().copied().unwrap_or_default();
         (&self.replaced[replaced..], &self.parts[parts..])
