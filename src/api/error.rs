@@ -22,7 +22,7 @@ pub enum Error {
     Run(#[from] RunError),
     /// Outputs have no derivatives by the parameters.
     #[error(transparent)]
-    Gradient(#[from] GradientError),
+    Gradient(#[from] Box<GradientError>),
     /// The files could not be written.
     #[error(transparent)]
     Write(#[from] ExportError),

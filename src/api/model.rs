@@ -128,7 +128,7 @@ impl Model {
     /// # Errors
     /// [`Error::Gradient`]: the mechanism cannot be run, nothing in it is uncertain, or its motion has no derivatives.
     pub fn gradients(&self) -> Result<Gradients, Error> {
-        Ok(study::gradient(&self.description, &Options::default())?)
+        Ok(study::gradient(&self.description, &Options::default()).map_err(Box::new)?)
     }
 
     /// The checked model behind this one.

@@ -30,6 +30,9 @@ const WORTH: f64 = 1e-3;
 /// Simulations that a gradient costs, for the count.
 const COST: usize = 4;
 
+/// Values of outputs, each with its gradient (in ξ).
+type Slopes = Vec<(f64, Vec<f64>)>;
+
 /// A point with a gradient (both in ξ).
 #[derive(Clone, Debug)]
 struct Known {
@@ -209,7 +212,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         &mut self,
         points: &[Vec<f64>],
         wanted: &[(usize, usize, usize)],
-    ) -> Result<Option<Vec<(f64, Vec<f64>)>>, SimulationError> {
+    ) -> Result<Option<Slopes>, SimulationError> {
         let study = self.study;
         let samples = study.domain.samples(points);
         let wanted: Vec<Wanted> = wanted.iter().map(|&(sample, row, output)| Wanted { sample, row, output }).collect();

@@ -108,6 +108,32 @@ struct Reverse<'r, const W: usize, const C: usize> {
     parts: &'r [usize],
 }
 
+/// `C` lanes of a register from this lane on, in a memory of `W` lanes.
+///
+/// # Safety
+/// The memory has the register, and `lane + C ≤ W`.
+#[inline(always)]
+unsafe fn chunk<const W: usize, const C: usize>(memory: *mut f64, register: u32, lane: usize) -> *mut [f64; C] {
+    // SAFETY: the caller's.
+    unsafe { memory.add(register as usize * W + lane).cast() }
+}
+
+/// Adds to a chunk.
+///
+/// # Safety
+/// The chunk is one of [`chunk`].
+#[inline(always)]
+unsafe fn add<const C: usize>(sum: *mut [f64; C], change: &[f64; C]) {
+    // SAFETY: the caller's.
+    unsafe {
+        let mut values = sum.read();
+        for i in 0..C {
+            values[i] += change[i];
+        }
+        sum.write(values);
+    }
+}
+
 /// The product, zero where a factor is.
 #[inline(always)]
 fn times(a: f64, b: f64) -> f64 {
@@ -162,35 +188,40 @@ impl<const W: usize, const C: usize> Reverse<'_, W, C> {
         last
     }
 
-    /// Instructions of one operation (of `A` registers): what a result and its adjoint do to the adjoints of a, b, c.
+    /// Instructions of one operation (of `A` registers): shares of a, b, c in the adjoint of a result.
     #[inline(always)]
     fn each<const A: usize>(&mut self, operands: &[u32], shares: impl Fn([f64; 3], f64, f64) -> [f64; 3]) {
         let (memory, adjoints) = (self.memory, self.adjoints);
         for Operands { a, b, c, d } in operands.chunks_exact(A).rev().map(Operands::of) {
             let restored = self.next().as_ptr();
-            for lane in (0..W).step_by(C) {
-                let at = |register: u32| register as usize * W + lane;
+            let mut lane = 0;
+            while lane < W {
                 // SAFETY: values and adjoints have all registers of the tape (whoever made this has seen to it), the
                 // restored values are those of `W` lanes, and `lane + C ≤ W`.
                 unsafe {
-                    let result = memory.add(at(d)).cast::<[f64; C]>().read();
-                    memory.add(at(d)).cast::<[f64; C]>().write(restored.add(lane).cast::<[f64; C]>().read());
-                    let by = adjoints.add(at(d)).cast::<[f64; C]>().read();
-                    adjoints.add(at(d)).cast::<[f64; C]>().write([0.0; C]);
-                    let [x, y, z] = [a, b, c].map(|register| memory.add(at(register)).cast::<[f64; C]>().read());
+                    let result = chunk::<W, C>(memory, d, lane).read();
+                    chunk::<W, C>(memory, d, lane).write(restored.add(lane).cast::<[f64; C]>().read());
+                    let by = chunk::<W, C>(adjoints, d, lane).read();
+                    chunk::<W, C>(adjoints, d, lane).write([0.0; C]);
+                    let x = chunk::<W, C>(memory, a, lane).read();
+                    let y = chunk::<W, C>(memory, b, lane).read();
+                    let z = chunk::<W, C>(memory, c, lane).read();
                     let mut changes = [[0.0; C]; 3];
                     for i in 0..C {
                         let own = shares([x[i], y[i], z[i]], result[i], by[i]);
-                        for operand in 0..A - 1 {
-                            changes[operand][i] = own[operand];
-                        }
+                        changes[0][i] = own[0];
+                        changes[1][i] = own[1];
+                        changes[2][i] = own[2];
                     }
-                    for (register, change) in [a, b, c].into_iter().zip(changes).take(A - 1) {
-                        let mut sum = adjoints.add(at(register)).cast::<[f64; C]>().read();
-                        sum.iter_mut().zip(change).for_each(|(sum, change)| *sum += change);
-                        adjoints.add(at(register)).cast::<[f64; C]>().write(sum);
+                    add(chunk::<W, C>(adjoints, a, lane), &changes[0]);
+                    if A > 2 {
+                        add(chunk::<W, C>(adjoints, b, lane), &changes[1]);
+                    }
+                    if A > 3 {
+                        add(chunk::<W, C>(adjoints, c, lane), &changes[2]);
                     }
                 }
+                lane += C;
             }
         }
     }
@@ -199,7 +230,8 @@ impl<const W: usize, const C: usize> Reverse<'_, W, C> {
     fn sin_cos(&mut self, operands: &[u32]) {
         let (memory, adjoints) = (self.memory, self.adjoints);
         for Operands { a, b, d, .. } in operands.chunks_exact(Op::SinCos.arity()).rev().map(Operands::of) {
-            let [cosine_before, sine_before] = [0, 1].map(|_| self.next().as_ptr());
+            let cosine_before = self.next().as_ptr();
+            let sine_before = self.next().as_ptr();
             for lane in 0..W {
                 let at = |register: u32| register as usize * W + lane;
                 // SAFETY: as in `each`.

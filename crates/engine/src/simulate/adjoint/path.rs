@@ -38,7 +38,7 @@ impl<S: Stepping> Path<S> {
     /// Takes all steps; `visit` gets every state with the number of steps before it.
     pub fn new(stepping: S, steps: usize, visit: &mut dyn FnMut(usize, &[f64])) -> Self {
         let size = stepping.state().len();
-        let of_one = (size * size_of::<f64>()).max(1);
+        let of_one = size_of_val(stepping.state()).max(1);
         let every = if (steps + 1) * of_one <= ROOM { steps.max(1) } else { steps.isqrt() + 1 };
         let (kept, window, unchanged) = (Vec::new(), Vec::new(), Vec::new());
         let mut path = Self { stepping, steps, size, every, kept, first: 0, window, unchanged };

@@ -325,10 +325,10 @@ mod tests {
             let mut interpolated = [0.0; 2];
             run.interpolate(share, &mut interpolated);
             let (of_next, of_rates) = interpolation(share);
-            for line in 0..2 {
+            for (line, interpolated) in interpolated.into_iter().enumerate() {
                 let rates = of_rates.iter().enumerate().map(|(stage, weight)| weight * run.rates(stage)[line]);
                 let sum = run.state[line] + of_next * (run.next[line] - run.state[line]) + h * rates.sum::<f64>();
-                assert!((sum - interpolated[line]).abs() < 1e-13, "{sum}, not {}", interpolated[line]);
+                assert!((sum - interpolated).abs() < 1e-13, "{sum}, not {}", interpolated);
             }
         }
     }
