@@ -48,8 +48,8 @@ pub mod results {
 
 pub mod simulate {
     pub use crate::simulate::{
-        EnsembleRun, Interruption, JetBox, JetRun, Observed, Schedule, SimulationError, Simulator, Stepper,
-        schedule_for_tolerance,
+        EnsembleRun, ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetRun, NoGradient,
+        Observed, SampleRun, Schedule, SimulationError, Simulator, Stepper, Wanted, gradients, schedule_for_tolerance,
     };
 }
 

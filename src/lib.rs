@@ -11,7 +11,7 @@ pub use mbint_study::results;
 #[doc(inline)]
 pub use methods::Method;
 #[doc(inline)]
-pub use results::Summary;
+pub use results::{GradientParameter, Gradients, OutputGradients, Summary};
 #[doc(inline)]
 pub use syntax::Diagnostics;
 

@@ -8,6 +8,7 @@ The command ``mbint`` does the work; this package writes its input and reads its
 """
 
 from ._command import MbintError, command, version
+from .gradients import gradient
 from .questions import Allocation, allocate, check, cost, snapshot, sweep
 from .result import Result
 from .samples import sample
@@ -22,6 +23,7 @@ __all__ = [
     "check",
     "command",
     "cost",
+    "gradient",
     "run",
     "sample",
     "snapshot",

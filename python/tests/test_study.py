@@ -124,6 +124,15 @@ def test_samples_are_those_of_free_fall() -> None:
     assert float(whole.parameters.min()) == pytest.approx(9.81 * 0.99)
 
 
+def test_gradients_are_those_of_free_fall() -> None:
+    found = mbint.gradient(FALL)
+    assert found["derivatives"].dims == ("time", "output", "parameter")
+    by_g = found["derivatives"].sel(output="y", parameter="g")
+    np.testing.assert_allclose(by_g, -0.5 * found.time.to_numpy() ** 2, atol=1e-9)
+    assert found.units.sel(output="y") == "m" and found.parameter_units.sel(parameter="g") == "m/s^2"
+    assert float(found.half_width.sel(parameter="g")) == pytest.approx(0.0981)
+
+
 def test_declared_units_are_shown_and_numbers_stay_in_si() -> None:
     inches = mbint.run(FALL | {"outputs": {"y": {"formula": "ball.y", "unit": "in"}, "speed": "ball.vy"}})
     assert inches.result.shown == {"y": ("in", pytest.approx(0.0254)), "speed": ("m/s", 1.0)}

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::export::ExportError;
 use crate::model::UnknownScene;
-use crate::study::{AllocateError, CostError, RunError};
+use crate::study::{AllocateError, CostError, GradientError, RunError};
 use crate::syntax::Diagnostics;
 
 /// Why there is no model, or nothing of it could be run.
@@ -37,6 +37,9 @@ pub enum Error {
     /// It was asked to stop before there was a result.
     #[error("interrupted before there were results")]
     Interrupted,
+    /// Outputs have no derivatives by the parameters.
+    #[error(transparent)]
+    Gradient(#[from] Box<GradientError>),
     /// The files could not be written.
     #[error(transparent)]
     Write(#[from] ExportError),

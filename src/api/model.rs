@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::{Axis, Error, Study, Sweep};
 use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
+use crate::results::Gradients;
+use crate::study::{self, Options};
 use crate::syntax::Diagnostics;
 
 /// A mechanism with its uncertain parameters and outputs, free of errors.
@@ -129,6 +131,14 @@ impl Model {
     /// point without results.
     pub fn sweep(&self, axes: &[Axis], ask: impl Fn(Study<'static>) -> Study<'static>) -> Result<Sweep, Error> {
         Sweep::of(self, axes, ask)
+    }
+
+    /// Derivatives of all outputs over time by all uncertain parameters, at their nominal values.
+    ///
+    /// # Errors
+    /// [`Error::Gradient`]: the mechanism cannot be run, nothing in it is uncertain, or its motion has no derivatives.
+    pub fn gradients(&self) -> Result<Gradients, Error> {
+        Ok(study::gradient(&self.description, &Options::default()).map_err(Box::new)?)
     }
 
     /// The checked model behind this one.

@@ -2,6 +2,7 @@
 
 mod allocate;
 mod explain;
+mod gradient;
 mod sample;
 mod shards;
 mod shared;
@@ -18,6 +19,7 @@ use crate::model::Override;
 use crate::results::Method;
 pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
+pub(super) use gradient::GradientArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 pub(super) use shared::{AskedArgs, OneRunArgs, RootArgs, SetArgs, Threads, overlaid};
@@ -43,6 +45,8 @@ pub(super) enum Command {
     Sweep(SweepArgs),
     /// Find the loosest, or cheapest, tolerances that meet all requirements.
     Allocate(AllocateArgs),
+    /// Differentiate every output by every uncertain parameter, over time.
+    Gradient(GradientArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Make report.html again from a folder of results.

@@ -9,6 +9,7 @@ mod console;
 mod cost;
 mod effects;
 mod explain;
+mod gradient;
 mod interrupt;
 mod job;
 mod joints;
@@ -140,6 +141,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Run(args) => run_command::run(args, console),
         Command::Sweep(args) => sweep::sweep(args, console),
         Command::Allocate(args) => allocate::allocate(args, console),
+        Command::Gradient(args) => gradient::gradient(args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),

@@ -9,7 +9,7 @@ use super::overview::overview;
 use super::request::{Job, Request};
 use super::scenes::Scenes;
 use super::{Failure, Status, interrupt, load};
-use crate::export::{file_stem, prepare_folder};
+use crate::export::{POINTS, file_stem, prepare_folder};
 use crate::methods::Certified;
 use crate::model::shown;
 use crate::study;
@@ -95,6 +95,10 @@ fn run_and_report(
     let done = done?;
     if !request.quiet {
         console.print(&overview(&done.summary, &done.folder, &done.files))?;
+        if let Some(points) = done.files.iter().find(|file| file.ends_with(POINTS)) {
+            let model = path.display();
+            console.print(&format!("  ends again: mbint sample {model} --points {}\n", points.display()))?;
+        }
         if let Some(stored) = &done.stored {
             console.print(&format!("  {stored}\n"))?;
         }

@@ -13,6 +13,7 @@ mod common;
 
 mod accelerations;
 mod assembly;
+mod attained;
 mod bounds_laws;
 mod car_axis;
 mod certify;
@@ -30,6 +31,7 @@ mod features;
 mod first_correction;
 mod formulas;
 mod formulations;
+mod gradients;
 mod hard_cases;
 mod honesty;
 mod honesty_adaptive;

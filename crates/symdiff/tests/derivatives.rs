@@ -1,11 +1,11 @@
-//! Symbolic derivatives against finite differences and against jets: three ways that share nothing but the functions'
+//! Symbolic derivatives against finite differences, jets and adjoints: ways that share nothing but the functions'
 //! values.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
 use proptest::prelude::*;
 use symdiff::jet::{JetScratch, JetSpace};
-use symdiff::{Binary, Expr, Graph, Node, Unary};
+use symdiff::{Adjoints, Binary, Expr, Graph, Input, Node, Tile, Unary, lower};
 
 const VARIABLES: usize = 3;
 
@@ -183,6 +183,44 @@ proptest! {
             }
             let expected = value(&graph, derivative, &variables, &at) / factorials;
             prop_assert!((coefficient - expected).abs() < 1e-11 * scale, "{coefficient} against {expected} at {r}");
+        }
+    }
+
+    /// Adjoints of a tape, in lanes at several points at once, are the coefficients of jets of first order; the tile
+    /// holds its values from before.
+    #[test]
+    fn adjoints_are_jets_of_first_order(
+        trees in prop::array::uniform2(tree()),
+        at in prop::collection::vec(prop::array::uniform3(-0.9..0.9_f64), 4),
+        seeds in prop::array::uniform2(-2.0..2.0_f64),
+    ) {
+        let mut graph = Graph::new();
+        let variables = ["x", "y", "z"].map(|name| graph.symbol(name));
+        let roots = trees.map(|tree| build(&mut graph, &variables, &tree));
+        let inputs: Vec<Input> =
+            variables.iter().zip(0..).map(|(&symbol, register)| Input { symbol, stage: 0, register }).collect();
+        // The first replaces a variable, as steps do.
+        let outputs = vec![(roots[0], Some(0)), (roots[1], Some(VARIABLES as u32))];
+        let lowered = lower(&graph, &inputs, 0, VARIABLES as u32 + 1, &[outputs]);
+        let mut tile = Tile::new(4, lowered.registers, &lowered.constants);
+        for (lane, at) in at.iter().enumerate() {
+            (0..VARIABLES).for_each(|register| tile.lane_mut(register)[lane] = at[register]);
+        }
+        let before = tile.values().to_vec();
+        let mut adjoints = Adjoints::new(&tile);
+        adjoints.lane_mut(0).fill(seeds[0]);
+        adjoints.lane_mut(VARIABLES).fill(seeds[1]);
+        adjoints.pull(&lowered.kernels[0], &mut tile);
+        prop_assert_eq!(tile.values(), before);
+        let space = JetSpace::new(VARIABLES, 1);
+        for (lane, at) in at.iter().enumerate() {
+            let jets = roots.map(|root| jet(&graph, root, &variables, at, &space));
+            for variable in 0..VARIABLES {
+                let terms = [0, 1].map(|root| seeds[root] * jets[root][1 + variable]);
+                let (found, size) = (adjoints.lane(variable)[lane], 1.0 + terms[0].abs() + terms[1].abs());
+                let difference = found - (terms[0] + terms[1]);
+                prop_assert!(difference.abs() < 1e-9 * size, "{found}, not {:?}", terms);
+            }
         }
     }
 }

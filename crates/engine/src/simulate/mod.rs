@@ -10,6 +10,7 @@
 //! - `interruption`: the question whether to end before the last row;
 //! - `sampling`: states that change at instants, at which steps end;
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
+//! - `adjoint`: derivatives of outputs by all parameters at once, backwards over the steps;
 //! - `closure`: the motion from independent coordinates, without integration;
 //! - `events`: instants at which equations switch, and motions cut there;
 //! - `unmet_switch`: contacts and kinks that some parameter values meet and no sample does;
@@ -17,6 +18,7 @@
 //! - `modes`: fast modes that the start excites and the steps damp;
 //! - `enclosure`: certified motions over a box of parameters.
 
+mod adjoint;
 mod closure;
 mod control;
 mod derived;
@@ -45,6 +47,7 @@ mod time_functions;
 mod unmet_switch;
 mod visit;
 
+pub use adjoint::{Gradient, NoGradient, Wanted, gradients};
 pub use closure::{Closure, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};

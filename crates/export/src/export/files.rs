@@ -12,6 +12,7 @@ use crate::export::owned::{PAGE, SCHEMA, SUMMARY};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
 use crate::export::statistics::{reduced_statistics_csv, statistics_csv};
 use crate::export::stems::unique_stems;
+use crate::export::witnesses::{POINTS, points_csv, witnesses_csv};
 use crate::export::{
     Beside, bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg,
     reduced_csv,
@@ -50,6 +51,10 @@ pub fn write_results(
     }
     if !summary.reduced.is_empty() {
         files.add("reduced.csv", &reduced_csv(&summary.reduced)?)?;
+    }
+    if !bounds.witnesses.is_empty() {
+        files.add("witnesses.csv", &witnesses_csv(bounds, &summary.parameters)?)?;
+        files.add(POINTS, &points_csv(bounds, &summary.parameters)?)?;
     }
     let is_alone = bounds.is_of_one_configuration();
     if is_alone {

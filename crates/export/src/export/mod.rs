@@ -13,6 +13,7 @@ mod error;
 mod figure;
 mod files;
 mod folder;
+mod gradients;
 mod junit;
 mod limits;
 mod overlay;
@@ -31,6 +32,7 @@ mod statistics;
 mod stems;
 mod sweep;
 mod sweep_files;
+mod witnesses;
 
 pub use self::csv::bounds_csv;
 pub use allocation::{OVERLAY, shown_unit, write_allocation};
@@ -43,6 +45,7 @@ pub use error::ExportError;
 pub use figure::Caption;
 pub use files::write_results;
 pub use folder::{prepare_folder, wait_for_folder, write_pages};
+pub use gradients::{by_influence, shown_derivative, write_gradients};
 pub use junit::{Suite, write_junit};
 pub use overlay::SceneBounds;
 pub use owned::SUMMARY;
@@ -57,3 +60,4 @@ pub use snapshot::{Moved, Snapshot, moved, snapshot_file, snapshot_table, write_
 pub use stems::file_stem;
 pub use sweep::{Swept, SweptBounds, TradeAxis, TradeMark, sweep_svg, trade_svg};
 pub use sweep_files::{Sweep, SweepAxis, SweepPoint, write_sweep};
+pub use witnesses::POINTS;

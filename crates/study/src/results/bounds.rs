@@ -20,6 +20,24 @@ pub struct Bounds {
     pub analysis: Analysis,
     /// Frequency responses, frequency by frequency.
     pub responses: Vec<ResponsePoint>,
+    /// Samples at which outputs are least and largest, where they were searched for.
+    pub witnesses: Vec<Witness>,
+}
+
+/// A simulated sample at which an output is the least or the largest in a row of all that were simulated in the search
+/// for its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Witness {
+    /// Number of the row.
+    pub row: usize,
+    /// Number of the output.
+    pub output: usize,
+    /// Whether it is the largest value.
+    pub is_upper: bool,
+    /// The value, SI.
+    pub value: f64,
+    /// All uncertain parameters, SI.
+    pub parameters: Vec<f64>,
 }
 
 impl Bounds {

@@ -107,6 +107,8 @@ impl Bounds {
             covered: (0..rows).map(|row| reach(row).map(|piece| piece.share).sum()).collect(),
             analysis: longest.bounds.analysis,
             responses: Vec::new(),
+            // Those of a piece are ends of the piece.
+            witnesses: Vec::new(),
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::methods::{Method, Sensitivity, Stop, StopCause};
 use crate::numerics::Sample;
 use crate::results::{
     Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
-    SingularSummary, Summary,
+    SingularSummary, Summary, Witness,
 };
 use crate::simulate::{EnsembleRun, ExcitedMode, Observed, OpenConstraint, Schedule, SimulationError};
 
@@ -47,6 +47,7 @@ impl Study<'_> {
             covered: Vec::new(),
             analysis: study.simulator.system.analysis,
             responses: Vec::new(),
+            witnesses: witnesses(&results, rows),
         };
         let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
         let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());
@@ -62,6 +63,18 @@ impl Study<'_> {
         let summary = summary(study, results, &bounds, failure);
         Ran { bounds, summary, whole, kept }
     }
+}
+
+/// The samples at which outputs are least and largest, row by row, of those that were searched for.
+fn witnesses(results: &Results, rows: usize) -> Vec<Witness> {
+    let Some((_, attained)) = &results.attained else { return Vec::new() };
+    let outputs = results.nominal.result.bands.len();
+    let of_end = |row: usize, output: usize, is_upper: bool| {
+        let (value, sample) = attained.ends(row, output)[usize::from(is_upper)]?;
+        Some(Witness { row, output, is_upper, value, parameters: sample.to_vec() })
+    };
+    let all = (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output)));
+    all.flat_map(|(row, output)| [false, true].map(|is_upper| of_end(row, output, is_upper))).flatten().collect()
 }
 
 /// Every parameter's contribution to every output's spread, from a method that knows it.
@@ -179,6 +192,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         methods: std::iter::once(results.nominal.summary)
             .chain(results.validation.map(|(_, summary)| summary))
             .chain(results.switches.map(|(_, summary)| summary))
+            .chain(results.attained.map(|(outcome, _)| outcome.summary))
             .chain(results.methods.into_iter().map(|(_, outcome)| MethodSummary {
                 expanded_outputs: outcome.result.expanded.iter().map(|&k| system.outputs[k].name.clone()).collect(),
                 ..outcome.summary

@@ -47,6 +47,7 @@ impl Study<'_> {
                 seen: Ledger::new(schedule.rows, self.simulator.program.outputs.len()),
                 validation: None,
                 methods: Vec::new(),
+                attained: None,
                 halved: Vec::new(),
                 internal: Vec::new(),
                 found: Found::default(),

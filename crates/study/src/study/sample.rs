@@ -36,13 +36,13 @@ type Columns = Vec<Option<usize>>;
 
 /// A compiled model, and the samples that it is to be simulated at.
 pub struct Trajectories<'t> {
-    studies: &'t [Study<'t>],
-    subsystems: &'t [Subsystem],
-    steps: &'t [(Schedule, Option<Controller>)],
+    pub(super) studies: &'t [Study<'t>],
+    pub(super) subsystems: &'t [Subsystem],
+    pub(super) steps: &'t [(Schedule, Option<Controller>)],
     progress: &'t Progress<'t>,
     chosen: Chosen<'t>,
     /// Of each subsystem.
-    columns: Vec<Columns>,
+    pub(super) columns: Vec<Columns>,
     /// Names and units of the outputs.
     pub outputs: Vec<(String, String)>,
     /// Times of the rows, s.

@@ -209,11 +209,12 @@ impl<'a> Study<'a> {
         let motions = self.motions(&schedule, tolerance, &progress).noting(&seen);
         (self.stage)("nominal motion");
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
-        let (mut methods, mut halved) = (Vec::new(), Vec::new());
+        let (mut methods, mut halved, mut attained) = (Vec::new(), Vec::new(), None);
         self.note_nominal(&nominal.result, &seen);
         if let Some((validation, _)) = &validation {
             validation.note(&seen);
             methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
+            attained = self.attained(&motions, &schedule)?;
             if self.certify_time && !self.interruption.is_asked() {
                 let schedule = schedule.refined(2);
                 let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
@@ -235,6 +236,7 @@ impl<'a> Study<'a> {
             seen,
             validation,
             methods,
+            attained,
             halved,
             internal,
             found,
@@ -323,6 +325,7 @@ impl<'a> Study<'a> {
             seen: Ledger::default(),
             validation: None,
             methods: Vec::new(),
+            attained: None,
             halved: Vec::new(),
             internal: error.into_iter().collect(),
             found: Found::nothing(self.description),

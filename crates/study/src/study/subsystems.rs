@@ -17,6 +17,7 @@ use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
 use crate::results::{
     Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
+    Witness,
 };
 use crate::simulate::SimulationError;
 
@@ -163,9 +164,20 @@ impl<'a> Whole<'a> {
                 .unwrap_or_default(),
             analysis: self.description.analysis,
             responses: Vec::new(),
+            witnesses: ran.iter().flat_map(|done| self.witnesses(done)).collect(),
         };
         let summary = self.summary(ran, &bounds);
         (bounds, summary)
+    }
+
+    /// A subsystem's witnesses as the whole model's; parameters on which it does not depend are nominal there.
+    fn witnesses(&self, done: &Done) -> Vec<Witness> {
+        let of_whole = |own: &Witness| {
+            let output = *done.subsystem.outputs.get(own.output)?;
+            let parameters = self.spread(done.subsystem, &own.parameters, &self.domain.nominal);
+            Some(Witness { output, parameters, ..own.clone() })
+        };
+        done.bounds.witnesses.iter().filter_map(of_whole).collect()
     }
 
     /// Every parameter's contribution to an output; zero for one on which its subsystem does not depend.

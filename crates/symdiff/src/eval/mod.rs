@@ -1,6 +1,7 @@
-//! Evaluation of tapes: over samples ([`tile`]), polynomials ([`jet`]) and their enclosures ([`taylor_model`]); and of
-//! expressions over intervals (`ranges`).
+//! Evaluation of tapes: over samples ([`tile`]), and backwards ([`Adjoints`]); over polynomials ([`jet`]) and their
+//! enclosures ([`taylor_model`]); and of expressions over intervals (`ranges`).
 
+mod adjoints;
 mod enclosed;
 pub(crate) mod functions;
 pub mod interval;
@@ -12,5 +13,6 @@ pub mod taylor_model;
 pub mod tile;
 mod vectorised;
 
+pub use adjoints::Adjoints;
 pub use ranges::Ranges;
 pub use vectorised::{Vectorise, instruction_set, vectorised};

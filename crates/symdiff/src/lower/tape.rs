@@ -203,6 +203,11 @@ impl Tape {
         runs.sum()
     }
 
+    /// Number of registers that instructions write, one after the other.
+    pub(crate) fn written(&self) -> usize {
+        self.instructions + self.count(|op| op == Op::SinCos)
+    }
+
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.instructions == 0

@@ -131,7 +131,7 @@ pub(super) fn shift_accelerations(
 }
 
 /// Newton corrections that make a jet of this order consistent.
-pub(super) fn corrections(order: usize) -> usize {
+pub(in crate::simulate) fn corrections(order: usize) -> usize {
     (order + 1).ilog2() as usize + 2
 }
 

@@ -12,13 +12,15 @@ mod run;
 mod switch_extents;
 mod tiling;
 
+pub(in crate::simulate) use extrapolated::weights;
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
 pub use jet_states::JetBox;
+pub(in crate::simulate) use jet_states::corrections;
 pub use jets::JetRun;
 pub(in crate::simulate) use observed::stops_of_lost;
 pub use observed::{Observed, Stop};
 pub(in crate::simulate) use reduction::Reduction;
 pub use reduction::{Accumulation, Channel};
-pub(in crate::simulate) use row_closure::{JetClosure, RowClosure};
+pub(in crate::simulate) use row_closure::{JetClosure, Needs, RowClosure};
 pub use run::EnsembleRun;
-pub(in crate::simulate) use tiling::put_lanes;
+pub(in crate::simulate) use tiling::{put_lanes, tiles};

@@ -15,18 +15,18 @@ use crate::simulate::start::Assembly;
 
 /// What rows need of a mechanism.
 #[derive(Clone, Copy, Debug)]
-struct Needs {
+pub(in crate::simulate) struct Needs {
     /// Whether constraints are to be met.
-    closure: bool,
+    pub closure: bool,
     /// Whether outputs depend on accelerations or multipliers.
-    accelerations: bool,
+    pub accelerations: bool,
     /// Whether one correction solves for the accelerations: forces do not depend on multipliers, and no constraint is
     /// redundant.
-    linear: bool,
+    pub linear: bool,
 }
 
 impl Needs {
-    fn of(simulator: &Simulator) -> Self {
+    pub fn of(simulator: &Simulator) -> Self {
         let system = &simulator.system;
         let symbols = system.graph.symbols_of(&system.force);
         let depends = system.lambda.iter().any(|multiplier| symbols.binary_search(multiplier).is_ok());

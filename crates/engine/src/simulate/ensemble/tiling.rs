@@ -16,7 +16,7 @@ const NARROWEST: usize = 8;
 
 /// Tiles of `samples` with this many registers each for `threads`: (first, count, width). Results do not depend on the
 /// tiling.
-pub(super) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
+pub(in crate::simulate) fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
     let fits = TILE_MEMORY / (registers * size_of::<f64>()).max(1);
     let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));
     let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);

@@ -12,6 +12,7 @@
 //! - `steps`: the steps that a tolerance asks for, and what stands against the method;
 //! - `run`: samples over a schedule, and `jets`: a jet over it.
 
+mod adjoint;
 mod controlling;
 mod jets;
 pub(in crate::simulate) mod movement;
@@ -20,6 +21,7 @@ pub(in crate::simulate) mod runge_kutta;
 mod steps;
 mod tableau;
 
+pub(in crate::simulate) use adjoint::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
 pub use jets::ExplicitJets;
 pub use run::ExplicitRun;
 pub use steps::{ExplicitObstacle, explicit_schedule};

@@ -53,6 +53,12 @@ impl RungeKutta {
         Self { time, state, next, last, rates, dense: vec![vec![0.0; size]; TERMS] }
     }
 
+    /// The rates of a stage.
+    #[cfg(test)]
+    pub fn rates(&self, stage: usize) -> &[f64] {
+        &self.rates[stage]
+    }
+
     /// Tries a step that ends at a time.
     pub fn attempt(&mut self, motion: &mut impl Motion, end: f64) {
         let h = end - self.time;

@@ -60,7 +60,7 @@ impl Equilibrium {
     }
 
     /// J₀⁻¹ of the equations (motion, Φ) by (q, λ); rows and columns of redundant constraints are zero.
-    fn inverse(&self, state: &[f64], parameters: &[f64]) -> Option<DMatrix<f64>> {
+    pub(super) fn inverse(&self, state: &[f64], parameters: &[f64]) -> Option<DMatrix<f64>> {
         let (n, m) = (self.scale.len(), self.program.layout.lambda.len());
         let linear = self.at(state, parameters).linearise();
         let kept: Vec<usize> =

@@ -4,6 +4,7 @@
 //! - `equilibrium`: where forces are in equilibrium; `jets`: how that changes with the parameters;
 //! - `stability`: the smallest eigenvalue there.
 
+mod adjoint;
 mod configuration;
 mod equilibrium;
 mod jets;

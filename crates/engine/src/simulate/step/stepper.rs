@@ -123,6 +123,17 @@ impl<'p> Stepper<'p> {
         self.step_size = h;
     }
 
+    /// Goes on from a saved state whose a belongs to steps of length h, and knows no steps before it.
+    pub(in crate::simulate) fn restart(&mut self, saved: &[f64], h: f64) {
+        self.rewind(saved, h);
+        self.newton.forget();
+    }
+
+    /// Whether a lane's last step took the rank-revealing solve.
+    pub(in crate::simulate) fn is_singular(&self, lane: usize) -> bool {
+        self.newton.is_singular(lane)
+    }
+
     /// Whether steps from now on take one more correction, after which accelerations are as accurate as positions.
     pub(in crate::simulate) fn refine(&mut self, refines: bool) {
         self.refines = refines;

@@ -51,6 +51,7 @@ pub fn shown(
     let hidden = description.outputs.len()..expanded.outputs.len();
     if !hidden.is_empty() {
         bounds.outputs.drain(hidden.clone());
+        bounds.witnesses.retain(|own| own.output < hidden.start);
         if !bounds.contributions.is_empty() {
             bounds.contributions.drain(hidden.clone());
         }

@@ -173,6 +173,7 @@ impl Study<'_> {
             seen: Ledger::new(1, ensemble.outputs()),
             validation: None,
             methods: Vec::new(),
+            attained: None,
             halved: Vec::new(),
             internal: Vec::new(),
             found: Found::default(),

@@ -4,11 +4,16 @@
 //! in the same order whatever the width and the instruction set: Rust contracts nothing, and sine and cosine are our
 //! own.
 
+mod record;
+
 use crate::eval::functions;
 use crate::eval::sincos;
 use crate::eval::vectorised::{InstructionSet, Vectorise};
 use crate::expr::{Binary, Unary};
 use crate::lower::tape::{Op, Operands, Part, Region, Tape};
+
+pub(crate) use record::Record;
+use record::{Keep, Nothing};
 
 /// Widths that a tile can have.
 pub const WIDTHS: [usize; 6] = [1, 4, 8, 16, 32, 64];
@@ -91,45 +96,59 @@ impl Tile {
     }
 
     fn run_with(&mut self, tape: &Tape, set: InstructionSet) {
+        self.interpret(tape, set, &mut Nothing);
+    }
+
+    /// The same, and records what the tape replaces.
+    pub(crate) fn run_recorded(&mut self, tape: &Tape, record: &mut Record) {
+        record.begin(tape, self.width);
+        self.interpret(tape, InstructionSet::detect(), record);
+    }
+
+    fn interpret(&mut self, tape: &Tape, set: InstructionSet, keep: &mut impl Keep) {
         assert!(tape.registers() <= self.registers, "the tape belongs to a larger memory");
         let memory = self.lines.as_mut_ptr().cast::<f64>();
         // The memory has `registers · width` values and the tape's registers are below `self.registers`: just
         // asserted, and `Tape::registers` is computed from the instructions. `Interpretation` relies on it.
         match self.width {
-            1 => set.run(Interpretation::<1, 1> { tape, memory }),
-            4 => set.run(Interpretation::<4, 4> { tape, memory }),
-            8 => set.run(Interpretation::<8, 8> { tape, memory }),
-            16 => set.run(Interpretation::<16, 8> { tape, memory }),
-            32 => set.run(Interpretation::<32, 8> { tape, memory }),
-            _ => set.run(Interpretation::<64, 8> { tape, memory }),
+            1 => set.run(Interpretation::<1, 1, _> { tape, memory, keep }),
+            4 => set.run(Interpretation::<4, 4, _> { tape, memory, keep }),
+            8 => set.run(Interpretation::<8, 8, _> { tape, memory, keep }),
+            16 => set.run(Interpretation::<16, 8, _> { tape, memory, keep }),
+            32 => set.run(Interpretation::<32, 8, _> { tape, memory, keep }),
+            _ => set.run(Interpretation::<64, 8, _> { tape, memory, keep }),
         }
     }
 }
 
 /// A tape to be run over `W` lanes in chunks of `C`.
-struct Interpretation<'t, const W: usize, const C: usize> {
+struct Interpretation<'t, const W: usize, const C: usize, K> {
     tape: &'t Tape,
     memory: *mut f64,
+    keep: &'t mut K,
 }
 
-impl<const W: usize, const C: usize> Vectorise for Interpretation<'_, W, C> {
+impl<const W: usize, const C: usize, K: Keep> Vectorise for Interpretation<'_, W, C, K> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
         // SAFETY: whoever made this has seen to it that the memory has all registers of the tape.
-        unsafe { interpret::<W, C>(self.tape, self.memory) }
+        unsafe { interpret::<W, C, K>(self.tape, self.memory, self.keep) }
     }
 }
 
 /// `W` lanes in chunks of `C`. A chunk's operands are loaded before its result is stored, so that a result may replace
 /// an operand.
 #[inline(always)]
-unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64) {
+unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory: *mut f64, keep: &mut K) {
     let mut place = 0;
     while let Some(part) = tape.part(&mut place) {
         let (op, operands) = match part {
-            Part::Run(op, operands) => (op, operands),
+            Part::Run(op, operands) => {
+                keep.run(place - 1);
+                (op, operands)
+            }
             Part::Region(region) => {
                 // SAFETY: the caller's.
                 region.skip_unless(unsafe { wanted::<W>(region, memory) }, &mut place);
@@ -139,27 +158,33 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
         // SAFETY: the caller's.
         unsafe {
             match op {
-                Op::Copy => each::<W, C, 2>(operands, memory, |a, _, _| a),
-                Op::MulAdd => each::<W, C, 4>(operands, memory, |a, b, c| a * b + c),
-                Op::MulSub => each::<W, C, 4>(operands, memory, |a, b, c| a * b - c),
-                Op::NegMulAdd => each::<W, C, 4>(operands, memory, |a, b, c| c - a * b),
-                Op::Binary(Binary::Add) => each::<W, C, 3>(operands, memory, |a, b, _| a + b),
-                Op::Binary(Binary::Sub) => each::<W, C, 3>(operands, memory, |a, b, _| a - b),
-                Op::Binary(Binary::Mul) => each::<W, C, 3>(operands, memory, |a, b, _| a * b),
-                Op::Select => each::<W, C, 4>(operands, memory, functions::select),
-                Op::Binary(Binary::Select) => each::<W, C, 3>(operands, memory, |a, b, _| functions::select(a, b, 0.0)),
-                Op::Binary(Binary::SelectElse) => {
-                    each::<W, C, 3>(operands, memory, |a, b, _| functions::select(a, 0.0, b))
+                Op::Copy => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a),
+                Op::MulAdd => each::<W, C, 4, K>(operands, memory, keep, |a, b, c| a * b + c),
+                Op::MulSub => each::<W, C, 4, K>(operands, memory, keep, |a, b, c| a * b - c),
+                Op::NegMulAdd => each::<W, C, 4, K>(operands, memory, keep, |a, b, c| c - a * b),
+                Op::Binary(Binary::Add) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a + b),
+                Op::Binary(Binary::Sub) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a - b),
+                Op::Binary(Binary::Mul) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a * b),
+                Op::Select => each::<W, C, 4, K>(operands, memory, keep, functions::select),
+                Op::Binary(Binary::Select) => {
+                    each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::select(a, b, 0.0))
                 }
-                Op::Binary(Binary::Min) => each::<W, C, 3>(operands, memory, |a, b, _| functions::min(a, b)),
-                Op::Binary(Binary::Max) => each::<W, C, 3>(operands, memory, |a, b, _| functions::max(a, b)),
-                Op::Binary(Binary::Div) => each::<W, C, 3>(operands, memory, |a, b, _| a / b),
-                Op::Unary(Unary::Neg) => each::<W, C, 2>(operands, memory, |a, _, _| -a),
-                Op::Unary(Unary::Abs) => each::<W, C, 2>(operands, memory, |a, _, _| a.abs()),
-                Op::Unary(Unary::Sqrt) => each::<W, C, 2>(operands, memory, |a, _, _| a.sqrt()),
-                Op::Unary(function) => each::<W, 1, 2>(operands, memory, |a, _, _| functions::unary(function, a)),
-                Op::Binary(function) => each::<W, 1, 3>(operands, memory, |a, b, _| functions::binary(function, a, b)),
-                Op::SinCos => sin_cos::<W, C>(operands, memory),
+                Op::Binary(Binary::SelectElse) => {
+                    each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::select(a, 0.0, b))
+                }
+                Op::Binary(Binary::Min) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::min(a, b)),
+                Op::Binary(Binary::Max) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| functions::max(a, b)),
+                Op::Binary(Binary::Div) => each::<W, C, 3, K>(operands, memory, keep, |a, b, _| a / b),
+                Op::Unary(Unary::Neg) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| -a),
+                Op::Unary(Unary::Abs) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a.abs()),
+                Op::Unary(Unary::Sqrt) => each::<W, C, 2, K>(operands, memory, keep, |a, _, _| a.sqrt()),
+                Op::Unary(function) => {
+                    each::<W, 1, 2, K>(operands, memory, keep, |a, _, _| functions::unary(function, a))
+                }
+                Op::Binary(function) => {
+                    each::<W, 1, 3, K>(operands, memory, keep, |a, b, _| functions::binary(function, a, b))
+                }
+                Op::SinCos => sin_cos::<W, C, K>(operands, memory, keep),
             }
         }
     }
@@ -167,12 +192,15 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
 
 /// `d = function(a, b, c)` for each instruction (of `A` registers) and lane.
 #[inline(always)]
-unsafe fn each<const W: usize, const C: usize, const A: usize>(
+unsafe fn each<const W: usize, const C: usize, const A: usize, K: Keep>(
     operands: &[u32],
     memory: *mut f64,
+    keep: &mut K,
     function: impl Fn(f64, f64, f64) -> f64,
 ) {
     for operand in operands.chunks_exact(A).map(Operands::of) {
+        // SAFETY: registers are in range (the caller's promise).
+        unsafe { keep.register::<W>(memory, operand.d) };
         let mut lane = 0;
         while lane < W {
             // SAFETY: registers are in range (the caller's promise) and `lane + C ≤ W`.
@@ -201,8 +229,13 @@ unsafe fn wanted<const W: usize>(region: &Region, memory: *mut f64) -> bool {
 
 /// `d = sin a`, `b = cos a` for each instruction and lane.
 #[inline(always)]
-unsafe fn sin_cos<const W: usize, const C: usize>(operands: &[u32], memory: *mut f64) {
+unsafe fn sin_cos<const W: usize, const C: usize, K: Keep>(operands: &[u32], memory: *mut f64, keep: &mut K) {
     for operand in operands.chunks_exact(Op::SinCos.arity()).map(Operands::of) {
+        // SAFETY: registers are in range (the caller's promise).
+        unsafe {
+            keep.register::<W>(memory, operand.d);
+            keep.register::<W>(memory, operand.b);
+        }
         let mut lane = 0;
         while lane < W {
             // SAFETY: as in `each`.

@@ -1,0 +1,23 @@
+//! Derivatives of outputs by all parameters at once: the discrete adjoint of a motion.
+//!
+//! A motion is a chain of maps: the start, steps, rows of output. Jets push derivatives forwards, one for each
+//! parameter; here they are pulled backwards from one output in one row, whatever the number of parameters, by
+//! following the same tapes in reverse ([`symdiff::Adjoints`]). So a gradient costs a few simulations. Each lane of a
+//! tile is a gradient of its own.
+//!
+//! - `start`: fixed points of corrections, and the start;
+//! - `path`: states between steps, in bounded memory;
+//! - `steps`: the scheme, on one level or several; `explicit::adjoint` has the explicit method;
+//! - `rows`: outputs of a row;
+//! - `tiles`: gradients in lanes.
+
+mod path;
+mod rows;
+mod start;
+mod steps;
+mod tiles;
+
+pub(in crate::simulate) use path::{Path, Stepping};
+pub(in crate::simulate) use rows::RowAdjoints;
+pub(in crate::simulate) use start::StartAdjoints;
+pub use tiles::{Gradient, NoGradient, Wanted, gradients};

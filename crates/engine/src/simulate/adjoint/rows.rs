@@ -1,0 +1,68 @@
+//! Adjoints of a row of outputs.
+
+use super::start::StartAdjoints;
+use crate::compile::StartProgram;
+use crate::simulate::ensemble::{Needs, corrections};
+use crate::simulate::simulator::Simulator;
+use symdiff::Tile;
+
+/// A row's outputs as functions of its state, and backwards.
+#[derive(Debug)]
+pub(in crate::simulate) struct RowAdjoints<'s> {
+    memory: StartAdjoints<'s>,
+    /// Whether positions and velocities are moved onto the constraints.
+    closes: bool,
+    /// Whether accelerations and multipliers follow from them.
+    accelerates: bool,
+}
+
+impl<'s> RowAdjoints<'s> {
+    /// For states that steps by the scheme end with: as [`RowAccelerations`](super::super::ensemble) observes them.
+    pub fn of_steps(simulator: &'s Simulator, start: &Tile) -> Self {
+        let memory = StartAdjoints::new(simulator, &simulator.start, start);
+        Self { memory, closes: false, accelerates: simulator.solves_row_accelerations() }
+    }
+
+    /// For motions that are combined or interpolated: as [`RowClosure`](super::super::ensemble) closes them.
+    pub fn closing(simulator: &'s Simulator, program: &'s StartProgram, start: &Tile) -> Self {
+        let needs = Needs::of(simulator);
+        let memory = StartAdjoints::new(simulator, program, start);
+        Self { memory, closes: needs.closure, accelerates: needs.accelerations }
+    }
+
+    /// Adjoints of a state (q, v, a, w, λ) of the outputs there, one of each lane, if any; the outputs' values are
+    /// added to `values` (lane by lane).
+    pub fn pull(&mut self, time: f64, state: &[f64], outputs: &[Option<usize>], values: &mut [f64]) -> Vec<f64> {
+        let (program, layout) = (self.memory.program(), self.memory.layout());
+        self.memory.set(time, layout.q.start, state);
+        let closing = self.closes.then(|| self.memory.close(corrections(1)));
+        let assembly = self.memory.assembly();
+        if self.accelerates {
+            assembly.accelerate();
+        }
+        assembly.observe();
+        for (lane, output) in outputs.iter().enumerate() {
+            if let Some(output) = output {
+                values[lane] += assembly.tile().lane(program.outputs[*output])[lane];
+            }
+        }
+        for (lane, output) in outputs.iter().enumerate() {
+            if let Some(output) = output {
+                self.memory.adjoints().lane_mut(program.outputs[*output])[lane] += 1.0;
+            }
+        }
+        self.memory.pull(program.observe());
+        if self.accelerates {
+            self.memory.pull_acceleration();
+        }
+        if let Some(closing) = &closing {
+            self.memory.pull_closing(closing);
+        }
+        self.memory.take(layout.state())
+    }
+
+    /// The adjoints of the parameters, k lines.
+    pub fn finish(&mut self) -> Vec<f64> {
+        self.memory.finish()
+    }
+}

@@ -1,0 +1,262 @@
+//! Gradients in lanes.
+
+use rayon::prelude::*;
+use symdiff::Tile;
+
+use super::path::Path;
+use super::rows::RowAdjoints;
+use super::start::StartAdjoints;
+use super::steps::{StepAdjoints, Steps};
+use crate::compile::{Layout, Tapes};
+use crate::numerics::Sample;
+use crate::simulate::control::{Integration, Schedule};
+use crate::simulate::ensemble::{tiles, weights};
+use crate::simulate::error::SimulationError;
+use crate::simulate::explicit::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
+use crate::simulate::interruption::Interruption;
+use crate::simulate::sampling::Instants;
+use crate::simulate::simulator::Simulator;
+
+/// Memories of a tile, in units of that of its steps: values and adjoints.
+const MEMORIES: usize = 2;
+
+/// A gradient that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// Number of the sample.
+    pub sample: usize,
+    /// Row of output.
+    pub row: usize,
+    /// Number of the output.
+    pub output: usize,
+}
+
+/// An output in a row of a sample, and its derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradient {
+    /// The output there, SI.
+    pub value: f64,
+    /// By each parameter (k), SI. Not finite where the output has no derivative.
+    pub by_parameters: Vec<f64>,
+    /// End of the first step, s, that does not converge or is singular, where there is one: then neither is known.
+    pub lost: Option<f64>,
+}
+
+/// Why there are no gradients.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoGradient {
+    /// Samples cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// Configurations without steps.
+    #[error("gradients are of motions, not of `analysis: {analysis}`")]
+    NoMotion {
+        /// Its name.
+        analysis: &'static str,
+    },
+    /// Motions that are cut at events.
+    #[error("gradients do not pass through events yet")]
+    Events,
+}
+
+/// Gradients of outputs of samples under a schedule, each as [`JetRun`](crate::simulate::JetRun) and its kin have the
+/// first derivatives.
+///
+/// # Errors
+/// Where samples cannot be assembled, or there are no motions; [`SimulationError::Interrupted`] where it is asked to
+/// end.
+pub fn gradients(
+    simulator: &Simulator,
+    schedule: &Schedule,
+    samples: &[Sample],
+    wanted: &[Wanted],
+    interruption: Interruption<'_>,
+) -> Result<Vec<Gradient>, NoGradient> {
+    if simulator.system.analysis.visits() {
+        return Err(NoGradient::NoMotion { analysis: simulator.system.analysis.name() });
+    }
+    if schedule.segments().is_some() {
+        return Err(NoGradient::Events);
+    }
+    // Lanes of a tile end in rows that are near each other.
+    let mut order: Vec<usize> = (0..wanted.len()).collect();
+    order.sort_by_key(|&number| wanted[number].row);
+    let tiles = tiles(wanted.len(), MEMORIES * simulator.program.registers(), rayon::current_num_threads());
+    let parts = tiles.into_par_iter().map(|(first, count, width)| {
+        if interruption.is_asked() {
+            return Err(NoGradient::from(SimulationError::Interrupted));
+        }
+        let lanes = (0..width).map(|lane| wanted[order[first + lane.min(count - 1)]]).collect();
+        let mut of_lanes = TileOf { simulator, schedule, samples, lanes, lost: vec![None; width] }.gradients()?;
+        of_lanes.truncate(count);
+        Ok(of_lanes)
+    });
+    let parts: Vec<Vec<Gradient>> = parts.collect::<Result<_, _>>()?;
+    // The last tile may have more lanes than gradients.
+    let mut numbered: Vec<(usize, Gradient)> = order.into_iter().zip(parts.into_iter().flatten()).collect();
+    numbered.sort_by_key(|(number, _)| *number);
+    Ok(numbered.into_iter().map(|(_, gradient)| gradient).collect())
+}
+
+/// One gradient a lane.
+struct TileOf<'a> {
+    simulator: &'a Simulator,
+    schedule: &'a Schedule,
+    samples: &'a [Sample],
+    lanes: Vec<Wanted>,
+    lost: Vec<Option<f64>>,
+}
+
+impl TileOf<'_> {
+    /// The gradients, one a lane.
+    ///
+    /// # Errors
+    /// Where a lane cannot be assembled.
+    fn gradients(mut self) -> Result<Vec<Gradient>, NoGradient> {
+        let mut values = vec![0.0; self.lanes.len()];
+        let by_parameters = match self.schedule.integration {
+            Integration::Plain => self.of_scheme(1, &mut values),
+            Integration::Extrapolated { levels } => self.of_scheme(levels, &mut values),
+            Integration::Explicit | Integration::Segments => self.of_explicit(&mut values),
+        }?;
+        let of_lane = |(lane, value): (usize, f64)| {
+            let by_parameters = by_parameters.iter().skip(lane).step_by(self.lanes.len()).copied();
+            match self.lost[lane] {
+                None => Gradient { value, by_parameters: by_parameters.collect(), lost: None },
+                lost => Gradient { value: f64::NAN, by_parameters: by_parameters.map(|_| f64::NAN).collect(), lost },
+            }
+        };
+        Ok(values.into_iter().enumerate().map(of_lane).collect())
+    }
+
+    /// The tile of samples, assembled.
+    fn assemble(&self, first_step: f64) -> Result<Tile, SimulationError> {
+        self.simulator.assemble(self.lanes.len(), first_step, |lane| self.samples[self.lanes[lane].sample].clone())
+    }
+
+    /// The rows that are asked for, the last first.
+    fn rows(&self) -> Vec<usize> {
+        let mut rows: Vec<usize> = self.lanes.iter().map(|wanted| wanted.row).collect();
+        rows.sort_unstable();
+        rows.dedup();
+        rows.reverse();
+        rows
+    }
+
+    /// The output of each lane that is asked for in a row.
+    fn outputs(&self, row: usize) -> Vec<Option<usize>> {
+        self.lanes.iter().map(|wanted| (wanted.row == row).then_some(wanted.output)).collect()
+    }
+
+    /// By the scheme on so many levels: adjoints of the parameters, k lines.
+    fn of_scheme(&mut self, levels: usize, values: &mut [f64]) -> Result<Vec<f64>, NoGradient> {
+        let Self { simulator, schedule, .. } = *self;
+        let (layout, rows) = (&simulator.program.layout, self.rows());
+        let schedule = &*schedule.ending_at(Instants::of(simulator));
+        let weights = weights(levels);
+        let mut motions: Vec<Vec<f64>> = Vec::new();
+        let mut runs = Vec::with_capacity(levels);
+        for (level, weight) in weights.iter().enumerate() {
+            let parts = 1 << level;
+            let start = self.assemble(schedule.first_step() / parts as f64)?;
+            let refined = schedule.refined(parts);
+            let instants = Instants::of(simulator);
+            let mut ends_of_rows = vec![0; rows.len()];
+            let mut steps = Vec::new();
+            for row in 0..=rows.first().copied().unwrap_or(0) {
+                steps.extend(refined.steps_to(row).flat_map(|step| instants.divide(step)));
+                rows.iter()
+                    .zip(&mut ends_of_rows)
+                    .filter(|(known, _)| **known == row)
+                    .for_each(|(_, end)| *end = steps.len());
+            }
+            let count = steps.len();
+            motions.resize(rows.len(), vec![0.0; layout.state().len() * self.lanes.len()]);
+            let mut visit = |steps: usize, state: &[f64]| {
+                let at_end = motions.iter_mut().zip(&ends_of_rows).filter(|(_, end)| **end == steps);
+                at_end.for_each(|(sum, _)| sum.iter_mut().zip(state).for_each(|(sum, value)| *sum += weight * value));
+            };
+            let path = Path::new(Steps::new(simulator, &start, steps), count, &mut visit);
+            for (lost, of_level) in self.lost.iter_mut().zip(path.stepping().lost()) {
+                *lost = lost.or(*of_level);
+            }
+            runs.push((StepAdjoints::new(simulator, &start, path), ends_of_rows, start));
+        }
+        let start = &runs[0].2;
+        let mut observer = match levels {
+            1 => RowAdjoints::of_steps(simulator, start),
+            _ => RowAdjoints::closing(simulator, simulator.free_closure()?, start),
+        };
+        let mut by_motions = Vec::with_capacity(rows.len());
+        for (&row, motion) in rows.iter().zip(&motions) {
+            by_motions.push(observer.pull(schedule.time(row), motion, &self.outputs(row), values));
+        }
+        let mut total = observer.finish();
+        for ((mut run, ends_of_rows, start), weight) in runs.into_iter().zip(weights) {
+            let seeds: Vec<Vec<f64>> =
+                by_motions.iter().map(|adjoints| adjoints.iter().map(|value| weight * value).collect()).collect();
+            let seeds: Vec<(usize, &[f64])> =
+                ends_of_rows.iter().copied().zip(seeds.iter().map(Vec::as_slice)).collect();
+            let (positions, parameters) = run.pull(&seeds);
+            add(&mut total, &parameters);
+            self.add_equilibrium(&start, &positions, &mut total);
+        }
+        Ok(total)
+    }
+
+    /// By the explicit method: adjoints of the parameters, k lines.
+    fn of_explicit(&self, values: &mut [f64]) -> Result<Vec<f64>, NoGradient> {
+        let Self { simulator, schedule, .. } = *self;
+        let start = self.assemble(0.0)?;
+        let rows: Vec<ExplicitRow> = self
+            .rows()
+            .into_iter()
+            .map(|row| ExplicitRow { time: schedule.time(row), outputs: self.outputs(row) })
+            .collect();
+        let last = rows.first().map_or(0.0, |row| row.time);
+        let mut ends = schedule.ending_at(Instants::of(simulator)).ends();
+        let needed = ends.partition_point(|&end| end < last) + 1;
+        ends.truncate(needed);
+        let count = ends.len();
+        let steps = ExplicitSteps::new(simulator, &start, ends)?;
+        let path = Path::new(steps, count, &mut |_, _| {});
+        let mut closing = RowAdjoints::closing(simulator, simulator.free_closure()?, &start);
+        let mut run = ExplicitAdjoints::new(simulator, &start, path)?;
+        let by_start = run.pull(&rows, &mut closing, values);
+        let mut total = run.finish();
+        add(&mut total, &closing.finish());
+        let mut beginning = StartAdjoints::new(simulator, &simulator.start, &start);
+        let layout = &simulator.start.layout;
+        beginning.add(layout.q.start, &by_start);
+        beginning.pull_start(state_of(&start, layout), None);
+        let positions = beginning.take(layout.q.clone());
+        add(&mut total, &beginning.finish());
+        self.add_equilibrium(&start, &positions, &mut total);
+        Ok(total)
+    }
+
+    /// Adds what an equilibrium, with which the motion begins, does to adjoints of the parameters.
+    fn add_equilibrium(&self, start: &Tile, positions: &[f64], total: &mut [f64]) {
+        let Some(equilibrium) = &self.simulator.equilibrium else { return };
+        let (layout, width) = (&self.simulator.start.layout, self.lanes.len());
+        for lane in 0..width {
+            let state: Vec<f64> = (0..layout.registers()).map(|register| start.lane(register)[lane]).collect();
+            let by_positions: Vec<f64> = positions.iter().skip(lane).step_by(width).copied().collect();
+            let sample = &self.samples[self.lanes[lane].sample];
+            let by_parameters = equilibrium.pull(sample, &state, &by_positions);
+            for (sum, adjoint) in total.iter_mut().skip(lane).step_by(width).zip(by_parameters) {
+                *sum += adjoint;
+            }
+        }
+    }
+}
+
+/// The registers q, v, a, w, λ.
+fn state_of<'t>(tile: &'t Tile, layout: &Layout) -> &'t [f64] {
+    let (state, width) = (layout.state(), tile.width());
+    &tile.values()[state.start * width..state.end * width]
+}
+
+fn add(to: &mut [f64], values: &[f64]) {
+    to.iter_mut().zip(values).for_each(|(to, value)| *to += value);
+}

@@ -1,0 +1,204 @@
+//! Derivatives by parameters: `gradients.csv`, and a tornado plot of each output.
+
+use std::path::{Path, PathBuf};
+
+use csv::WriterBuilder;
+use svg::node::element::{Rectangle, Title};
+
+use super::csv::number;
+use super::error::ExportError;
+use super::figure::Caption;
+use super::figure::axis::Axis;
+use super::figure::document::{Anchor, document, finished, group, heading, line, shortened, text, text_width};
+use super::figure::panel::Panel;
+use super::figure::path::px;
+use super::figure::style::{Color, Hue};
+use super::folder::AtomicFiles;
+use super::rounded::rounded;
+use super::stems::file_stem;
+use crate::grammar::display_unit::ShownUnit;
+use crate::results::{GradientParameter, Gradients, OutputGradients};
+
+/// Most bars of a plot; parameters of less influence are left out.
+const MOST: usize = 24;
+
+/// Width on the page, px, and heights of a bar and of what stands above and below all.
+const WIDTH: f64 = 760.0;
+const BAR: f64 = 22.0;
+const TOP: f64 = 40.0;
+const BOTTOM: f64 = 50.0;
+
+/// Writes the table, and a plot of each output at a row of its own.
+///
+/// # Errors
+/// At the first file that cannot be written.
+pub fn write_gradients(dir: &Path, gradients: &Gradients, rows: &[usize]) -> Result<Vec<PathBuf>, ExportError> {
+    let mut files = AtomicFiles::in_folder(dir)?;
+    files.add("gradients.csv", &gradients_csv(gradients)?)?;
+    for (output, &row) in rows.iter().enumerate() {
+        let name = format!("{}.gradients.svg", file_stem(&gradients.outputs[output].name));
+        files.add(&name, tornado_svg(gradients, output, row).as_bytes())?;
+    }
+    files.put_in_place()
+}
+
+/// The table: `t`, then for each output its value `x3`, and its derivative by each parameter, `x3.l1`, all in SI.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub fn gradients_csv(gradients: &Gradients) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = WriterBuilder::new().from_writer(Vec::new());
+    let of_output = |output: &OutputGradients| {
+        let by = |parameter: &GradientParameter| format!("{}.{}", output.name, parameter.name);
+        std::iter::once(output.name.clone()).chain(gradients.parameters.iter().map(by)).collect::<Vec<String>>()
+    };
+    let header = std::iter::once("t".to_owned()).chain(gradients.outputs.iter().flat_map(of_output));
+    writer.write_record(header)?;
+    for (row, &time) in gradients.times.iter().enumerate() {
+        let of_output = |output: &OutputGradients| {
+            std::iter::once(output.values[row]).chain(output.by_parameters[row].iter().copied()).collect::<Vec<f64>>()
+        };
+        let values = std::iter::once(time).chain(gradients.outputs.iter().flat_map(of_output));
+        writer.write_record(values.map(number))?;
+    }
+    writer.into_inner().map_err(|error| error.into_error().into())
+}
+
+/// Parameters by their influence on an output at a row, the largest first: number, derivative (SI), and that times half
+/// of the interval. Parameters without influence are left out.
+pub fn by_influence(gradients: &Gradients, output: usize, row: usize) -> Vec<(usize, f64, f64)> {
+    let derivatives = gradients.outputs[output].by_parameters[row].iter().zip(&gradients.parameters).enumerate();
+    let influences = derivatives.map(|(number, (&by, parameter))| (number, by, by * parameter.half_width));
+    let mut influences: Vec<(usize, f64, f64)> = influences.filter(|(_, _, influence)| *influence != 0.0).collect();
+    influences.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+    influences
+}
+
+/// A derivative in the units in which people see both, and their quotient: `mm/mm`.
+pub fn shown_derivative(output: &OutputGradients, parameter: &GradientParameter, by: f64) -> (f64, String) {
+    let [above, below] =
+        [ShownUnit::of(&output.display, &output.unit), ShownUnit::of(&parameter.display, &parameter.unit)];
+    let unit = match (above.text, below.text) {
+        ("", "") => String::new(),
+        (above, "") => above.to_owned(),
+        ("", below) => format!("1/{}", bracketed(below)),
+        (above, below) => format!("{above}/{}", bracketed(below)),
+    };
+    (by / above.si * below.si, unit)
+}
+
+/// A unit below a line.
+fn bracketed(unit: &str) -> String {
+    if unit.contains(['*', '/', ' ']) { format!("({unit})") } else { unit.to_owned() }
+}
+
+/// Influences of the parameters on an output at a row, over half of their intervals, as an SVG document.
+pub fn tornado_svg(gradients: &Gradients, output: usize, row: usize) -> String {
+    let own = &gradients.outputs[output];
+    let mut bars = by_influence(gradients, output, row);
+    bars.retain(|(_, _, influence)| influence.is_finite());
+    bars.truncate(MOST);
+    let unit = ShownUnit::of(&own.display, &own.unit);
+    let most = bars.iter().fold(0.0_f64, |most, (_, _, influence)| most.max(influence.abs()));
+    let x = Axis::fit([-most, most].into_iter(), unit, 7, 0.04, 0.0);
+    let y = Axis::fit([0.0, 1.0].into_iter(), "", 2, 0.0, 0.0);
+    let name = |number: usize| shortened(&gradients.parameters[number].name, 30);
+    let left = bars.iter().map(|&(number, ..)| text_width(&name(number))).fold(40.0, f64::max) + 20.0;
+    let label = |number: usize, by: f64| {
+        let (value, unit) = shown_derivative(own, &gradients.parameters[number], by);
+        format!("{} {unit}", rounded(significant(value))).trim_end().to_owned()
+    };
+    let labels: Vec<String> = bars.iter().map(|&(number, by, _)| label(number, by)).collect();
+    let right = labels.iter().map(|label| text_width(label)).fold(40.0, f64::max) + 20.0;
+    let bottom = TOP + BAR * bars.len().max(1) as f64;
+    let caption = Caption { model: &gradients.model, prefix: "gradients" };
+    let id = format!("{}-tornado", caption.prefix);
+    let panel = Panel { id, left, right: WIDTH - right, top: TOP, bottom, x: &x, y: &y };
+    let at = |influence: f64| panel.place(influence, 0.0).0;
+    let mut drawn = group("data");
+    for (place, (&(number, _, influence), label)) in bars.iter().zip(&labels).enumerate() {
+        let middle = TOP + BAR * (place as f64 + 0.5);
+        let (from, to) = (at(0.0).min(at(influence)), at(0.0).max(at(influence)));
+        let bar = Rectangle::new()
+            .set("class", "area")
+            .set("x", px(from))
+            .set("y", px(middle - 0.36 * BAR))
+            .set("width", px(to - from))
+            .set("height", px(0.72 * BAR));
+        let hue = Hue::Color(Color::of(usize::from(influence < 0.0)));
+        let title = format!("{}: {label}", gradients.parameters[number].name);
+        drawn = drawn.add(hue.paint(group("bar").add(Title::new(title)).add(bar), "bar"));
+        drawn = drawn.add(text(&name(number), (left - 8.0, middle), Anchor::End));
+        drawn = drawn.add(text(label, (WIDTH - right + 8.0, middle), Anchor::Start));
+    }
+    let title = format!(
+        "{}: {} at t = {} s, by parameters",
+        shortened(caption.model, 50),
+        shortened(&own.name, 50),
+        rounded(gradients.times[row])
+    );
+    let figure = document((WIDTH, bottom + BOTTOM), &title)
+        .add(heading(&title, (12.0, 16.0)))
+        .add(drawn)
+        .add(line((at(0.0), TOP), (at(0.0), bottom)).set("class", "frame"))
+        .add(group("across").add(panel.time_axis("derivative times half of the interval")));
+    finished(&figure)
+}
+
+/// Four significant digits.
+fn significant(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grammar::display_unit::DisplayUnit;
+    use crate::grammar::unit::Unit;
+
+    fn gradients() -> Gradients {
+        let parameter = |name: &str, unit: &str, half_width: f64| GradientParameter {
+            name: name.into(),
+            unit: unit.into(),
+            display: None,
+            value: 1.0,
+            half_width,
+        };
+        let output = OutputGradients {
+            name: "slider.x".into(),
+            unit: "m".into(),
+            display: None,
+            values: vec![0.3],
+            by_parameters: vec![vec![-2.0, 0.5, 0.0]],
+        };
+        let parameters = vec![parameter("l1", "m", 1e-4), parameter("k", "N/m", 1.0), parameter("m", "kg", 1.0)];
+        Gradients { model: "crank".into(), times: vec![0.25], parameters, outputs: vec![output] }
+    }
+
+    #[test]
+    fn influence_counts_the_interval() {
+        let order: Vec<usize> = by_influence(&gradients(), 0, 0).into_iter().map(|(number, ..)| number).collect();
+        assert_eq!(order, [1, 0]);
+    }
+
+    #[test]
+    fn units_are_quotients() {
+        let mut all = gradients();
+        assert_eq!(shown_derivative(&all.outputs[0], &all.parameters[0], -2.0), (-2.0, "m/m".to_owned()));
+        assert_eq!(shown_derivative(&all.outputs[0], &all.parameters[1], 0.5).1, "m/(N/m)");
+        all.parameters[0].display = Some(DisplayUnit::new("mm", Unit::parse("mm").unwrap()));
+        assert_eq!(shown_derivative(&all.outputs[0], &all.parameters[0], -2.0), (-2e-3, "m/mm".to_owned()));
+    }
+
+    #[test]
+    fn the_table_and_the_plot_have_all_that_has_influence() {
+        let all = gradients();
+        let table = String::from_utf8(gradients_csv(&all).unwrap()).unwrap();
+        assert_eq!(table, "t,slider.x,slider.x.l1,slider.x.k,slider.x.m\n0.25,0.3,-2,0.5,0\n");
+        let svg = tornado_svg(&all, 0, 0);
+        for text in ["l1", "-2 m/m", "0.5 m/(N/m)", "crank: slider.x at t = 0.25 s, by parameters"] {
+            assert!(svg.contains(&format!("\n{text}\n")), "{text}: {svg}");
+        }
+        assert!(!svg.contains("kg"));
+    }
+}

@@ -1,0 +1,62 @@
+//! Derivatives of outputs by parameters.
+
+use crate::grammar::display_unit::DisplayUnit;
+
+/// A parameter by which outputs are differentiated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GradientParameter {
+    /// Name in the model.
+    pub name: String,
+    /// SI unit, empty where dimensionless or unknown.
+    pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    pub display: Option<DisplayUnit>,
+    /// Where the derivatives are taken, SI.
+    pub value: f64,
+    /// Half the width of its interval, SI.
+    pub half_width: f64,
+}
+
+/// An output's derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputGradients {
+    /// Name in the model.
+    pub name: String,
+    /// SI unit, empty where dimensionless or unknown.
+    pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    pub display: Option<DisplayUnit>,
+    /// Its values over the times, SI.
+    pub values: Vec<f64>,
+    /// For each time its derivatives by the parameters, SI; zero by those on which it does not depend, not finite where
+    /// there is none.
+    pub by_parameters: Vec<Vec<f64>>,
+}
+
+impl OutputGradients {
+    /// Influence of all parameters on the output at a time: Σ |∂/∂p| times half widths.
+    pub fn reach(&self, row: usize, parameters: &[GradientParameter]) -> f64 {
+        let terms = self.by_parameters[row].iter().zip(parameters);
+        terms.map(|(by, parameter)| (by * parameter.half_width).abs()).sum()
+    }
+
+    /// The time at which that is the most; the last where it is nowhere known.
+    pub fn most_sensitive(&self, parameters: &[GradientParameter]) -> usize {
+        let reaches = (0..self.values.len()).map(|row| (row, self.reach(row, parameters)));
+        let most = reaches.filter(|(_, reach)| reach.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1));
+        most.map_or(self.values.len().saturating_sub(1), |(row, _)| row)
+    }
+}
+
+/// Derivatives of a model's outputs by its uncertain parameters, at one point of the box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradients {
+    /// Name of the model.
+    pub model: String,
+    /// s
+    pub times: Vec<f64>,
+    /// The uncertain parameters.
+    pub parameters: Vec<GradientParameter>,
+    /// The outputs.
+    pub outputs: Vec<OutputGradients>,
+}

@@ -1,0 +1,108 @@
+//! Derivatives of all outputs in all rows by all uncertain parameters, at their nominal values.
+
+use super::sample::{Chosen, Trajectories, sample};
+use super::{Options, RunError};
+use crate::model::{Description, Parameter, ParameterValue};
+use crate::numerics::Sample;
+use crate::results::{GradientParameter, Gradients, OutputGradients};
+use crate::simulate::{NoGradient, SimulationError, Wanted, gradients};
+
+/// Why a model has no gradients.
+#[derive(Debug, thiserror::Error)]
+pub enum GradientError {
+    /// It cannot be run either.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Its motion has none.
+    #[error(transparent)]
+    None(#[from] NoGradient),
+    /// A step does not converge, or is singular.
+    #[error("the motion has no derivatives from t = {time} s on: a step does not converge or is singular there")]
+    Lost {
+        /// End of the step, s.
+        time: f64,
+    },
+    /// Nothing to differentiate by.
+    #[error(
+        "no parameter is uncertain: give an interval or a tolerance to those by which outputs are to be differentiated"
+    )]
+    NoParameter,
+    /// Nothing to differentiate.
+    #[error("the model has no outputs over time")]
+    NoOutput,
+}
+
+/// The derivatives, with the steps of a run.
+///
+/// # Errors
+/// Where there are none, and at an interruption.
+pub fn gradient(description: &Description, options: &Options) -> Result<Gradients, GradientError> {
+    if description.uncertain().next().is_none() {
+        return Err(GradientError::NoParameter);
+    }
+    if description.outputs.is_empty() {
+        return Err(GradientError::NoOutput);
+    }
+    let none = Chosen { count: 0, at: &|_| Vec::new() };
+    sample(description, options, none, |trajectories| trajectories.gradients(description))
+}
+
+/// A parameter as it is differentiated by.
+fn described(description: &Description, parameter: &Parameter) -> Option<GradientParameter> {
+    let ParameterValue::Interval { nominal, lower, upper } = parameter.value else { return None };
+    Some(GradientParameter {
+        name: parameter.name.clone(),
+        unit: parameter.unit.clone(),
+        display: description.parameter_units.get(&parameter.name).cloned(),
+        value: nominal,
+        half_width: 0.5 * (upper - lower),
+    })
+}
+
+impl Trajectories<'_> {
+    fn gradients(&self, description: &Description) -> Result<Gradients, GradientError> {
+        let parameters: Vec<GradientParameter> =
+            description.uncertain().filter_map(|(_, parameter)| described(description, parameter)).collect();
+        let empty = |(name, unit): &(String, String)| OutputGradients {
+            name: name.clone(),
+            unit: unit.clone(),
+            display: description.display.get(name).cloned(),
+            values: vec![f64::NAN; self.times.len()],
+            by_parameters: vec![vec![0.0; parameters.len()]; self.times.len()],
+        };
+        let mut outputs: Vec<OutputGradients> = self.outputs.iter().map(empty).collect();
+        for (number, (study, subsystem)) in self.studies.iter().zip(self.subsystems).enumerate() {
+            let schedule = &self.steps[number].0;
+            let center: Sample = study.simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+            let columns = self.columns[number].iter().enumerate();
+            let shown: Vec<(usize, usize)> = columns.filter_map(|(line, column)| Some((line, (*column)?))).collect();
+            let wanted: Vec<Wanted> = (0..schedule.rows)
+                .flat_map(|row| shown.iter().map(move |&(output, _)| Wanted { sample: 0, row, output }))
+                .collect();
+            let found = gradients(&study.simulator, schedule, &[center], &wanted, study.interruption)?;
+            if let Some(time) = found.iter().filter_map(|gradient| gradient.lost).reduce(f64::min) {
+                return Err(GradientError::Lost { time });
+            }
+            let columns = shown.iter().map(|&(_, column)| column).cycle();
+            for ((wanted, found), column) in wanted.iter().zip(found).zip(columns) {
+                outputs[column].values[wanted.row] = found.value;
+                let by_parameters = &mut outputs[column].by_parameters[wanted.row];
+                for (&parameter, by) in subsystem.parameters.iter().zip(found.by_parameters) {
+                    by_parameters[parameter] = by;
+                }
+            }
+        }
+        Ok(Gradients { model: description.name.clone(), times: self.times.clone(), parameters, outputs })
+    }
+}
+
+impl GradientError {
+    /// Whether it was asked to end.
+    pub fn is_interruption(&self) -> bool {
+        let interrupted = SimulationError::Interrupted;
+        match self {
+            Self::None(NoGradient::Simulation(error)) | Self::Run(RunError::Simulation(error)) => *error == interrupted,
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! `mbint gradient`: derivatives of outputs over time by all uncertain parameters.
+
+use serde::Serialize;
+
+use super::args::{Format, GradientArgs};
+use super::console::{BOLD, Console, file_names, to_json};
+use super::progress::Progress;
+use super::run::results_of;
+use super::table::{Align, Table};
+use super::verdicts::short;
+use super::{Failure, Status, interrupt, load};
+use crate::export::{by_influence, prepare_folder, shown_derivative, write_gradients};
+use crate::grammar::display_unit::ShownUnit;
+use crate::results::Gradients;
+use crate::study::{self, GradientError, RunError};
+
+/// Most parameters of an output that are printed.
+const MOST: usize = 30;
+
+pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Status, Failure> {
+    let given = args.set.given()?;
+    let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
+        return Ok(Status::Wrong);
+    };
+    let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
+    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    let progress = Progress::new(&model.name, !args.run.quiet);
+    let options = study::Options {
+        threads: args.run.threads.number(),
+        stage: &|stage| progress.stage(stage),
+        interrupted: &interrupt::asked,
+        ..study::Options::default()
+    };
+    let found = match study::gradient(&model, &options) {
+        Err(error) if error.is_interruption() => return Ok(Status::Interrupted),
+        found => found.map_err(|error| {
+            let message = format!("{}: {error}", model.name);
+            match error {
+                GradientError::NoParameter | GradientError::NoOutput | GradientError::None(_) => {
+                    Failure::Wrong(message)
+                }
+                GradientError::Run(RunError::Costly(_) | RunError::Memory(_)) => Failure::Wrong(message),
+                GradientError::Run(_) | GradientError::Lost { .. } => Failure::Failed(message),
+            }
+        })?,
+    };
+    drop(progress);
+    let rows: Vec<usize> = (0..found.outputs.len()).map(|output| row(&found, output, args.at)).collect();
+    interrupt::wait_for(&folder)?;
+    let files = write_gradients(&folder, &found, &rows);
+    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    match args.format {
+        Format::Json => console.print(&to_json(&Document::of(&found))?)?,
+        Format::Text if args.run.quiet => {}
+        Format::Text => {
+            let text = overview(&found, &rows) + &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
+            console.print(&text)?;
+        }
+    }
+    Ok(Status::Done)
+}
+
+/// The row in which an output's derivatives are shown.
+fn row(found: &Gradients, output: usize, at: Option<f64>) -> usize {
+    let Some(at) = at else { return found.outputs[output].most_sensitive(&found.parameters) };
+    let distance = |row: &usize| (found.times[*row] - at).abs();
+    (0..found.times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+}
+
+/// Prints the derivatives for people, a table an output.
+fn overview(found: &Gradients, rows: &[usize]) -> String {
+    let mut text = format!("{BOLD}{}{BOLD:#}: derivatives at the nominal values\n", found.model);
+    for (number, (output, &row)) in found.outputs.iter().zip(rows).enumerate() {
+        let unit = ShownUnit::of(&output.display, &output.unit);
+        let value = format!("{} {}", short(unit.of_si(output.values[row])), unit.text);
+        text += &format!("\n  {} = {} at t = {} s\n", output.name, value.trim_end(), short(found.times[row]));
+        let influences = by_influence(found, number, row);
+        let mut table = Table::new([
+            ("parameter", Align::Left),
+            ("derivative", Align::Right),
+            ("unit", Align::Left),
+            ("over half of the interval", Align::Right),
+            ("unit", Align::Left),
+        ]);
+        for &(parameter, by, influence) in influences.iter().take(MOST) {
+            let parameter = &found.parameters[parameter];
+            let (by, of_both) = shown_derivative(output, parameter, by);
+            let influence = short(unit.of_si(influence));
+            table.row([parameter.name.clone(), short(by), of_both, influence, unit.text.to_owned()]);
+        }
+        text += &table.render(2);
+        if influences.len() > MOST {
+            text += &format!("  and {} of less influence\n", influences.len() - MOST);
+        }
+    }
+    text
+}
+
+/// The derivatives as a document for programs, in SI.
+#[derive(Serialize)]
+struct Document<'g> {
+    model: &'g str,
+    times: &'g [f64],
+    parameters: Vec<ParameterOf<'g>>,
+    outputs: Vec<OutputOf<'g>>,
+}
+
+#[derive(Serialize)]
+struct ParameterOf<'g> {
+    name: &'g str,
+    unit: &'g str,
+    value: f64,
+    half_width: f64,
+}
+
+#[derive(Serialize)]
+struct OutputOf<'g> {
+    name: &'g str,
+    unit: &'g str,
+    /// Over the times.
+    values: &'g [f64],
+    /// For each time, by the parameters.
+    by_parameters: &'g [Vec<f64>],
+}
+
+impl<'g> Document<'g> {
+    fn of(found: &'g Gradients) -> Self {
+        let parameters = found.parameters.iter();
+        let outputs = found.outputs.iter();
+        Self {
+            model: &found.model,
+            times: &found.times,
+            parameters: parameters
+                .map(|own| ParameterOf {
+                    name: &own.name,
+                    unit: &own.unit,
+                    value: own.value,
+                    half_width: own.half_width,
+                })
+                .collect(),
+            outputs: outputs
+                .map(|own| OutputOf {
+                    name: &own.name,
+                    unit: &own.unit,
+                    values: &own.values,
+                    by_parameters: &own.by_parameters,
+                })
+                .collect(),
+        }
+    }
+}
