@@ -245,15 +245,6 @@ impl<S: SymbolTable> Reader<'_, S> {
         names::kind(symbol, &self.kinds)
     }
 
-    /// Reports where something stands that does not belong there.
-    pub fn check_fits(&mut self, span: &Span, found: Dimension, wanted: Dimension) -> bool {
-        let fits = found.fits(wanted);
-        if !fits {
-            self.error(span.clone(), format!("{found} stands where {wanted} belongs"), None);
-        }
-        fits
-    }
-
     /// A formula or a number with its unit, of a dimension.
     pub fn formula(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<Formula> {
         let formula = match self.written(node)? {

@@ -25,6 +25,7 @@ pub mod quantity;
 mod range;
 pub mod reader;
 pub mod reference;
+pub mod report;
 mod requirement;
 mod rotating;
 mod rotation;
@@ -53,7 +54,8 @@ pub use kinds::{
 };
 pub use mesh::Mesh;
 pub use names::Context;
-pub use reader::{Fields, Lengths, Reader};
+pub use reader::{Lengths, Reader};
+pub use report::{Fields, Report};
 pub use requirement::{Quantity, Requirement};
 pub use rotating::Rotating;
 pub use rotation::Rotation;

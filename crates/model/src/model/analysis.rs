@@ -5,7 +5,7 @@ use super::description::{
 };
 use super::file;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::{Context, Symbol};
 use crate::model::names::Reader;
 use crate::syntax::source::Span;

@@ -10,7 +10,7 @@ use crate::elements::shapes::ShapeKind;
 use crate::grammar::motions::is_motion;
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::yaml::{Entry, Node, Value};

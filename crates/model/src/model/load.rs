@@ -1,6 +1,5 @@
 //! A file → its [`Description`], or everything that is wrong with it.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use super::description::{Description, Space};
@@ -13,8 +12,7 @@ use super::{
     analysis, bodies, bounds, effects, joints, mjcf, motion_times, parameters, requests, requirements, sections, space,
     states, statistics, tables, teeth, trajectories,
 };
-use crate::grammar::Lengths;
-use crate::grammar::declared::DeclaredStates;
+use crate::grammar::report::Report;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
@@ -163,12 +161,12 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
     };
     let root = match root.get("mjcf") {
         None => root,
-        Some(_) => match mjcf::write_out(&mut blank(&origin, &mut diagnostics), &root, Path::new(name), &placed) {
+        Some(_) => match mjcf::write_out(&mut origin.report(&mut diagnostics), &root, Path::new(name), &placed) {
             Some(root) if !diagnostics.has_errors() => root,
             _ => return Reading { description: None, scenes: Vec::new(), diagnostics },
         },
     };
-    let written = parts::write_out(&mut blank(&origin, &mut diagnostics), &root, text, &placed);
+    let written = parts::write_out(&mut origin.report(&mut diagnostics), &root, text, &placed);
     let (root, parts) = match written {
         Some(WrittenOut { root, parts }) => (root, Some(parts)),
         None => (root, None),
@@ -181,7 +179,7 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
         placed = parts.follow(placed);
     }
     let parts = parts.as_ref();
-    let plan = Scenes::read(&mut blank(&origin, &mut diagnostics), &root);
+    let plan = Scenes::read(&mut origin.report(&mut diagnostics), &root);
     let before = diagnostics.len();
     let model = plan.model();
     let (description, mut unused) = describe(&origin, &model, parts, &placed, &mut diagnostics);
@@ -189,7 +187,7 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
     let mut scenes = Vec::with_capacity(plan.count());
     for scene in 0..plan.count() {
         let before = diagnostics.len();
-        let variant = plan.scene(&mut blank(&origin, &mut diagnostics), scene);
+        let variant = plan.scene(&mut origin.report(&mut diagnostics), scene);
         let (found, idle) = describe(&origin, &variant, parts, &placed, &mut diagnostics);
         diagnostics.found_without(before, &variant.left_out);
         scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
@@ -213,32 +211,16 @@ struct Origin<'o> {
     files: Within,
 }
 
-/// A reader of nothing yet.
-fn blank<'d>(origin: &Origin, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
-    let name = origin.name;
-    let called =
-        Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let model = Description::empty(called);
-    Reader {
-        diagnostics,
-        model,
-        variable: None,
-        unread: Vec::new(),
-        unread_joints: Vec::new(),
-        unread_outputs: Vec::new(),
-        declared: DeclaredStates::default(),
-        kinds: Vec::new(),
-        corners: Vec::new(),
-        varies: Vec::new(),
-        broken: false,
-        used: Vec::new(),
-        used_by_parameters: Vec::new(),
-        idle: HashSet::new(),
-        certain: HashSet::new(),
-        like_names: Vec::new(),
-        lengths: Lengths::default(),
-        tables: Vec::new(),
-        files: origin.files.clone(),
+impl Origin<'_> {
+    /// A report that adds to these diagnostics.
+    fn report<'d>(&self, diagnostics: &'d mut Diagnostics) -> Report<'d> {
+        Report { diagnostics, files: self.files.clone() }
+    }
+
+    /// A model without contents, called after its file.
+    fn empty(&self) -> Description {
+        let stem = Path::new(self.name).file_stem();
+        Description::empty(stem.map_or_else(|| self.name.to_owned(), |stem| stem.to_string_lossy().into_owned()))
     }
 }
 
@@ -252,7 +234,7 @@ fn describe(
     diagnostics: &mut Diagnostics,
 ) -> (Description, Vec<Diagnostic>) {
     let root = &variant.root;
-    let mut reader = blank(origin, diagnostics);
+    let mut reader = Reader::new(origin.report(diagnostics), origin.empty());
     reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };

@@ -1,9 +1,9 @@
 //! Numbers with tolerances, written in one piece, as the fields of a parameter's long form.
 
 use crate::grammar::quantity::Dimension;
+use crate::grammar::report::Report;
 use crate::grammar::tolerance::{self, Deviation, Toleranced};
 use crate::grammar::unit::{Unit, number_and_unit};
-use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// The fields `value`, `tolerance`, `interval`, `plus` and `minus` that a number in one piece stands for. What cannot
@@ -47,9 +47,9 @@ pub fn dimension(node: &Node) -> Option<Dimension> {
 }
 
 /// Whether a number that is given instead of a parameter's own has such a unit; reported where it has another.
-pub fn fits(reader: &mut Reader, given: &Node, own: &Node) -> bool {
+pub fn fits(report: &mut Report, given: &Node, own: &Node) -> bool {
     match (dimension(given), dimension(own)) {
-        (Some(given_as), Some(wanted)) => reader.check_fits(&given.span, given_as, wanted),
+        (Some(given_as), Some(wanted)) => report.check_fits(&given.span, given_as, wanted),
         _ => true,
     }
 }

@@ -8,7 +8,7 @@ use super::{display, file};
 use crate::grammar::dimension::Kind;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::syntax::suggest::{clip, list};
 use crate::syntax::yaml::{Entry, Node, Value};

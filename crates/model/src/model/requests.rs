@@ -10,7 +10,7 @@ use crate::grammar::motions::{
 };
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::unknown;
 use crate::grammar::{Coordinate, PointRef, Symbol, TimeOrder};
 use crate::model::names::Reader;

@@ -8,7 +8,7 @@ use super::reduced;
 use super::results_by_name::{self, REDUCED, Source};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 

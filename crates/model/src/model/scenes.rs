@@ -7,8 +7,7 @@ pub mod draft;
 
 use self::draft::Draft;
 use super::file;
-use crate::grammar::reader::Fields;
-use crate::model::names::Reader;
+use crate::grammar::report::{Fields, Report};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -75,18 +74,18 @@ struct Layer<'n> {
 
 impl<'n> Scenes<'n> {
     /// Reads the omitted parts of a model, and its scenes; errors of their names are reported.
-    pub fn read(reader: &mut Reader, root: &'n Node) -> Self {
+    pub fn read(report: &mut Report, root: &'n Node) -> Self {
         let mut scenes = Self { root, model: Draft::default(), layers: Vec::new() };
         let Value::Mapping(entries) = &root.value else { return scenes };
         let of_scenes = |entry: &&Entry| matches!(entry.key.as_str(), "scenes" | "without");
         scenes.model.entries = entries.iter().filter(|entry| !of_scenes(entry)).cloned().collect();
         let find = |key: &str| entries.iter().find(|entry| entry.key == key);
         if let Some(without) = find("without") {
-            scenes.model.without(reader, &without.value);
+            scenes.model.without(report, &without.value);
         }
         if let Some(section) = find("scenes") {
-            let written = reader.entries(&section.value, "scenes");
-            scenes.layers = layers(reader, written);
+            let written = report.entries(&section.value, "scenes");
+            scenes.layers = layers(report, written);
         }
         scenes
     }
@@ -108,14 +107,14 @@ impl<'n> Scenes<'n> {
     }
 
     /// A scene: the model's tree with the changes of the scene it extends, and then its own.
-    pub fn scene(&self, reader: &mut Reader, scene: usize) -> Variant {
+    pub fn scene(&self, report: &mut Report, scene: usize) -> Variant {
         let mut chain = vec![scene];
         while let Some(next) = self.layers[chain[chain.len() - 1]].extends {
             chain.push(next);
         }
         let mut draft = self.model.clone();
         for &layer in chain.iter().rev() {
-            draft.lay(reader, &self.layers[layer].fields);
+            draft.lay(report, &self.layers[layer].fields);
         }
         self.variant(draft, Some(self.layers[scene].entry.key.clone()))
     }
@@ -133,48 +132,48 @@ impl<'n> Scenes<'n> {
 }
 
 /// The scenes, each with the one that it extends.
-fn layers<'n>(reader: &mut Reader, mut entries: &'n [Entry]) -> Vec<Layer<'n>> {
+fn layers<'n>(report: &mut Report, mut entries: &'n [Entry]) -> Vec<Layer<'n>> {
     if let Some(beyond) = entries.get(MOST) {
-        reader.error(beyond.key_span.clone(), format!("the model has more than {MOST} scenes"), None);
+        report.error(beyond.key_span.clone(), format!("the model has more than {MOST} scenes"), None);
         entries = &entries[..MOST];
     }
     let mut layers: Vec<Layer> = Vec::new();
     for entry in entries {
-        super::sections::folder_name(reader, &entry.key, entry.key_span.clone(), "a scene");
+        super::sections::folder_name(report, &entry.key, entry.key_span.clone(), "a scene");
         let alike = |layer: &&Layer| layer.entry.key.to_lowercase() == entry.key.to_lowercase();
         if let Some(other) = layers.iter().find(alike) {
             let message = format!("`{}` and `{}` differ in upper and lower case only", other.entry.key, entry.key);
             let diagnostic = Diagnostic::error(entry.key_span.clone(), message)
                 .help("folders of results are called after scenes, and on some systems these would be one".to_owned());
-            reader.diagnostics.push(diagnostic.also(other.entry.key_span.clone(), "the other"));
+            report.diagnostics.push(diagnostic.also(other.entry.key_span.clone(), "the other"));
         }
-        if let Some(fields) = reader.fields::<file::Scene>(&entry.value, entry.key_span.clone()) {
+        if let Some(fields) = report.fields::<file::Scene>(&entry.value, entry.key_span.clone()) {
             layers.push(Layer { entry, fields, extends: None });
         }
     }
     for index in 0..layers.len() {
-        layers[index].extends = extended(reader, &layers, index);
+        layers[index].extends = extended(report, &layers, index);
     }
     for index in 0..layers.len() {
-        break_circle(reader, &mut layers, index);
+        break_circle(report, &mut layers, index);
     }
     layers
 }
 
-fn extended(reader: &mut Reader, layers: &[Layer], index: usize) -> Option<usize> {
+fn extended(report: &mut Report, layers: &[Layer], index: usize) -> Option<usize> {
     let node = layers[index].fields.get("extends")?;
-    let name = &reader.scalar(node, "the name of a scene")?.text;
+    let name = &report.scalar(node, "the name of a scene")?.text;
     let found = layers.iter().position(|layer| layer.entry.key == *name);
     if found.is_none() {
         let others = layers.iter().map(|layer| layer.entry.key.as_str());
         let help = suggest::help(name, "scenes", others.filter(|other| *other != layers[index].entry.key));
-        reader.error(node.span.clone(), format!("unknown scene `{}`", clip(name)), help);
+        report.error(node.span.clone(), format!("unknown scene `{}`", clip(name)), help);
     }
     found
 }
 
 /// Reports scenes that extend each other, and ends the chain there.
-fn break_circle(reader: &mut Reader, layers: &mut [Layer], start: usize) {
+fn break_circle(report: &mut Report, layers: &mut [Layer], start: usize) {
     let mut chain = vec![start];
     while let Some(next) = layers[chain[chain.len() - 1]].extends {
         if next != start && chain.contains(&next) {
@@ -186,7 +185,7 @@ fn break_circle(reader: &mut Reader, layers: &mut [Layer], start: usize) {
             let names: Vec<String> = chain.iter().map(|&layer| clip(&layers[layer].entry.key)).collect();
             let message = format!("scenes extend each other in a circle: {}", names.join(" → "));
             let place = layers[start].fields.get("extends").map(|node| node.span.clone());
-            reader.error(place.unwrap_or_default(), message, None);
+            report.error(place.unwrap_or_default(), message, None);
             layers[start].extends = None;
             return;
         }
@@ -194,8 +193,8 @@ fn break_circle(reader: &mut Reader, layers: &mut [Layer], start: usize) {
 }
 
 /// Reports a name of nothing that could be left out.
-pub fn unknown<'k>(reader: &mut Reader, name: &str, span: Span, known: impl IntoIterator<Item = &'k str>) {
+pub fn unknown<'k>(report: &mut Report, name: &str, span: Span, known: impl IntoIterator<Item = &'k str>) {
     let message = format!("there is no effect, joint or output `{}`", clip(name));
     let help = suggest::help(name, "names", known);
-    reader.error(span, message, help);
+    report.error(span, message, help);
 }

@@ -2,7 +2,7 @@
 
 use super::analysis;
 use crate::grammar::names::GROUND;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::{Fields, Report};
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -86,17 +86,17 @@ pub(super) fn no_robot(reader: &mut Reader, fields: &Fields) {
 }
 
 /// Whether a text can be the name of something that has a folder of results; says so where it cannot.
-pub(super) fn folder_name(reader: &mut Reader, name: &str, span: Span, what: &str) -> bool {
+pub(super) fn folder_name(report: &mut Report, name: &str, span: Span, what: &str) -> bool {
     if name.is_empty() {
         let help = "write one, or leave the key out: a model is called like its file".to_owned();
-        reader.error(span, format!("the name of {what} is empty"), help);
+        report.error(span, format!("the name of {what} is empty"), help);
         return false;
     }
     let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
     let fine = name.len() <= 100 && name.chars().all(good);
     if !fine {
         let help = "it names a folder of results: use letters, digits, `_` and `-`".to_owned();
-        reader.error(span, format!("`{}` cannot be the name of {what}", clip(name)), help);
+        report.error(span, format!("`{}` cannot be the name of {what}", clip(name)), help);
     }
     fine
 }

@@ -6,7 +6,7 @@ use super::description::Analysis;
 use super::effects;
 use super::names::Reader;
 use crate::elements::effects::{EffectKind, ForceElement, State};
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::{Element, Sensor};
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};

@@ -3,7 +3,7 @@
 use super::description::{Correlation, ParameterValue};
 use super::file;
 use super::parameters::law::{Place, named};
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::unit::number_and_unit;
 use crate::model::names::Reader;
 use crate::numerics::statistics::Copula;

@@ -4,7 +4,8 @@ use symdiff::{Spline, SplineError};
 
 use super::file;
 use super::parameters::unit;
-use crate::grammar::reader::{Fields, Table};
+use crate::grammar::reader::Table;
+use crate::grammar::report::Fields;
 use crate::grammar::unit::Unit;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;

@@ -7,7 +7,7 @@ use super::names::Reader;
 use crate::elements::{Timing, Trajectory, Waypoint};
 use crate::grammar::Context;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Value};
 

@@ -36,7 +36,7 @@ use self::tree::{Sections, text};
 use self::values::Values;
 use super::overrides::Override;
 use super::robots::numbers::{self, Format};
-use crate::model::names::Reader;
+use crate::grammar::report::Report;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -64,7 +64,7 @@ pub fn model_of(path: &Path) -> String {
 }
 
 /// The model's tree with the robot that it names written out; nothing where it names none.
-pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(Override, Span)]) -> Option<Node> {
+pub fn write_out(report: &mut Report, root: &Node, model: &Path, overrides: &[(Override, Span)]) -> Option<Node> {
     let Value::Mapping(entries) = &root.value else { return None };
     let entry = entries.iter().find(|entry| entry.key == "mjcf")?;
     let mut sections: Vec<Entry> = Vec::new();
@@ -76,26 +76,26 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
     for key in ["urdf", "base"] {
         if let Some(other) = sections.iter().find(|entry| entry.key == key) {
             let message = format!("`{key}` and `mjcf` exclude each other");
-            reader.error(other.key_span.clone(), message, None);
+            report.error(other.key_span.clone(), message, None);
             return None;
         }
     }
-    let file = reader.scalar(&entry.value, "the path of an MJCF")?.text.clone();
-    let path = match reader.files.find(Path::new(""), &file) {
+    let file = report.scalar(&entry.value, "the path of an MJCF")?.text.clone();
+    let path = match report.files.find(Path::new(""), &file) {
         Ok(path) => path,
         Err(error) => {
-            reader.error(entry.value.span.clone(), error.message, error.help);
+            report.error(entry.value.span.clone(), error.message, error.help);
             return None;
         }
     };
-    let errors = reader.diagnostics.errors();
+    let errors = report.diagnostics.errors();
     let at = (!is_mjcf(model)).then(|| entry.value.span.clone());
-    let document = document::read(&path, at, &reader.files, reader.diagnostics)?;
+    let document = document::read(&path, at, &report.files, report.diagnostics)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut values = Values::new(&document, &reader.files, folder, reader.diagnostics);
+    let mut values = Values::new(&document, &report.files, folder, report.diagnostics);
     let robot = read::robot(&document, &mut values)?;
     // What could not be read may be what moves.
-    let is_whole = reader.diagnostics.errors() == errors;
+    let is_whole = report.diagnostics.errors() == errors;
     if is_whole && robot.joints.is_empty() && !sections.iter().any(|entry| entry.key == "bodies") {
         let place = if is_mjcf(model) { document.span.clone() } else { entry.value.span.clone() };
         let help = if robot.bodies.len() > 1 {
@@ -103,7 +103,7 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
         } else {
             "the file has no `<body>` in its `<worldbody>`: it may be one that others include"
         };
-        reader.error(place, "nothing of this robot can move", help.to_owned());
+        report.error(place, "nothing of this robot can move", help.to_owned());
         return None;
     }
     let words = numbers::words(root, overrides);
@@ -111,7 +111,7 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
         Some(Value::Mapping(entries)) => entries.clone(),
         _ => Vec::new(),
     };
-    let parameters = numbers::entries(reader, &FORMAT, robot.numbers(), &words, &written);
+    let parameters = numbers::entries(report, &FORMAT, robot.numbers(), &words, &written);
     let named: HashSet<String> =
         parameters.iter().filter(|entry| is_number(&entry.key)).map(|entry| entry.key.clone()).collect();
     let span = &entry.value.span;
@@ -126,9 +126,9 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
     let source = Source::new(&robot, &named, &words);
     let limits = own.iter().find(|entry| entry.key == "limits");
     let controls = own.iter().find(|entry| entry.key == "controls");
-    let controls = controls.map_or(&[][..], |entry| reader.entries(&entry.value, "controls"));
+    let controls = controls.map_or(&[][..], |entry| report.entries(&entry.value, "controls"));
     build::bodies(&mut sections, &source);
-    effects::add(&mut sections, &source, limits, controls, reader.diagnostics);
+    effects::add(&mut sections, &source, limits, controls, report.diagnostics);
     start::start(&mut sections, &source);
     start::outputs(&mut sections, &source);
     Some(Node { span: root.span.clone(), value: Value::Mapping(sections.0) })

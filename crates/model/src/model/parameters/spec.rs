@@ -1,6 +1,6 @@
 //! A parameter as it is written, in one piece or by keys.
 
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::tolerance::{self, Deviation, Toleranced};
 use crate::grammar::unit::number_and_unit;
 use crate::model::file;

@@ -7,6 +7,7 @@ use super::placement::{AXES, GROUND, scalar};
 use super::turned::{euler, quaternion, text, turn};
 use super::{Writer, mirror, patterns};
 use crate::elements::effects::{self, EffectKind};
+use crate::elements::joints::JointKind;
 use crate::grammar::Image;
 use crate::model::names::Reader;
 use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
@@ -112,7 +113,7 @@ impl Writer<'_, '_> {
             return Some(self.turning.get(on.name().as_ref()) == Some(&true));
         };
         if !patterns::is_pattern(wanted) {
-            return Some(TURNING.contains(&wanted));
+            return Some(JointKind::turns(wanted));
         }
         let matches =
             |name: &str| name.strip_prefix(scope.prefix()).is_some_and(|name| patterns::matches(wanted, name));
@@ -122,7 +123,7 @@ impl Writer<'_, '_> {
         if some && others && is_odd && mirror::tells_turns(entry) {
             let message = format!("`{}` is joints that turn and others, which have other images", clip(&on.text));
             let at = kinds.first()?.value.get("on")?.span.clone();
-            self.reader.error(at, message, "write an effect for those that turn and one for the others".to_owned());
+            self.report.error(at, message, "write an effect for those that turn and one for the others".to_owned());
         }
         Some(some)
     }
@@ -144,7 +145,7 @@ impl Writer<'_, '_> {
             let name = body.key.strip_prefix(scope.prefix()).unwrap_or(&body.key);
             let message = format!("the coordinates of `{name}` are along the model's axes, but the instance is turned");
             let help = "give it all coordinates, and guide it by a joint such as `prismatic`".to_owned();
-            self.reader.error(span, message, help);
+            self.report.error(span, message, help);
             return;
         }
         let mut held: Vec<Entry> = match keys.iter().find(|key| key.key == "held").map(|key| &key.value.value) {
@@ -200,9 +201,6 @@ fn held_in_model(
     wanted.push(("orientation", euler(p, span)));
     Some(wanted)
 }
-
-/// Kinds of joints of which drives take the angle, unless they say `coordinate`; a mirror counts it the other way.
-pub(super) const TURNING: [&str; 3] = ["revolute", "cylindrical", "screw"];
 
 /// Turns the directions of the ground that an effect has. One number about z is one about an axis of any direction in a
 /// frame that is turned in space, but for one about a joint's axis.

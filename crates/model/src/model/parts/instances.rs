@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use super::Writer;
-use super::in_model::{Places, TURNING};
+use super::in_model::Places;
 use super::parameters::{is_shared, scope_of_shared};
 use super::placement::{GROUND, Placement};
 use crate::elements::effects::{self, EffectKind};
+use crate::elements::joints::JointKind;
 use crate::model::description::{Instance, InstanceKind};
 use crate::model::file;
 use crate::syntax::scope::Scope;
@@ -47,7 +48,7 @@ impl Writer<'_, '_> {
             self.check_scopes(&name);
         }
         let Some(node) = root.get("instances") else { return };
-        let entries = self.reader.entries(node, "instances");
+        let entries = self.report.entries(node, "instances");
         let instances = self.repeated(entries, 0, None);
         for instance in &instances {
             self.instance("", instance, &mut Vec::new());
@@ -66,35 +67,35 @@ impl Writer<'_, '_> {
             let message =
                 format!("`{}` acts on every body of the model, and so does not belong to an assembly", kind.key);
             let help = format!("write `{}` among the `effects` of the model: it acts on all instances", effect.key);
-            self.reader.error(kind.key_span.clone(), message, help);
+            self.report.error(kind.key_span.clone(), message, help);
         }
     }
 
     /// The parameters that are one for all instances.
     fn share(&mut self, name: &str) {
         let Some(definition) = self.definitions.get(name).cloned() else { return };
-        let Some(fields) = self.reader.fields::<file::Assembly>(&definition.value, definition.key_span.clone()) else {
+        let Some(fields) = self.report.fields::<file::Assembly>(&definition.value, definition.key_span.clone()) else {
             self.definitions.remove(name);
             return;
         };
         let Some(shared) = fields.get("shared") else { return };
-        let entries = fields.get("parameters").map_or(&[][..], |node| self.reader.entries(node, "parameters"));
+        let entries = fields.get("parameters").map_or(&[][..], |node| self.report.entries(node, "parameters"));
         match &shared.value {
             Value::Sequence(items) => {
                 for item in items {
-                    let Some(scalar) = self.reader.scalar(item, "the name of a parameter") else { continue };
+                    let Some(scalar) = self.report.scalar(item, "the name of a parameter") else { continue };
                     if !entries.iter().any(|entry| entry.key == scalar.text) {
                         let help =
                             suggest::help(&scalar.text, "parameters of it", entries.iter().map(|e| e.key.as_str()));
                         let message = format!("assembly `{name}` has no parameter `{}`", clip(&scalar.text));
-                        self.reader.error(item.span.clone(), message, help);
+                        self.report.error(item.span.clone(), message, help);
                     }
                 }
             }
             _ if shared.scalar().is_some_and(|scalar| scalar.text == "all") => {}
             _ => {
                 let message = format!("`all` or a list of parameters belongs here, but here is {}", shared.kind());
-                self.reader.error(shared.span.clone(), message, "write `[name, name]`".to_owned());
+                self.report.error(shared.span.clone(), message, "write `[name, name]`".to_owned());
             }
         }
         let scope = Arc::new(scope_of_shared(name));
@@ -109,14 +110,17 @@ impl Writer<'_, '_> {
 
     /// Writes out an instance, whose entry is that of a copy already; `around` are the assemblies that it is in.
     fn instance(&mut self, outer: &str, entry: &Entry, around: &mut Vec<String>) {
-        if self.is_full || !self.reader.name(entry, "an instance") || !self.is_free(entry, !outer.is_empty()) {
+        if self.is_full
+            || !self.report.is_name(&entry.key, &entry.key_span, "an instance")
+            || !self.is_free(entry, !outer.is_empty())
+        {
             return;
         }
-        let Some(fields) = self.reader.fields::<file::InstanceFile>(&entry.value, entry.key_span.clone()) else {
+        let Some(fields) = self.report.fields::<file::InstanceFile>(&entry.value, entry.key_span.clone()) else {
             return;
         };
-        let Some(node) = self.reader.required(&fields, "of") else { return };
-        let Some(scalar) = self.reader.scalar(node, "the name of an assembly") else { return };
+        let Some(node) = self.report.required(&fields, "of") else { return };
+        let Some(scalar) = self.report.scalar(node, "the name of an assembly") else { return };
         let of = match &scalar.scope {
             None => scalar.text.clone(),
             Some(scope) => {
@@ -128,17 +132,17 @@ impl Writer<'_, '_> {
             let mut known: Vec<&str> = self.definitions.keys().map(String::as_str).collect();
             known.sort_unstable();
             let help = suggest::help(&of, "assemblies", known);
-            self.reader.error(node.span.clone(), format!("unknown assembly `{}`", clip(&of)), help);
+            self.report.error(node.span.clone(), format!("unknown assembly `{}`", clip(&of)), help);
             return;
         };
         if around.contains(&of) || around.len() == MAX_DEPTH {
             let names: Vec<String> = around.iter().chain([&of]).map(|name| clip(name)).collect();
             let message = format!("an assembly is in itself: {}", names.join(" → "));
-            self.reader.error(node.span.clone(), message, None);
+            self.report.error(node.span.clone(), message, None);
             return;
         }
         let name = format!("{outer}{}", entry.key);
-        let given = fields.get("parameters").map_or(&[][..], |node| self.reader.entries(node, "parameters")).to_vec();
+        let given = fields.get("parameters").map_or(&[][..], |node| self.report.entries(node, "parameters")).to_vec();
         let Some(placement) = self.placement(&format!("{name}."), &fields) else { return };
         let outer = scalar.scope.clone();
         around.push(of.clone());
@@ -151,7 +155,7 @@ impl Writer<'_, '_> {
         let New { name, of, definition, placement, .. } = new;
         let prefix = format!("{name}.");
         let within = Within { instance: name.clone(), of: of.clone(), span: entry.key_span.clone() };
-        let shift = self.reader.diagnostics.sources.copy(&definition.key_span, within);
+        let shift = self.report.diagnostics.sources.copy(&definition.key_span, within);
         let entries_of = |section: &str| match definition.value.get(section).map(|node| &node.value) {
             Some(Value::Mapping(entries)) => entries.clone(),
             _ => Vec::new(),
@@ -162,7 +166,7 @@ impl Writer<'_, '_> {
         };
         let sections = NAMED.into_iter().chain(["parameters", "ports", "instances"]);
         for node in sections.filter(wrong).filter_map(|section| definition.value.get(section)) {
-            self.reader.entries(node, "the parts of an assembly");
+            self.report.entries(node, "the parts of an assembly");
         }
         self.parts.instances.push(Instance { name: name.clone(), kind: InstanceKind::Assembly(of.clone()) });
 
@@ -210,9 +214,11 @@ impl Writer<'_, '_> {
             self.parts.grounds.insert(prefix.to_owned(), scope.frame().unwrap_or_default().mirrors);
         }
         self.bodies.extend(bodies.iter().map(|body| scope.full(&body.key)));
-        let turns =
-            |joint: &Entry| (scope.full(&joint.key), TURNING.iter().any(|kind| joint.value.get(kind).is_some()));
-        self.turning.extend(joints.iter().map(turns));
+        let turns = |joint: &Entry| match &joint.value.value {
+            Value::Mapping(kinds) => kinds.iter().any(|kind| JointKind::turns(&kind.key)),
+            _ => false,
+        };
+        self.turning.extend(joints.iter().map(|joint| (scope.full(&joint.key), turns(joint))));
         let all = [bodies, joints, effects, states, initial, guess];
         let [bodies, joints, effects, _, initial, guess] = std::array::from_fn(|index| {
             let (section, entries) = (NAMED[index], &all[index]);
@@ -234,7 +240,7 @@ impl Writer<'_, '_> {
             _ => return true,
         };
         let message = format!("`{}` cannot be the name of a part or an instance", entry.key);
-        self.reader.error(entry.key_span.clone(), message, why.to_owned());
+        self.report.error(entry.key_span.clone(), message, why.to_owned());
         false
     }
 

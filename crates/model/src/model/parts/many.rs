@@ -71,7 +71,7 @@ fn one_each(writer: &mut Writer, effect: &Entry, node: &Node) -> Vec<Entry> {
             let help = help.map(|help| format!("{help}; or name joints by a pattern: `all hip_*`"));
             (format!("`{}` is not a kind of joint", clip(wanted)), help)
         };
-        writer.reader.error(node.span.clone(), message, help);
+        writer.report.error(node.span.clone(), message, help);
         return Vec::new();
     }
     writer.parts.instances.push(Instance { name: effect.key.clone(), kind: InstanceKind::Effect });

@@ -47,7 +47,7 @@ impl Writer<'_, '_> {
             if images.iter().any(|known| known.name == found.key && matches!(known.image, Image::Unknown)) {
                 let message = format!("`{}` of a `{}` cannot be mirrored", found.key, kind.key);
                 let help = "write the mirrored assembly out, or give the parts that differ to the model".to_owned();
-                self.reader.error(found.key_span.clone(), message, help);
+                self.report.error(found.key_span.clone(), message, help);
             }
         }
         add_defaults(keys, &images, &kind.key_span);
@@ -60,7 +60,7 @@ impl Writer<'_, '_> {
     pub(super) fn image_of_body(&mut self, entry: &mut Entry, mirrors: Mirrors) {
         let Value::Mapping(keys) = &mut entry.value.value else { return };
         if let Some(beam) = keys.iter().find(|key| key.key == "beam" && mirrors.axes().next().is_some()) {
-            self.reader.error(beam.key_span.clone(), "a beam that bends cannot be mirrored", None);
+            self.report.error(beam.key_span.clone(), "a beam that bends cannot be mirrored", None);
         }
         for axis in mirrors.axes() {
             keys.iter_mut().for_each(|key| image_of_part(key, axis));

@@ -23,6 +23,7 @@ use std::sync::Arc;
 
 use super::description::{Instance, Standing};
 use super::overrides::Override;
+use crate::grammar::report::Report;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::mirrors::Mirrors;
@@ -60,7 +61,7 @@ pub struct WrittenOut {
 }
 
 /// Writes out a model's tree; nothing where there is nothing to be written out.
-pub fn write_out(reader: &mut Reader, root: &Node, text: &str, overrides: &[(Override, Span)]) -> Option<WrittenOut> {
+pub fn write_out(report: &mut Report, root: &Node, text: &str, overrides: &[(Override, Span)]) -> Option<WrittenOut> {
     let words = ["include", "assemblies", "instances", "repeat", "sum", "all "];
     if !words.iter().any(|word| text.contains(word)) {
         return None;
@@ -68,7 +69,7 @@ pub fn write_out(reader: &mut Reader, root: &Node, text: &str, overrides: &[(Ove
     let Value::Mapping(entries) = &root.value else { return None };
     let given = overrides.iter().map(|(wanted, _)| (wanted.name.clone(), wanted.value.clone())).collect();
     let mut writer = Writer {
-        reader,
+        report,
         definitions: HashMap::new(),
         overrides: given,
         model: Arc::default(),
@@ -103,7 +104,7 @@ pub fn write_out(reader: &mut Reader, root: &Node, text: &str, overrides: &[(Ove
 
 /// A tree while it is written out.
 struct Writer<'w, 'd> {
-    reader: &'w mut Reader<'d>,
+    report: &'w mut Report<'d>,
     /// Assemblies by their names.
     definitions: HashMap<String, Arc<Entry>>,
     /// What the command line sets.
@@ -171,7 +172,7 @@ impl Writer<'_, '_> {
     fn twice(&mut self, name: &str, span: &Span, first: &Span) {
         let message = format!("`{}` is given twice", crate::syntax::suggest::clip(name));
         let diagnostic = Diagnostic::error(span.clone(), message).label("again here");
-        self.reader.diagnostics.push(diagnostic.also(first.clone(), "first here"));
+        self.report.diagnostics.push(diagnostic.also(first.clone(), "first here"));
     }
 
     /// Counts nodes; whether there is room for another.
@@ -181,7 +182,7 @@ impl Writer<'_, '_> {
             self.is_full = true;
             let message = format!("written out, the model has more than {MOST_NODES} entries");
             let help = "have fewer instances and repetitions".to_owned();
-            self.reader.error(at.clone(), message, help);
+            self.report.error(at.clone(), message, help);
         }
         !self.is_full
     }

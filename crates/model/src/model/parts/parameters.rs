@@ -58,14 +58,14 @@ impl Writer<'_, '_> {
         for entry in given.iter().filter(|entry| !own.iter().any(|known| known.key == entry.key)) {
             let help = suggest::help(&entry.key, "parameters of it", own.iter().map(|known| known.key.as_str()));
             let message = format!("assembly `{definition}` has no parameter `{}`", clip(&entry.key));
-            self.reader.error(entry.key_span.clone(), message, help);
+            self.report.error(entry.key_span.clone(), message, help);
         }
         let mut parameters = Vec::with_capacity(own.len());
         for entry in own {
             let key = format!("{prefix}{}", entry.key);
             let follows = format!("{definition}.{}", entry.key);
             let mut entry = if let Some(given) = given.iter().find(|given| given.key == entry.key) {
-                notation::fits(self.reader, &given.value, &entry.value);
+                notation::fits(self.report, &given.value, &entry.value);
                 overridden(&entry, given)
             } else if is_shared(&entry.key) {
                 let value = Value::Scalar(Scalar::plain(follows, None));

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::{Writer, mirror};
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::model::file;
 use crate::syntax::frame::{Frame, PLACE, Turned, about, about_z, product, signed, sum};
 use crate::syntax::mirrors::Mirrors;
@@ -69,16 +69,16 @@ impl Writer<'_, '_> {
     pub(super) fn placement(&mut self, prefix: &str, fields: &Fields) -> Option<Placement> {
         let mut placement = Placement { span: fields.at.clone(), ..Placement::default() };
         if let Some(node) = fields.get("mirror") {
-            placement.mirrors = Mirrors::across(self.reader.choice(node, &[("x", 0), ("y", 1), ("z", 2)])?);
+            placement.mirrors = Mirrors::across(self.report.choice(node, &[("x", 0), ("y", 1), ("z", 2)])?);
             placement.span = fields.key_span("mirror");
         }
         let Some(node) = fields.get("at") else { return Some(placement) };
         placement.span = fields.key_span("at");
         let position = match &node.value {
             Value::Mapping(_) => {
-                let at = self.reader.fields::<file::PlaceFile>(node, fields.key_span("at"))?;
+                let at = self.report.fields::<file::PlaceFile>(node, fields.key_span("at"))?;
                 if at.get("angle").is_some() && at.get("rotation").is_some() {
-                    self.reader.error(at.key_span("angle"), "`angle` and `rotation` exclude each other", None);
+                    self.report.error(at.key_span("angle"), "`angle` and `rotation` exclude each other", None);
                     return None;
                 }
                 placement.numbers.extend(at.get("angle").map(|angle| ("angle".to_owned(), angle.clone(), "rad")));
@@ -99,7 +99,7 @@ impl Writer<'_, '_> {
                     let help = "e.g. `at: [0.5 m, 0]`, or `at: { position: [0.5 m, 0], angle: 30 deg }`".to_owned();
                     let message =
                         format!("a position of two or three numbers belongs here, but here is {}", position.kind());
-                    self.reader.error(position.span.clone(), message, help);
+                    self.report.error(position.span.clone(), message, help);
                     return None;
                 }
             }
@@ -109,11 +109,11 @@ impl Writer<'_, '_> {
 
     /// Reads the rotation of a place; its numbers are parameters, too.
     fn rotation(&mut self, placement: &mut Placement, prefix: &str, node: &Node, at: Span) -> Option<()> {
-        let (kind, fields) = self.reader.kind_of_rotation(node, at)?;
+        let (kind, fields) = self.report.kind_of_rotation(node, at)?;
         let value = fields.get(kind)?;
         let own = |name: &str| format!("{prefix}at.{name}");
         let mut list = |names: &[&str], unit| {
-            let items = self.reader.list_of(value, names.len())?;
+            let items = self.report.list_of(value, names.len())?;
             let numbers = names.iter().zip(items).map(|(name, item)| ((*name).to_owned(), item.clone(), unit));
             placement.numbers.extend(numbers);
             Some(())
@@ -138,7 +138,7 @@ impl Writer<'_, '_> {
 
     /// Reads a rotation about an axis; that about z is an angle, as in the plane.
     fn about_axis(&mut self, placement: &mut Placement, prefix: &str, fields: &Fields, axis: &Node) -> Option<()> {
-        let angle = self.reader.required(fields, "angle")?;
+        let angle = self.report.required(fields, "angle")?;
         placement.numbers.push(("angle".to_owned(), angle.clone(), "rad"));
         let angle = format!("{prefix}at.angle");
         if let Some(letter) = axis.scalar().and_then(|scalar| AXES.iter().position(|axis| *axis == scalar.text)) {
@@ -147,12 +147,12 @@ impl Writer<'_, '_> {
         }
         let Value::Sequence(items) = &axis.value else {
             let message = format!("`x`, `y`, `z` or a list of three numbers belongs here, but here is {}", axis.kind());
-            self.reader.error(axis.span.clone(), message, None);
+            self.report.error(axis.span.clone(), message, None);
             return None;
         };
-        self.reader.list_of(axis, 3)?;
+        self.report.list_of(axis, 3)?;
         if items.iter().all(|item| item.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0))) {
-            self.reader.error(axis.span.clone(), "a direction of length zero points nowhere", None);
+            self.report.error(axis.span.clone(), "a direction of length zero points nowhere", None);
             return None;
         }
         let names = AXES.map(|axis| format!("axis_{axis}"));

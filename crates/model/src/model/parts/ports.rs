@@ -37,7 +37,7 @@ impl Writer<'_, '_> {
             if matches!(entry.value.value, Value::Mapping(_)) {
                 mirrors.axes().for_each(|axis| mirror::frame(&mut entry.value, axis));
             }
-            if !self.reader.name(&entry, "a port") || !self.is_free(&entry, true) {
+            if !self.report.is_name(&entry.key, &entry.key_span, "a port") || !self.is_free(&entry, true) {
                 continue;
             }
             let name = format!("{prefix}{}", entry.key);
@@ -45,7 +45,7 @@ impl Writer<'_, '_> {
             let target = match &entry.value.value {
                 Value::Mapping(_) => self.point(prefix, &entry),
                 _ => self
-                    .reader
+                    .report
                     .scalar(&entry.value, "a body or a point of one")
                     .map(|scalar| scalar.name().into_owned()),
             };
@@ -55,9 +55,9 @@ impl Writer<'_, '_> {
 
     /// Gives the body of a port a point.
     fn point(&mut self, prefix: &str, entry: &Entry) -> Option<String> {
-        let fields = self.reader.fields::<file::PointPort>(&entry.value, entry.key_span.clone())?;
-        let on = self.reader.required(&fields, "on")?;
-        let body = self.reader.scalar(on, "the name of a body")?.name().into_owned();
+        let fields = self.report.fields::<file::PointPort>(&entry.value, entry.key_span.clone())?;
+        let on = self.report.required(&fields, "on")?;
+        let body = self.report.scalar(on, "the name of a body")?.name().into_owned();
         let keys = |key: &str| {
             let value = fields.get(key)?.clone();
             Some(Entry { key: key.to_owned(), key_span: fields.key_span(key), value })
@@ -71,7 +71,7 @@ impl Writer<'_, '_> {
                 bodies.iter().filter_map(|body| Some(body.key.strip_prefix(prefix)?.to_owned())).collect();
             let short = body.strip_prefix(prefix).unwrap_or(&body);
             let help = suggest::help(short, "bodies", known.iter().map(String::as_str));
-            self.reader.error(on.span.clone(), format!("unknown body `{}`", clip(&body)), help);
+            self.report.error(on.span.clone(), format!("unknown body `{}`", clip(&body)), help);
             return None;
         };
         let Value::Mapping(keys) = &mut found.value.value else { return None };

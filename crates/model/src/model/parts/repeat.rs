@@ -96,7 +96,7 @@ impl Writer<'_, '_> {
                     Err(error) => {
                         let verbatim = key_span.len() == entry.key.len();
                         let part = key_span.start + error.span.start..key_span.start + error.span.end;
-                        self.reader.error(if verbatim { part } else { key_span }, error.message, error.help);
+                        self.report.error(if verbatim { part } else { key_span }, error.message, error.help);
                         return None;
                     }
                 }
@@ -123,7 +123,7 @@ impl Writer<'_, '_> {
                 if !entry.key.contains('{') {
                     let key = clip(&entry.key);
                     let help = format!("put the index into the name, in braces: `{key}_{{i}}`");
-                    self.reader.error(span, format!("all copies are called `{key}`"), help);
+                    self.report.error(span, format!("all copies are called `{key}`"), help);
                 }
                 return;
             }
@@ -135,13 +135,13 @@ impl Writer<'_, '_> {
         let span = repeat.span.start + shift..repeat.span.end + shift;
         let Value::Mapping(entries) = &repeat.value else {
             let message = format!("`{REPEAT}` is a mapping of indices, but here is {}", repeat.kind());
-            self.reader.error(span, message, "e.g. `repeat: { i: 1..6 }`".to_owned());
+            self.report.error(span, message, "e.g. `repeat: { i: 1..6 }`".to_owned());
             return None;
         };
         let mut scopes = vec![outer];
         for entry in entries {
             let place = Entry { key_span: entry.key_span.start + shift..entry.key_span.end + shift, ..entry.clone() };
-            if !self.reader.name(&place, "an index") {
+            if !self.report.is_name(&place.key, &place.key_span, "an index") {
                 return None;
             }
             let mut next = Vec::new();
@@ -149,7 +149,7 @@ impl Writer<'_, '_> {
                 let values = self.values(&entry.value, shift, scope)?;
                 if next.len() + values.len() > MOST_COPIES {
                     let message = format!("`{REPEAT}` makes more than {MOST_COPIES} copies");
-                    self.reader.error(span, message, None);
+                    self.report.error(span, message, None);
                     return None;
                 }
                 next.extend(values.into_iter().map(|value| Arc::new(scope.with(&entry.key, value))));
@@ -164,28 +164,28 @@ impl Writer<'_, '_> {
         let span = node.span.start + shift..node.span.end + shift;
         if let Value::Sequence(items) = &node.value {
             if items.is_empty() {
-                self.reader.error(span, "an index needs a value", "e.g. `[left, right]`".to_owned());
+                self.report.error(span, "an index needs a value", "e.g. `[left, right]`".to_owned());
                 return None;
             }
             let word = |item: &Node| {
-                let text = self.reader.scalar(&item.moved(shift), "a number or a word")?.text.clone();
+                let text = self.report.scalar(&item.moved(shift), "a number or a word")?.text.clone();
                 Some(text.parse().map_or(Index::Word(text), Index::Number))
             };
             return items.iter().map(word).collect();
         }
         let node = node.moved(shift);
-        let scalar = self.reader.scalar(&node, "a range, such as `1..6`, or a list of words")?;
+        let scalar = self.report.scalar(&node, "a range, such as `1..6`, or a list of words")?;
         self.note_counts(&scalar.text, scope);
         let range = match indices::range(&scalar.text, &|name| scope.whole(name)) {
             Ok(range) => range,
             Err(error) => {
-                self.reader.error(scalar.place(&node.span, error.span), error.message, error.help);
+                self.report.error(scalar.place(&node.span, error.span), error.message, error.help);
                 return None;
             }
         };
         if range.end().saturating_sub(*range.start()) >= MOST_COPIES as i64 {
             let message = format!("`{}` makes more than {MOST_COPIES} copies", clip(&scalar.text));
-            self.reader.error(span, message, None);
+            self.report.error(span, message, None);
             return None;
         }
         Some(range.map(Index::Number).collect())
@@ -210,7 +210,7 @@ impl Writer<'_, '_> {
             if self.parts.counts.contains(&change.key) {
                 let message = format!("a scene cannot change how often `{}` repeats something", clip(&change.key));
                 let help = "`--set` can; or make it a model of its own".to_owned();
-                self.reader.error(change.key_span.clone(), message, help);
+                self.report.error(change.key_span.clone(), message, help);
             }
         }
     }

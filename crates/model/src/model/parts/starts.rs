@@ -93,7 +93,7 @@ impl Writer<'_, '_> {
             (Of::Place, "roll" | "pitch" | "yaw") if frame.is_turned() => {
                 let name = own_name(start, scope);
                 let message = format!("`{name}` is about an axis of the model, but the instance is turned");
-                self.reader.error(
+                self.report.error(
                     start.key_span.clone(),
                     message,
                     "give `orientation`, or coordinates of joints".to_owned(),
@@ -115,7 +115,7 @@ impl Writer<'_, '_> {
         if frame.turned == Turned::InSpace {
             let name = own_name(start, scope);
             let message = format!("`{name}` is about the model's z, but the instance is turned in space");
-            self.reader.error(start.key_span.clone(), message, "give coordinates of joints".to_owned());
+            self.report.error(start.key_span.clone(), message, "give coordinates of joints".to_owned());
             return;
         }
         if frame.mirrors.turns_back(2) {
@@ -154,7 +154,7 @@ impl Writer<'_, '_> {
                 let name = own_name(start, scope);
                 let message = format!("`{name}` is given without `{wanted}`, but the instance is turned");
                 let all = if frame.turned == Turned::InSpace { "all three" } else { "both" };
-                self.reader.error(start.key_span.clone(), message, format!("give {all}, or the coordinates of joints"));
+                self.report.error(start.key_span.clone(), message, format!("give {all}, or the coordinates of joints"));
                 return;
             };
             let is_negative = if is_rate { frame.mirrors.turns_back(other) } else { frame.mirrors.flips(other) };

@@ -3,8 +3,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use crate::grammar::report::Report;
 use crate::grammar::unit::{Unit, number_and_unit};
-use crate::model::names::Reader;
 use crate::model::notation::{self, field};
 use crate::model::overrides::Override;
 use crate::syntax::source::Span;
@@ -63,7 +63,7 @@ pub fn words(root: &Node, overrides: &[(Override, Span)]) -> HashSet<String> {
 
 /// The model's parameters, those of the robot first that are named or have an attribute.
 pub fn entries<'n>(
-    reader: &mut Reader,
+    report: &mut Report,
     format: &Format,
     numbers: impl Iterator<Item = &'n Number>,
     words: &HashSet<String>,
@@ -76,7 +76,7 @@ pub fn entries<'n>(
         known.insert(number.name.as_str());
         let entry = by_key.get(number.name.as_str()).copied();
         if entry.is_some() || number.uncertain.is_some() || words.contains(&number.name) {
-            entries.push(parameter(reader, number, entry));
+            entries.push(parameter(report, number, entry));
         }
     }
     for entry in written {
@@ -86,20 +86,20 @@ pub fn entries<'n>(
             let message = format!("the {} has no number `{}`", format.name, clip(&entry.key));
             let help = suggest::nearest(&entry.key, known.iter().copied());
             let help = help.map_or_else(|| format.forms.to_owned(), |near| format!("did you mean `{near}`?"));
-            reader.error(entry.key_span.clone(), message, help);
+            report.error(entry.key_span.clone(), message, help);
         }
     }
     entries
 }
 
-fn parameter(reader: &mut Reader, number: &Number, written: Option<&Entry>) -> Entry {
+fn parameter(report: &mut Report, number: &Number, written: Option<&Entry>) -> Entry {
     let mut fields = match (written, &number.uncertain) {
         (Some(entry), _) => notation::fields_of_parameter(&entry.value),
         (None, Some((text, span))) => {
             let fields = notation::fields(&scalar(text.clone(), span.clone(), Some(span.start)));
             if fields.iter().any(|field| field.key == "value") {
                 let message = format!("`{}` says no deviation", clip(text));
-                reader.error(span.clone(), message, "write `5%`, `± 0.1` or `[lower, upper]`".to_owned());
+                report.error(span.clone(), message, "write `5%`, `± 0.1` or `[lower, upper]`".to_owned());
             }
             fields
         }

@@ -3,8 +3,7 @@
 use std::collections::{BTreeSet, HashSet};
 
 use super::{LeftOut, unknown};
-use crate::grammar::reader::Fields;
-use crate::model::names::Reader;
+use crate::grammar::report::{Fields, Report};
 use crate::model::notation::{self, field};
 use crate::model::parts::patterns;
 use crate::model::urdf;
@@ -47,19 +46,19 @@ pub struct Draft {
 
 impl Draft {
     /// Lays a scene's changes over the tree.
-    pub fn lay(&mut self, reader: &mut Reader, fields: &Fields) {
+    pub fn lay(&mut self, report: &mut Report, fields: &Fields) {
         if let Some(node) = fields.get("without") {
-            self.without(reader, node);
+            self.without(report, node);
         }
         for (section, what) in BY_NAME {
             let Some(node) = fields.get(section) else { continue };
             if node.scalar().is_some_and(|scalar| !scalar.is_null()) {
-                // `initial: equilibrium`; what else it may be is the reader's to say.
+                // `initial: equilibrium`; what else it may be is the report's to say.
                 let entry = Entry { key: section.to_owned(), key_span: fields.key_span(section), value: node.clone() };
                 replace(&mut self.entries, entry);
                 continue;
             }
-            for entry in reader.entries(node, what) {
+            for entry in report.entries(node, what) {
                 self.out.remove(&(section, entry.key.clone()));
                 if let Some(entries) = self.section(section, fields.key_span(section), node) {
                     replace(entries, entry.clone());
@@ -67,7 +66,7 @@ impl Draft {
             }
         }
         if let Some(node) = fields.get("parameters") {
-            self.parameters(reader, node, fields.key_span("parameters"));
+            self.parameters(report, node, fields.key_span("parameters"));
         }
         if let Some(node) = fields.get("simulation") {
             self.simulation(node, fields.key_span("simulation"));
@@ -79,7 +78,7 @@ impl Draft {
             }
         }
         if let Some(node) = fields.get("with") {
-            self.with(reader, node);
+            self.with(report, node);
         }
     }
 
@@ -114,7 +113,7 @@ impl Draft {
     }
 
     /// `without`: names of effects, joints and outputs, or `all` effects.
-    pub fn without(&mut self, reader: &mut Reader, node: &Node) {
+    pub fn without(&mut self, report: &mut Report, node: &Node) {
         if node.scalar().is_some_and(|scalar| scalar.text == "all") {
             let effects: Vec<_> =
                 self.entries_of("effects").iter().map(|entry| ("effects", entry.key.clone())).collect();
@@ -123,20 +122,20 @@ impl Draft {
             return;
         }
         for (name, span) in
-            self.all_names(names(reader, node, "`all`, or a list of effects, joints and outputs,"), false)
+            self.all_names(names(report, node, "`all`, or a list of effects, joints and outputs,"), false)
         {
             let sections = self.sections_with(&name);
             let robots = self.robot.names.iter().any(|(known, _)| *known == name);
             if sections.iter().all(|section| self.out.contains(&(*section, name.clone()))) && !sections.is_empty()
                 || robots
             {
-                reader.error(span, format!("`{}` is left out already", clip(&name)), None);
+                report.error(span, format!("`{}` is left out already", clip(&name)), None);
             } else if sections.is_empty() && self.has_robot() {
                 // Perhaps one of the robot's, which are known when its file is read.
                 self.robot.kept.retain(|(kept, _)| *kept != name);
                 self.robot.names.push((name, span));
             } else if sections.is_empty() {
-                self.unknown(reader, &name, span);
+                self.unknown(report, &name, span);
             } else {
                 self.out.extend(sections.into_iter().map(|section| (section, name.clone())));
             }
@@ -144,8 +143,8 @@ impl Draft {
     }
 
     /// `with`: adds omitted parts again.
-    fn with(&mut self, reader: &mut Reader, node: &Node) {
-        for (name, span) in self.all_names(names(reader, node, "a list of effects, joints and outputs"), true) {
+    fn with(&mut self, report: &mut Report, node: &Node) {
+        for (name, span) in self.all_names(names(report, node, "a list of effects, joints and outputs"), true) {
             let sections = self.sections_with(&name);
             let before = self.out.len() + self.robot.names.len();
             self.out.retain(|(_, known)| *known != name);
@@ -156,10 +155,10 @@ impl Draft {
             if sections.is_empty() && self.robot.all && self.has_robot() {
                 self.robot.kept.push((name, span));
             } else if sections.is_empty() && !self.has_robot() {
-                self.unknown(reader, &name, span);
+                self.unknown(report, &name, span);
             } else {
                 let help = "`with` puts in what the model, a scene that is extended or this one's `without` leaves out";
-                reader.error(span, format!("`{}` is not left out", clip(&name)), help.to_owned());
+                report.error(span, format!("`{}` is not left out", clip(&name)), help.to_owned());
             }
         }
     }
@@ -195,15 +194,15 @@ impl Draft {
         if parts.is_empty() { outputs } else { parts }
     }
 
-    fn unknown(&self, reader: &mut Reader, name: &str, span: Span) {
+    fn unknown(&self, report: &mut Report, name: &str, span: Span) {
         let known = NAMED.iter().flat_map(|section| self.entries_of(section)).map(|entry| entry.key.as_str());
-        unknown(reader, name, span, known);
+        unknown(report, name, span, known);
     }
 
     /// A parameter's new value; its unit and description stay, its deviation does not.
-    fn parameters(&mut self, reader: &mut Reader, node: &Node, key_span: Span) {
+    fn parameters(&mut self, report: &mut Report, node: &Node, key_span: Span) {
         let has_robot = self.has_robot();
-        for entry in reader.entries(node, "parameters") {
+        for entry in report.entries(node, "parameters") {
             let Some(parameters) = self.section("parameters", key_span.clone(), node) else { return };
             let known = parameters.iter().position(|known| known.key == entry.key);
             match known {
@@ -214,7 +213,7 @@ impl Draft {
                     let names = parameters.iter().map(|known| known.key.as_str());
                     let help = suggest::help(&entry.key, "parameters", names);
                     let message = format!("unknown parameter `{}`", clip(&entry.key));
-                    reader.error(entry.key_span.clone(), message, help);
+                    report.error(entry.key_span.clone(), message, help);
                 }
             }
         }
@@ -261,13 +260,13 @@ fn replace(entries: &mut Vec<Entry>, entry: Entry) {
 }
 
 /// The texts of a list, each with its place.
-fn names(reader: &mut Reader, node: &Node, wanted: &str) -> Vec<(String, Span)> {
+fn names(report: &mut Report, node: &Node, wanted: &str) -> Vec<(String, Span)> {
     let Value::Sequence(items) = &node.value else {
         let help = "write `[name, name]`".to_owned();
-        reader.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), help);
+        report.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), help);
         return Vec::new();
     };
-    let name = |item: &Node| Some((reader.scalar(item, "a name")?.text.clone(), item.span.clone()));
+    let name = |item: &Node| Some((report.scalar(item, "a name")?.text.clone(), item.span.clone()));
     items.iter().filter_map(name).collect()
 }
 

@@ -31,7 +31,7 @@ use self::source::{Built, Source};
 use super::overrides::Override;
 use super::robots::numbers;
 use super::scenes::LeftOut;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
