@@ -228,6 +228,22 @@ impl Report<'_> {
         well_formed
     }
 
+    /// Whether a text can be the name of something that has a folder of results; reports where it cannot.
+    pub fn is_folder_name(&mut self, name: &str, span: Span, what: &str) -> bool {
+        if name.is_empty() {
+            let help = "write one, or leave the key out: a model is called like its file".to_owned();
+            self.error(span, format!("the name of {what} is empty"), help);
+            return false;
+        }
+        let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
+        let fine = name.len() <= 100 && name.chars().all(good);
+        if !fine {
+            let help = "it names a folder of results: use letters, digits, `_` and `-`".to_owned();
+            self.error(span, format!("`{}` cannot be the name of {what}", clip(name)), help);
+        }
+        fine
+    }
+
     /// A piece of text that is there.
     pub fn scalar<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<&'n Scalar> {
         match node.scalar() {

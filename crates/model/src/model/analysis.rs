@@ -3,10 +3,10 @@
 use super::description::{
     Analysis, Description, Formulation, Joint, LinearisedAt, ModesRequest, ResponseRequest, Stepping,
 };
-use super::file;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::{Context, Symbol};
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -79,7 +79,7 @@ fn section_of_modes<'n>(reader: &mut Reader, fields: &Fields<'n>) -> Option<Fiel
         reader.error(fields.key_span("modes"), "`modes` belongs to `analysis: modes`", help);
         return None;
     }
-    reader.fields::<file::Modes>(node, fields.key_span("modes"))
+    reader.fields::<keys::Modes>(node, fields.key_span("modes"))
 }
 
 /// Reads the questions about small vibrations, when outputs are known.
@@ -107,7 +107,7 @@ pub fn read_modes(reader: &mut Reader, fields: &Fields) {
 
 fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
     reader.name(entry, "a response");
-    let fields = reader.fields::<file::Response>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::Response>(&entry.value, entry.key_span.clone())?;
     let [load, output, from, to] = ["load", "output", "from", "to"].map(|key| reader.required(&fields, key));
     let load = load.and_then(|node| {
         let (name, dimension) = known_output(reader, node)?;

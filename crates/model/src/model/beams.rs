@@ -5,12 +5,12 @@ use crate::grammar::{Coordinate, PointRef};
 use symdiff::{Binary, Formula};
 
 use super::description::{Description, Effect};
-use super::file;
 use crate::elements::effects::Beam;
 use crate::elements::effects::beam::Flexible;
 use crate::grammar::Direction;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Value};
 
@@ -57,14 +57,14 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
             false => vec![Coordinate::X, Coordinate::Y, Coordinate::Angle],
         };
     }
-    let Some(body) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
+    let Some(body) = reader.fields::<keys::Body>(&entry.value, entry.key_span.clone()) else { return };
     for key in RIGID.into_iter().filter(|key| body.get(key).is_some()) {
         let help = "its mass is along it (`mass_per_length`), and its nodes are its points; what is rigid is a body of its own, \
                     joined to a node by `fixed`";
         reader.error(body.key_span(key), format!("a beam has no `{key}`"), help.to_owned());
     }
     let (Some(node), at) = (body.get("beam"), body.key_span("beam")) else { return };
-    let Some(fields) = reader.fields::<file::FlexibleBeam>(node, at) else { return };
+    let Some(fields) = reader.fields::<keys::FlexibleBeam>(node, at) else { return };
     if let Some(node) = fields.get("elements") {
         reader.count(node, 1, MOST);
     }

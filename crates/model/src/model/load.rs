@@ -3,17 +3,20 @@
 use std::path::Path;
 
 use super::description::{Description, Space};
-use super::file;
-use super::overrides::Override;
-use super::parts::{self, Parts, WrittenOut};
-use super::scenes::{Scenes, Variant};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, bodies, bounds, effects, joints, mjcf, motion_times, parameters, requests, requirements, sections, space,
-    states, statistics, tables, teeth, trajectories,
+    analysis, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements, sections,
+    space, states, statistics, tables, teeth, trajectories,
 };
+use crate::expand::mjcf;
+use crate::expand::overrides::Override;
+use crate::expand::parts::{self, Parts, WrittenOut};
+use crate::expand::scenes::{Scenes, Variant};
 use crate::grammar::report::Report;
+use crate::keys;
 use crate::model::names::Reader;
+use crate::robots::mjcf::is_mjcf;
+use crate::robots::urdf::is_urdf;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
 use crate::syntax::source::Span;
@@ -113,11 +116,11 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
 pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> Reading {
     let from_input = is_standard_input(path);
     let name = if from_input { "stdin".to_owned() } else { shown(path) };
-    if urdf::is_urdf(path) {
+    if is_urdf(path) {
         // A model of nothing but the robot; errors are in the robot's file.
         return read_text_of(&name, &urdf::model_of(path), overrides, root);
     }
-    if mjcf::is_mjcf(path) {
+    if is_mjcf(path) {
         return read_text_of(&name, &mjcf::model_of(path), overrides, root);
     }
     let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_given(path, MAX_BYTES) };
@@ -237,7 +240,7 @@ fn describe(
     let mut reader = Reader::new(origin.report(diagnostics), origin.empty());
     reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
     let start = root.span.start..root.span.start;
-    let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };
+    let Some(fields) = reader.fields::<keys::File>(root, start) else { return (reader.model, Vec::new()) };
     sections::title(&mut reader, &fields, variant.scene.as_deref());
     let mut robot = match fields.get("urdf") {
         None => None,
@@ -272,8 +275,8 @@ fn describe(
 
     bodies::declare(&mut reader, body_entries);
     parts.into_iter().for_each(|parts| {
-        parts.declare_ports(&mut reader);
-        parts.stand(&mut reader);
+        instances::declare_ports(&mut reader, parts);
+        instances::stand(&mut reader, parts);
     });
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::overrides::Override;
+use crate::expand::overrides::Override;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

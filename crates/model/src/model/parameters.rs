@@ -14,8 +14,8 @@ use symdiff::Formula;
 
 use self::spec::Spec;
 use super::description::{Parameter, ParameterValue};
-use super::overrides::Override;
-use super::{mjcf, notation, urdf};
+use crate::expand::notation;
+use crate::expand::overrides::Override;
 use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
 use crate::grammar::display_unit::DisplayUnit;
@@ -23,6 +23,7 @@ use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
 use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
+use crate::robots::{mjcf, urdf};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;

@@ -2,7 +2,7 @@
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::named_outputs::with_outputs;
-use super::{display, file, reduced};
+use super::{display, reduced};
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
 use crate::grammar::motions::{
@@ -13,6 +13,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::unknown;
 use crate::grammar::{Coordinate, PointRef, Symbol, TimeOrder};
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
@@ -350,7 +351,7 @@ fn tidy(value: f64) -> f64 {
 
 /// Reads the whole section.
 pub fn simulation_section(reader: &mut Reader, node: &Node, at: crate::syntax::source::Span) {
-    if let Some(fields) = reader.fields::<file::Simulation>(node, at)
+    if let Some(fields) = reader.fields::<keys::Simulation>(node, at)
         && let Some(simulation) = simulation(reader, &fields)
     {
         reader.model.simulation = simulation;

@@ -2,12 +2,12 @@
 
 use symdiff::Formula;
 
-use super::file;
 use super::names::Reader;
 use crate::elements::{Timing, Trajectory, Waypoint};
 use crate::grammar::Context;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
+use crate::keys;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -43,7 +43,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
 }
 
 fn trajectory(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
-    let fields = reader.fields::<file::Trajectory>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::Trajectory>(&entry.value, entry.key_span.clone())?;
     let timings = ["cubic", "quintic", "trapezoidal", "spline"].map(|word| (word, word));
     let timing = reader.required(&fields, "timing").and_then(|node| reader.choice(node, &timings));
     let nodes = reader.required(&fields, "points").and_then(|node| listed(reader, node))?;

@@ -6,14 +6,14 @@
 //!
 //! The other links are frames at points of it, named after them.
 
-use super::robot::{Joint, Kind};
 use super::source::{Source, formula, formulas};
 use crate::grammar::Coordinate;
 use crate::model::description::{Body, Inertia};
 use crate::model::names::Reader;
-use crate::model::robots::algebra::{self, Pose, Value, Vector};
-use crate::model::robots::masses::{Part, center, inertia};
-use crate::model::robots::numbers::Number;
+use crate::robots::algebra::{self, Pose, Value, Vector};
+use crate::robots::masses::{Part, center, inertia};
+use crate::robots::number::Number;
+use crate::robots::urdf::robot::{Joint, Kind};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
