@@ -20,6 +20,7 @@ mod meshes;
 mod methods;
 mod new;
 mod overview;
+mod profile;
 mod progress;
 mod record;
 mod report;

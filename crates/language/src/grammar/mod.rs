@@ -33,6 +33,7 @@ mod standing;
 mod suspicious;
 mod symbols;
 pub mod tolerance;
+pub mod tuning;
 pub mod unit;
 mod unit_names;
 pub mod unknown;

@@ -14,7 +14,8 @@ use super::values;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::{MAX_BYTES, read_text};
+use crate::syntax::text_file::read_text;
+use crate::syntax::tuning::TUNING;
 use crate::syntax::within::Within;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
@@ -260,7 +261,7 @@ impl Report<'_> {
         let scalar = self.scalar(node, "the name of a file")?;
         let found = self.files.find(Path::new(""), &scalar.text).and_then(|path| {
             let path = self.files.full(&path);
-            let text = read_text(&path, MAX_BYTES)?;
+            let text = read_text(&path, TUNING.file_bytes)?;
             Ok((self.diagnostics.sources.add(path.display().to_string(), text.clone()), text))
         });
         match found {

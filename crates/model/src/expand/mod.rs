@@ -10,3 +10,4 @@ pub mod numbers;
 pub mod overrides;
 pub mod parts;
 pub mod scenes;
+pub mod tuning;

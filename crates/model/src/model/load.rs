@@ -21,7 +21,8 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::{MAX_BYTES, read_given, text_of};
+use crate::syntax::text_file::{read_given, text_of};
+use crate::syntax::tuning::TUNING;
 use crate::syntax::within::Within;
 use crate::syntax::yaml::{self, Entry, Node};
 
@@ -123,7 +124,11 @@ pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> 
     if is_mjcf(path) {
         return read_text_of(&name, &mjcf::model_of(path), overrides, root);
     }
-    let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_given(path, MAX_BYTES) };
+    let text = if from_input {
+        text_of(std::io::stdin().lock(), TUNING.file_bytes)
+    } else {
+        read_given(path, TUNING.file_bytes)
+    };
     match text {
         Ok(text) => read_text_of(&name, &text, overrides, root),
         Err(error) => {

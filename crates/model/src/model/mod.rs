@@ -35,6 +35,7 @@ mod teeth;
 mod tests;
 
 mod trajectories;
+mod tuning;
 mod urdf;
 
 pub use crate::elements::JointKind;
@@ -45,3 +46,4 @@ pub use crate::keys::{SCHEMA_VERSION, schema};
 pub use description::*;
 pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
 pub use overlay::read_overlay;
+pub use tuning::tuning;

@@ -3,16 +3,8 @@
 //! The parsers compare each attribute of an element with all its others and descend into nested elements, so that a
 //! small file could keep them busy for minutes, or exhaust their stack.
 
+use crate::robots::tuning::TUNING;
 use std::ops::Range;
-
-/// Elements within elements. A robot has six.
-const MOST_LEVELS: usize = 100;
-
-/// Attributes of one element. A robot has ten.
-const MOST_OF_ONE: usize = 100;
-
-/// Elements of a file, and attributes of a file. A humanoid with all its meshes has a few thousand.
-const MOST: usize = 200_000;
 
 /// A part with neither elements nor attributes, from its beginning to its end.
 pub const SKIPPED: [(&str, &str); 3] = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
@@ -41,14 +33,17 @@ pub fn check(text: &str) -> Result<(), (Range<usize>, String)> {
         elements += 1;
         attributes += tag.attributes;
         levels += 1;
-        let message = if levels > MOST_LEVELS {
-            Some(format!("elements nest deeper than {MOST_LEVELS} levels"))
-        } else if tag.attributes > MOST_OF_ONE {
-            Some(format!("this element has more than {MOST_OF_ONE} attributes"))
-        } else if elements > MOST {
-            Some(format!("the file has more than {MOST} elements"))
-        } else if attributes > MOST {
-            Some(format!("the file has more than {MOST} attributes"))
+        let message = if levels > TUNING.xml_levels {
+            Some(format!("elements nest deeper than {xml_levels} levels", xml_levels = TUNING.xml_levels))
+        } else if tag.attributes > TUNING.xml_attributes {
+            Some(format!(
+                "this element has more than {xml_attributes} attributes",
+                xml_attributes = TUNING.xml_attributes
+            ))
+        } else if elements > TUNING.xml_items {
+            Some(format!("the file has more than {xml_items} elements", xml_items = TUNING.xml_items))
+        } else if attributes > TUNING.xml_items {
+            Some(format!("the file has more than {xml_items} attributes", xml_items = TUNING.xml_items))
         } else {
             None
         };

@@ -10,5 +10,6 @@ pub mod mjcf;
 pub mod names;
 pub mod number;
 mod prefixes;
+pub mod tuning;
 pub mod urdf;
 pub mod xml;

@@ -3,9 +3,7 @@
 use roxmltree::Error;
 
 use super::budget::SKIPPED;
-
-/// Most prefixes that a file may leave undeclared: for each the text is parsed once more.
-const MOST: usize = 20;
+use crate::robots::tuning::TUNING;
 
 /// Prefixes that are no other program's: to leave them undeclared is a mistake.
 const OWN: [&str; 2] = ["mbint", "xacro"];
@@ -29,7 +27,7 @@ pub fn declared(text: &str, first: &Error, error_of: fn(&str) -> Option<Error>) 
         let declarations: String = prefixes.iter().map(declare).collect();
         let whole = format!("{}{declarations}{}", &text[..at], &text[at..]);
         match error_of(&whole).as_ref().and_then(foreign) {
-            Some(prefix) if prefixes.len() < MOST => prefixes.push(prefix),
+            Some(prefix) if prefixes.len() < TUNING.xml_prefixes => prefixes.push(prefix),
             _ => return Some(Declared { text: whole, at, length: declarations.len() }),
         }
     }

@@ -6,6 +6,7 @@ use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
 use super::budget;
 use super::prefixes::{self, Declared};
+use crate::robots::tuning::TUNING;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -15,9 +16,6 @@ pub const NAMESPACE: &str = "urn:mbint";
 
 /// What to do with xacro.
 pub const EXPAND: &str = "expand it first: `xacro robot.urdf.xacro > robot.urdf`";
-
-/// Elements, comments and pieces of text.
-const MOST_NODES: u32 = 1_000_000;
 
 pub type Element<'a, 'i> = Node<'a, 'i>;
 
@@ -54,7 +52,7 @@ pub fn parse<'t>(
 }
 
 fn document_of(text: &str) -> Result<Document<'_>, roxmltree::Error> {
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: TUNING.xml_nodes, ..ParsingOptions::default() };
     Document::parse_with_options(text, options)
 }
 

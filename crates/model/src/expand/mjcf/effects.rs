@@ -7,13 +7,10 @@ use super::drives::{self, sum};
 use super::tree::{Sections, keys, list, map, text, value, values};
 use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::mjcf::robot::{At, Coupling, Equality, Joint, Kind, Tendon};
+use crate::robots::tuning::TUNING;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value as Tree};
-
-/// v₀, at which friction has 71 % of its size: rad/s, m/s.
-const SLOW_TURN: &str = "0.05";
-const SLOW_SLIDE: &str = "0.01";
 
 /// Adds everything that acts; `limits` is the section of that name, `controls` the actuators' commands.
 pub fn add(
@@ -57,9 +54,12 @@ pub fn add(
 
 fn friction(joint: &Joint, key: &str, number: &Value) -> Node {
     let span = &joint.span;
-    let slow = if joint.kind == Kind::Slide { SLOW_SLIDE } else { SLOW_TURN };
-    let entries =
-        [("on", text(span, &joint.name)), (key, value(span, number)), ("transition_velocity", text(span, slow))];
+    let slow = if joint.kind == Kind::Slide { TUNING.slow_slide } else { TUNING.slow_turn };
+    let entries = [
+        ("on", text(span, &joint.name)),
+        (key, value(span, number)),
+        ("transition_velocity", text(span, slow.to_string())),
+    ];
     keys(span, [("joint_friction", keys(span, entries))])
 }
 
@@ -173,7 +173,7 @@ fn act(sections: &mut Sections, source: &Source, tendon: &Tendon) {
     }
     if source.acts(&tendon.friction) {
         let slides = |&(joint, _): &(usize, f64)| source.robot.joints[joint].kind == Kind::Slide;
-        let slow = if tendon.length.terms.iter().any(slides) { SLOW_SLIDE } else { SLOW_TURN };
+        let slow = if tendon.length.terms.iter().any(slides) { TUNING.slow_slide } else { TUNING.slow_turn };
         terms.push(format!("- {}*{rate}/sqrt({rate}^2 + {slow}^2)", source.value(&tendon.friction).text()));
     }
     let shares = drives::shares(source, &tendon.name, &tendon.length, &terms.join(" "), &tendon.span);

@@ -4,15 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Writer;
+use crate::expand::tuning::TUNING;
 use crate::keys;
+use crate::syntax;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
-use crate::syntax::text_file::{MAX_BYTES, read_text};
+use crate::syntax::text_file::read_text;
 use crate::syntax::yaml::{self, Entry, Node, Value};
-
-/// Most files of a model.
-const MOST: usize = 1000;
 
 /// Files that are read, with their names from the model's folder.
 #[derive(Default)]
@@ -58,13 +57,17 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
     if included.read.contains(&path) {
         return;
     }
-    if included.read.len() == MOST {
-        writer.report.error(span.clone(), format!("the model includes more than {MOST} files"), None);
+    if included.read.len() == TUNING.files {
+        writer.report.error(
+            span.clone(),
+            format!("the model includes more than {files} files", files = TUNING.files),
+            None,
+        );
         return;
     }
     included.read.push(path.clone());
     let full = writer.report.files.full(&path);
-    let text = match read_text(&full, MAX_BYTES) {
+    let text = match read_text(&full, syntax::tuning::TUNING.file_bytes) {
         Ok(text) => text,
         Err(error) => {
             let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));

@@ -9,14 +9,12 @@ use super::placement::{GROUND, Placement};
 use crate::elements::effects::{self, EffectKind};
 use crate::elements::joints::JointKind;
 use crate::expand::instance::{Instance, InstanceKind};
+use crate::expand::tuning::TUNING;
 use crate::keys;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::{Span, Within};
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
-
-/// How deep instances may stand in each other.
-const MAX_DEPTH: usize = 20;
 
 /// Sections whose entries an instance has under its own name.
 const NAMED: [&str; 6] = ["bodies", "joints", "effects", "states", "initial", "guess"];
@@ -135,7 +133,7 @@ impl Writer<'_, '_> {
             self.report.error(node.span.clone(), format!("unknown assembly `{}`", clip(&of)), help);
             return;
         };
-        if around.contains(&of) || around.len() == MAX_DEPTH {
+        if around.contains(&of) || around.len() == TUNING.depth {
             let names: Vec<String> = around.iter().chain([&of]).map(|name| clip(name)).collect();
             let message = format!("an assembly is in itself: {}", names.join(" → "));
             self.report.error(node.span.clone(), message, None);

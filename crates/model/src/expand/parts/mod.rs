@@ -23,6 +23,7 @@ use std::sync::Arc;
 
 use super::instance::Instance;
 use super::overrides::Override;
+use crate::expand::tuning::TUNING;
 use crate::grammar::report::Report;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::mirrors::Mirrors;
@@ -32,9 +33,6 @@ use crate::syntax::yaml::{Entry, Node, Value};
 pub use in_model::Inclined;
 pub use placement::{GROUND, is_ground};
 use ports::Port;
-
-/// Nodes of the tree that is written out, beyond which the number of copies must be a slip.
-const MOST_NODES: usize = 1_000_000;
 
 /// What the written-out tree has beside its nodes.
 #[derive(Clone, Default)]
@@ -178,9 +176,9 @@ impl Writer<'_, '_> {
     /// Counts nodes; whether there is room for another.
     fn has_room(&mut self, at: &Span) -> bool {
         self.nodes += 1;
-        if self.nodes > MOST_NODES && !self.is_full {
+        if self.nodes > TUNING.nodes && !self.is_full {
             self.is_full = true;
-            let message = format!("written out, the model has more than {MOST_NODES} entries");
+            let message = format!("written out, the model has more than {nodes} entries", nodes = TUNING.nodes);
             let help = "have fewer instances and repetitions".to_owned();
             self.report.error(at.clone(), message, help);
         }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use symdiff::formula::indices::{self, Index};
 
 use super::Writer;
+use crate::expand::tuning::TUNING;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -16,9 +17,6 @@ const REPEAT: &str = "repeat";
 
 /// The key of the repeated value, where that is no mapping.
 const VALUE: &str = "value";
-
-/// Most copies that one `repeat` makes.
-const MOST_COPIES: usize = 10_000;
 
 /// Where a node is copied to: how much further on, and what its names stand for there.
 type Place<'s> = (usize, Option<&'s Arc<Scope>>);
@@ -147,8 +145,8 @@ impl Writer<'_, '_> {
             let mut next = Vec::new();
             for scope in &scopes {
                 let values = self.values(&entry.value, shift, scope)?;
-                if next.len() + values.len() > MOST_COPIES {
-                    let message = format!("`{REPEAT}` makes more than {MOST_COPIES} copies");
+                if next.len() + values.len() > TUNING.copies {
+                    let message = format!("`{REPEAT}` makes more than {copies} copies", copies = TUNING.copies);
                     self.report.error(span, message, None);
                     return None;
                 }
@@ -183,8 +181,8 @@ impl Writer<'_, '_> {
                 return None;
             }
         };
-        if range.end().saturating_sub(*range.start()) >= MOST_COPIES as i64 {
-            let message = format!("`{}` makes more than {MOST_COPIES} copies", clip(&scalar.text));
+        if range.end().saturating_sub(*range.start()) >= TUNING.copies as i64 {
+            let message = format!("`{}` makes more than {} copies", clip(&scalar.text), TUNING.copies);
             self.report.error(span, message, None);
             return None;
         }

@@ -6,15 +6,13 @@
 pub mod draft;
 
 use self::draft::Draft;
+use crate::expand::tuning::TUNING;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
-
-/// Most scenes of a model: each is read, compiled and run.
-const MOST: usize = 200;
 
 /// A model, or a scene of it, as a tree to be read.
 pub struct Variant {
@@ -133,9 +131,13 @@ impl<'n> Scenes<'n> {
 
 /// The scenes, each with the one that it extends.
 fn layers<'n>(report: &mut Report, mut entries: &'n [Entry]) -> Vec<Layer<'n>> {
-    if let Some(beyond) = entries.get(MOST) {
-        report.error(beyond.key_span.clone(), format!("the model has more than {MOST} scenes"), None);
-        entries = &entries[..MOST];
+    if let Some(beyond) = entries.get(TUNING.scenes) {
+        report.error(
+            beyond.key_span.clone(),
+            format!("the model has more than {scenes} scenes", scenes = TUNING.scenes),
+            None,
+        );
+        entries = &entries[..TUNING.scenes];
     }
     let mut layers: Vec<Layer> = Vec::new();
     for entry in entries {

@@ -6,12 +6,10 @@ use crate::grammar::dimension::Kind;
 use crate::keys;
 use crate::model::description::Law;
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::numerics::statistics::Distribution;
 use crate::syntax::suggest;
 use crate::syntax::yaml::{Node, Value};
-
-/// The tolerance is so many standard deviations where nothing else is said.
-const SIGMAS: f64 = 3.0;
 
 const NAMES: [&str; 7] = ["uniform", "normal", "truncated_normal", "lognormal", "triangular", "beta", "table"];
 
@@ -25,7 +23,7 @@ pub struct Place {
 
 /// A law by its name, over an interval.
 pub fn named(name: &str, Place { nominal, lower, upper }: Place) -> Option<Law> {
-    let (mean, sigma) = (0.5 * lower + 0.5 * upper, (upper - lower) / (2.0 * SIGMAS));
+    let (mean, sigma) = (0.5 * lower + 0.5 * upper, (upper - lower) / (2.0 * TUNING.sigmas));
     let (distribution, by_tolerance) = match name {
         "uniform" => (Distribution::Uniform { lower, upper }, false),
         "normal" => (Distribution::Normal { mean, sigma }, true),
@@ -63,7 +61,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
                 None => Some(default),
                 Some(node) => interval::bare_number(reader, draft, node, kind),
             };
-            let (mean, third) = (number("mean", 0.5 * lower + 0.5 * upper)?, (upper - lower) / (2.0 * SIGMAS));
+            let (mean, third) = (number("mean", 0.5 * lower + 0.5 * upper)?, (upper - lower) / (2.0 * TUNING.sigmas));
             let sigma = number("sigma", third)?;
             if sigma <= 0.0 {
                 let place = fields.get("sigma").map_or(node.span.clone(), |node| node.span.clone());

@@ -15,14 +15,11 @@ use crate::keys;
 use crate::model::description::Effect;
 use crate::model::names::Reader;
 use crate::robots::number::Number;
+use crate::robots::tuning::TUNING;
 use crate::robots::urdf::robot::{Joint, Kind, Limits};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
-
-/// v₀, at which Coulomb friction has 71 % of its size: rad/s, m/s.
-const SLOW_TURN: f64 = 0.05;
-const SLOW_SLIDE: f64 = 0.01;
 
 /// An effect that may yet be left out.
 pub struct RobotEffect<'r> {
@@ -81,8 +78,11 @@ fn friction<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, foun
         let value = formula(reader, &source.value(number));
         let none = || Formula::number(0.0);
         let (viscous, coulomb) = if what == "damping" { (value, none()) } else { (none(), value) };
-        let (mode, slow) =
-            if joint.kind.turns() { (FrictionMode::Rotating, SLOW_TURN) } else { (FrictionMode::Sliding, SLOW_SLIDE) };
+        let (mode, slow) = if joint.kind.turns() {
+            (FrictionMode::Rotating, TUNING.slow_turn)
+        } else {
+            (FrictionMode::Sliding, TUNING.slow_slide)
+        };
         let dry = DryFriction {
             breakaway: Formula::number(1.0),
             stribeck_velocity: None,

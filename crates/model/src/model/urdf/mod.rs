@@ -20,6 +20,7 @@ use crate::expand::overrides::Override;
 use crate::expand::scenes::LeftOut;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
+use crate::robots::tuning::TUNING;
 use crate::robots::urdf::robot::Robot;
 use crate::robots::urdf::{is_number, is_urdf, read};
 use crate::syntax::diagnostic::Diagnostic;
@@ -32,9 +33,6 @@ const FORMAT: Format = Format {
     forms: "e.g. `link.NAME.mass`, `.com.x`, `.inertia.xx`, `joint.NAME.damping`, `.friction`, `.origin.z`, `.origin.yaw`",
     is_number,
 };
-
-/// Largest URDF that is read.
-const MAX_BYTES: u64 = 50_000_000;
 
 /// The model that a URDF is by itself: gravity, a second, at rest in the zero configuration.
 pub fn model_of(path: &Path) -> String {
@@ -80,7 +78,7 @@ impl Urdf {
         let file = reader.scalar(node, "the path of a URDF")?.text.clone();
         let found = reader.files.find(Path::new(""), &file).and_then(|path| {
             let path = reader.files.full(&path);
-            Ok((text_file::read_text(&path, MAX_BYTES)?, path))
+            Ok((text_file::read_text(&path, TUNING.file_bytes)?, path))
         });
         let (text, path) = match found {
             Ok(found) => found,

@@ -10,11 +10,9 @@ use super::meshes;
 use super::read::{Around, Contents, Reader, Whole};
 use super::values::Values;
 use crate::robots::algebra;
+use crate::robots::tuning::TUNING;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
-
-/// Most copies in a model, those within copies with them.
-const MOST_COPIES: usize = 10_000;
 
 impl<'i> Reader<'_, 'i, '_> {
     /// Copies, each moved against the one before, with their number behind every name.
@@ -47,10 +45,14 @@ impl<'i> Reader<'_, 'i, '_> {
 
     fn is_too_many(&mut self, item: &Item) -> bool {
         *self.whole.copies += 1;
-        if *self.whole.copies == MOST_COPIES + 1 {
-            self.values.error(item.span.clone(), format!("the model has more than {MOST_COPIES} copies"), None);
+        if *self.whole.copies == TUNING.mjcf_copies + 1 {
+            self.values.error(
+                item.span.clone(),
+                format!("the model has more than {mjcf_copies} copies", mjcf_copies = TUNING.mjcf_copies),
+                None,
+            );
         }
-        *self.whole.copies > MOST_COPIES
+        *self.whole.copies > TUNING.mjcf_copies
     }
 
     /// Another model's world, or a body of it with all that couples and drives it.

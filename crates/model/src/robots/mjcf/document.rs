@@ -5,24 +5,13 @@ use std::path::{Path, PathBuf};
 
 use super::format::{Fate, Rule};
 use super::table;
+use crate::robots::tuning::TUNING;
 use crate::robots::xml::{self, Element, NAMESPACE, Places};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file;
 use crate::syntax::within::Within;
-
-/// Largest file that is read.
-const MAX_BYTES: u64 = 50_000_000;
-
-/// Most files of a model.
-const MOST_FILES: usize = 100;
-
-/// Most elements of all files.
-const MOST_ITEMS: usize = 200_000;
-
-/// Deepest nesting of elements, over all files.
-const MOST_LEVELS: usize = 200;
 
 /// An element.
 pub struct Item {
@@ -89,7 +78,7 @@ impl Reader<'_> {
     fn file(&mut self, path: &Path, at: Option<Span>, within: Option<&str>, found: &mut Vec<Item>) {
         self.files += 1;
         let full = self.within.full(path);
-        let text = match text_file::read_text(&full, MAX_BYTES) {
+        let text = match text_file::read_text(&full, TUNING.file_bytes) {
             Ok(text) => text,
             Err(error) => {
                 let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -161,8 +150,12 @@ impl Reader<'_> {
             Ok(path) if self.open.contains(&path) => {
                 self.error(span.clone(), format!("`{}` includes itself", clip(name)), None);
             }
-            Ok(_) if self.files == MOST_FILES => {
-                self.error(span.clone(), format!("the model includes more than {MOST_FILES} files"), None);
+            Ok(_) if self.files == TUNING.mjcf_files => {
+                self.error(
+                    span.clone(),
+                    format!("the model includes more than {mjcf_files} files", mjcf_files = TUNING.mjcf_files),
+                    None,
+                );
             }
             Ok(path) => return Some(path),
         }
@@ -187,10 +180,12 @@ impl Reader<'_> {
         }
         self.items += 1;
         self.levels += 1;
-        if self.items > MOST_ITEMS || self.levels > MOST_LEVELS {
-            if self.items == MOST_ITEMS + 1 || self.levels == MOST_LEVELS + 1 {
-                let message =
-                    format!("the files have more than {MOST_ITEMS} elements, or nest deeper than {MOST_LEVELS}");
+        if self.items > TUNING.mjcf_items || self.levels > TUNING.mjcf_levels {
+            if self.items == TUNING.mjcf_items + 1 || self.levels == TUNING.mjcf_levels + 1 {
+                let message = format!(
+                    "the files have more than {} elements, or nest deeper than {}",
+                    TUNING.mjcf_items, TUNING.mjcf_levels
+                );
                 self.error(span, message, None);
             }
             self.levels -= 1;

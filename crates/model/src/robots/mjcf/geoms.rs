@@ -6,9 +6,7 @@ use super::values::{Values, along_z};
 use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::masses::{self, Part};
 use crate::robots::meshes::Measured;
-
-/// Density of water, kg/m³, which a geom has that says nothing.
-const DENSITY: f64 = 1000.0;
+use crate::robots::tuning::TUNING;
 
 /// The mass of geoms with the inertia about their centre in the body's frame.
 pub struct Solid {
@@ -60,7 +58,7 @@ pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize
         let found = get(values, name)?;
         values.exact::<1>(found).map(|[value]| value)
     };
-    let (mass, density) = (single("mass"), single("density").unwrap_or(DENSITY));
+    let (mass, density) = (single("mass"), single("density").unwrap_or(TUNING.density));
     if mass.unwrap_or(density) == 0.0 || matches!(shape, Shape::Plane | Shape::Field) {
         return None;
     }

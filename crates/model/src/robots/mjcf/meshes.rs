@@ -6,13 +6,11 @@ use super::document::{Attribute, Item};
 use super::values::Values;
 use crate::robots::algebra;
 use crate::robots::meshes::{self, FORMATS, Faults, Measured, Triangle, Way};
+use crate::robots::tuning::TUNING;
+use crate::syntax;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::mesh_file::MOST_BYTES;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;
-
-/// Part of the enclosed volume by which tetrahedra may exceed it without a warning.
-const SLIGHT: f64 = 0.01;
 
 /// What the mesh of a name makes up; reports why nothing does.
 pub fn measured(values: &mut Values, named: &Attribute) -> Option<Measured> {
@@ -79,7 +77,7 @@ fn read<'i>(values: &mut Values<'i, '_>, item: &'i Item, name: &str) -> Option<M
         values.meshes.open.push((item.span.clone(), format!("mesh `{}`: {}", clip(name), faults())));
     } else if way == Way::Unsigned {
         let exact = meshes::measure(&triangles, Way::Exact).size;
-        if measured.size > (1.0 + SLIGHT) * exact {
+        if measured.size > (1.0 + TUNING.mesh_excess) * exact {
             let more = 100.0 * (measured.size / exact - 1.0);
             values.meshes.folded.push((item.span.clone(), format!("mesh `{}`: {more:.0} % more", clip(name))));
         }
@@ -99,7 +97,7 @@ fn from_file(values: &mut Values, file: &Attribute) -> Option<Vec<Triangle>> {
             return None;
         }
     };
-    let bytes = match regular(&path, MOST_BYTES) {
+    let bytes = match regular(&path, syntax::tuning::TUNING.mesh_bytes) {
         Ok(bytes) => bytes,
         Err(error) => {
             values.error(file.span.clone(), format!("the mesh `{}` cannot be read: {error}", clip(&file.value)), None);
