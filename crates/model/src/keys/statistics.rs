@@ -92,7 +92,7 @@ grammar! {
         beta: f64,
     }
 
-    /// What is asked of the outputs' distribution, beside the bounds.
+    /// Questions about the outputs' distribution, besides the bounds.
     Statistics is "`statistics`" {
         /// The law of every uncertain parameter that has none of its own; by default uniform.
         distribution: Option<LawFile>,

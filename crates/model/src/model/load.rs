@@ -58,7 +58,7 @@ pub struct UnknownScene {
 
 impl Reading {
     /// Scenes by their names, in the file's order, each with its name; all where none is named. A model without scenes
-    /// is itself what is asked for, under no name.
+    /// is chosen itself, under no name.
     ///
     /// # Errors
     /// For a name that no scene has.
@@ -215,7 +215,7 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
 struct Origin<'o> {
     /// What diagnostics call it.
     name: &'o str,
-    /// What it may name.
+    /// Files that it may name.
     files: Within,
 }
 

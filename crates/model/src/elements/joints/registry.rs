@@ -92,7 +92,7 @@ macro_rules! joints {
                 }
             }
 
-            /// What of a joint leaves the plane, by the text alone.
+            /// The key of a joint that leaves the plane, by the text alone.
             pub fn leaves_plane(keyword: &str, mapping: &$crate::grammar::Node) -> Option<&'static str> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD if <$name as JointElement>::SPATIAL => Some("kind"),

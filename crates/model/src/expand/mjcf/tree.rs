@@ -69,7 +69,7 @@ impl Sections {
         }
     }
 
-    /// Adds a body. An entry of the model with nothing but `points` gives them to it, before what it has by their
+    /// Adds a body. An entry of the model with nothing but `points` gives them to it, before its own of their
     /// names; any other is a body of its own in its place.
     pub fn add_body(&mut self, name: &str, mut node: Node) {
         let Some(entries) = self.of("bodies", &node.span.clone()) else { return };

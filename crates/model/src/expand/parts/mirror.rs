@@ -118,7 +118,7 @@ fn has_image(effect: &Entry, wanted: impl Fn(Image) -> bool) -> bool {
     kinds.first().is_some_and(|kind| images(&kind.key).into_iter().any(|known| wanted(known.image)))
 }
 
-/// Writes what is not written and has an image: directions, and factors.
+/// Writes out defaults that have an image: directions, and factors.
 fn add_defaults(keys: &mut Vec<Entry>, images: &[KeyImage], at: &Span) {
     for known in images.iter().filter(|known| !matches!(known.image, Image::Same | Image::Unknown)) {
         let default = known.default.as_ref().filter(|default| {
