@@ -8,7 +8,9 @@ use super::Writer;
 use crate::elements::effects::EffectKind;
 use crate::elements::joints::JointKind;
 use crate::elements::shapes::ShapeKind;
+use crate::grammar::mapping::Grammar;
 use crate::grammar::{Image, KeyImage};
+use crate::keys;
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -62,30 +64,8 @@ impl Writer<'_, '_> {
         if let Some(beam) = keys.iter().find(|key| key.key == "beam" && mirrors.axes().next().is_some()) {
             self.report.error(beam.key_span.clone(), "a beam that bends cannot be mirrored", None);
         }
-        for axis in mirrors.axes() {
-            keys.iter_mut().for_each(|key| image_of_part(key, axis));
-        }
-    }
-}
-
-/// The image of what a key of a body says.
-fn image_of_part(key: &mut Entry, axis: usize) {
-    match (key.key.as_str(), &mut key.value.value) {
-        ("center_of_mass", _) => polar(&mut key.value, axis),
-        ("inertia", _) => products(&mut key.value, axis),
-        ("shape", Value::Sequence(shapes)) => shapes.iter_mut().for_each(|shape| image_of_shape(shape, axis)),
-        ("shape", _) => image_of_shape(&mut key.value, axis),
-        ("points", Value::Mapping(points)) => points.iter_mut().for_each(|point| frame(&mut point.value, axis)),
-        ("held", Value::Mapping(held)) => {
-            for value in held {
-                match value.key.as_str() {
-                    "orientation" => rotation(&mut value.value, axis),
-                    coordinate if counts_back(coordinate, axis) => negate(&mut value.value),
-                    _ => {}
-                }
-            }
-        }
-        _ => {}
+        let images = <keys::Body as Grammar>::images();
+        mirrors.axes().for_each(|axis| image_of_keys(keys, &images, axis, None));
     }
 }
 
@@ -132,41 +112,62 @@ fn add_defaults(keys: &mut Vec<Entry>, images: &[KeyImage], at: &Span) {
     }
 }
 
-/// The images of what stands behind keys.
+/// The images of the values of keys.
 fn image_of_keys(keys: &mut [Entry], images: &[KeyImage], axis: usize, is_turning: Option<bool>) {
     for key in keys {
         let Some(known) = images.iter().find(|known| known.name == key.key) else { continue };
-        match known.image {
-            Image::Same | Image::Unknown => {}
-            Image::Polar => polar(&mut key.value, axis),
-            Image::Rotation => rotation(&mut key.value, axis),
-            Image::Factors => {
-                if let Value::Scalar(_) = key.value.value {
-                    key.value.value = Value::Sequence(vec![key.value.clone(); 3]);
-                }
-                polar(&mut key.value, axis);
+        if let Image::End(other) = known.image
+            && is_turning != Some(false)
+        {
+            key.key = other.to_owned();
+        }
+        image_of_value(&mut key.value, known.image, axis, is_turning);
+    }
+}
+
+/// The image of a value.
+fn image_of_value(value: &mut Node, image: Image, axis: usize, is_turning: Option<bool>) {
+    match image {
+        Image::Same | Image::Unknown => {}
+        Image::Polar => polar(value, axis),
+        Image::Rotation => rotation(value, axis),
+        Image::Factors => {
+            if let Value::Scalar(_) = value.value {
+                value.value = Value::Sequence(vec![value.clone(); 3]);
             }
-            Image::Axial if is_turning == Some(true) => negate(&mut key.value),
-            Image::Axial => axial(&mut key.value, axis),
-            Image::Polars => {
-                if let Value::Sequence(items) = &mut key.value.value {
-                    items.iter_mut().for_each(|item| point_or_arc(item, axis));
-                }
-            }
-            Image::Turning | Image::End(_) if is_turning == Some(false) => {}
-            Image::Effort if is_turning != Some(true) => {}
-            Image::Turning | Image::Effort => negate(&mut key.value),
-            Image::End(other) => {
-                negate(&mut key.value);
-                key.key = other.to_owned();
-            }
-            Image::SixRows => six_rows(&mut key.value, axis),
-            Image::Keys(within) => {
-                if let Value::Mapping(keys) = &mut key.value.value {
-                    image_of_keys(keys, &within(), axis, is_turning);
-                }
+            polar(value, axis);
+        }
+        Image::Axial if is_turning == Some(true) => negate(value),
+        Image::Axial => axial(value, axis),
+        Image::Polars => {
+            if let Value::Sequence(items) = &mut value.value {
+                items.iter_mut().for_each(|item| point_or_arc(item, axis));
             }
         }
+        Image::Turning | Image::End(_) if is_turning == Some(false) => {}
+        Image::Effort if is_turning != Some(true) => {}
+        Image::Turning | Image::Effort | Image::End(_) => negate(value),
+        Image::Along(own) if own != axis => {}
+        Image::About(own) if own == axis => {}
+        Image::Product(own) if !own.contains(&axis) => {}
+        Image::Along(_) | Image::About(_) | Image::Product(_) => negate(value),
+        Image::SixRows => six_rows(value, axis),
+        Image::Keys(within) | Image::PolarOr(within) => {
+            if let Value::Mapping(keys) = &mut value.value {
+                image_of_keys(keys, &within(), axis, is_turning);
+            } else if let Image::PolarOr(_) = image {
+                polar(value, axis);
+            }
+        }
+        Image::Named(image) => {
+            if let Value::Mapping(entries) = &mut value.value {
+                entries.iter_mut().for_each(|entry| image_of_value(&mut entry.value, *image, axis, is_turning));
+            }
+        }
+        Image::Shapes => match &mut value.value {
+            Value::Sequence(shapes) => shapes.iter_mut().for_each(|shape| image_of_shape(shape, axis)),
+            _ => image_of_shape(value, axis),
+        },
     }
 }
 
@@ -193,25 +194,9 @@ fn written(value: &serde_json::Value, at: &Span) -> Option<Node> {
     Some(Node { span: at.clone(), value })
 }
 
-/// Whether a coordinate of a body, or its rate, changes sign.
-fn counts_back(coordinate: &str, axis: usize) -> bool {
-    let letter = ["x", "y", "z"][axis];
-    match coordinate {
-        "angle" | "angular_velocity" => axis != 2,
-        _ => coordinate.strip_prefix('v').unwrap_or(coordinate) == letter,
-    }
-}
-
-/// A point: its place, or its frame.
-pub(super) fn frame(node: &mut Node, axis: usize) {
-    let Value::Mapping(keys) = &mut node.value else { return polar(node, axis) };
-    for key in keys {
-        match key.key.as_str() {
-            "position" => polar(&mut key.value, axis),
-            "rotation" => rotation(&mut key.value, axis),
-            _ => {}
-        }
-    }
+/// A point: its position, or its frame.
+pub(super) fn point(node: &mut Node, axis: usize) {
+    image_of_value(node, keys::POINT, axis, None);
 }
 
 /// A rotation S becomes M S M: its axis is axial, its angle stays.
@@ -231,16 +216,6 @@ pub(super) fn rotation(node: &mut Node, axis: usize) {
             }
             _ => {}
         }
-    }
-}
-
-/// Products of inertia of which one axis is the mirror's.
-fn products(node: &mut Node, axis: usize) {
-    let Value::Mapping(keys) = &mut node.value else { return };
-    let letter = ["x", "y", "z"][axis];
-    for key in keys.iter_mut().filter(|key| matches!(key.key.as_str(), "xy" | "xz" | "yz") && key.key.contains(letter))
-    {
-        negate(&mut key.value);
     }
 }
 

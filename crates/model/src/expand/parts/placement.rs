@@ -215,7 +215,7 @@ impl Writer<'_, '_> {
             if let Value::Mapping(points) = &mut points.value {
                 points
                     .iter_mut()
-                    .for_each(|point| frame.mirrors.axes().for_each(|axis| mirror::frame(&mut point.value, axis)));
+                    .for_each(|point| frame.mirrors.axes().for_each(|axis| mirror::point(&mut point.value, axis)));
             }
             keys.push(field("points", points));
         }

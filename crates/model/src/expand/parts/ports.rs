@@ -23,7 +23,7 @@ impl Writer<'_, '_> {
     pub(super) fn ports(&mut self, prefix: &str, entries: Vec<Entry>, mirrors: Mirrors) {
         for mut entry in entries {
             if matches!(entry.value.value, Value::Mapping(_)) {
-                mirrors.axes().for_each(|axis| mirror::frame(&mut entry.value, axis));
+                mirrors.axes().for_each(|axis| mirror::point(&mut entry.value, axis));
             }
             if !self.report.is_name(&entry.key, &entry.key_span, "a port") || !self.is_free(&entry, true) {
                 continue;
