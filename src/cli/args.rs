@@ -106,6 +106,11 @@ pub(super) struct RunArgs {
     #[arg(long)]
     pub timings: bool,
 
+    /// Print how long each stage took, by model and subsystem, and write it into this file as a trace for Perfetto or
+    /// chrome://tracing.
+    #[arg(long, value_name = "FILE", conflicts_with = "watch")]
+    pub profile: Option<PathBuf>,
+
     /// Run what takes more than 20000 simulations or about a minute.
     #[arg(short, long)]
     pub yes: bool,

@@ -108,6 +108,11 @@ impl Console {
         self.report(&format!("{YELLOW}warning{YELLOW:#}: {message}\n"));
     }
 
+    /// Writes a text for people to standard error.
+    pub fn note(&self, text: &str) {
+        self.report(text);
+    }
+
     /// From now on writes no errors and warnings of a file that it has written: the file is read many times.
     pub fn without_repetition(&mut self) {
         self.written = Some(RefCell::default());

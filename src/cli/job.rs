@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::console::Console;
 use super::kept_run::{KeptRun, context, expected};
 use super::overview::{damped, excluded, too_deep, unreliable};
+use super::profile::Profile;
 use super::progress::Progress;
 use super::request::{Job, Request, Settings};
 use super::resolution::{self, resolution};
@@ -36,7 +37,10 @@ pub(super) type Told<'t> = dyn FnMut(&Path, &Job, Result<&Done, &Failure>) + 't;
 /// Runs a model and writes its results. The status says whether they are reliable; [`report`] prints why not.
 pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     let name = &job.model.name;
+    let profile = &request.settings.profile;
+    profile.iter().for_each(|profile| profile.model(name));
     let done = study::caught("the model's run", || run_and_write(job, request));
+    profile.iter().for_each(Profile::end);
     let done = done.unwrap_or_else(|error| Err(Failure::Failed(format!("{name}: {error}"))));
     if let Some(junit) = &request.junit {
         let outcome = done.as_ref().map(|done| &done.summary);
@@ -77,7 +81,9 @@ pub(super) fn bounds(
         stage: &|stage| {
             has_begun.fetch_or(stage != study::COMPILING, Ordering::Relaxed);
             progress.stage(stage);
+            settings.profile.iter().for_each(|profile| profile.stage(stage));
         },
+        subsystem: &|index| settings.profile.iter().for_each(|profile| profile.subsystem(index)),
         interrupted: &interrupt::asked,
         ..study::Options::default()
     };
@@ -130,9 +136,12 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         remove_comparison(all).map_err(|error| failed(&error))?;
     }
     let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
+    let stage = |name| request.settings.profile.iter().for_each(|profile| profile.stage(name));
+    stage("motion for the report");
     let parts = (request.report && !interrupted).then(|| page::parts(job, request.settings.threads));
     // Half a motion is none.
     let parts = parts.filter(|_| !interrupt::asked());
+    stage("writing files");
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
     let files = files.map_err(|error| failed(&error))?;
     interrupt::keep_results(false);

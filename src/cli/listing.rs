@@ -1,5 +1,5 @@
-//! `mbint explain --units`, `--functions`, `--outputs`, `--exit-codes`: what the language offers, from the tables of
-//! the code.
+//! `mbint explain --units`, `--functions`, `--outputs`, `--tuning`, `--exit-codes`: lists of the language and of the
+//! program, from the tables of the code.
 
 use super::Failure;
 use super::console::to_json;
@@ -8,6 +8,8 @@ use super::table::{Align, Table};
 use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
+use crate::model::tuning;
+use crate::syntax::tuning::Constant;
 
 /// A list of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +17,7 @@ pub(super) enum Listing {
     Units,
     Functions,
     Outputs,
+    Tuning,
     ExitCodes,
 }
 
@@ -25,6 +28,7 @@ impl Listing {
             Self::Units => text(&reference::units()),
             Self::Functions => text(&reference::functions()),
             Self::Outputs => text(&outputs()),
+            Self::Tuning => text(&tuning()),
             Self::ExitCodes => text(&Status::ALL.map(Status::docs)),
         }
     }
@@ -38,6 +42,7 @@ impl Listing {
             Self::Units => to_json(&reference::units()),
             Self::Functions => to_json(&reference::functions()),
             Self::Outputs => to_json(&outputs()),
+            Self::Tuning => to_json(&tuning()),
             Self::ExitCodes => to_json(&Status::ALL.map(Status::docs)),
         }
     }
@@ -48,6 +53,7 @@ impl Listing {
             Self::Units => page(&reference::units()),
             Self::Functions => page(&reference::functions()),
             Self::Outputs => page(&outputs()),
+            Self::Tuning => page(&tuning()),
             Self::ExitCodes => page(&Status::ALL.map(Status::docs)),
         }
     }
@@ -139,6 +145,25 @@ impl Row<4> for OutputDocs {
 
     fn cells(&self) -> [String; 4] {
         [self.of.to_owned(), self.output.clone(), self.unit.clone(), self.meaning.clone()]
+    }
+}
+
+impl Row<5> for Constant {
+    const TITLE: &'static str = "Limits and thresholds";
+    const INTRODUCTION: &'static str = "Numbers of the program that could be others, by the rooms of the source that have them, with the results that move\n\
+        if one changes. They are compiled in: a result never depends on the machine. Formats of robots, the writing out of\n\
+        parts and scenes, and the reading of models are complete; other rooms have theirs in the source. \
+        `mbint explain --tuning` prints this list.";
+    const HEADINGS: [(&'static str, Align); 5] = [
+        ("room", Align::Left),
+        ("name", Align::Left),
+        ("value", Align::Right),
+        ("meaning", Align::Left),
+        ("moves", Align::Left),
+    ];
+
+    fn cells(&self) -> [String; 5] {
+        [self.room, self.name, self.value, self.why, self.moves].map(str::to_owned)
     }
 }
 

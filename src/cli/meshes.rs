@@ -5,8 +5,9 @@ use std::path::Path;
 use crate::elements::Form;
 use crate::grammar::Mesh;
 use crate::results::Drawing;
-use crate::syntax::mesh_file::{MOST_BYTES, Triangle, triangles};
+use crate::syntax::mesh_file::{Triangle, triangles};
 use crate::syntax::regular;
+use crate::syntax::tuning::TUNING;
 
 /// Triangles of all meshes of a drawing; those beyond are left out.
 pub(super) const MOST_TRIANGLES: usize = 12_000;
@@ -39,6 +40,6 @@ fn read(file: &str, beside: &Path) -> Option<Vec<Triangle>> {
     let folder = beside.canonicalize().ok()?;
     // A link may lead out of the folder.
     let within = |path: &Path| beside.join(path).canonicalize().ok().filter(|full| full.starts_with(&folder));
-    let found = candidates.into_iter().find_map(|path| regular(&within(path)?, MOST_BYTES).ok())?;
+    let found = candidates.into_iter().find_map(|path| regular(&within(path)?, TUNING.mesh_bytes).ok())?;
     triangles(&found).ok()
 }

@@ -21,6 +21,7 @@ mod meshes;
 mod methods;
 mod new;
 mod overview;
+mod profile;
 mod progress;
 mod record;
 mod report;
@@ -123,8 +124,8 @@ pub fn main() -> ExitCode {
     ExitCode::from(status)
 }
 
-/// The command. What is wrong with it is reported of arguments that are harmless: clap's messages have colours, and
-/// quote what they got.
+/// The command. Its errors are reported of arguments that are harmless: clap's messages have colours, and
+/// quote the arguments.
 fn parsed(arguments: &[OsString], color: Color) -> Result<Cli, clap::Error> {
     let parse = |arguments: &[OsString]| {
         let matches = Cli::command().color(color.clap()).try_get_matches_from(arguments)?;

@@ -7,6 +7,7 @@ use super::Failure;
 use super::args::{AskedArgs, RunArgs};
 use super::kept_run::KeptRun;
 use super::load::Given;
+use super::profile::Profile;
 use super::verdicts::Junit;
 use crate::model::Description;
 use crate::results::{Method, ModelFile, RunRequest};
@@ -48,6 +49,8 @@ pub(super) struct Settings {
     pub skip_infeasible: bool,
     /// Whether no progress is shown.
     pub quiet: bool,
+    /// Where the stages' times are noted, if they are.
+    pub profile: Option<Profile>,
 }
 
 /// A model, or a scene of it, with the folder for its results.
@@ -96,6 +99,7 @@ impl Request {
                 certify_time,
                 skip_infeasible,
                 quiet: args.quiet,
+                profile: args.profile.map(Profile::new),
             },
         })
     }

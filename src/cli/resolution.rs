@@ -1,4 +1,4 @@
-//! What of all that was asked no method resolves.
+//! Questions that no method resolves.
 
 use super::Status;
 use crate::results::{Bounds, OutputBounds, ReducedSummary, Summary};

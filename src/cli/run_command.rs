@@ -17,15 +17,23 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
     if is_watched {
         return watch(request, console);
     }
+    let status = run_once(&mut request, format, console);
+    if let Some(profile) = &request.settings.profile {
+        console.note(&profile.finish()?);
+    }
+    status
+}
+
+fn run_once(request: &mut Request, format: Format, console: &mut Console) -> Result<Status, Failure> {
     match format {
-        Format::Text => run_all(&request, console, &mut |_, _, _| ()),
+        Format::Text => run_all(request, console, &mut |_, _, _| ()),
         Format::Json => {
             request.quiet = true;
             let mut records = Vec::new();
             let mut record = |path: &Path, job: &Job, done: Result<&Done, &Failure>| {
                 records.push(Record::of(path, job, done));
             };
-            let status = run_all(&request, console, &mut record);
+            let status = run_all(request, console, &mut record);
             // The document is whole whatever happened.
             console.print(&to_json(&records)?)?;
             status

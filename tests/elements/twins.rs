@@ -5,6 +5,7 @@ use mbint::inner::elements::JointKind;
 use mbint::inner::model::{Description, EffectKind, load_str};
 use mbint::inner::results::Bounds;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use proptest::prelude::*;
 
 use crate::common::{curve, nominal};
 
@@ -140,7 +141,7 @@ impl Mechanism {
 }
 
 /// An instance somewhere else.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Twin {
     moved: [f64; 3],
     axis: [f64; 3],
@@ -219,56 +220,114 @@ fn compare(mechanism: &Mechanism, spatial: bool, bounds: &Bounds, place: usize, 
     }
 }
 
-/// Twins of the examples; the number that were compared in the plane, in space, and mirrored.
+/// Twins of one example in the plane or in space: the number of twins that were compared, and of those the mirrored
+/// ones; `None` where the example is of the other space.
+fn twins_of(
+    mechanism: &Mechanism,
+    spatial: bool,
+    example: (&str, &str),
+    twins: &[Twin],
+    refused: &[(&str, &str)],
+) -> Option<[usize; 2]> {
+    mechanism.model(spatial, example, &[ORIGINAL]).ok()?;
+    let what = format!("{} {}", example.0, if spatial { "in space" } else { "in the plane" });
+    let mut chosen = twins.to_vec();
+    for (_, words) in refused.iter().filter(|(keyword, _)| *keyword == example.0) {
+        let (kept, out): (Vec<_>, Vec<_>) = chosen
+            .into_iter()
+            .partition(|twin| mechanism.model(spatial, example, &[ORIGINAL, *twin]).is_ok());
+        for twin in out {
+            let message = mechanism.model(spatial, example, &[twin]).err().unwrap_or_default();
+            assert!(message.contains(words), "{what}: {message}");
+        }
+        chosen = kept;
+    }
+    let description = mechanism.model(spatial, example, &chosen).unwrap_or_else(|wrong| panic!("{what}: {wrong}"));
+    let bounds = nominal(&description);
+    for (place, twin) in chosen.iter().enumerate().skip(1) {
+        compare(mechanism, spatial, &bounds, place, twin, &what);
+    }
+    Some([chosen.len() - 1, chosen.iter().filter(|twin| twin.mirror.is_some()).count()])
+}
+
+/// Twins of the examples; the number of examples in the plane and in space, and of mirrored twins.
 fn twins(mechanism: &Mechanism, examples: &[(&str, &str)], refused: &[(&str, &str)]) -> [usize; 3] {
     let mut compared = [0; 3];
     for &example in examples {
         let before = compared;
         for (spatial, twins) in [(false, &IN_PLANE[..]), (true, &IN_SPACE)] {
-            if mechanism.model(spatial, example, &[ORIGINAL]).is_err() {
-                continue;
+            if let Some([_, mirrored]) = twins_of(mechanism, spatial, example, twins, refused) {
+                compared[usize::from(spatial)] += 1;
+                compared[2] += mirrored;
             }
-            let what = format!("{} {}", example.0, if spatial { "in space" } else { "in the plane" });
-            let mut chosen = twins.to_vec();
-            let why = refused.iter().filter(|(keyword, _)| *keyword == example.0);
-            for (_, words) in why {
-                let (kept, out): (Vec<_>, Vec<_>) = chosen
-                    .into_iter()
-                    .partition(|twin| mechanism.model(spatial, example, &[ORIGINAL, *twin]).is_ok());
-                for twin in out {
-                    let message = mechanism.model(spatial, example, &[twin]).err().unwrap_or_default();
-                    assert!(message.contains(words), "{what}: {message}");
-                }
-                chosen = kept;
-            }
-            let description = mechanism.model(spatial, example, &chosen).unwrap_or_else(|wrong| panic!("{what}: {wrong}"));
-            let bounds = nominal(&description);
-            for (place, twin) in chosen.iter().enumerate().skip(1) {
-                compare(mechanism, spatial, &bounds, place, twin, &what);
-                compared[2] += usize::from(twin.mirror.is_some());
-            }
-            compared[usize::from(spatial)] += 1;
         }
         assert!(compared != before || refused.contains(&(example.0, "every body")), "{} is in no mechanism", example.0);
     }
     compared
 }
 
+/// Examples of effects, by their keywords.
+fn effects() -> Vec<(&'static str, String)> {
+    // Impacts of microseconds are nothing for these steps.
+    EffectKind::docs().iter().map(|docs| (docs.keyword, docs.example.replace("1e9", "1e4"))).collect()
+}
+
+/// Examples of joints, by their keywords.
+fn joints() -> Vec<(&'static str, String)> {
+    JointKind::docs().iter().map(|docs| (docs.element.keyword, docs.element.example.to_owned())).collect()
+}
+
+/// Effects without an image in some instances, with the words of the message.
+const REFUSED_EFFECTS: [(&str, &str); 3] =
+    [("gravity", "every body"), ("superelement", "`matrices`"), ("tyre", "level ground")];
+
+/// Joints without an image in some instances, with the words of the message.
+const REFUSED_JOINTS: [(&str, &str); 1] = [("cam", "`lift`")];
+
+fn borrowed<'e>(examples: &'e [(&'static str, String)]) -> Vec<(&'static str, &'e str)> {
+    examples.iter().map(|(keyword, example)| (*keyword, example.as_str())).collect()
+}
+
 #[test]
 fn twins_of_every_effect_move_alike() {
-    let docs = EffectKind::docs();
-    // Impacts of microseconds are nothing for these steps.
-    let softened: Vec<_> = docs.iter().map(|docs| docs.example.replace("1e9", "1e4")).collect();
-    let examples: Vec<_> = docs.iter().zip(&softened).map(|(docs, example)| (docs.keyword, example.as_str())).collect();
-    let refused = [("gravity", "every body"), ("superelement", "`matrices`"), ("tyre", "level ground")];
-    let [plane, space, mirrored] = twins(&OF_EFFECTS, &examples, &refused);
+    let [plane, space, mirrored] = twins(&OF_EFFECTS, &borrowed(&effects()), &REFUSED_EFFECTS);
     assert!(plane >= 28 && space >= 18 && mirrored >= 105, "{plane} {space} {mirrored}");
 }
 
 #[test]
 fn twins_of_every_joint_move_alike() {
-    let docs = JointKind::docs();
-    let examples: Vec<_> = docs.iter().map(|docs| (docs.element.keyword, docs.element.example)).collect();
-    let [plane, space, mirrored] = twins(&OF_JOINTS, &examples, &[("cam", "`lift`")]);
+    let [plane, space, mirrored] = twins(&OF_JOINTS, &borrowed(&joints()), &REFUSED_JOINTS);
     assert!(plane >= 12 && space >= 15 && mirrored >= 60, "{plane} {space} {mirrored}");
+}
+
+/// An instance anywhere, turned by any angle about any axis, mirrored or not. In the plane the axis is z.
+fn any_twin(spatial: bool) -> impl Strategy<Value = Twin> {
+    let place = [-5.0..5.0, -5.0..5.0, -5.0..5.0_f64];
+    let axis = [-1.0..1.0, -1.0..1.0, 0.1..1.0_f64];
+    let mirror = proptest::option::of(0..if spatial { 3 } else { 2_usize });
+    (place, axis, -180.0..180.0_f64, mirror).prop_map(move |(moved, axis, degrees, mirror)| match spatial {
+        true => Twin { moved, axis, degrees, mirror },
+        false => Twin { moved: [moved[0], moved[1], 0.0], degrees, mirror, ..ORIGINAL },
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, max_shrink_iters: 8, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_twin_anywhere_moves_alike(
+        index in any::<prop::sample::Index>(),
+        in_plane in any_twin(false),
+        in_space in any_twin(true),
+    ) {
+        let (effects, joints) = (effects(), joints());
+        let index = index.index(effects.len() + joints.len());
+        let (mechanism, (keyword, example), refused) = match effects.get(index) {
+            Some(effect) => (&OF_EFFECTS, effect, &REFUSED_EFFECTS[..]),
+            None => (&OF_JOINTS, &joints[index - effects.len()], &REFUSED_JOINTS[..]),
+        };
+        for (spatial, twin) in [(false, in_plane), (true, in_space)] {
+            twins_of(mechanism, spatial, (keyword, example), &[ORIGINAL, twin], refused);
+        }
+    }
 }

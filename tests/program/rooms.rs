@@ -10,7 +10,7 @@ const CRATES: [(&str, &[&str]); 8] = [
     ("crates/numerics/src", &["numerics"]),
     ("crates/language/src", &["syntax", "grammar", "multibody"]),
     ("crates/methods/src", &["methods"]),
-    ("crates/model/src", &["elements", "model"]),
+    ("crates/model/src", &["robots", "elements", "keys", "expand", "model"]),
     ("crates/engine/src", &["reduce", "assemble", "compile", "simulate"]),
     ("crates/study/src", &["results", "store", "study"]),
     ("crates/export/src", &["export"]),
@@ -20,7 +20,7 @@ const CRATES: [(&str, &[&str]); 8] = [
 /// Lines that a file may have.
 const LONGEST: usize = 400;
 
-/// A module's place: `["model", "urdf", "read"]`. Its file is `model/urdf/read.rs` or `model/urdf/read/mod.rs`.
+/// A module's place: `["robots", "urdf", "read"]`. Its file is `robots/urdf/read.rs` or `robots/urdf/read/mod.rs`.
 type Module = Vec<String>;
 
 /// The source of a package without its unit tests, by module.

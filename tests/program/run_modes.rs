@@ -168,3 +168,44 @@ fn tables_have_units() {
     assert_eq!(unit(&columns, "width_without"), unit(&bounds, "upper"));
     assert_eq!(unit(&columns, "total"), "1");
 }
+
+/// Spans of a profile cover the run one after the other, and the results are the same bytes.
+#[test]
+fn a_profile_has_the_stages_of_each_subsystem() {
+    let place = Place::new();
+    let two = "
+model: two
+parameters: { m: { value: 1, unit: kg, tolerance: 5% } }
+bodies:
+  a: { mass: m, coordinates: [x] }
+  b: { mass: 2*m, coordinates: [x] }
+effects:
+  pull_a: { force: { on: a, value: [1 N, 0 N] } }
+  pull_b: { force: { on: b, value: [1 N, 0 N] } }
+outputs: { a: a.x, b: b.x }
+simulation: { duration: 0.1, step: 1e-3, output_step: 0.01 }
+bounds: { chebyshev: { order: 2 }, scan: { points: 3 } }
+";
+    fs::write(place.path().join("two.yaml"), two).unwrap();
+    place.run("run two.yaml -q -o plain", 0);
+    let (_, table) = place.run("run two.yaml -q -o profiled --profile trace.json", 0);
+    for row in
+        ["reading and checking models", "compiling", "nominal motion", "chebyshev", "scan", "writing files", "in all"]
+    {
+        assert!(table.contains(row), "{row} in\n{table}");
+    }
+    let bounds = |folder: &str| fs::read(place.path().join(folder).join("bounds.csv")).unwrap();
+    assert_eq!(bounds("plain"), bounds("profiled"));
+
+    let trace = json(&fs::read_to_string(place.path().join("trace.json")).unwrap());
+    let events: Vec<&Value> =
+        trace["traceEvents"].as_array().unwrap().iter().filter(|event| event["ph"] == "X").collect();
+    let scans: Vec<_> = events.iter().filter(|event| event["name"] == "scan").map(|event| &event["tid"]).collect();
+    assert_eq!(scans, [1, 2], "a scan of each subsystem in {events:?}");
+    let time = |event: &Value, key: &str| event[key].as_u64().unwrap();
+    for pair in events.windows(2) {
+        let gap = time(pair[1], "ts").abs_diff(time(pair[0], "ts") + time(pair[0], "dur"));
+        assert!(gap < 50, "{gap} µs between {} and {}", pair[0], pair[1]);
+    }
+    place.run("run two.yaml -q --profile none/trace.json", 3);
+}

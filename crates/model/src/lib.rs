@@ -1,4 +1,5 @@
-//! From a file to a `Description`: the elements (joints, effects, shapes) and the readers of YAML, URDF and MJCF.
+//! From a file to a `Description`: formats of robots (`robots`), elements (joints, effects, shapes), the keys of a model
+//! file with its schema (`keys`), the model's tree written out (`expand`), and its meaning (`model`).
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
@@ -9,4 +10,7 @@ use mbint_methods::methods;
 use mbint_numerics::numerics;
 
 pub mod elements;
+mod expand;
+mod keys;
 pub mod model;
+mod robots;

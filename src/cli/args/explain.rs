@@ -60,6 +60,10 @@ pub(in crate::cli) struct ListArgs {
     #[arg(long)]
     outputs: bool,
 
+    /// List the limits, defaults and thresholds of the program with their reasons.
+    #[arg(long)]
+    tuning: bool,
+
     /// List the exit codes.
     #[arg(long)]
     exit_codes: bool,
@@ -72,6 +76,7 @@ impl ListArgs {
             (self.units, Listing::Units),
             (self.functions, Listing::Functions),
             (self.outputs, Listing::Outputs),
+            (self.tuning, Listing::Tuning),
             (self.exit_codes, Listing::ExitCodes),
         ];
         listings.into_iter().find(|(asked, _)| *asked).map(|(_, listing)| listing)

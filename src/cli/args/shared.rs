@@ -111,7 +111,7 @@ pub(in crate::cli) struct SetArgs {
 }
 
 impl SetArgs {
-    /// What is said of models; every parameter is set at most once.
+    /// Settings of models; every parameter is set at most once.
     ///
     /// # Errors
     /// For the first that is set twice, and for errors of a file.

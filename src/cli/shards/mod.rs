@@ -181,6 +181,7 @@ fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Fa
             certify_time: asked.certify_time,
             skip_infeasible: asked.skip_infeasible,
             quiet: true,
+            profile: None,
         },
         store: Some(kept),
     })

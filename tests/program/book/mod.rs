@@ -9,6 +9,7 @@ use std::process::Command;
 use mbint::inner::{model, study};
 
 mod gallery;
+mod instructions;
 mod joints;
 mod keys;
 mod methods;
@@ -127,8 +128,20 @@ fn the_examples_can_be_assembled() {
 }
 
 #[test]
+fn every_decision_is_in_the_index_and_in_the_book_once() {
+    let (folder, summary) = (docs().join("decisions"), std::fs::read_to_string(docs().join("SUMMARY.md")).unwrap());
+    let index = std::fs::read_to_string(folder.join("index.md")).unwrap();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let row = format!("| [{}]({name}) |", &name[..4]);
+        assert!(name == "index.md" || index.matches(&row).count() == 1, "{name} in the index");
+        assert_eq!(summary.matches(&format!("(decisions/{name})")).count(), 1, "{name} in the book");
+    }
+}
+
+#[test]
 fn the_lists_of_the_language_are_those_of_the_program() {
-    for page in ["units", "functions", "outputs", "exit-codes"] {
+    for page in ["units", "functions", "outputs", "tuning", "exit-codes"] {
         let list = format!("--{page}");
         let printed = Command::new(BINARY).args(["explain", &list, "--page"]).output().unwrap().stdout;
         expect_page(&docs().join(format!("reference/{page}.md")), std::str::from_utf8(&printed).unwrap());

@@ -1,6 +1,6 @@
 //! Replacement of files as one: at any instant a folder has older files or newer ones, never some of each.
 //!
-//! What is new is complete in a folder of its own before anything changes, and this folder then takes the name
+//! The new results are complete in a folder of its own before anything changes, and this folder then takes the name
 //! [`JOURNAL`]: from here on the replacement is decided. Older files are set aside in the journal, what says that they
 //! are complete first; then the new ones take their names, in their order. Whoever finds a journal completes the rest
 //! of it ([`finish`]). Where an older file cannot be set aside, all go back.
@@ -108,7 +108,7 @@ impl Step {
     }
 
     fn back(&self) {
-        // What is there again is newer.
+        // A file that is there again is newer.
         if !self.from.exists() {
             let _ = fs::rename(&self.to, &self.from);
         }
@@ -148,7 +148,7 @@ pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
     let plan = match read(&journal.join(PLAN)) {
         Ok(plan) => plan,
         Err(error) if error.kind() == ErrorKind::NotFound => {
-            // What is left of one that was done.
+            // The rest of a replacement that was done.
             let _ = fs::remove_dir_all(journal);
             return Ok(());
         }
@@ -175,7 +175,7 @@ pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// Removes a journal; what of it cannot be removed is in nobody's way.
+/// Removes a journal; a rest that cannot be removed is in nobody's way.
 fn remove(journal: &Path) {
     // Without its plan it is none.
     let _ = fs::remove_file(journal.join(PLAN));

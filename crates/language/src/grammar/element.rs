@@ -8,7 +8,8 @@ use serde::Serialize;
 use symdiff::Formula;
 
 use super::image::{Image, KeyImage};
-use super::reader::{Fields, Reader};
+use super::reader::Reader;
+use super::report::Fields;
 use super::requirement::{Quantity, Requirement};
 use super::symbols::{Reference, SymbolTable};
 use crate::syntax::diagnostic::Diagnostics;

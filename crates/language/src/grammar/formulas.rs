@@ -15,13 +15,11 @@ use super::symbols::{ReactionComponent, Symbol, SymbolTable};
 use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
 use super::{unit_names, unknown};
+use crate::grammar::tuning::TUNING;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Node, Scalar};
-
-/// Operations in one formula.
-pub const MAX_TERMS: usize = 10_000;
 
 /// What stands in a field: a number with its unit, or a formula.
 pub enum Written {
@@ -112,8 +110,11 @@ impl<S: SymbolTable> Reader<'_, S> {
         let parsed = Formula::parse_with(text, &Vocabulary { tables: &tables, unit: Some(&unit), names });
         self.like_names = like_names.into_inner();
         match parsed {
-            Ok(formula) if formula.terms().len() > MAX_TERMS => {
-                let message = format!("the formula has more than {MAX_TERMS} operations");
+            Ok(formula) if formula.terms().len() > TUNING.formula_terms => {
+                let message = format!(
+                    "the formula has more than {formula_terms} operations",
+                    formula_terms = TUNING.formula_terms
+                );
                 self.error(node.span.clone(), message, "split it into parameters".to_owned());
                 None
             }
@@ -243,15 +244,6 @@ impl<S: SymbolTable> Reader<'_, S> {
             return dimension.map_or(Kind::Any, |value| Kind::motion((0..order as usize).fold(value, per_time)));
         }
         names::kind(symbol, &self.kinds)
-    }
-
-    /// Reports where something stands that does not belong there.
-    pub fn check_fits(&mut self, span: &Span, found: Dimension, wanted: Dimension) -> bool {
-        let fits = found.fits(wanted);
-        if !fits {
-            self.error(span.clone(), format!("{found} stands where {wanted} belongs"), None);
-        }
-        fits
     }
 
     /// A formula or a number with its unit, of a dimension.

@@ -24,6 +24,18 @@ pub enum Image {
     Effort,
     /// The end of a range: it changes its key with the other end, and counts the other way as [`Image::Turning`].
     End(&'static str),
+    /// A number along an axis, 0 to 2.
+    Along(usize),
+    /// A number about an axis, 0 to 2.
+    About(usize),
+    /// A product of two components.
+    Product([usize; 2]),
+    /// A polar vector, or a mapping with keys of its own.
+    PolarOr(fn() -> Vec<KeyImage>),
+    /// A mapping by names, of which each has this image.
+    Named(&'static Image),
+    /// A shape, or a list of them.
+    Shapes,
     /// Six rows by displacements along axes and rotations about them.
     SixRows,
     /// A mapping with keys of its own.

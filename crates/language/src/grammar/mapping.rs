@@ -1,4 +1,6 @@
-//! Mappings of the file whose keys are fixed: one declaration serves the reader and the JSON Schema.
+//! Mappings of the file whose keys are fixed: one declaration serves the reader, the JSON Schema and mirrors.
+
+use super::image::{Image, KeyImage};
 
 /// A mapping of the file whose keys are fixed.
 pub trait Grammar {
@@ -6,6 +8,14 @@ pub trait Grammar {
     const WHAT: &'static str;
     /// Its keys, in the order in which they are suggested.
     const KEYS: &'static [&'static str];
+    /// Keys that have another image in a mirror.
+    const IMAGES: &'static [(&'static str, Image)];
+
+    /// The keys with their images.
+    fn images() -> Vec<KeyImage> {
+        let of = |&(name, image): &(&'static str, Image)| KeyImage { name, image, in_ground: false, default: None };
+        Self::IMAGES.iter().map(of).collect()
+    }
 }
 
 /// The key of a field; one that is a word of Rust is written `r#final`.
@@ -16,14 +26,14 @@ pub const fn key(field: &'static str) -> &'static str {
     }
 }
 
-/// Declares mappings: a type for the schema, and its keys for the reader.
+/// Declares mappings: a type for the schema, and its keys for the reader, some of them `as` an [`Image`].
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __grammar {
     ($(
         $(#[doc = $doc:literal])*
         $name:ident is $what:literal $(with $extension:literal = $value:literal)* {
-            $($(#[doc = $field_doc:literal])* $field:ident: $type:ty,)*
+            $($(#[doc = $field_doc:literal])* $field:ident: $type:ty $(as $image:expr)?,)*
         }
     )*) => {$(
         $(#[doc = $doc])*
@@ -37,6 +47,8 @@ macro_rules! __grammar {
         impl $crate::grammar::mapping::Grammar for $name {
             const WHAT: &'static str = $what;
             const KEYS: &'static [&'static str] = &[$($crate::grammar::mapping::key(stringify!($field))),*];
+            const IMAGES: &'static [(&'static str, $crate::grammar::Image)] =
+                &[$($(($crate::grammar::mapping::key(stringify!($field)), $image),)?)*];
         }
     )*};
 }

@@ -10,10 +10,11 @@ use super::reader::Reader;
 use super::requirement::Quantity;
 use super::symbols::SymbolTable;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::mesh_file::{MOST_BYTES, Triangle, triangles};
+use crate::syntax::mesh_file::{Triangle, triangles};
 use crate::syntax::regular;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
+use crate::syntax::tuning::TUNING;
 use crate::syntax::yaml::Node;
 
 /// A mesh.
@@ -43,7 +44,7 @@ impl Value for Mesh {
                 return None;
             }
         };
-        let found = regular(&path, MOST_BYTES).map_err(|error| match error.kind() {
+        let found = regular(&path, TUNING.mesh_bytes).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
             _ => error.to_string(),
         });

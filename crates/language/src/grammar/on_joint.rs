@@ -5,7 +5,8 @@ use symdiff::Formula;
 
 use super::element::{Group, Key};
 use super::kinds::name;
-use super::reader::{Fields, Reader};
+use super::reader::Reader;
+use super::report::Fields;
 use super::symbols::{JointCoordinate, OnJoint, Reference, SymbolTable};
 use crate::syntax::yaml::Node;
 

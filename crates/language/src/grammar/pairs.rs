@@ -2,7 +2,8 @@
 
 use symdiff::Formula;
 
-use super::reader::{Fields, Reader};
+use super::reader::Reader;
+use super::report::Fields;
 use super::symbols::SymbolTable;
 
 impl<S: SymbolTable> Reader<'_, S> {
@@ -16,13 +17,6 @@ impl<S: SymbolTable> Reader<'_, S> {
                 self.error(fields.key_span(high), message, None);
                 return;
             }
-        }
-    }
-
-    /// Reports two keys of which only one may be there, at the first.
-    pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
-        if fields.get(first).is_some() && fields.get(second).is_some() {
-            self.error(fields.key_span(first), format!("`{first}` and `{second}` exclude each other"), None);
         }
     }
 }

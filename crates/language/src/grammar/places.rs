@@ -1,7 +1,8 @@
 //! References to bodies, points and joints by their names.
 
 use super::names;
-use super::reader::{Fields, Reader};
+use super::reader::Reader;
+use super::report::Fields;
 use super::rotating::Rotating;
 use super::symbols::{JointCoordinate, OnJoint, PointRef, SymbolTable};
 use crate::syntax::frame::Turned;

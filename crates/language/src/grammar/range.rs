@@ -2,12 +2,10 @@
 //! 0.51 m`.
 
 use super::unit::{Unit, number_and_unit};
+use crate::grammar::tuning::TUNING;
 
 /// What stands between the ends of an interval in other notations.
 const BETWEEN: [&str; 8] = ["–", "—", "…", "...", "..", " to ", " bis ", "-"];
-
-/// The smaller of two numbers that are near each other is at least this share of the larger.
-const NEAR: f64 = 0.5;
 
 /// Two numbers with something between them, the smaller first.
 pub struct Range {
@@ -41,7 +39,7 @@ pub fn range(text: &str) -> Option<Range> {
         _ => [low, high],
     };
     let is_difference = sign == "-" && of_low.is_some() == of_high.is_some();
-    if low >= high || is_difference && low < NEAR * high {
+    if low >= high || is_difference && low < TUNING.near * high {
         return None;
     }
     let interval = match (of_low, of_high) {

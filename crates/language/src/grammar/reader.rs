@@ -1,32 +1,25 @@
-//! What every part of the reader needs: mappings with known keys, formulas in their context, values that are checked.
+//! The state of reading a model: its names and parameters so far, and the report of its errors.
 //!
-//! Reading goes on after an error, so that one run reports as many as can be found. A reader gives `None` only when it
-//! has reported why.
+//! Methods that need no names are those of [`Report`].
 
-use std::cell::Cell;
-use std::collections::{HashMap, HashSet};
-use std::path::Path;
+use std::collections::HashSet;
+use std::ops::{Deref, DerefMut};
 
 use symdiff::Spline;
 
 use super::declared::DeclaredStates;
 use super::dimension::Kind;
-use super::mapping::Grammar;
-use super::names;
 use super::own_names::LikeName;
 use super::quantity::Dimension;
+use super::report::Report;
 use super::symbols::{Sensor, SymbolTable};
-use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
-use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::{MAX_BYTES, read_text};
-use crate::syntax::within::Within;
-use crate::syntax::yaml::{Entry, Node, Scalar, Value};
+use crate::syntax::yaml::Entry;
 
 /// Parts of a model read so far, with its names; `S` is the table of symbols.
 pub struct Reader<'d, S> {
     /// Errors and warnings so far.
-    pub diagnostics: &'d mut Diagnostics,
+    pub report: Report<'d>,
     /// Names first, then their meanings.
     pub model: S,
     /// Effects that are not in the model, with their sensors: the last is being read, and its own formulas may
@@ -62,8 +55,6 @@ pub struct Reader<'d, S> {
     pub lengths: Lengths,
     /// Functions that the file gives by their values.
     pub tables: Vec<Table>,
-    /// Where files are that the model may name.
-    pub files: Within,
 }
 
 /// Lengths of a model seen so far.
@@ -97,299 +88,53 @@ pub struct Corner {
     pub label: String,
 }
 
-/// A mapping whose keys are known.
-pub struct Fields<'n> {
-    /// Where to say that something is missing.
-    pub at: Span,
-    what: &'static str,
-    keys: Vec<&'static str>,
-    entries: HashMap<&'n str, (Span, &'n Node)>,
-    /// Keys that are not there, but which a key that is not known was probably meant to be: that is reported already.
-    misspelt: Vec<&'static str>,
-    /// The error of the only unknown key without a similar known one: it is taken for the missing key.
-    strange: Cell<Option<usize>>,
-}
-
-impl<'n> Fields<'n> {
-    /// A mapping of one key, whose value stands for all of it.
-    pub fn single(what: &'static str, keys: Vec<&'static str>, key: &'n str, node: &'n Node, at: Span) -> Self {
+impl<'d, S> Reader<'d, S> {
+    /// A reader that has read nothing; `model` is an empty table of symbols.
+    pub fn new(report: Report<'d>, model: S) -> Self {
         Self {
-            at,
-            what,
-            keys,
-            entries: HashMap::from([(key, (node.span.clone(), node))]),
-            misspelt: Vec::new(),
-            strange: Cell::new(None),
+            report,
+            model,
+            unread: Vec::new(),
+            unread_joints: Vec::new(),
+            unread_outputs: Vec::new(),
+            declared: DeclaredStates::default(),
+            variable: None,
+            kinds: Vec::new(),
+            corners: Vec::new(),
+            varies: Vec::new(),
+            broken: false,
+            used: Vec::new(),
+            used_by_parameters: Vec::new(),
+            idle: HashSet::new(),
+            certain: HashSet::new(),
+            like_names: Vec::new(),
+            lengths: Lengths::default(),
+            tables: Vec::new(),
         }
     }
+}
 
-    /// The value of a key, if it is there.
-    pub fn get(&self, key: &str) -> Option<&'n Node> {
-        debug_assert!(self.keys.contains(&key), "`{key}` is not in the grammar of {}", self.what);
-        self.entries.get(key).map(|(_, node)| *node)
+impl<'d, S> Deref for Reader<'d, S> {
+    type Target = Report<'d>;
+
+    fn deref(&self) -> &Report<'d> {
+        &self.report
     }
+}
 
-    /// Whether a key is neither there nor, misspelt, reported.
-    pub fn lacks(&self, key: &str) -> bool {
-        self.get(key).is_none() && !self.misspelt.contains(&key)
-    }
-
-    /// Whether this holds of all of these keys, of which one would do.
-    pub fn lacks_all(&self, keys: &[&str]) -> bool {
-        keys.iter().all(|key| self.lacks(key))
-    }
-
-    /// The place of a key.
-    pub fn key_span(&self, key: &str) -> Span {
-        self.entries.get(key).map_or_else(|| self.at.clone(), |(span, _)| span.clone())
+impl<S> DerefMut for Reader<'_, S> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.report
     }
 }
 
 impl<S: SymbolTable> Reader<'_, S> {
-    /// Reports an error.
-    pub fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.diagnostics.push(Diagnostic::error(span, message).help(help));
-    }
-
-    /// The entries of a mapping with free keys; nothing written is an empty mapping.
-    pub fn entries<'n>(&mut self, node: &'n Node, what: &str) -> &'n [Entry] {
-        match &node.value {
-            Value::Mapping(entries) => entries,
-            Value::Scalar(scalar) if scalar.is_null() => &[],
-            _ => {
-                let message = format!("{what} are a mapping, but here is {}", node.kind());
-                self.error(node.span.clone(), message, "write `name: …` for each".to_owned());
-                &[]
-            }
-        }
-    }
-
-    /// The same where others refer to these names: those that are unknown are not reported where these could not be
-    /// read.
-    pub fn named_entries<'n>(&mut self, node: &'n Node, what: &str) -> &'n [Entry] {
-        let entries = self.entries(node, what);
-        if !matches!(node.value, Value::Mapping(_)) && !node.is_null() {
-            self.diagnostics.names_are_lost();
-        }
-        entries
-    }
-
-    /// A mapping with the keys of `G`; `at` is where to say that one is missing.
-    pub fn fields<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<Fields<'n>> {
-        self.mapping(G::WHAT, G::KEYS.to_vec(), node, at)
-    }
-
-    /// A mapping with these keys; `at` is where to say that one is missing.
-    pub fn mapping<'n>(
-        &mut self,
-        what: &'static str,
-        keys: Vec<&'static str>,
-        node: &'n Node,
-        at: Span,
-    ) -> Option<Fields<'n>> {
-        let entries: &[Entry] = match &node.value {
-            Value::Mapping(entries) => entries,
-            Value::Scalar(scalar) if scalar.is_null() => &[],
-            _ => {
-                let message = format!("{what} is a mapping, but here is {}", node.kind());
-                let help = format!("its keys are {}", suggest::list(&keys));
-                self.error(node.span.clone(), message, help);
-                return None;
-            }
-        };
-        let (mut misspelt, mut strange) = (Vec::new(), Vec::new());
-        for entry in entries.iter().filter(|entry| !keys.contains(&entry.key.as_str())) {
-            let message = format!("{what} has no `{}`", clip(&entry.key));
-            let help = if entry.key.contains(':') {
-                Some("a space belongs behind the `:`".to_owned())
-            } else {
-                suggest::help(&entry.key, "keys", keys.iter().copied())
-            };
-            match suggest::nearest(entry.key.split(':').next().unwrap_or(""), keys.iter().copied()) {
-                Some(near) => misspelt.push(near),
-                None => strange.push(self.diagnostics.len()),
-            }
-            self.error(entry.key_span.clone(), message, help);
-            if keys.iter().any(|key| ["bodies", "points"].contains(key))
-                && matches!(entry.value.value, Value::Mapping(_))
-            {
-                self.diagnostics.names_are_lost();
-            }
-        }
-        let entries =
-            entries.iter().map(|entry| (entry.key.as_str(), (entry.key_span.clone(), &entry.value))).collect();
-        let strange = Cell::new(strange.first().copied().filter(|_| strange.len() == 1));
-        Some(Fields { at, what, keys, entries, misspelt, strange })
-    }
-
-    /// The value of a key that must be there.
-    pub fn required<'n>(&mut self, fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
-        let found = fields.get(key);
-        if fields.lacks(key) && !self.is_strange(fields, key) {
-            self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
-        }
-        found
-    }
-
-    /// Whether a key that is missing may be what the only one that is not known was meant to be: its error then says
-    /// so.
-    pub fn is_strange(&mut self, fields: &Fields, key: &str) -> bool {
-        let strange = fields.strange.take();
-        strange.inspect(|&error| self.diagnostics.also_missing(error, key)).is_some()
-    }
-
-    /// The only entry of a mapping that chooses a kind: `{ torque: … }`.
-    pub fn only<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<&'n Entry> {
-        self.kind_of_entry(G::WHAT, G::KEYS, node, at)
-    }
-
-    /// The only entry of a mapping that chooses one of these kinds.
-    pub fn kind_of_entry<'n>(&mut self, what: &str, known: &[&str], node: &'n Node, at: Span) -> Option<&'n Entry> {
-        let kinds = || suggest::list(known);
-        match &node.value {
-            Value::Mapping(entries) => match entries.as_slice() {
-                [entry] if known.contains(&entry.key.as_str()) => Some(entry),
-                [entry] => {
-                    let message = format!("`{}` is not a kind of {}", clip(&entry.key), bare(what));
-                    let help = suggest::help(&entry.key, "kinds", known.iter().copied());
-                    self.error(entry.key_span.clone(), message, help);
-                    None
-                }
-                [] => {
-                    self.error(at, format!("{} needs a kind", what), format!("the kinds are {}", kinds()));
-                    None
-                }
-                [_, second, ..] => {
-                    let message = format!("{} has one kind, but `{}` is a second key", what, clip(&second.key));
-                    let help = within_kind(known, entries)
-                        .unwrap_or_else(|| format!("write `name: {{ kind: … }}`, with one of {}", kinds()));
-                    self.error(second.key_span.clone(), message, help);
-                    None
-                }
-            },
-            _ => {
-                let message = format!("{} is a mapping of its kind, but here is {}", what, node.kind());
-                let help = match node.scalar().filter(|scalar| known.contains(&&*scalar.text)) {
-                    Some(kind) => format!("write `{{ {}: {{ … }} }}`, with its keys within", kind.text),
-                    None => format!("write `{{ kind: … }}`; the kinds are {}", kinds()),
-                };
-                self.error(if node.is_null() { at } else { node.span.clone() }, message, help);
-                None
-            }
-        }
-    }
-
-    /// Whether the key can be a name; says so where it cannot.
+    /// Whether the key can be a name; reports where it cannot.
     pub fn name(&mut self, entry: &Entry, what: &str) -> bool {
-        // What stands before the last dot is checked where instances are made.
+        // The text before the last dot is checked where instances are made.
         let is_part = |known: &str| entry.key.strip_prefix(known).is_some_and(|rest| rest.starts_with('.'));
         let of_instance = entry.key.rsplit_once('.').filter(|_| self.model.instances().any(is_part));
         let name = of_instance.map_or(entry.key.as_str(), |(_, name)| name);
-        let mut letters = name.chars();
-        let well_formed = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_')
-            && letters.all(|c| c.is_alphanumeric() || c == '_');
-        if !well_formed {
-            let message = format!("`{}` cannot be the name of {what}", clip(name));
-            let help = match name.contains('{') {
-                true => "an index stands in the name of what is repeated: `repeat: { i: 1..6 }`",
-                false => "a name is made of letters, digits and `_`, a letter first",
-            };
-            self.error(entry.key_span.clone(), message, help.to_owned());
-        } else if let Some(meaning) = names::meaning(name) {
-            let message = format!("`{name}` cannot be the name of {what}: in formulas it is {meaning}");
-            self.error(entry.key_span.clone(), message, None);
-            return false;
-        }
-        well_formed
-    }
-
-    /// A piece of text that is there.
-    pub fn scalar<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<&'n Scalar> {
-        match node.scalar() {
-            Some(scalar) if !scalar.is_null() => Some(scalar),
-            _ => {
-                self.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), None);
-                None
-            }
-        }
-    }
-
-    /// The text of a file that a node names, in the model's folder, and where it begins among the sources.
-    pub fn file(&mut self, node: &Node) -> Option<(usize, String)> {
-        let scalar = self.scalar(node, "the name of a file")?;
-        let found = self.files.find(Path::new(""), &scalar.text).and_then(|path| {
-            let path = self.files.full(&path);
-            let text = read_text(&path, MAX_BYTES)?;
-            Ok((self.diagnostics.sources.add(path.display().to_string(), text.clone()), text))
-        });
-        match found {
-            Ok(found) => Some(found),
-            Err(error) => {
-                let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
-                self.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
-                None
-            }
-        }
-    }
-
-    /// A list of two.
-    pub fn two<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<[&'n Node; 2]> {
-        let found = match &node.value {
-            Value::Sequence(items) => match items.as_slice() {
-                [first, second] => return Some([first, second]),
-                items => format!("a list of {}", items.len()),
-            },
-            _ => node.kind().to_owned(),
-        };
-        self.error(node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
-        None
-    }
-
-    /// One of a few words.
-    pub fn choice<T: Copy>(&mut self, node: &Node, choices: &[(&str, T)]) -> Option<T> {
-        let words: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
-        let scalar = self.scalar(node, &format!("one of {}", suggest::list(&words)))?;
-        let found = choices.iter().find(|(word, _)| *word == scalar.text);
-        if found.is_none() {
-            let message = format!("`{}` is not one of {}", clip(&scalar.text), suggest::list(&words));
-            let help = suggest::nearest(&scalar.text, words).map(|near| format!("did you mean `{near}`?"));
-            self.error(node.span.clone(), message, help);
-        }
-        found.map(|(_, value)| *value)
-    }
-
-    /// A whole number in a range.
-    pub fn count(&mut self, node: &Node, least: usize, most: usize) -> Option<usize> {
-        let wanted = format!("a whole number from {least} to {most}");
-        let scalar = self.scalar(node, &wanted)?;
-        let number = scalar.text.parse::<usize>().ok().filter(|number| (least..=most).contains(number));
-        if number.is_none() {
-            self.error(node.span.clone(), format!("`{}` is not {wanted}", clip(&scalar.text)), None);
-        }
-        number
-    }
-}
-
-/// `a joint` → `joint`.
-fn bare(what: &str) -> &str {
-    what.strip_prefix("a ").or_else(|| what.strip_prefix("an ")).unwrap_or(what)
-}
-
-/// What to write where keys stand beside the kind that they belong to, or the kind is the value of one.
-fn within_kind(known: &[&str], entries: &[Entry]) -> Option<String> {
-    let is_kind = |text: &str| known.contains(&text);
-    let mut kinds = entries.iter().filter(|entry| is_kind(&entry.key));
-    match (kinds.next(), kinds.next()) {
-        (Some(kind), None) => {
-            let other = entries.iter().find(|entry| entry.key != kind.key)?;
-            let (kind, other) = (&kind.key, clip(&other.key));
-            Some(format!("what belongs to `{kind}` stands within it: `{{ {kind}: {{ …, {other}: … }} }}`"))
-        }
-        (None, _) => {
-            let mut values = entries.iter().filter_map(|entry| entry.value.scalar());
-            let kind = values.find(|scalar| is_kind(&scalar.text))?;
-            Some(format!("write `{{ {}: {{ … }} }}`, with the other keys within", kind.text))
-        }
-        _ => None,
+        self.report.is_name(name, &entry.key_span, what)
     }
 }

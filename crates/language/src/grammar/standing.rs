@@ -6,13 +6,10 @@
 use symdiff::{Formula, Unary};
 
 use super::reader::Reader;
-use super::symbols::{Coordinate, JointCoordinate, Sensor, Symbol, SymbolTable, TimeOrder};
+use super::symbols::{Coordinate, JointCoordinate, Symbol, SymbolTable, TimeOrder};
 use crate::syntax::frame::{Frame, PLACE, Turned, signed};
 use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Node;
-
-/// What effects measure along the coordinate of a joint, by which they may push it.
-const ALONG_JOINT: [&str; 5] = [Sensor::ANGLE.name(), Sensor::RATE.name(), "integral", "filtered_rate", "current"];
 
 impl<S: SymbolTable> Reader<'_, S> {
     /// A formula of an instance as one of the model.
@@ -30,7 +27,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             Symbol::JointCoordinate { coordinate: JointCoordinate::Angle, .. } if frame.mirrors.is_odd() => {
                 return Some(Formula::name(name).applied(Unary::Neg));
             }
-            Symbol::Sensor { measure, .. } if frame.mirrors.is_odd() && ALONG_JOINT.contains(&measure.name()) => {
+            Symbol::Sensor { measure, .. } if frame.mirrors.is_odd() && measure.is_along_joint() => {
                 let (effect, _) = name.rsplit_once('.')?;
                 return self.model.is_on_turning_joint(effect).then(|| Formula::name(name).applied(Unary::Neg));
             }

@@ -1,8 +1,6 @@
 //! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m beside others of millimetres,
 //! an interval that is a difference.
 
-use std::f64::consts::TAU;
-
 use symdiff::Formula;
 use symdiff::formula::Term;
 
@@ -10,16 +8,10 @@ use super::quantity::Dimension;
 use super::range::{Range, range};
 use super::reader::Reader;
 use super::symbols::{Symbol, SymbolTable};
+use crate::grammar::tuning::TUNING;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
-
-/// An angle beyond this is more than a turn; a turn itself may be written with few digits.
-const TURN: f64 = 1.001 * TAU;
-
-/// A length beyond this does not go with those below the other, m.
-const LARGE: f64 = 100.0;
-const SMALL: f64 = 0.1;
 
 impl<S: SymbolTable> Reader<'_, S> {
     /// Looks at a formula where a quantity of a dimension belongs.
@@ -41,12 +33,12 @@ impl<S: SymbolTable> Reader<'_, S> {
         let of = name.as_ref().map_or_else(String::new, |name| format!(", for `{name}` in `parameters`"));
         // A parameter is looked at where it stands first.
         let mut is_new = || name.as_ref().is_none_or(|name| self.lengths.said.insert(name.clone()));
-        if wanted == Dimension::ANGLE && number.abs() > TURN && is_new() {
+        if wanted == Dimension::ANGLE && number.abs() > TUNING.turn && is_new() {
             let help =
                 format!("a bare angle is in rad: write `{0} deg`, or `{0} rad` where that is meant{of}", clip(&text));
             let message = "an angle of more than a turn has no unit";
             self.diagnostics.push(Diagnostic::warning(node.span.clone(), message).help(help));
-        } else if wanted == Dimension::LENGTH && number.abs() > LARGE && is_new() {
+        } else if wanted == Dimension::LENGTH && number.abs() > TUNING.large_length && is_new() {
             let help =
                 format!("a bare length is in m: write `{0} mm`, or `{0} m` where that is meant{of}", clip(&text));
             self.lengths.large.push((node.span.clone(), help));
@@ -78,7 +70,7 @@ impl<S: SymbolTable> Reader<'_, S> {
 
     /// Looks at a number in SI.
     pub(super) fn suspect_quantity(&mut self, number: f64, wanted: Dimension) {
-        self.lengths.small |= wanted == Dimension::LENGTH && number != 0.0 && number.abs() <= SMALL;
+        self.lengths.small |= wanted == Dimension::LENGTH && number != 0.0 && number.abs() <= TUNING.small_length;
     }
 
     /// Warns of large lengths beside small ones, once all are read.

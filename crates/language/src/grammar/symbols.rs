@@ -293,17 +293,18 @@ pub struct Sensor {
     name: &'static str,
     is_motion: bool,
     has_unit: bool,
+    is_along_joint: bool,
 }
 
 impl Sensor {
     /// Between two points.
     pub const LENGTH: Self = Self::of_motion("length");
     /// Of a spring or of teeth.
-    pub const ANGLE: Self = Self::of_motion("angle");
+    pub const ANGLE: Self = Self::of_motion("angle").along_joint();
     /// Between two surfaces.
     pub const GAP: Self = Self::of_motion("gap");
     /// Of a length, an angle or a gap.
-    pub const RATE: Self = Self::of_motion("rate");
+    pub const RATE: Self = Self::of_motion("rate").along_joint();
     /// Of a joint with friction.
     pub const LOAD: Self = Self::of_force("load");
     /// The force.
@@ -338,18 +339,24 @@ impl Sensor {
 
     /// What follows from positions, velocities and states alone, so that the effect's own formulas may refer to it.
     pub const fn of_motion(name: &'static str) -> Self {
-        Self { name, is_motion: true, has_unit: true }
+        Self { name, is_motion: true, has_unit: true, is_along_joint: false }
     }
 
     /// What follows from the forces.
     pub const fn of_force(name: &'static str) -> Self {
-        Self { name, is_motion: false, has_unit: true }
+        Self { name, is_motion: false, has_unit: true, is_along_joint: false }
     }
 
     /// The same where nothing says in which unit.
     #[must_use]
     pub const fn of_unknown_unit(self) -> Self {
         Self { has_unit: false, ..self }
+    }
+
+    /// The same, counted along the coordinate of the joint that the effect is on, if it is on one.
+    #[must_use]
+    pub const fn along_joint(self) -> Self {
+        Self { is_along_joint: true, ..self }
     }
 
     /// What pushes a joint's coordinate.
@@ -368,6 +375,11 @@ impl Sensor {
     /// Whether it follows from positions, velocities and states alone.
     pub fn is_motion(self) -> bool {
         self.is_motion
+    }
+
+    /// Whether it is counted along a joint's coordinate: in a mirror it changes its sign where that joint turns.
+    pub fn is_along_joint(self) -> bool {
+        self.is_along_joint
     }
 
     /// Whether its unit is known.

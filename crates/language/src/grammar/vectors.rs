@@ -6,10 +6,9 @@ use super::formulas::Written;
 use super::names::Context;
 use super::plane;
 use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use super::reader::Reader;
 use super::rotation::Rotation;
 use super::symbols::SymbolTable;
-use super::values;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Value};
 
@@ -50,18 +49,6 @@ impl<S: SymbolTable> Reader<'_, S> {
     pub fn leaves_the_plane(&mut self, node: &Node) {
         let help = "write `space: spatial`, or leave `space` out".to_owned();
         self.error(node.span.clone(), "this leaves the plane, but the model is planar", help);
-    }
-
-    /// A list of `count` numbers, three or four.
-    pub fn list_of<'n>(&mut self, node: &'n Node, count: usize) -> Option<&'n [Node]> {
-        let found = match &node.value {
-            Value::Sequence(items) if items.len() == count => return Some(items),
-            Value::Sequence(items) => format!("a list of {}", items.len()),
-            _ => node.kind().to_owned(),
-        };
-        let wanted = if count == 3 { "three" } else { "four" };
-        self.error(node.span.clone(), format!("a list of {wanted} numbers belongs here, but here is {found}"), None);
-        None
     }
 
     /// Three formulas of a dimension.
@@ -118,25 +105,6 @@ impl<S: SymbolTable> Reader<'_, S> {
             }
         }
         Some(axis)
-    }
-
-    /// By what a rotation is given, `rpy`, `axis` or `quaternion`, and its keys; `at` is where to say that something
-    /// is missing.
-    pub fn kind_of_rotation<'n>(&mut self, node: &'n Node, at: Span) -> Option<(&'static str, Fields<'n>)> {
-        let fields = self.fields::<values::Rotation>(node, at)?;
-        let given: Vec<&'static str> =
-            ["rpy", "axis", "quaternion"].into_iter().filter(|key| fields.get(key).is_some()).collect();
-        let [kind] = given.as_slice() else {
-            let help = "e.g. `{ rpy: [0, 90 deg, 0] }`, `{ axis: z, angle: 30 deg }` or `{ quaternion: [1, 0, 0, 0] }`";
-            let message = "a rotation is one of `rpy`, `axis` with `angle`, and `quaternion`";
-            self.error(node.span.clone(), message, help.to_owned());
-            return None;
-        };
-        if *kind != "axis" && fields.get("angle").is_some() {
-            self.error(fields.key_span("angle"), format!("`angle` goes with `axis`, not with `{kind}`"), None);
-            return None;
-        }
-        Some((kind, fields))
     }
 
     /// A rotation of parameters; `at` is where to say that something is missing.

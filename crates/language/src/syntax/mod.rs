@@ -14,6 +14,7 @@ pub mod source;
 pub mod suggest;
 pub mod text_file;
 mod tree;
+pub mod tuning;
 pub mod within;
 pub mod yaml;
 

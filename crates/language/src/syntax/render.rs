@@ -9,27 +9,10 @@ use super::diagnostic::{Diagnostic, Diagnostics, Severity};
 use super::habit::{Habit, owner};
 use super::harmless::{harmless, is_harmful};
 use super::source::{Place, Source};
-
-/// Diagnostics shown; the others are counted.
-const MOST_SHOWN: usize = 50;
-
-/// From so many places on, a message is shown once, with the other places' lines.
-const MANY: usize = 3;
-
-/// Lines of these that are named.
-const MOST_LINES: usize = 8;
+use crate::syntax::tuning::TUNING;
 
 /// Begins a colour; what comes from a file cannot hold it where it reaches the renderer.
 const ESCAPE: char = '\u{1b}';
-
-/// Places at most this many lines apart are shown in one piece.
-const LINES_TOGETHER: usize = 6;
-
-/// Characters of a line on either side of the markers that are rendered at most.
-const LONG_LINE: usize = 400;
-
-/// Characters of a line of help.
-const LONG_HELP: usize = 100;
 
 impl Diagnostics {
     /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty.
@@ -38,7 +21,7 @@ impl Diagnostics {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let mut text = String::new();
         let shown = self.distinct();
-        for (diagnostic, repeated) in shown.iter().take(MOST_SHOWN) {
+        for (diagnostic, repeated) in shown.iter().take(TUNING.diagnostics_shown) {
             let note = self.note(diagnostic, repeated);
             let diagnostic = diagnostic.harmless();
             let (report, moved) = self.report(&diagnostic, note.as_deref());
@@ -50,7 +33,7 @@ impl Diagnostics {
             text += &rendered.replace(|c| is_harmful(c) && c != ESCAPE, "\u{fffd}");
             text += "\n\n";
         }
-        let hidden = shown.len().saturating_sub(MOST_SHOWN);
+        let hidden = shown.len().saturating_sub(TUNING.diagnostics_shown);
         if hidden > 0 {
             text += &format!("… and {hidden} more\n\n");
         }
@@ -72,7 +55,7 @@ impl Diagnostics {
         for diagnostic in self.iter() {
             let key = Habit::of(diagnostic);
             match first.get(&key) {
-                Some(&place) if counts[&key] >= MANY => distinct[place].1.push(diagnostic),
+                Some(&place) if counts[&key] >= TUNING.occurrences => distinct[place].1.push(diagnostic),
                 _ => {
                     first.entry(key).or_insert(distinct.len());
                     distinct.push((diagnostic, Vec::new()));
@@ -96,8 +79,8 @@ impl Diagnostics {
             })
             .collect();
         lines.dedup();
-        let more = lines.len() > MOST_LINES;
-        lines.truncate(MOST_LINES);
+        let more = lines.len() > TUNING.lines_named;
+        lines.truncate(TUNING.lines_named);
         let count = repeated.len();
         let lines = if lines.is_empty() { String::new() } else { format!(": line {}", lines.join(", ")) };
         let others = other_owners(of, repeated);
@@ -167,7 +150,7 @@ fn wrapped(text: &str) -> String {
     let mut width = 0;
     for word in text.split_inclusive(' ') {
         let length = word.trim_end().chars().count();
-        if width > 0 && width + length > LONG_HELP {
+        if width > 0 && width + length > TUNING.help_length {
             wrapped.truncate(wrapped.trim_end().len());
             wrapped.push('\n');
             width = 0;
@@ -195,7 +178,7 @@ impl<'d> Excerpt<'d> {
         let near = |other: &Mark| {
             let between = mark.span.start.min(other.span.start)..mark.span.start.max(other.span.start);
             let between = &source.text[between];
-            between.len() < 4 * LONG_LINE && between.matches('\n').count() <= LINES_TOGETHER
+            between.len() < 4 * TUNING.line_length && between.matches('\n').count() <= TUNING.lines_together
         };
         std::ptr::eq(self.source, source) && self.marks.iter().all(near)
     }
@@ -211,11 +194,11 @@ impl<'d> Excerpt<'d> {
         let start = text[..first].rfind('\n').map_or(0, |newline| newline + 1);
         let end = text[last..].find('\n').map_or(text.len(), |newline| last + newline);
         // Very long lines are cut near the marks.
-        let cut_start = match text[start..first].char_indices().rev().nth(LONG_LINE - 1) {
+        let cut_start = match text[start..first].char_indices().rev().nth(TUNING.line_length - 1) {
             Some((offset, _)) => start + offset,
             None => start,
         };
-        let cut_end = match text[last..end].char_indices().nth(LONG_LINE) {
+        let cut_end = match text[last..end].char_indices().nth(TUNING.line_length) {
             Some((offset, _)) => last + offset,
             None => end,
         };
@@ -243,8 +226,9 @@ fn other_owners(of: &Diagnostic, repeated: &[&Diagnostic]) -> String {
     owners.sort_unstable();
     owners.dedup();
     owners.retain(|&other| Some(other) != owner(&of.message));
-    let more = if owners.len() > MOST_LINES { ", …" } else { "" };
-    let named: Vec<String> = owners.iter().take(MOST_LINES).map(|owner| harmless(&format!("`{owner}`"))).collect();
+    let more = if owners.len() > TUNING.lines_named { ", …" } else { "" };
+    let named: Vec<String> =
+        owners.iter().take(TUNING.lines_named).map(|owner| harmless(&format!("`{owner}`"))).collect();
     if named.is_empty() { String::new() } else { format!(" (also of {}{more})", named.join(", ")) }
 }
 

@@ -1,24 +1,11 @@
 //! "Did you mean": what to say of a name that is not known.
 
-/// Known names that are looked at.
-const MOST_KNOWN: usize = 1000;
-
-/// Names that are compared: the known ones, and some beside them.
-const MOST_COMPARED: usize = MOST_KNOWN + 100;
-
-/// Known names that are listed in full.
-const MOST_LISTED: usize = 32;
-
-/// How many of more known names are listed.
-const FEW: usize = 3;
-
-/// Longest name that is compared or quoted in full.
-const LONGEST: usize = 60;
+use crate::syntax::tuning::TUNING;
 
 /// The known name nearest to a mistyped one, if any is near.
 pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let length = name.chars().count();
-    if length > LONGEST {
+    if length > TUNING.name_length {
         return None;
     }
     let lower = name.to_lowercase();
@@ -26,8 +13,8 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
     let limit = if length < 2 { 0 } else { (length / 3).max(1) };
     known
         .into_iter()
-        .take(MOST_COMPARED)
-        .filter(|candidate| candidate.len() <= 4 * LONGEST)
+        .take(TUNING.names_compared)
+        .filter(|candidate| candidate.len() <= 4 * TUNING.name_length)
         .filter_map(|candidate| {
             let distance = if candidate.to_lowercase() == lower {
                 0
@@ -56,7 +43,7 @@ pub fn help_beside<'c>(
     known: impl IntoIterator<Item = &'c str>,
     beside: &[&'c str],
 ) -> Option<String> {
-    let known: Vec<&str> = known.into_iter().take(MOST_KNOWN).collect();
+    let known: Vec<&str> = known.into_iter().take(TUNING.names_known).collect();
     if let Some(near) = nearest(name, known.iter().chain(beside).copied()) {
         return Some(format!("did you mean `{near}`?"));
     }
@@ -65,19 +52,21 @@ pub fn help_beside<'c>(
     if let Some(whole) = known.iter().filter(has_word).min_by_key(|known| known.len()) {
         return Some(format!("did you mean `{whole}`?"));
     }
-    let short: Vec<&str> = known.iter().copied().filter(|name| name.len() <= LONGEST).collect();
+    let short: Vec<&str> = known.iter().copied().filter(|name| name.len() <= TUNING.name_length).collect();
     match short.as_slice() {
         _ if known.is_empty() => Some(format!("there are no {kind}")),
         [] => None,
         [one] if known.len() == 1 => Some(format!("there is only `{one}`")),
-        all if all.len() == known.len() && all.len() <= MOST_LISTED => Some(format!("the {kind} are {}", list(all))),
+        all if all.len() == known.len() && all.len() <= TUNING.names_listed => {
+            Some(format!("the {kind} are {}", list(all)))
+        }
         _ => {
             let name = clip(name).to_lowercase();
             // Alike is what begins alike; the sort is stable.
             let likeness = |other: &str| strsim::jaro_winkler(&name, &other.to_lowercase());
             let mut alike: Vec<(f64, &str)> = short.into_iter().map(|other| (likeness(other), other)).collect();
             alike.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let few: Vec<&str> = alike.into_iter().take(FEW).map(|(_, other)| other).collect();
+            let few: Vec<&str> = alike.into_iter().take(TUNING.names_of_many).map(|(_, other)| other).collect();
             Some(format!("there are {} {kind}, most like it {}", known.len(), list(&few)))
         }
     }
@@ -95,9 +84,12 @@ pub fn list(names: &[&str]) -> String {
 
 /// Text from a file as it may stand in a message: neither long nor over several lines.
 pub fn clip(text: &str) -> String {
-    let mut clipped: String =
-        text.chars().take(LONGEST).map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect();
-    if text.chars().nth(LONGEST).is_some() {
+    let mut clipped: String = text
+        .chars()
+        .take(TUNING.name_length)
+        .map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c })
+        .collect();
+    if text.chars().nth(TUNING.name_length).is_some() {
         clipped.push('…');
     }
     clipped

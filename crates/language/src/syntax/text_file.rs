@@ -7,9 +7,6 @@ use std::path::Path;
 use super::diagnostic::Diagnostic;
 use super::suggest::clip;
 
-/// Largest file that is read.
-pub const MAX_BYTES: u64 = 10_000_000;
-
 /// The text of a file that a model names, of at most so many bytes. A pipe or a device may have no end.
 pub fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;

@@ -22,7 +22,7 @@ impl Within {
     }
 
     /// The path, seen from the model's folder, of a file that is named from a folder, which is seen from there too.
-    /// What is there is not looked at where the model may not name it.
+    /// A file that the model may not name is not examined.
     ///
     /// # Errors
     /// Where the model may not name it.

@@ -13,12 +13,7 @@ use super::not_yaml;
 use super::source::Span;
 use super::suggest::clip;
 pub use super::tree::{Entry, Node, Scalar, Value};
-
-/// How deep mappings and sequences may nest. The grammar needs six.
-const MAX_DEPTH: usize = 40;
-
-/// How many scalars, beginnings and ends a file may have.
-const MAX_EVENTS: usize = 1_000_000;
+use crate::syntax::tuning::TUNING;
 
 /// Reads one document from a text whose first byte has offset 0; `None` where there is no tree to go on with.
 pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
@@ -26,8 +21,8 @@ pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
         emit_comments: false,
         emit_unresolved_aliases: true,
         emit_anchor_events: true,
-        flow_nesting_limit: MAX_DEPTH,
-        block_nesting_limit: MAX_DEPTH,
+        flow_nesting_limit: TUNING.yaml_depth,
+        block_nesting_limit: TUNING.yaml_depth,
     };
     let mut builder = Builder { text, diagnostics, open: Vec::new(), root: None, is_unnamed: false };
     for (count, next) in Parser::new_from_str_with_options(text, options).enumerate() {
@@ -39,8 +34,8 @@ pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
                 return None;
             }
         };
-        if count > MAX_EVENTS {
-            let message = format!("the file has more than {MAX_EVENTS} entries");
+        if count > TUNING.yaml_events {
+            let message = format!("the file has more than {yaml_events} entries", yaml_events = TUNING.yaml_events);
             builder.diagnostics.push(Diagnostic::error(span, message));
             return None;
         }
@@ -83,9 +78,10 @@ impl Builder<'_, '_> {
         }
         let span = at..at + self.text[at..].chars().next().map_or(0, char::len_utf8);
         let diagnostic = match kind {
-            ErrorKind::RecursionLimitExceeded => {
-                Diagnostic::error(span, format!("mappings and lists nest deeper than {MAX_DEPTH} levels"))
-            }
+            ErrorKind::RecursionLimitExceeded => Diagnostic::error(
+                span,
+                format!("mappings and lists nest deeper than {yaml_depth} levels", yaml_depth = TUNING.yaml_depth),
+            ),
             kind => Diagnostic::error(span, format!("this is not YAML: {kind}")),
         };
         self.diagnostics.push(diagnostic.help(not_yaml::help(self.text, at, kind)));
@@ -126,7 +122,7 @@ impl Builder<'_, '_> {
             Event::SequenceEnd | Event::MappingEnd => self.close(span.end),
             _ => {}
         }
-        if self.open.len() > MAX_DEPTH {
+        if self.open.len() > TUNING.yaml_depth {
             self.syntax_error(self.start_of_innermost(), &ErrorKind::RecursionLimitExceeded);
             return false;
         }

@@ -3,11 +3,12 @@
 use super::description::{
     Analysis, Description, Formulation, Joint, LinearisedAt, ModesRequest, ResponseRequest, Stepping,
 };
-use super::file;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::{Context, Symbol};
+use crate::keys;
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -21,15 +22,6 @@ const ANALYSES: [(&str, Analysis); 4] = [
 
 const PLACES: [(&str, LinearisedAt); 3] =
     [("start", LinearisedAt::Start), ("equilibrium", LinearisedAt::Equilibrium), ("motion", LinearisedAt::Motion)];
-
-/// Modes that are reported where the model does not say how many.
-const MODES: usize = 6;
-
-/// Frequencies of a response where the model does not say how many.
-const FREQUENCIES: usize = 60;
-
-/// Most frequencies of a response.
-const MOST_FREQUENCIES: usize = 2000;
 
 /// The word for a start at rest where forces are in equilibrium.
 const EQUILIBRIUM: &str = "equilibrium";
@@ -79,7 +71,7 @@ fn section_of_modes<'n>(reader: &mut Reader, fields: &Fields<'n>) -> Option<Fiel
         reader.error(fields.key_span("modes"), "`modes` belongs to `analysis: modes`", help);
         return None;
     }
-    reader.fields::<file::Modes>(node, fields.key_span("modes"))
+    reader.fields::<keys::Modes>(node, fields.key_span("modes"))
 }
 
 /// Reads the questions about small vibrations, when outputs are known.
@@ -87,7 +79,7 @@ pub fn read_modes(reader: &mut Reader, fields: &Fields) {
     if !matches!(reader.model.analysis, Analysis::Modes(_)) {
         return;
     }
-    let mut request = ModesRequest { number: MODES, responses: Vec::new() };
+    let mut request = ModesRequest { number: TUNING.modes, responses: Vec::new() };
     // Errors of the section itself have been reported.
     let node = fields.get("modes");
     let known = node.and_then(|node| match &node.value {
@@ -96,7 +88,7 @@ pub fn read_modes(reader: &mut Reader, fields: &Fields) {
     });
     let find = |key: &str| known.into_iter().flatten().find(|entry| entry.key == key);
     if let Some(entry) = find("number") {
-        request.number = reader.count(&entry.value, 1, 1000).unwrap_or(MODES);
+        request.number = reader.count(&entry.value, 1, 1000).unwrap_or(TUNING.modes);
     }
     if let Some(entry) = find("responses") {
         let entries = reader.entries(&entry.value, "responses");
@@ -107,7 +99,7 @@ pub fn read_modes(reader: &mut Reader, fields: &Fields) {
 
 fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
     reader.name(entry, "a response");
-    let fields = reader.fields::<file::Response>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::Response>(&entry.value, entry.key_span.clone())?;
     let [load, output, from, to] = ["load", "output", "from", "to"].map(|key| reader.required(&fields, key));
     let load = load.and_then(|node| {
         let (name, dimension) = known_output(reader, node)?;
@@ -128,8 +120,8 @@ fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
         Some(value).filter(|value| *value > 0.0)
     });
     let points = match fields.get("points") {
-        Some(node) => reader.count(node, 2, MOST_FREQUENCIES)?,
-        None => FREQUENCIES,
+        Some(node) => reader.count(node, 2, TUNING.most_frequencies)?,
+        None => TUNING.frequencies,
     };
     let (from, to) = (from?, to?);
     if from >= to {

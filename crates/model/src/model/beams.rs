@@ -5,20 +5,15 @@ use crate::grammar::{Coordinate, PointRef};
 use symdiff::{Binary, Formula};
 
 use super::description::{Description, Effect};
-use super::file;
 use crate::elements::effects::Beam;
 use crate::elements::effects::beam::Flexible;
 use crate::grammar::Direction;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
+use crate::keys;
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::syntax::yaml::{Entry, Value};
-
-/// Elements of a beam that does not say how many.
-const USUAL: usize = 4;
-
-/// Most elements of a beam.
-const MOST: usize = 200;
 
 /// Keys of rigid bodies that mean nothing here.
 const RIGID: [&str; 7] = ["mass", "inertia", "center_of_mass", "coordinates", "held", "points", "shape"];
@@ -31,9 +26,9 @@ pub fn elements(entry: &Entry) -> Option<usize> {
     };
     let Value::Mapping(fields) = &entry.value.value else { return None };
     let beam = &fields[find(&entry.value.value, "beam")?].value;
-    let Value::Mapping(keys) = &beam.value else { return Some(USUAL) };
+    let Value::Mapping(keys) = &beam.value else { return Some(TUNING.beam_elements) };
     let count = find(&beam.value, "elements").and_then(|key| keys[key].value.scalar()?.text.parse().ok());
-    Some(count.filter(|count| (1..=MOST).contains(count)).unwrap_or(USUAL))
+    Some(count.filter(|count| (1..=TUNING.most_beam_elements).contains(count)).unwrap_or(TUNING.beam_elements))
 }
 
 /// Names of the nodes: `rod.start`, `rod.node1`, …, `rod.end`.
@@ -57,16 +52,16 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
             false => vec![Coordinate::X, Coordinate::Y, Coordinate::Angle],
         };
     }
-    let Some(body) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
+    let Some(body) = reader.fields::<keys::Body>(&entry.value, entry.key_span.clone()) else { return };
     for key in RIGID.into_iter().filter(|key| body.get(key).is_some()) {
         let help = "its mass is along it (`mass_per_length`), and its nodes are its points; what is rigid is a body of its own, \
                     joined to a node by `fixed`";
         reader.error(body.key_span(key), format!("a beam has no `{key}`"), help.to_owned());
     }
     let (Some(node), at) = (body.get("beam"), body.key_span("beam")) else { return };
-    let Some(fields) = reader.fields::<file::FlexibleBeam>(node, at) else { return };
+    let Some(fields) = reader.fields::<keys::FlexibleBeam>(node, at) else { return };
     if let Some(node) = fields.get("elements") {
-        reader.count(node, 1, MOST);
+        reader.count(node, 1, TUNING.most_beam_elements);
     }
     for key in OF_SPACE.into_iter().filter(|key| !spatial && fields.get(key).is_some()) {
         let help = "in a model with `space: spatial` it bends about y and twists, too".to_owned();

@@ -5,12 +5,13 @@ use symdiff::Formula;
 
 use super::beams;
 use super::description::{Analysis, Body, FlexibleBeam, Inertia, Point};
-use super::{file, parts};
 use crate::elements::shapes::ShapeKind;
+use crate::expand::parts;
 use crate::grammar::motions::is_motion;
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -84,7 +85,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
 }
 
 fn ground(reader: &mut Reader, entry: &Entry) {
-    let Some(fields) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
+    let Some(fields) = reader.fields::<keys::Body>(&entry.value, entry.key_span.clone()) else { return };
     for key in ["mass", "inertia", "center_of_mass", "coordinates", "held", "beam"] {
         if fields.get(key).is_some() {
             let help = "the ground does not move; it can be given `points` and a `shape` only".to_owned();
@@ -105,7 +106,7 @@ fn shapes(reader: &mut Reader, fields: &Fields, body: usize) {
 }
 
 fn body(reader: &mut Reader, entry: &Entry, index: usize) {
-    let Some(fields) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
+    let Some(fields) = reader.fields::<keys::Body>(&entry.value, entry.key_span.clone()) else { return };
     let coordinates = match fields.get("coordinates") {
         Some(node) => coordinates(reader, node),
         None => usual(reader),
@@ -182,7 +183,7 @@ fn tensor(reader: &mut Reader, node: &Node, at: crate::syntax::source::Span) -> 
         let [xx, yy, zz] = reader.three(node, Context::Constant, Dimension::INERTIA)?;
         Inertia { xx, yy, zz, xy: zero(), xz: zero(), yz: zero() }
     } else {
-        let fields = reader.fields::<file::Tensor>(node, at)?;
+        let fields = reader.fields::<keys::Tensor>(node, at)?;
         let [xx, yy, zz] = ["xx", "yy", "zz"].map(|key| {
             let node = reader.required(&fields, key)?;
             reader.formula(node, Context::Constant, Dimension::INERTIA)
@@ -247,7 +248,7 @@ fn prescribed(
 ) -> (Vec<(Coordinate, Formula)>, Option<Rotation>) {
     let nothing = (Vec::new(), None);
     let Some(node) = fields.get("held") else { return nothing };
-    let Some(held) = reader.fields::<file::Held>(node, fields.key_span("held")) else { return nothing };
+    let Some(held) = reader.fields::<keys::Held>(node, fields.key_span("held")) else { return nothing };
     let refuse = |reader: &mut Reader, name: &str| {
         let message = format!("`{name}` is a coordinate of the body, so it is not held");
         let help = format!("leave `{name}` out of `coordinates`, or give its start in `initial`");
@@ -312,7 +313,7 @@ pub(super) fn point(reader: &mut Reader, entry: &Entry) -> Option<([Formula; 3],
     let Value::Mapping(_) = entry.value.value else {
         return Some((reader.components(&entry.value, Context::Constant, Dimension::LENGTH)?, None));
     };
-    let fields = reader.fields::<file::PointFrame>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::PointFrame>(&entry.value, entry.key_span.clone())?;
     let position = match fields.get("position") {
         Some(node) => reader.components(node, Context::Constant, Dimension::LENGTH),
         None => Some([0.0; 3].map(Formula::number)),

@@ -3,7 +3,6 @@
 mod analysis;
 mod body;
 mod index;
-mod instance;
 mod reduced;
 mod robot;
 mod simulation;
@@ -16,15 +15,16 @@ use symdiff::Formula;
 
 use crate::elements::effects::EffectKind;
 use crate::elements::{JointKind, Trajectory};
+pub use crate::expand::instance::{Instance, InstanceKind};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
+pub use crate::robots::urdf::robot::{Shape, Visual};
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
 pub use body::{Body, FlexibleBeam, Inertia, Point, Standing};
 use index::NameIndex;
-pub use instance::{Instance, InstanceKind};
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
-pub use robot::{RobotTree, Shape, TreeJoint, TreeLink, Visual};
+pub use robot::{RobotTree, TreeJoint, TreeLink};
 pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
 pub use statistics::{Correlation, Cost, Grade, Law, Statistics};

@@ -1,8 +1,9 @@
 //! Units in which outputs are shown: `stroke: { formula: slider.x, unit: mm }`.
 
-use super::{file, parameters};
+use super::parameters;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -22,7 +23,7 @@ pub fn formula(reader: &mut Reader, entry: &Entry) -> Option<(Entry, Option<Node
     if !matches!(entry.value.value, Value::Mapping(_)) {
         return Some((entry.clone(), None));
     }
-    let fields = reader.fields::<file::OutputFormula>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::OutputFormula>(&entry.value, entry.key_span.clone())?;
     let formula = reader.required(&fields, FORMULA)?.clone();
     Some((Entry { value: formula, ..entry.clone() }, fields.get("unit").cloned()))
 }

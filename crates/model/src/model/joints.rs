@@ -39,7 +39,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
 }
 
 /// Reports coordinates whose motion is prescribed twice: the second could only say the same, or contradict. Where there
-/// are errors already, the motors may not be what they seem.
+/// are errors already, the motors may be others.
 fn check_drives(reader: &mut Reader, entries: &[Entry]) {
     for second in 0..entries.len() {
         let joints = &reader.model.joints;

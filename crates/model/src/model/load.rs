@@ -1,26 +1,28 @@
 //! A file → its [`Description`], or everything that is wrong with it.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use super::description::{Description, Space};
-use super::file;
-use super::overrides::Override;
-use super::parts::{self, Parts, WrittenOut};
-use super::scenes::{Scenes, Variant};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, bodies, bounds, effects, joints, mjcf, motion_times, parameters, requests, requirements, sections, space,
-    states, statistics, tables, teeth, trajectories,
+    analysis, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements, sections,
+    space, states, statistics, tables, teeth, trajectories,
 };
-use crate::grammar::Lengths;
-use crate::grammar::declared::DeclaredStates;
+use crate::expand::mjcf;
+use crate::expand::overrides::Override;
+use crate::expand::parts::{self, Parts, WrittenOut};
+use crate::expand::scenes::{Scenes, Variant};
+use crate::grammar::report::Report;
+use crate::keys;
 use crate::model::names::Reader;
+use crate::robots::mjcf::is_mjcf;
+use crate::robots::urdf::is_urdf;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::{MAX_BYTES, read_given, text_of};
+use crate::syntax::text_file::{read_given, text_of};
+use crate::syntax::tuning::TUNING;
 use crate::syntax::within::Within;
 use crate::syntax::yaml::{self, Entry, Node};
 
@@ -56,7 +58,7 @@ pub struct UnknownScene {
 
 impl Reading {
     /// Scenes by their names, in the file's order, each with its name; all where none is named. A model without scenes
-    /// is itself what is asked for, under no name.
+    /// is chosen itself, under no name.
     ///
     /// # Errors
     /// For a name that no scene has.
@@ -115,14 +117,18 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
 pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> Reading {
     let from_input = is_standard_input(path);
     let name = if from_input { "stdin".to_owned() } else { shown(path) };
-    if urdf::is_urdf(path) {
+    if is_urdf(path) {
         // A model of nothing but the robot; errors are in the robot's file.
         return read_text_of(&name, &urdf::model_of(path), overrides, root);
     }
-    if mjcf::is_mjcf(path) {
+    if is_mjcf(path) {
         return read_text_of(&name, &mjcf::model_of(path), overrides, root);
     }
-    let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_given(path, MAX_BYTES) };
+    let text = if from_input {
+        text_of(std::io::stdin().lock(), TUNING.file_bytes)
+    } else {
+        read_given(path, TUNING.file_bytes)
+    };
     match text {
         Ok(text) => read_text_of(&name, &text, overrides, root),
         Err(error) => {
@@ -163,12 +169,12 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
     };
     let root = match root.get("mjcf") {
         None => root,
-        Some(_) => match mjcf::write_out(&mut blank(&origin, &mut diagnostics), &root, Path::new(name), &placed) {
+        Some(_) => match mjcf::write_out(&mut origin.report(&mut diagnostics), &root, Path::new(name), &placed) {
             Some(root) if !diagnostics.has_errors() => root,
             _ => return Reading { description: None, scenes: Vec::new(), diagnostics },
         },
     };
-    let written = parts::write_out(&mut blank(&origin, &mut diagnostics), &root, text, &placed);
+    let written = parts::write_out(&mut origin.report(&mut diagnostics), &root, text, &placed);
     let (root, parts) = match written {
         Some(WrittenOut { root, parts }) => (root, Some(parts)),
         None => (root, None),
@@ -181,7 +187,7 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
         placed = parts.follow(placed);
     }
     let parts = parts.as_ref();
-    let plan = Scenes::read(&mut blank(&origin, &mut diagnostics), &root);
+    let plan = Scenes::read(&mut origin.report(&mut diagnostics), &root);
     let before = diagnostics.len();
     let model = plan.model();
     let (description, mut unused) = describe(&origin, &model, parts, &placed, &mut diagnostics);
@@ -189,7 +195,7 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
     let mut scenes = Vec::with_capacity(plan.count());
     for scene in 0..plan.count() {
         let before = diagnostics.len();
-        let variant = plan.scene(&mut blank(&origin, &mut diagnostics), scene);
+        let variant = plan.scene(&mut origin.report(&mut diagnostics), scene);
         let (found, idle) = describe(&origin, &variant, parts, &placed, &mut diagnostics);
         diagnostics.found_without(before, &variant.left_out);
         scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
@@ -209,36 +215,20 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
 struct Origin<'o> {
     /// What diagnostics call it.
     name: &'o str,
-    /// What it may name.
+    /// Files that it may name.
     files: Within,
 }
 
-/// A reader of nothing yet.
-fn blank<'d>(origin: &Origin, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
-    let name = origin.name;
-    let called =
-        Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let model = Description::empty(called);
-    Reader {
-        diagnostics,
-        model,
-        variable: None,
-        unread: Vec::new(),
-        unread_joints: Vec::new(),
-        unread_outputs: Vec::new(),
-        declared: DeclaredStates::default(),
-        kinds: Vec::new(),
-        corners: Vec::new(),
-        varies: Vec::new(),
-        broken: false,
-        used: Vec::new(),
-        used_by_parameters: Vec::new(),
-        idle: HashSet::new(),
-        certain: HashSet::new(),
-        like_names: Vec::new(),
-        lengths: Lengths::default(),
-        tables: Vec::new(),
-        files: origin.files.clone(),
+impl Origin<'_> {
+    /// A report that adds to these diagnostics.
+    fn report<'d>(&self, diagnostics: &'d mut Diagnostics) -> Report<'d> {
+        Report { diagnostics, files: self.files.clone() }
+    }
+
+    /// A model without contents, called after its file.
+    fn empty(&self) -> Description {
+        let stem = Path::new(self.name).file_stem();
+        Description::empty(stem.map_or_else(|| self.name.to_owned(), |stem| stem.to_string_lossy().into_owned()))
     }
 }
 
@@ -252,10 +242,10 @@ fn describe(
     diagnostics: &mut Diagnostics,
 ) -> (Description, Vec<Diagnostic>) {
     let root = &variant.root;
-    let mut reader = blank(origin, diagnostics);
+    let mut reader = Reader::new(origin.report(diagnostics), origin.empty());
     reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
     let start = root.span.start..root.span.start;
-    let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };
+    let Some(fields) = reader.fields::<keys::File>(root, start) else { return (reader.model, Vec::new()) };
     sections::title(&mut reader, &fields, variant.scene.as_deref());
     let mut robot = match fields.get("urdf") {
         None => None,
@@ -290,8 +280,8 @@ fn describe(
 
     bodies::declare(&mut reader, body_entries);
     parts.into_iter().for_each(|parts| {
-        parts.declare_ports(&mut reader);
-        parts.stand(&mut reader);
+        instances::declare_ports(&mut reader, parts);
+        instances::stand(&mut reader, parts);
     });
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));

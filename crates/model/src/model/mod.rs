@@ -5,10 +5,7 @@
 
 mod description;
 mod names;
-mod notation;
 mod references;
-
-mod file;
 
 mod analysis;
 mod beams;
@@ -16,21 +13,17 @@ mod bodies;
 mod bounds;
 mod display;
 mod effects;
+mod instances;
 mod joints;
 mod load;
-mod mjcf;
 mod motion_times;
 mod named_outputs;
 mod overlay;
-mod overrides;
 mod parameters;
-mod parts;
 mod reduced;
 mod requests;
 mod requirements;
 mod results_by_name;
-mod robots;
-mod scenes;
 mod scheme;
 mod sections;
 mod space;
@@ -42,13 +35,15 @@ mod teeth;
 mod tests;
 
 mod trajectories;
+mod tuning;
 mod urdf;
 
 pub use crate::elements::JointKind;
 pub use crate::elements::effects::*;
+pub use crate::expand::overrides::Override;
 pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotation, Symbol, TimeOrder};
+pub use crate::keys::{SCHEMA_VERSION, schema};
 pub use description::*;
-pub use file::{SCHEMA_VERSION, schema};
 pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
 pub use overlay::read_overlay;
-pub use overrides::Override;
+pub use tuning::tuning;

@@ -2,11 +2,9 @@
 
 use super::description::ReducedKind;
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Value};
-
-/// Relative rounding of times that are meant to be the same.
-const ROUNDING: f64 = 1e-12;
 
 /// Reports reduced outputs and requirements of times that the motion does not reach. A window may end after the motion:
 /// it then ends with it.
@@ -29,7 +27,7 @@ pub fn check(reader: &mut Reader, outputs: &[Entry], requirements: &[Entry]) {
         let is_at = from == to;
         let message = match is_at {
             true if from < 0.0 => format!("the motion begins at 0 s, so it has no value at {from} s"),
-            true if from > end * (1.0 + ROUNDING) => {
+            true if from > end * (1.0 + TUNING.same_time) => {
                 format!("the motion ends at {end} s, so it has no value at {from} s")
             }
             false if from >= end => format!("the motion ends at {end} s, so nothing is left of it from {from} s on"),

@@ -4,7 +4,7 @@ use symdiff::Formula;
 
 use super::description::Output;
 use super::names::Reader;
-use crate::grammar::formulas::MAX_TERMS;
+use crate::grammar::tuning::TUNING;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
 
@@ -31,8 +31,11 @@ pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], fo
             return None;
         }
     }
-    if named.iter().map(|(_, formula)| formula.terms().len()).sum::<usize>() > MAX_TERMS {
-        let message = format!("with the outputs that it names, the formula has more than {MAX_TERMS} operations");
+    if named.iter().map(|(_, formula)| formula.terms().len()).sum::<usize>() > TUNING.formula_terms {
+        let message = format!(
+            "with the outputs that it names, the formula has more than {most} operations",
+            most = TUNING.formula_terms
+        );
         reader.error(entry.value.span.clone(), message, None);
         return None;
     }

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use super::overrides::Override;
+use crate::expand::overrides::Override;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::{MAX_BYTES, read_text};
+use crate::syntax::text_file::read_text;
+use crate::syntax::tuning::TUNING;
 use crate::syntax::yaml::{self, Entry, Node, Value};
 
 /// Keys of the file, and of a parameter in it.
@@ -19,7 +20,7 @@ const PARTS: [&str; 2] = ["value", "tolerance"];
 /// Everything that is wrong with the file.
 pub fn read_overlay(path: &Path) -> Result<Vec<Override>, Diagnostics> {
     let name = super::load::shown(path);
-    let text = read_text(path, MAX_BYTES).map_err(|error| {
+    let text = read_text(path, TUNING.file_bytes).map_err(|error| {
         let mut diagnostics = Diagnostics::new(name.clone(), "");
         diagnostics.push(*error);
         diagnostics

@@ -14,8 +14,8 @@ use symdiff::Formula;
 
 use self::spec::Spec;
 use super::description::{Parameter, ParameterValue};
-use super::overrides::Override;
-use super::{mjcf, notation, urdf};
+use crate::expand::notation;
+use crate::expand::overrides::Override;
 use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
 use crate::grammar::display_unit::DisplayUnit;
@@ -23,13 +23,12 @@ use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
 use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
+use crate::robots::{mjcf, urdf};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;
 use crate::syntax::yaml::{Entry, Node};
-
-/// Most parameters: every name of a formula is looked for among them.
-const MOST: usize = 20_000;
 
 /// Whether a name is that of a number of a robot's file.
 fn is_of_robot(name: &str) -> bool {
@@ -52,8 +51,12 @@ pub(super) struct Draft {
 pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span)]) {
     let mut entries = entries;
     let mut own = entries.iter().enumerate().filter(|(_, entry)| !is_of_robot(&entry.key));
-    if let Some((first, entry)) = own.nth(MOST) {
-        reader.error(entry.key_span.clone(), format!("the model has more than {MOST} parameters"), None);
+    if let Some((first, entry)) = own.nth(TUNING.parameters) {
+        reader.error(
+            entry.key_span.clone(),
+            format!("the model has more than {parameters} parameters", parameters = TUNING.parameters),
+            None,
+        );
         entries = &entries[..first];
     }
     let replaced = find_overrides(reader, entries, overrides);

@@ -3,12 +3,13 @@
 use symdiff::{Binary, Formula, Unary};
 
 use super::description::{ReducedKind, ReducedOutput};
+use super::display;
 use super::results_by_name::{self, RESULTS, Source};
-use super::{display, file};
 use crate::grammar::dimension::Kind;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::suggest::{clip, list};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -77,7 +78,7 @@ pub fn is_one(entry: &Entry) -> bool {
 
 /// Reads a reduced output.
 pub fn read(reader: &mut Reader, entry: &Entry) {
-    let Some(fields) = reader.fields::<file::Reduced>(&entry.value, entry.key_span.clone()) else { return };
+    let Some(fields) = reader.fields::<keys::Reduced>(&entry.value, entry.key_span.clone()) else { return };
     let mut asked = KINDS.into_iter().filter_map(|(key, kind)| Some((key, kind, fields.get(key)?)));
     let Some((key, kind, node)) = asked.next() else {
         let keys = KINDS.map(|(key, _)| key);

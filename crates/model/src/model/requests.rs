@@ -2,7 +2,7 @@
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::named_outputs::with_outputs;
-use super::{display, file, reduced};
+use super::{display, reduced};
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
 use crate::grammar::motions::{
@@ -10,19 +10,15 @@ use crate::grammar::motions::{
 };
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::unknown;
 use crate::grammar::{Coordinate, PointRef, Symbol, TimeOrder};
+use crate::keys;
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
-
-/// Steps of a simulation, beyond which the step must be a slip.
-const MOST_STEPS: f64 = 1e9;
-
-/// Rows of output, beyond which the output step must be a slip.
-const MOST_ROWS: f64 = 1e7;
 
 /// Reads `initial:` (with velocities) or `guess:` (without).
 pub fn start_values(reader: &mut Reader, entries: &[Entry], velocities: bool) -> Vec<StartValue> {
@@ -283,7 +279,7 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
             if step > duration {
                 let message = format!("the step ({step} s) is longer than the duration ({duration} s)");
                 reader.error(node.span.clone(), message, None);
-            } else if duration / step > MOST_STEPS {
+            } else if duration / step > TUNING.steps {
                 let message = format!("{:.0e} steps are too many", duration / step);
                 reader.error(node.span.clone(), message, format!("a step of {:e} s makes 10000", duration / 1e4));
             }
@@ -327,7 +323,7 @@ fn check_output_step(reader: &mut Reader, node: &Node, output_step: f64, duratio
     if output_step > duration * (1.0 + 1e-9) {
         let message = format!("the output step ({output_step} s) is longer than the duration ({duration} s)");
         reader.error(node.span.clone(), message, None);
-    } else if duration / output_step > MOST_ROWS {
+    } else if duration / output_step > TUNING.rows {
         reader.error(node.span.clone(), format!("{:.0e} rows of output are too many", duration / output_step), None);
     } else if let Stepping::Fixed(step) = stepping {
         let steps = output_step / step;
@@ -350,7 +346,7 @@ fn tidy(value: f64) -> f64 {
 
 /// Reads the whole section.
 pub fn simulation_section(reader: &mut Reader, node: &Node, at: crate::syntax::source::Span) {
-    if let Some(fields) = reader.fields::<file::Simulation>(node, at)
+    if let Some(fields) = reader.fields::<keys::Simulation>(node, at)
         && let Some(simulation) = simulation(reader, &fields)
     {
         reader.model.simulation = simulation;

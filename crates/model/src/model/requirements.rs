@@ -3,12 +3,12 @@
 use symdiff::{Binary, Formula, Unary};
 
 use super::description::{Limit, Requirement};
-use super::file;
 use super::reduced;
 use super::results_by_name::{self, REDUCED, Source};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -59,7 +59,7 @@ fn of_text(reader: &mut Reader, node: &Node, entry: &Entry) -> Option<Requiremen
 
 /// `{ output: peak, max: 250 N }`, or `{ that: "x3 >= 0.4 m", from: 0.1 }`.
 fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
-    let fields = reader.fields::<file::Requirement>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::Requirement>(&entry.value, entry.key_span.clone())?;
     let times = times(reader, &fields)?;
     if let Some(node) = fields.get("that") {
         for key in ["output", "max", "min"] {

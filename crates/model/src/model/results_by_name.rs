@@ -27,7 +27,7 @@ pub(super) struct Source {
 
 /// Names in a formula of numbers.
 pub(super) struct Numbers {
-    /// The dimension of a number, where that is known; `None` of what is none.
+    /// The dimension of a number, where that is known; `None` of other results.
     pub dimension: fn(&Description, &str) -> Option<Option<Dimension>>,
     /// Said of other names.
     pub refusal: &'static str,

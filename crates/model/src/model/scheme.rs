@@ -3,7 +3,7 @@
 use super::description::SchemeChoice;
 use super::names::Reader;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// The words of `scheme`.

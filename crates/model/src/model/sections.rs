@@ -2,10 +2,9 @@
 
 use super::analysis;
 use crate::grammar::names::GROUND;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::model::names::Reader;
-use crate::syntax::source::Span;
-use crate::syntax::suggest::{self, clip};
+use crate::syntax::suggest;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// The model's name, which is also that of its folder, and its description.
@@ -17,7 +16,7 @@ pub(super) fn title(reader: &mut Reader, fields: &Fields, scene: Option<&str>) {
     };
     if let Some(node) = fields.get("model").filter(|node| is_begun(node))
         && let Some(scalar) = reader.scalar(node, "a name")
-        && folder_name(reader, &scalar.text, node.span.clone(), "a model")
+        && reader.is_folder_name(&scalar.text, node.span.clone(), "a model")
     {
         reader.model.name.clone_from(&scalar.text);
     }
@@ -83,20 +82,4 @@ pub(super) fn no_robot(reader: &mut Reader, fields: &Fields) {
         let message = "`base` says how a robot stands, but the model names no `urdf`";
         reader.error(fields.key_span("base"), message, "a body that no joint holds is free".to_owned());
     }
-}
-
-/// Whether a text can be the name of something that has a folder of results; says so where it cannot.
-pub(super) fn folder_name(reader: &mut Reader, name: &str, span: Span, what: &str) -> bool {
-    if name.is_empty() {
-        let help = "write one, or leave the key out: a model is called like its file".to_owned();
-        reader.error(span, format!("the name of {what} is empty"), help);
-        return false;
-    }
-    let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
-    let fine = name.len() <= 100 && name.chars().all(good);
-    if !fine {
-        let help = "it names a folder of results: use letters, digits, `_` and `-`".to_owned();
-        reader.error(span, format!("`{}` cannot be the name of {what}", clip(name)), help);
-    }
-    fine
 }

@@ -7,7 +7,7 @@ use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
 use crate::grammar::motions::ATTITUDE;
 use crate::grammar::plane::leaves_plane;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 

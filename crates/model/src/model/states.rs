@@ -6,13 +6,11 @@ use super::description::Analysis;
 use super::effects;
 use super::names::Reader;
 use crate::elements::effects::{EffectKind, ForceElement, State};
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::{Element, Sensor};
+use crate::model::tuning::TUNING;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
-
-/// How often units are looked for that follow from one another.
-const MOST_PASSES: usize = 8;
 
 /// Makes the names of states known, which everything may speak of: those of the section, and of effects that are
 /// states.
@@ -23,7 +21,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry], effects: &[Entry]) {
             reader.declared.add(&entry.key);
         }
     }
-    for _ in 0..MOST_PASSES {
+    for _ in 0..TUNING.unit_passes {
         let mut found = false;
         for (entry, is_effect) in
             entries.iter().map(|entry| (entry, false)).chain(effects.iter().map(|entry| (entry, true)))
@@ -121,16 +119,13 @@ fn circle<'n>(needs: &BTreeMap<&'n str, Vec<&'n str>>, first: &'n str) -> Option
     None
 }
 
-/// Most instants of a state in a motion.
-const MOST_INSTANTS: f64 = 1e7;
-
 /// Reports states that change at too many instants.
 pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
     let duration = reader.model.simulation.duration;
     for entry in effects {
         let effect = reader.model.effects.iter().find(|effect| effect.name == entry.key);
         let periods = effect.into_iter().flat_map(|effect| effect.kind.states()).filter_map(|state| state.period);
-        if let Some(period) = periods.reduce(f64::min).filter(|period| duration / period > MOST_INSTANTS) {
+        if let Some(period) = periods.reduce(f64::min).filter(|period| duration / period > TUNING.instants) {
             let message =
                 format!("`{}` changes at {:.0e} instants in {duration} s: too many", entry.key, duration / period);
             let help =

@@ -1,10 +1,10 @@
 //! `statistics:`, and the laws of parameters that have none of their own.
 
 use super::description::{Correlation, ParameterValue};
-use super::file;
 use super::parameters::law::{Place, named};
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::unit::number_and_unit;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::numerics::statistics::Copula;
 use crate::syntax::source::Span;
@@ -21,7 +21,7 @@ const SAMPLES: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 24;
 pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
     reader.model.statistics.quantiles = QUANTILES.to_vec();
     let Some((node, at)) = section else { return };
-    let Some(fields) = reader.fields::<file::Statistics>(node, at) else { return };
+    let Some(fields) = reader.fields::<keys::Statistics>(node, at) else { return };
     reader.model.statistics.asked = true;
     if let Some(node) = fields.get("samples") {
         reader.model.statistics.samples = reader.count(node, *SAMPLES.start(), *SAMPLES.end());
@@ -95,7 +95,7 @@ fn correlations(reader: &mut Reader, node: &Node) {
         return;
     };
     for item in items {
-        let Some(fields) = reader.fields::<file::CorrelationFile>(item, item.span.clone()) else { continue };
+        let Some(fields) = reader.fields::<keys::CorrelationFile>(item, item.span.clone()) else { continue };
         if let Some(correlation) = correlation(reader, &fields) {
             reader.model.statistics.correlations.push(correlation);
         }

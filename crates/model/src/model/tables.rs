@@ -2,10 +2,11 @@
 
 use symdiff::{Spline, SplineError};
 
-use super::file;
 use super::parameters::unit;
-use crate::grammar::reader::{Fields, Table};
+use crate::grammar::reader::Table;
+use crate::grammar::report::Fields;
 use crate::grammar::unit::Unit;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -24,7 +25,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
 }
 
 fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
-    let fields = reader.fields::<file::Table>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::Table>(&entry.value, entry.key_span.clone())?;
     let units = units(reader, &fields)?;
     let points = match (fields.get("file"), fields.get("points")) {
         (Some(file), None) => from_file(reader, &fields, file)?,

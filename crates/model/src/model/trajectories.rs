@@ -2,20 +2,15 @@
 
 use symdiff::Formula;
 
-use super::file;
 use super::names::Reader;
 use crate::elements::{Timing, Trajectory, Waypoint};
 use crate::grammar::Context;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
+use crate::keys;
+use crate::model::tuning::TUNING;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Value};
-
-/// Points of a trajectory; a table takes more.
-const MOST_POINTS: usize = 1000;
-
-/// Of a length that is a difference of times.
-const ROUNDING: f64 = 1e-12;
 
 /// Rate given at an end.
 const AT_REST: &str = "must be 0 in the first and the last point: the trajectory rests before and after";
@@ -43,7 +38,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
 }
 
 fn trajectory(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
-    let fields = reader.fields::<file::Trajectory>(&entry.value, entry.key_span.clone())?;
+    let fields = reader.fields::<keys::Trajectory>(&entry.value, entry.key_span.clone())?;
     let timings = ["cubic", "quintic", "trapezoidal", "spline"].map(|word| (word, word));
     let timing = reader.required(&fields, "timing").and_then(|node| reader.choice(node, &timings));
     let nodes = reader.required(&fields, "points").and_then(|node| listed(reader, node))?;
@@ -72,8 +67,10 @@ fn trajectory(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
 
 fn listed<'n>(reader: &mut Reader, node: &'n Node) -> Option<&'n [Node]> {
     let found = match &node.value {
-        Value::Sequence(items) if (2..=MOST_POINTS).contains(&items.len()) => return Some(items),
-        Value::Sequence(items) if items.len() > 2 => format!("a trajectory has at most {MOST_POINTS} points"),
+        Value::Sequence(items) if (2..=TUNING.trajectory_points).contains(&items.len()) => return Some(items),
+        Value::Sequence(items) if items.len() > 2 => {
+            format!("a trajectory has at most {trajectory_points} points", trajectory_points = TUNING.trajectory_points)
+        }
         Value::Sequence(_) => "a trajectory has at least two points".to_owned(),
         _ => format!("a list of points belongs here, but here is {}", node.kind()),
     };
@@ -167,7 +164,7 @@ fn ramp(reader: &mut Reader, node: &Node, points: &[Waypoint]) -> Option<Formula
         let ramps = (0..reader.corners.len()).map(|corner| reader.evaluate(&ramp, corner));
         let short = ramps.zip(moves(reader, pair)).find_map(|(ramp, ([before, after], label))| {
             let (ramp, length) = (ramp?, after - before);
-            (2.0 * ramp > length * (1.0 + ROUNDING)).then_some((ramp, length, label))
+            (2.0 * ramp > length * (1.0 + TUNING.same_time)).then_some((ramp, length, label))
         });
         if let Some((ramp, length, label)) = short {
             let message = format!("two ramps of {ramp} s do not fit into a move of {length} s{label}");

@@ -1,7 +1,7 @@
 //! By which coordinates a mechanism is simulated: where the model leaves it open, by those whose program is shorter.
 //!
 //! Joint coordinates are few and their matrices dense, or eliminated link by link; absolute ones are many and theirs
-//! sparse. What that comes to in instructions is only known when both are compiled, so both are; but for the longest
+//! sparse. The number of instructions is only known when both are compiled, so both are; but for the longest
 //! chains, and not to the end where absolute coordinates turn out to take many times as much. Where joints close loops,
 //! absolute coordinates are assembled first, and joint ones start from there, so that both close the loops in the same
 //! branch. A start in a singular configuration, a motion that passes one, and redundant constraints are left to

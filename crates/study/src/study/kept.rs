@@ -1,6 +1,6 @@
 //! The surrogates of a run, kept after it: outputs at any point of the box, in any row, without simulation.
 //!
-//! Nothing is kept unless [`run_keeping`](super::run_keeping) is asked. What it keeps are coefficients and the compiled
+//! Nothing is kept unless [`run_keeping`](super::run_keeping) is asked. It keeps coefficients and the compiled
 //! mechanism, from which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded
 //! coordinates.
 

@@ -108,6 +108,8 @@ pub struct Options<'a> {
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Called with the current activity, in a few words, whenever it changes.
     pub stage: &'a (dyn Fn(&str) + Sync),
+    /// Called with the index of a subsystem before it is run, and with `None` before what belongs to all of them.
+    pub subsystem: &'a (dyn Fn(Option<usize>) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
@@ -126,6 +128,7 @@ impl Default for Options<'_> {
             disk: &|_| (),
             progress: &|_| (),
             stage: &|_| (),
+            subsystem: &|_| (),
             interrupted: &|| false,
         }
     }

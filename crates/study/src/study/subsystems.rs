@@ -45,7 +45,8 @@ fn run_all(
     }
     let (mut ran, mut kept) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let (mut lost, mut deferred) = (0, false);
-    for (subsystem, study) in subsystems.iter().zip(studies) {
+    for (index, (subsystem, study)) in subsystems.iter().zip(studies).enumerate() {
+        (options.subsystem)(Some(index));
         let found = caught("the run", || -> Result<_, RunError> {
             if options.skip_infeasible {
                 let (bounds, summary) = feasible::run(study)?;
@@ -78,6 +79,7 @@ fn run_all(
         ran.push(Done { subsystem, bounds, summary });
         kept.push(part.map(|part| (part, subsystem)));
     }
+    (options.subsystem)(None);
     if deferred {
         return Err(SimulationError::Deferred.into());
     }

@@ -22,7 +22,7 @@ pub struct FigureData {
     /// What the rows are over, where that is not the time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub across: Option<AcrossData>,
-    /// Times of the rows, s, or values of what they are over.
+    /// Times of the rows, s, or values of the quantity on the axis.
     pub time: Vec<f64>,
     /// From top to bottom.
     pub panels: Vec<PanelData>,

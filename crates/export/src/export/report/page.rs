@@ -101,7 +101,7 @@ fn content(place: usize, scene: &PageScene, scenes: usize) -> String {
             let prefix = |kind: usize| format!("s{place}p{number}k{kind}-");
             let svgs = figure.plots.iter().enumerate();
             let output = escaped(&figure.output);
-            // What is no figure of ours is a picture, in which nothing acts.
+            // Figures of other programs are pictures, in which nothing acts.
             let plot = |(kind, svg): (usize, &String)| match is_figure(svg) {
                 true => inline_svg(svg, &prefix(kind)),
                 false => format!("<img alt=\"{output}\" src=\"{}\">", image(svg)),

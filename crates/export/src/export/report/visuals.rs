@@ -105,7 +105,7 @@ fn bounds(points: impl Iterator<Item = [f64; 3]>) -> [[f64; 3]; 2] {
     })
 }
 
-/// Of what has no triangles.
+/// Of forms without triangles.
 fn extent(shape: &str, size: &[f64]) -> [[f64; 3]; 2] {
     let z = [0.0, 0.0, 1.0];
     let form = match (shape, size) {

@@ -3,9 +3,6 @@
 mod obj;
 mod stl;
 
-/// Largest file that is read, bytes.
-pub const MOST_BYTES: u64 = 100_000_000;
-
 /// A triangle: three corners, in the file's unit.
 pub type Triangle = [[f64; 3]; 3];
 

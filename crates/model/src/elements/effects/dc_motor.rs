@@ -19,10 +19,10 @@ use crate::grammar::{OnJoint, Sensor};
 use crate::multibody::BuildError;
 
 /// i, A.
-const CURRENT: Sensor = Sensor::of_motion("current").of_unknown_unit();
+const CURRENT: Sensor = Sensor::of_motion("current").of_unknown_unit().along_joint();
 
 /// The same where it follows from the forces, and is no state.
-const STEADY_CURRENT: Sensor = Sensor::of_force("current").of_unknown_unit();
+const STEADY_CURRENT: Sensor = Sensor::of_force("current").of_unknown_unit().along_joint();
 
 /// A drive by a voltage.
 #[derive(Clone, Debug, Element)]

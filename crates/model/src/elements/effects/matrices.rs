@@ -15,7 +15,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::Builder;
 
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value};
 use crate::multibody::Vector;
 use crate::syntax::suggest::clip;

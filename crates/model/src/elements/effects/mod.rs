@@ -119,7 +119,7 @@ pub trait ForceElement: Element {
         Vec::new()
     }
 
-    /// What it acts on.
+    /// Bodies and joints that it acts on.
     const SCOPE: Scope = Scope::Named;
 
     /// The mass between two points that it adds to the mechanism.

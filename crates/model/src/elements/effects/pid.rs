@@ -24,10 +24,10 @@ use crate::grammar::{Checked, Fields, JointCoordinate, OnJoint, Reader, Sensor, 
 use crate::multibody::BuildError;
 
 /// I.
-const INTEGRAL: Sensor = Sensor::of_motion("integral");
+const INTEGRAL: Sensor = Sensor::of_motion("integral").along_joint();
 
 /// d.
-const FILTERED_RATE: Sensor = Sensor::of_motion("filtered_rate");
+const FILTERED_RATE: Sensor = Sensor::of_motion("filtered_rate").along_joint();
 
 static ZERO: LazyLock<Formula> = LazyLock::new(|| Formula::number(0.0));
 

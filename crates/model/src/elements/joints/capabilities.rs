@@ -19,6 +19,8 @@ pub trait JointElement: Element + Joint {
     const SPATIAL: bool = false;
     /// Whether it refers to other joints, so that it is read after them.
     const COUPLES: bool = false;
+    /// Whether effects and drives on it act on its angle unless they say `coordinate`.
+    const TURNS: bool = false;
     /// What its constraints and their multipliers mean.
     const ROWS: &'static [RowDocs];
 }

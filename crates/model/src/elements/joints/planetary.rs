@@ -4,7 +4,7 @@
 //! Φ = φ_s − φ_c + ρ (φ_r − φ_c) − offset = 0,   ρ = z_r/z_s          1 row, rad
 //! ```
 //!
-//! Angles are those of joints about parallel axes, against the one body on which all are held; what is not named stands
+//! Angles are those of joints about parallel axes, against the one body on which all are held; a member that is not named stands
 //! still. Against the carrier the sun turns the ring backwards (Willis). −Φ_qᵀ λ is the torque −λ on the sun, −ρ λ on
 //! the ring and (1 + ρ) λ on the carrier: together they are zero, and planets at even distances push no bearing aside.
 //! The planets have no inertia of their own here: that of their masses about the common axis belongs to the carrier's,
@@ -94,7 +94,7 @@ impl Checked for Planetary {
         const KEYS: [&str; 3] = ["sun", "ring", "carrier"];
         let given: Vec<&str> = KEYS.into_iter().filter(|key| fields.get(key).is_some()).collect();
         if given.len() < 2 {
-            let help = "name the joints of two of `sun`, `ring` and `carrier` at least; what is not named stands still".to_owned();
+            let help = "name the joints of two of `sun`, `ring` and `carrier` at least; a member that is not named stands still".to_owned();
             reader.error(fields.key_span("ratio"), "one wheel alone is no planetary set", help);
             return;
         }

@@ -55,6 +55,14 @@ macro_rules! joints {
                 }
             }
 
+            /// Whether effects and drives on joints of a keyword act on the angle unless they say `coordinate`.
+            pub fn turns(keyword: &str) -> bool {
+                match keyword {
+                    $(<$name as $crate::grammar::Element>::KEYWORD => <$name as JointElement>::TURNS,)*
+                    _ => false,
+                }
+            }
+
             /// Reads a joint.
             pub fn read<S: $crate::grammar::SymbolTable>(
                 reader: &mut $crate::grammar::Reader<'_, S>,
@@ -84,7 +92,7 @@ macro_rules! joints {
                 }
             }
 
-            /// What of a joint leaves the plane, by the text alone.
+            /// The key of a joint that leaves the plane, by the text alone.
             pub fn leaves_plane(keyword: &str, mapping: &$crate::grammar::Node) -> Option<&'static str> {
                 match keyword {
                     $(<$name as $crate::grammar::Element>::KEYWORD if <$name as JointElement>::SPATIAL => Some("kind"),

@@ -37,6 +37,7 @@ pub struct Revolute {
 }
 
 impl JointElement for Revolute {
+    const TURNS: bool = true;
     const ROWS: &'static [RowDocs] = &[
         RowDocs { name: "x, y, z", unit: "m", multiplier: "N: the force on the second body at B along the ground's axis" },
         RowDocs { name: "tilt_1, tilt_2", unit: "rad", multiplier: "N m: −λ is the torque on the second body across the axis" },

@@ -1,6 +1,7 @@
 //! The links and joints of a URDF, as the file has them.
 
 use crate::grammar::{JointCoordinate, PointRef};
+use crate::robots::urdf::robot::Visual;
 
 /// The links and joints of a URDF, which the bodies and joints of the model were made of.
 #[derive(Clone, Debug)]
@@ -26,42 +27,6 @@ pub struct TreeLink {
     pub joint: Option<TreeJoint>,
     /// Appearance.
     pub visuals: Vec<Visual>,
-}
-
-/// A part of what a link looks like.
-#[derive(Clone, Debug)]
-pub struct Visual {
-    /// Where it is in the link's frame, m.
-    pub xyz: [f64; 3],
-    /// How it is turned there: rad about the fixed x, y, z.
-    pub rpy: [f64; 3],
-    /// Its shape, in the middle of its frame.
-    pub shape: Shape,
-    /// Red, green and blue from 0 to 1.
-    pub color: Option<[f64; 3]>,
-}
-
-/// A shape; lengths in m.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// Its sides along x, y and z.
-    Box([f64; 3]),
-    /// About z.
-    Cylinder {
-        /// Its radius.
-        radius: f64,
-        /// Its length.
-        length: f64,
-    },
-    /// Its radius.
-    Sphere(f64),
-    /// Of a file.
-    Mesh {
-        /// As the robot's file names it.
-        file: String,
-        /// Factors along x, y and z.
-        scale: [f64; 3],
-    },
 }
 
 /// A joint of a URDF.

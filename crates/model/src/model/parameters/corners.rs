@@ -6,13 +6,8 @@ use crate::grammar::formulas::evaluate;
 use crate::grammar::reader::Corner;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::syntax::source::Span;
-
-/// Uncertain parameters up to which every corner is checked; beyond, one parameter at a time.
-const MOST_FOR_CORNERS: usize = 5;
-
-/// Most uncertain ones: every formula is checked at the ends of each.
-const MOST_UNCERTAIN: usize = 1000;
 
 /// Parameters with the values that they take at a corner.
 type Choice = Vec<(usize, f64)>;
@@ -28,7 +23,7 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
             ParameterValue::Formula(_) => None,
         })
         .collect();
-    let beyond = uncertain.get(MOST_UNCERTAIN).map(|&(index, ..)| index);
+    let beyond = uncertain.get(TUNING.uncertain).map(|&(index, ..)| index);
     // Too many are an error: nothing else has to be found at so many corners.
     let choices = if beyond.is_some() { vec![Choice::new()] } else { choices(&uncertain) };
     let positions: HashMap<&str, usize> =
@@ -50,7 +45,7 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
         })
         .collect();
     if let Some(index) = beyond {
-        let message = format!("the model has more than {MOST_UNCERTAIN} uncertain parameters");
+        let message = format!("the model has more than {uncertain} uncertain parameters", uncertain = TUNING.uncertain);
         reader.error(name_spans[index].clone(), message, None);
     }
     for (index, label) in infinite {
@@ -65,7 +60,7 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
 /// The nominal values first; then all corners, or the ends of each interval.
 fn choices(uncertain: &[(usize, f64, f64)]) -> Vec<Choice> {
     let mut choices = vec![Choice::new()];
-    if uncertain.len() <= MOST_FOR_CORNERS {
+    if uncertain.len() <= TUNING.corners {
         choices.extend((0..1_usize << uncertain.len()).filter(|_| !uncertain.is_empty()).map(|corner| {
             let end = |(bit, &(index, lower, upper)): (usize, &(usize, f64, f64))| {
                 (index, if corner >> bit & 1 == 0 { lower } else { upper })

@@ -4,8 +4,8 @@ use super::law::positive;
 use super::{Draft, interval};
 use crate::grammar::dimension::Kind;
 use crate::grammar::quantity::Dimension;
+use crate::keys;
 use crate::model::description::{Cost, Grade};
-use crate::model::file;
 use crate::model::names::Reader;
 use crate::numerics::iso286;
 use crate::syntax::suggest::clip;
@@ -22,7 +22,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, nominal: f64, kind:
         reader.error(node.span.clone(), message, help);
         return None;
     }
-    let fields = reader.fields::<file::CostKinds>(node, node.span.clone())?;
+    let fields = reader.fields::<keys::CostKinds>(node, node.span.clone())?;
     let grades = match (fields.get("reciprocal"), fields.get("grades")) {
         (Some(node), None) => return positive(reader, node).map(Cost::Reciprocal),
         (None, Some(grades)) => grades,

@@ -5,10 +5,10 @@ use symdiff::{Binary, Formula};
 
 use super::spec::Spec;
 use super::{Draft, interval, law, says_more, settle, unit};
+use crate::expand::overrides::Override;
 use crate::grammar::dimension::Kind;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
-use crate::model::overrides::Override;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Entry;
 

@@ -3,15 +3,13 @@
 use super::Draft;
 use super::interval;
 use crate::grammar::dimension::Kind;
+use crate::keys;
 use crate::model::description::Law;
-use crate::model::file;
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::numerics::statistics::Distribution;
 use crate::syntax::suggest;
 use crate::syntax::yaml::{Node, Value};
-
-/// The tolerance is so many standard deviations where nothing else is said.
-const SIGMAS: f64 = 3.0;
 
 const NAMES: [&str; 7] = ["uniform", "normal", "truncated_normal", "lognormal", "triangular", "beta", "table"];
 
@@ -25,7 +23,7 @@ pub struct Place {
 
 /// A law by its name, over an interval.
 pub fn named(name: &str, Place { nominal, lower, upper }: Place) -> Option<Law> {
-    let (mean, sigma) = (0.5 * lower + 0.5 * upper, (upper - lower) / (2.0 * SIGMAS));
+    let (mean, sigma) = (0.5 * lower + 0.5 * upper, (upper - lower) / (2.0 * TUNING.sigmas));
     let (distribution, by_tolerance) = match name {
         "uniform" => (Distribution::Uniform { lower, upper }, false),
         "normal" => (Distribution::Normal { mean, sigma }, true),
@@ -53,17 +51,17 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
         }
         return law;
     }
-    let entry = reader.only::<file::LawKinds>(node, node.span.clone())?;
+    let entry = reader.only::<keys::LawKinds>(node, node.span.clone())?;
     let Place { nominal, lower, upper } = place;
     let by_name = named(&entry.key, place);
     let distribution = match (entry.key.as_str(), by_name.as_ref().map(|law| &law.distribution)) {
         ("normal" | "truncated_normal", Some(default)) => {
-            let fields = reader.fields::<file::NormalLaw>(&entry.value, entry.key_span.clone())?;
+            let fields = reader.fields::<keys::NormalLaw>(&entry.value, entry.key_span.clone())?;
             let mut number = |key: &str, default: f64| match fields.get(key) {
                 None => Some(default),
                 Some(node) => interval::bare_number(reader, draft, node, kind),
             };
-            let (mean, third) = (number("mean", 0.5 * lower + 0.5 * upper)?, (upper - lower) / (2.0 * SIGMAS));
+            let (mean, third) = (number("mean", 0.5 * lower + 0.5 * upper)?, (upper - lower) / (2.0 * TUNING.sigmas));
             let sigma = number("sigma", third)?;
             if sigma <= 0.0 {
                 let place = fields.get("sigma").map_or(node.span.clone(), |node| node.span.clone());
@@ -78,7 +76,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             return Some(Law { distribution, by_tolerance });
         }
         ("triangular", _) => {
-            let fields = reader.fields::<file::TriangularLaw>(&entry.value, entry.key_span.clone())?;
+            let fields = reader.fields::<keys::TriangularLaw>(&entry.value, entry.key_span.clone())?;
             let mode = match fields.get("mode") {
                 None => nominal,
                 Some(node) => {
@@ -93,7 +91,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             Distribution::Triangular { lower, mode, upper }
         }
         ("beta", _) => {
-            let fields = reader.fields::<file::BetaLaw>(&entry.value, entry.key_span.clone())?;
+            let fields = reader.fields::<keys::BetaLaw>(&entry.value, entry.key_span.clone())?;
             let mut exponent = |key: &str| {
                 let node = reader.required(&fields, key)?;
                 positive(reader, node)
@@ -102,7 +100,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             Distribution::Beta { alpha: alpha?, beta: beta?, lower, upper }
         }
         ("lognormal", _) => {
-            let fields = reader.fields::<file::LognormalLaw>(&entry.value, entry.key_span.clone())?;
+            let fields = reader.fields::<keys::LognormalLaw>(&entry.value, entry.key_span.clone())?;
             let sigma = reader.required(&fields, "sigma").and_then(|node| positive(reader, node));
             let (median, at) = match fields.get("median") {
                 None => (nominal, entry.key_span.clone()),
@@ -117,7 +115,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
         }
         ("table", _) => Distribution::Table(table(reader, draft, &entry.value, place, kind)?),
         _ => {
-            reader.fields::<file::NoNumbers>(&entry.value, entry.key_span.clone())?;
+            reader.fields::<keys::NoNumbers>(&entry.value, entry.key_span.clone())?;
             Distribution::Uniform { lower, upper }
         }
     };

@@ -1,9 +1,9 @@
 //! A parameter as it is written, in one piece or by keys.
 
-use crate::grammar::reader::Fields;
+use crate::grammar::report::Fields;
 use crate::grammar::tolerance::{self, Deviation, Toleranced};
 use crate::grammar::unit::number_and_unit;
-use crate::model::file;
+use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -35,7 +35,7 @@ impl Spec {
     pub fn read(reader: &mut Reader, entry: &Entry) -> Self {
         let mut spec = Self::default();
         if matches!(entry.value.value, Value::Mapping(_)) {
-            if let Some(fields) = reader.fields::<file::Parameter>(&entry.value, entry.key_span.clone()) {
+            if let Some(fields) = reader.fields::<keys::Parameter>(&entry.value, entry.key_span.clone()) {
                 spec.keys(reader, &fields);
             }
         } else {

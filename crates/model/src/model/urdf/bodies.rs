@@ -6,20 +6,16 @@
 //!
 //! The other links are frames at points of it, named after them.
 
-use super::robot::{Joint, Kind};
 use super::source::{Source, formula, formulas};
 use crate::grammar::Coordinate;
 use crate::model::description::{Body, Inertia};
 use crate::model::names::Reader;
-use crate::model::robots::algebra::{self, Pose, Value, Vector};
-use crate::model::robots::masses::{Part, center, inertia};
-use crate::model::robots::numbers::Number;
+use crate::model::tuning::TUNING;
+use crate::robots::algebra::{self, Pose, Value, Vector};
+use crate::robots::masses::{Part, center, inertia};
+use crate::robots::number::Number;
+use crate::robots::urdf::robot::{Joint, Kind};
 use crate::syntax::diagnostic::Diagnostic;
-
-/// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
-const LEAST_MASS: f64 = 1e-3;
-const LEAST_INERTIA: f64 = 1e-6;
-const LEAST_RADIUS_SQUARED: f64 = 1e-8;
 
 /// Links that are welded together.
 pub struct Group {
@@ -40,11 +36,11 @@ pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usi
     let center = center(&parts, &mass);
     let mut inertia = inertia(&parts, &center);
     if mass.is_zero() && !is_determined(&inertia, group.behind.map(|joint| &source.robot.joints[joint])) {
-        mass = algebra::number(LEAST_MASS);
-        let mut taken = format!("{LEAST_MASS} kg");
+        mass = algebra::number(TUNING.link_mass);
+        let mut taken = format!("{link_mass} kg", link_mass = TUNING.link_mass);
         if inertia.iter().flatten().all(Value::is_zero) {
-            (0..3).for_each(|i| inertia[i][i] = algebra::number(LEAST_INERTIA));
-            taken = format!("{LEAST_MASS} kg and {LEAST_INERTIA} kg m²");
+            (0..3).for_each(|i| inertia[i][i] = algebra::number(TUNING.link_inertia));
+            taken = format!("{} kg and {} kg m²", TUNING.link_mass, TUNING.link_inertia);
         }
         let verb = if taken.contains("and") { "are" } else { "is" };
         let message = format!("link `{}` moves, but has no mass: {taken} {verb} taken", root.name);
@@ -125,6 +121,6 @@ fn too_small(mass: &Value, inertia: &[Vector; 3]) -> Option<f64> {
         *slot = *value;
     }
     let moments = nalgebra::Matrix3::from_row_slice(&numbers).symmetric_eigenvalues();
-    let least = LEAST_RADIUS_SQUARED * mass;
+    let least = TUNING.link_radius_squared * mass;
     (moments.min().abs() < least).then_some(least)
 }

@@ -1,16 +1,16 @@
-//! [`Robot`](super::robot::Robot) → bodies and joints of the model.
+//! [`Robot`](crate::robots::urdf::robot::Robot) → bodies and joints of the model.
 
 use std::collections::HashMap;
 
 use super::bodies::{Group, body};
 use super::joints::{joint, mimic};
-use super::robot::{Joint as UrdfJoint, Kind};
 use super::source::{Built, Source, coordinate, point};
 use crate::grammar::{JointCoordinate, PointRef};
 use crate::model::description::{RobotTree, TreeJoint, TreeLink};
 use crate::model::names::Reader;
-use crate::model::robots::algebra::{self, Pose};
-use crate::model::robots::numbers::Number;
+use crate::robots::algebra::{self, Pose};
+use crate::robots::number::Number;
+use crate::robots::urdf::robot::{Joint as UrdfJoint, Kind};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Adds bodies and joints to the model.

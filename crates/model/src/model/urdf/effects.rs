@@ -1,4 +1,4 @@
-//! Effects of a [`Robot`](super::robot::Robot)'s joints: damping and friction as the file has them and, where the model
+//! Effects of a [`Robot`](crate::robots::urdf::robot::Robot)'s joints: damping and friction as the file has them and, where the model
 //! asks for it, stops at their limits.
 //!
 //! Damping is −d v, Coulomb friction −f v/√(v² + v₀²), each between the joint's two bodies, v the joint's velocity.
@@ -7,22 +7,19 @@
 use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
 use symdiff::Formula;
 
-use super::robot::{Joint, Kind, Limits};
 use super::source::{Built, Source, coordinate, formula};
 use crate::elements::effects::joint_friction::FrictionJoint;
 use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
+use crate::expand::scenes::{self, LeftOut};
+use crate::keys;
 use crate::model::description::Effect;
-use crate::model::file;
 use crate::model::names::Reader;
-use crate::model::robots::numbers::Number;
-use crate::model::scenes::{self, LeftOut};
+use crate::robots::number::Number;
+use crate::robots::tuning::TUNING;
+use crate::robots::urdf::robot::{Joint, Kind, Limits};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
-
-/// v₀, at which Coulomb friction has 71 % of its size: rad/s, m/s.
-const SLOW_TURN: f64 = 0.05;
-const SLOW_SLIDE: f64 = 0.01;
 
 /// An effect that may yet be left out.
 pub struct RobotEffect<'r> {
@@ -81,8 +78,11 @@ fn friction<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, foun
         let value = formula(reader, &source.value(number));
         let none = || Formula::number(0.0);
         let (viscous, coulomb) = if what == "damping" { (value, none()) } else { (none(), value) };
-        let (mode, slow) =
-            if joint.kind.turns() { (FrictionMode::Rotating, SLOW_TURN) } else { (FrictionMode::Sliding, SLOW_SLIDE) };
+        let (mode, slow) = if joint.kind.turns() {
+            (FrictionMode::Rotating, TUNING.slow_turn)
+        } else {
+            (FrictionMode::Sliding, TUNING.slow_slide)
+        };
         let dry = DryFriction {
             breakaway: Formula::number(1.0),
             stribeck_velocity: None,
@@ -102,7 +102,7 @@ fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: Ki
     if !source.robot.joints.iter().any(|joint| joint.kind == kind && is_limited(joint)) {
         return None;
     }
-    let fields = reader.fields::<file::Limits>(node, at.clone())?;
+    let fields = reader.fields::<keys::Limits>(node, at.clone())?;
     let node = reader.required(&fields, "impact")?;
     let units = Quantity { choice: coordinate.unit_choice(), ..Quantity::default() };
     Impact::read(reader, node, fields.key_span("impact"), &units)

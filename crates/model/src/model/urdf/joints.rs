@@ -1,14 +1,14 @@
-//! Joints of a [`Robot`](super::robot::Robot) → joints of the model.
+//! Joints of a [`Robot`](crate::robots::urdf::robot::Robot) → joints of the model.
 
 use symdiff::Formula;
 
-use super::robot::Kind;
 use super::source::{Built, Source, coordinate, formula, point};
 use crate::elements::joints::{Equation, Fixed, Gear, JointKind, Planar, Prismatic, Revolute};
 use crate::grammar::{Axis, Direction, PointRef, Rotating};
 use crate::model::description::Joint;
 use crate::model::names::Reader;
-use crate::model::robots::algebra::{self, Value};
+use crate::robots::algebra::{self, Value};
+use crate::robots::urdf::robot::Kind;
 
 /// Adds a joint that moves, or holds what the model asks for, with the frame it is at on its parent.
 pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> Option<usize> {

@@ -5,11 +5,11 @@ use symdiff::{Binary, Formula};
 use super::Declared;
 use super::source::{Built, formula, formulas};
 use crate::grammar::{PointRef, Rotation};
+use crate::keys;
 use crate::model::bodies;
 use crate::model::description::Point;
-use crate::model::file;
 use crate::model::names::Reader;
-use crate::model::robots::algebra::{self, Pose};
+use crate::robots::algebra::{self, Pose};
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A point's name in its body: of a link that is welded to another, the link's name goes before it.
@@ -49,7 +49,7 @@ impl Declared {
     /// Reads the points of links, once parameters are known.
     pub fn read_points(&self, reader: &mut Reader) {
         for (link, entry) in self.urdf.entries_of_links() {
-            let Some(fields) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { continue };
+            let Some(fields) = reader.fields::<keys::Body>(&entry.value, entry.key_span.clone()) else { continue };
             let other = match &entry.value.value {
                 Value::Mapping(keys) => keys.iter().find(|key| key.key != "points"),
                 _ => None,

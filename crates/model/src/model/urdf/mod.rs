@@ -1,50 +1,38 @@
 //! `urdf:`, a robot's file as the beginning of a model; or alone, as a model with gravity.
 //!
-//! XML (`robots::xml`, `check`, `read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`robots::numbers`) →
-//! bodies, joints and effects (`build`, `effects`, `start`), with formulas (`robots::algebra`) where a number is a
-//! parameter. A number is one where something names it; all others stay numbers.
+//! The robot of the file ([`crate::robots::urdf`]) → parameters (`expand::numbers`) → bodies, joints and effects
+//! (`build`, `effects`, `start`), with formulas (`robots::algebra`) where a number is a parameter. A number is one where something names it; all others stay numbers.
 
 mod bodies;
 mod build;
-mod check;
 mod effects;
-mod format;
 mod joints;
 mod link_points;
-mod number_names;
-mod read;
-mod robot;
 mod source;
 mod start;
-#[cfg(test)]
-mod tests;
-mod tree;
-mod visual;
 
 use std::collections::HashSet;
 use std::path::Path;
 
-use self::number_names::FORMAT;
-pub use self::number_names::is_number;
-use self::robot::Robot;
 use self::source::{Built, Source};
-use super::overrides::Override;
-use super::robots::numbers;
-use super::scenes::LeftOut;
-use crate::grammar::reader::Fields;
+use crate::expand::numbers::{self, Format};
+use crate::expand::overrides::Override;
+use crate::expand::scenes::LeftOut;
+use crate::grammar::report::Fields;
 use crate::model::names::Reader;
+use crate::robots::tuning::TUNING;
+use crate::robots::urdf::robot::Robot;
+use crate::robots::urdf::{is_number, is_urdf, read};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::text_file;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// Largest URDF that is read.
-const MAX_BYTES: u64 = 50_000_000;
-
-/// Whether a path is that of a URDF and not of a model.
-pub fn is_urdf(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
-}
+const FORMAT: Format = Format {
+    name: "URDF",
+    forms: "e.g. `link.NAME.mass`, `.com.x`, `.inertia.xx`, `joint.NAME.damping`, `.friction`, `.origin.z`, `.origin.yaw`",
+    is_number,
+};
 
 /// The model that a URDF is by itself: gravity, a second, at rest in the zero configuration.
 pub fn model_of(path: &Path) -> String {
@@ -90,7 +78,7 @@ impl Urdf {
         let file = reader.scalar(node, "the path of a URDF")?.text.clone();
         let found = reader.files.find(Path::new(""), &file).and_then(|path| {
             let path = reader.files.full(&path);
-            Ok((text_file::read_text(&path, MAX_BYTES)?, path))
+            Ok((text_file::read_text(&path, TUNING.file_bytes)?, path))
         });
         let (text, path) = match found {
             Ok(found) => found,

@@ -5,13 +5,13 @@ use std::collections::HashSet;
 
 use symdiff::Formula;
 
-use super::robot::{Joint, Kind, Robot};
 use crate::grammar::{JointCoordinate, PointRef, Rotation};
 use crate::model::description::Point;
 use crate::model::names::Reader;
-use crate::model::robots::algebra::{Pose, Value, Vector};
-use crate::model::robots::names;
-use crate::model::robots::numbers::Number;
+use crate::robots::algebra::{Pose, Value, Vector};
+use crate::robots::names;
+use crate::robots::number::Number;
+use crate::robots::urdf::robot::{Joint, Kind, Robot};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Parsed URDF, and the treatment of its numbers.

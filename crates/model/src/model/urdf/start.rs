@@ -4,14 +4,14 @@ use std::collections::HashSet;
 
 use symdiff::Formula;
 
-use super::robot::Kind;
 use super::source::{Built, Source, coordinate, formula, formulas};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Coordinate, Rotation, TimeOrder};
 use crate::model::description::{Output, StartValue};
 use crate::model::names::Reader;
-use crate::model::robots::algebra::{self, Pose, Value};
-use crate::model::robots::numbers::Number;
+use crate::robots::algebra::{self, Pose, Value};
+use crate::robots::number::Number;
+use crate::robots::urdf::robot::Kind;
 
 /// The zero configuration, for what the model says nothing of.
 pub fn start(reader: &mut Reader, source: &Source, built: &Built) {

@@ -198,7 +198,7 @@ impl Distribution {
         match self {
             Self::Normal { mean, sigma } => normal_cdf((lower - mean) / sigma) + normal_cdf((mean - upper) / sigma),
             Self::Lognormal { median, sigma, .. } => {
-                // What was cut off does not lie outside.
+                // A part that was cut off does not lie outside.
                 let [low, high] = log_scores(*median, *sigma, lower, upper);
                 let cut = |score: f64, end: f64| if end > 0.0 && end.is_finite() { 0.0 } else { normal_cdf(score) };
                 let Self::Lognormal { lower: least, upper: most, .. } = self else { return 0.0 };

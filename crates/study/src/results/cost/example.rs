@@ -1,4 +1,4 @@
-//! A small study, for tests of what is made from one.
+//! A small study, for tests of tables and plots.
 
 use super::{CostMethod, CostPoint, CostReference, CostStudy, Deviation};
 use crate::compile::Scheme;

@@ -2,7 +2,7 @@
 //!
 //! One run over the widest box (`items`, `wide`) gives a surrogate of the requirements' margins (`surface`). On it,
 //! `choose` finds the cheapest tolerances under what worst cases (`worst`) or yields (`share`) leave of the margins. A
-//! study of its own at the result then says whether they hold, its errors included; by what it differs from the
+//! study of its own at the result then says whether they hold, its errors included; by its difference from the
 //! surrogate, the next round knows better.
 
 mod choose;

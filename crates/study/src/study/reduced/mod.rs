@@ -238,7 +238,7 @@ impl Study<'_> {
         Ok(bands.finish(0, Simulated::default()))
     }
 
-    /// What was found, with the samples of the box that reached the end so far.
+    /// The results, with the samples of the box that reached the end so far.
     fn values<'r>(&self, results: &'r Results, unreliable: bool, store: &Store) -> Values<'r> {
         let whole = |(sample, channels): (Sample, Vec<f64>)| {
             let is_whole = self.domain.contains(&sample) && channels.iter().all(|value| value.is_finite());

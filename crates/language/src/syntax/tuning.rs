@@ -1,0 +1,106 @@
+//! Constants of a room that could be other numbers: limits, defaults and thresholds, each with its reason and with the
+//! results that move if it changes. A room has them in one struct, `Tuning`; `mbint explain --tuning` lists them all.
+
+use serde::Serialize;
+
+/// A constant, for people.
+#[derive(Clone, Debug, Serialize)]
+pub struct Constant {
+    /// The room that has it.
+    pub room: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// As the source has it.
+    pub value: &'static str,
+    /// Its meaning and the reason for its value.
+    pub why: &'static str,
+    /// Results and messages that depend on it.
+    pub moves: &'static str,
+}
+
+/// Declares the struct `Tuning` of a room and its value `TUNING`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __tuning {
+    (
+        $(#[doc = $doc:literal])*
+        $room:literal {
+            $($(#[doc = $why:literal])+ $name:ident: $type:ty = $value:expr, moves $moves:literal;)*
+        }
+    ) => {
+        $(#[doc = $doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct Tuning {
+            $($(#[doc = $why])+ pub $name: $type,)*
+        }
+
+        /// The constants of this room.
+        pub const TUNING: Tuning = Tuning { $($name: $value,)* };
+
+        impl Tuning {
+            /// The constants, for people.
+            pub fn constants() -> Vec<$crate::syntax::tuning::Constant> {
+                vec![$($crate::syntax::tuning::Constant {
+                    room: $room,
+                    name: stringify!($name),
+                    value: stringify!($value),
+                    why: concat!($($why),+).trim_ascii(),
+                    moves: $moves,
+                }),*]
+            }
+        }
+    };
+}
+
+pub use __tuning as tuning;
+
+tuning! {
+    /// Text, trees and diagnostics.
+    "syntax" {
+        /// Largest text file that is read, bytes.
+        file_bytes: u64 = 10_000_000, moves "which files are refused";
+        /// Largest file of a mesh that is read, bytes.
+        mesh_bytes: u64 = 100_000_000, moves "which meshes are refused";
+        /// Deepest nesting of mappings and sequences; the grammar needs six.
+        yaml_depth: usize = 40, moves "which files are refused";
+        /// Most scalars, beginnings and ends of a file: memory is bounded by it.
+        yaml_events: usize = 1_000_000, moves "which files are refused";
+        /// Known names that are compared with an unknown one: a model may have many thousands.
+        names_known: usize = 1000, moves "suggestions in messages";
+        /// Names that are compared: the known ones, and some besides.
+        names_compared: usize = 1100, moves "suggestions in messages";
+        /// Known names that are listed in full.
+        names_listed: usize = 32, moves "the help of messages";
+        /// Names that are listed where there are more.
+        names_of_many: usize = 3, moves "the help of messages";
+        /// Longest name that is compared or quoted in full, characters.
+        name_length: usize = 60, moves "suggestions and quotes in messages";
+        /// Diagnostics that are shown; the others are counted.
+        diagnostics_shown: usize = 50, moves "how many messages are shown";
+        /// Occurrences from which on a message is shown once, with the lines of the others.
+        occurrences: usize = 3, moves "how repeated messages are shown";
+        /// Lines of repeated messages that are named.
+        lines_named: usize = 8, moves "how repeated messages are shown";
+        /// Lines between two labels that are shown in one piece.
+        lines_together: usize = 6, moves "excerpts in messages";
+        /// Characters of a line on either side of a label that are shown.
+        line_length: usize = 400, moves "excerpts in messages";
+        /// Characters of a line of help.
+        help_length: usize = 100, moves "how help is wrapped";
+    }
+}
+
+const _: () = assert!(TUNING.names_compared >= TUNING.names_known && TUNING.names_of_many < TUNING.names_listed);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constants_have_reasons() {
+        let constants = Tuning::constants();
+        let bytes = constants.iter().find(|constant| constant.name == "file_bytes").unwrap();
+        assert_eq!((bytes.room, bytes.value), ("syntax", "10_000_000"));
+        assert_eq!(bytes.why, "Largest text file that is read, bytes.");
+    }
+}

@@ -1,0 +1,13 @@
+//! Tree → tree: robots of MJCF, parts (`include`, `assemblies`, `instances`, `repeat`) and scenes are written out, so that
+//! the model's reader sees nothing but bodies, joints, effects and questions.
+//!
+//! Every node keeps its place in the file that it comes from. No names are resolved here.
+
+pub mod instance;
+pub mod mjcf;
+pub mod notation;
+pub mod numbers;
+pub mod overrides;
+pub mod parts;
+pub mod scenes;
+pub mod tuning;

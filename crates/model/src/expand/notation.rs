@@ -1,0 +1,60 @@
+//! Numbers with tolerances, written in one piece, as the fields of a parameter's long form.
+
+use crate::grammar::quantity::Dimension;
+use crate::grammar::report::Report;
+use crate::grammar::tolerance::{self, Deviation, Toleranced};
+use crate::grammar::unit::{Unit, number_and_unit};
+use crate::syntax::yaml::{Entry, Node, Value};
+
+/// The fields `value`, `tolerance`, `interval`, `plus` and `minus` that a number in one piece stands for. What cannot
+/// be read is the `value`, of which it is reported.
+pub fn fields(node: &Node) -> Vec<Entry> {
+    let Ok(Toleranced { value, deviation }) = tolerance::read(node) else { return vec![field("value", node.clone())] };
+    let mut fields: Vec<Entry> = value.into_iter().map(|value| field("value", value)).collect();
+    match deviation {
+        None => {}
+        Some(Deviation::Either(either)) => fields.push(field("tolerance", either)),
+        Some(Deviation::Sides { plus, minus }) => fields.extend([field("plus", plus), field("minus", minus)]),
+        Some(Deviation::Between(between)) => fields.push(field("interval", between)),
+    }
+    fields
+}
+
+/// The fields of a parameter, in whichever form it is written.
+pub fn fields_of_parameter(node: &Node) -> Vec<Entry> {
+    match &node.value {
+        Value::Mapping(entries) => {
+            let of_entry = |entry: &Entry| match entry.key.as_str() {
+                "value" if entry.value.scalar().is_some() => fields(&entry.value),
+                _ => vec![entry.clone()],
+            };
+            entries.iter().flat_map(of_entry).collect()
+        }
+        _ => fields(node),
+    }
+}
+
+/// The dimension of a number that is written with its unit; nothing of a formula.
+pub fn dimension(node: &Node) -> Option<Dimension> {
+    let fields = fields_of_parameter(node);
+    let text =
+        |key: &str| fields.iter().find(|field| field.key == key)?.value.scalar().map(|scalar| scalar.text.as_str());
+    if let Some(unit) = text("unit") {
+        return Unit::parse(unit).ok().map(|unit| unit.dimension);
+    }
+    let (_, unit, _) = number_and_unit(text("value")?)?;
+    Unit::parse(unit).ok().map(|unit| unit.dimension)
+}
+
+/// Whether a number that is given instead of a parameter's own has such a unit; reported where it has another.
+pub fn fits(report: &mut Report, given: &Node, own: &Node) -> bool {
+    match (dimension(given), dimension(own)) {
+        (Some(given_as), Some(wanted)) => report.check_fits(&given.span, given_as, wanted),
+        _ => true,
+    }
+}
+
+/// A field of a parameter.
+pub fn field(key: &str, value: Node) -> Entry {
+    Entry { key: key.to_owned(), key_span: value.span.clone(), value }
+}

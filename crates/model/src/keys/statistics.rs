@@ -1,0 +1,126 @@
+//! Laws of parameters, statistics and what tolerances cost.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+
+use super::*;
+use crate::grammar::mapping::schema_only;
+
+schema_only! {
+    #[schemars(rename_all = "snake_case", inline)]
+    pub enum LawName {
+        /// Every value as likely as any other; the default.
+        Uniform,
+        /// Beyond the interval, too; where nothing else is said, the tolerance is three standard deviations.
+        Normal,
+        /// The same, cut off at the interval's ends.
+        TruncatedNormal,
+        /// Likeliest at the value, linearly less towards the ends.
+        Triangular,
+    }
+
+    /// A law by its name, or with its numbers.
+    #[schemars(untagged, inline)]
+    pub enum LawFile {
+        Name(LawName),
+        Full(Box<LawKinds>),
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum FixedName {
+        Fixed,
+    }
+
+    /// What a tolerance costs.
+    #[schemars(untagged, inline)]
+    pub enum CostFile {
+        /// It stays as it is.
+        Fixed(FixedName),
+        Full(Box<CostKinds>),
+    }
+}
+
+grammar! {
+    /// A law with its numbers.
+    LawKinds is "a `distribution`" {
+        /// Every value as likely as any other.
+        uniform: Option<NoNumbers>,
+        /// Beyond the interval, too.
+        normal: Option<NormalLaw>,
+        /// Cut off at the interval's ends.
+        truncated_normal: Option<NormalLaw>,
+        /// Beyond the interval, too; its logarithm is normal.
+        lognormal: Option<LognormalLaw>,
+        /// Linear to and from the mode.
+        triangular: Option<TriangularLaw>,
+        /// A beta law over the interval.
+        beta: Option<BetaLaw>,
+        /// Pairs of a value, in the parameter's unit, and a density, linear between them; it need not be normalised.
+        table: Option<Vec<(Number, f64)>>,
+    }
+
+    /// A law without numbers.
+    NoNumbers is "`uniform`" {}
+
+    /// Mean and standard deviation.
+    NormalLaw is "a normal law" {
+        /// Standard deviation; by default a third of the tolerance.
+        sigma: Option<Number>,
+        /// Mean; by default the middle of the interval.
+        mean: Option<Number>,
+    }
+
+    /// Median, and standard deviation of the logarithm.
+    LognormalLaw is "`lognormal`" {
+        /// Standard deviation of the natural logarithm: of 0.1, the value is off by about 10 %.
+        sigma: f64,
+        /// Median; by default the parameter's value.
+        median: Option<Number>,
+    }
+
+    /// A triangle.
+    TriangularLaw is "`triangular`" {
+        /// The likeliest value; by default the parameter's.
+        mode: Option<Number>,
+    }
+
+    /// Exponents of the beta law, plus one.
+    BetaLaw is "`beta`" {
+        /// At the lower end.
+        alpha: f64,
+        /// At the upper end.
+        beta: f64,
+    }
+
+    /// Questions about the outputs' distribution, besides the bounds.
+    Statistics is "`statistics`" {
+        /// The law of every uncertain parameter that has none of its own; by default uniform.
+        distribution: Option<LawFile>,
+        /// Samples of the surrogate, by default a million; a power of two is taken.
+        samples: Option<u32>,
+        /// Shares below the quantiles, e.g. `[0.135%, 50%, 99.865%]`, which is the default.
+        quantiles: Option<Vec<Number>>,
+        /// Parameters that depend on each other, group by group.
+        correlation: Option<Vec<CorrelationFile>>,
+    }
+
+    /// Correlated parameters.
+    CorrelationFile is "a correlation" {
+        /// Names of uncertain parameters.
+        of: Vec<String>,
+        /// Of any two of them.
+        coefficient: Option<f64>,
+        /// Instead: a row for each, with ones on the diagonal.
+        matrix: Option<Vec<Vec<f64>>>,
+    }
+
+    /// How cost depends on the tolerance.
+    CostKinds is "a `cost`" {
+        /// The cost at the model's tolerance; it is inversely proportional to the tolerance.
+        reciprocal: Option<f64>,
+        /// Costs by grade: `IT5` to `IT12` of ISO 286-1, or a tolerance such as `0.02 mm`.
+        grades: Option<IndexMap<String, f64>>,
+        /// The nominal size by which ISO 286 chooses the width of a grade; by default the parameter's value.
+        size: Option<Number>,
+    }
+}

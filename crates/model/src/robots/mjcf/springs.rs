@@ -1,0 +1,109 @@
+//! `springdamper`: stiffness and damping of a joint by a time constant T and a damping ratio ζ,
+//!
+//! ```text
+//! k = m/(T ζ)²,   d = 2 m/T,   1/m = (M⁻¹)ⱼⱼ
+//! ```
+//!
+//! where M is the mass matrix of the joints in the file's configuration, with armatures: m is what a force in the joint
+//! feels while all others are free.
+
+use nalgebra::{DMatrix, Vector3};
+
+use super::flags::{Flags, on};
+use super::robot::{Joint, Kind, Robot};
+use crate::robots::algebra::{self, Pose, Value, Vector};
+
+/// A velocity of one joint, in the world.
+struct Degree {
+    joint: usize,
+    /// Along or about it.
+    axis: Vector3<f64>,
+    /// On the axis, where it turns.
+    about: Option<Vector3<f64>>,
+}
+
+/// Sets stiffness and damping of all joints that have them so.
+pub fn set(robot: &mut Robot, flags: Flags) {
+    if robot.joints.iter().all(|joint| joint.spring_damper.is_none()) {
+        return;
+    }
+    let poses = poses(robot);
+    let degrees = degrees(robot, &poses);
+    // Where it is singular the start of the motion says so.
+    let Some(inverse) = mass_matrix(robot, &poses, &degrees).try_inverse() else { return };
+    for (place, degree) in degrees.iter().enumerate() {
+        let joint = &mut robot.joints[degree.joint];
+        let Some([time, ratio]) = joint.spring_damper.filter(|_| joint.is_single()) else { continue };
+        let moved = 1.0 / inverse[(place, place)];
+        joint.stiffness.value = on(flags.springs) * moved / (time * time * ratio * ratio);
+        joint.damping.value = on(flags.dampers) * 2.0 * moved / time;
+    }
+}
+
+/// Where bodies are in the world, in the file's configuration.
+fn poses(robot: &Robot) -> Vec<Pose> {
+    let mut poses = vec![Pose::identity()];
+    for body in robot.bodies.iter().skip(1) {
+        let position = body.position.each_ref().map(|number| Value::Number(number.value));
+        poses.push(poses[body.parent].then(&position, &body.rotation));
+    }
+    poses
+}
+
+fn plain(vector: &Vector) -> Vector3<f64> {
+    Vector3::from(algebra::numbers(vector).unwrap_or_default())
+}
+
+fn degrees(robot: &Robot, poses: &[Pose]) -> Vec<Degree> {
+    let mut degrees = Vec::new();
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let Joint { kind, body, position, axis, .. } = joint;
+        let here = &poses[*body];
+        let at = plain(&here.then(&algebra::vector(*position), &algebra::identity()).position);
+        let axis = plain(&algebra::rotate(&here.rotation, &algebra::vector(*axis)));
+        let mut add = |axis, about| degrees.push(Degree { joint: index, axis, about });
+        let all = [Vector3::x(), Vector3::y(), Vector3::z()];
+        match kind {
+            Kind::Hinge => add(axis, Some(at)),
+            Kind::Slide => add(axis, None),
+            Kind::Ball => all.into_iter().for_each(|axis| add(axis, Some(at))),
+            Kind::Free => {
+                all.into_iter().for_each(|axis| add(axis, None));
+                all.into_iter().for_each(|axis| add(axis, Some(at)));
+            }
+        }
+    }
+    degrees
+}
+
+fn mass_matrix(robot: &Robot, poses: &[Pose], degrees: &[Degree]) -> DMatrix<f64> {
+    let armatures = degrees.iter().map(|degree| robot.joints[degree.joint].armature.value);
+    let mut matrix = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(degrees.len(), armatures));
+    for (index, body) in robot.bodies.iter().enumerate() {
+        let Some(mass) = &body.mass else { continue };
+        let center = mass.center.each_ref().map(|number| Value::Number(number.value));
+        let pose = poses[index].then(&center, &mass.rotation);
+        let [xx, yy, zz, xy, xz, yz] = mass.inertia.each_ref().map(|number| Value::Number(number.value));
+        let tensor = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
+        let [x, y, z] = algebra::rotate_tensor(&pose.rotation, &tensor).each_ref().map(plain);
+        let tensor = nalgebra::Matrix3::from_columns(&[x, y, z]);
+        let center = plain(&pose.position);
+        // Degrees of freedom that move it: place, velocity of its centre, angular velocity.
+        let mut moving = Vec::new();
+        let mut above = index;
+        while above != 0 {
+            let own = degrees.iter().enumerate().filter(|(_, degree)| robot.joints[degree.joint].body == above);
+            moving.extend(own.map(|(place, degree)| match degree.about {
+                Some(at) => (place, degree.axis.cross(&(center - at)), degree.axis),
+                None => (place, degree.axis, Vector3::zeros()),
+            }));
+            above = robot.bodies[above].parent;
+        }
+        for (row, velocity, spin) in &moving {
+            for (column, other, turn) in &moving {
+                matrix[(*row, *column)] += mass.mass.value * velocity.dot(other) + spin.dot(&(tensor * turn));
+            }
+        }
+    }
+    matrix
+}
