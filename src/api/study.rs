@@ -131,8 +131,8 @@ impl<'a> Study<'a> {
     /// production; none is more than `widest` times the model's. A study of its own confirms them.
     ///
     /// # Errors
-    /// [`Error::Unsuitable`]: the model has no requirement, or no tolerance that may change. [`Error::Run`]: it cannot be
-    /// run.
+    /// [`Error::Unsuitable`]: the model has no requirement, or no tolerance that may change. [`Error::Run`]: it cannot
+    /// be run.
     pub fn allocate(self, criterion: Criterion, widest: f64) -> Result<Allocation, Error> {
         let share = match criterion {
             Criterion::WorstCase => None,

@@ -96,8 +96,8 @@ impl ValidationTable {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
-    /// Width of an output's range over all rows and some samples; zero where that is less than `least`, or than rounding
-    /// of the values.
+    /// Width of an output's range over all rows and some samples; zero where that is less than `least`, or than
+    /// rounding of the values.
     fn span(&self, output: usize, samples: &[usize], least: f64) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
         let lines = lines.skip(self.motions + output).step_by(self.motions + self.outputs);
