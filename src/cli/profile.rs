@@ -1,4 +1,5 @@
-//! `mbint run --profile FILE`: how long each stage took, by model and subsystem, as a table and as a trace.
+//! `mbint run --profile FILE`: how long each stage took, by model and subsystem, as a table and as a trace
+//! (decision 0158).
 
 use std::fs;
 use std::path::PathBuf;
