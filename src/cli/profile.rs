@@ -1,4 +1,5 @@
-//! `mbint run --profile FILE`: how long each stage took, by model and subsystem, as a table and as a trace.
+//! `mbint run --profile FILE`: how long each stage took, by model and subsystem, as a table and as a trace
+//! (decision 0158).
 
 use std::fs;
 use std::path::PathBuf;
@@ -31,11 +32,15 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// Begins with the reading of models; the trace goes to `file`.
-    pub fn new(file: PathBuf) -> Self {
+    /// Begins with the reading of models; the trace goes to `file`, which is made at once.
+    ///
+    /// # Errors
+    /// Where the file cannot be made: better now than after hours.
+    pub fn new(file: PathBuf) -> Result<Self, Failure> {
+        fs::File::create(&file).map_err(|error| Failure::Wrong(format!("{}: {error}", file.display())))?;
         let profile = Self { file, begun: Instant::now(), spans: Mutex::default() };
         profile.begin(String::new(), None, "reading and checking models");
-        profile
+        Ok(profile)
     }
 
     /// A model's run begins.
@@ -165,8 +170,9 @@ mod tests {
         let text = plain(&table(&spans));
         let lines: Vec<&str> = text.lines().skip(1).collect();
         assert_eq!(lines.len(), 4, "{text}");
-        assert!(lines[1].ends_with("0.0400  40.0 %") && lines[2].ends_with("0.0500  50.0 %"), "{text}");
-        assert!(lines[3].ends_with("0.1000  100.0 %"), "{text}");
+        let ends = |line: usize, end: [&str; 3]| lines[line].split_whitespace().rev().zip(end).all(|(a, b)| a == b);
+        assert!(ends(1, ["%", "40.0", "0.0400"]) && ends(2, ["%", "50.0", "0.0500"]), "{text}");
+        assert!(ends(3, ["%", "100.0", "0.1000"]), "{text}");
         let trace = trace(&spans);
         let events = trace["traceEvents"].as_array().unwrap();
         let complete: Vec<_> = events.iter().filter(|event| event["ph"] == "X").collect();
@@ -177,7 +183,8 @@ mod tests {
 
     #[test]
     fn a_stage_ends_where_the_next_begins() {
-        let profile = Profile::new(PathBuf::new());
+        let folder = tempfile::tempdir().unwrap();
+        let profile = Profile::new(folder.path().join("trace.json")).unwrap();
         profile.model("crank");
         profile.subsystem(Some(0));
         profile.stage("scan");

@@ -99,7 +99,7 @@ impl Request {
                 certify_time,
                 skip_infeasible,
                 quiet: args.quiet,
-                profile: args.profile.map(Profile::new),
+                profile: args.profile.map(Profile::new).transpose()?,
             },
         })
     }

@@ -207,5 +207,6 @@ bounds: { chebyshev: { order: 2 }, scan: { points: 3 } }
         let gap = time(pair[1], "ts").abs_diff(time(pair[0], "ts") + time(pair[0], "dur"));
         assert!(gap < 50, "{gap} µs between {} and {}", pair[0], pair[1]);
     }
-    place.run("run two.yaml -q --profile none/trace.json", 3);
+    let (_, errors) = place.run("run two.yaml -q -o none --profile nowhere/trace.json", 2);
+    assert!(errors.contains("nowhere/trace.json") && !place.path().join("none").exists(), "{errors}");
 }

@@ -1,5 +1,5 @@
-//! From a file to a `Description`: formats of robots (`robots`), elements (joints, effects, shapes), the keys of a model
-//! file with its schema (`keys`), the model's tree written out (`expand`), and its meaning (`model`).
+//! From a file to a `Description`: formats of robots (`robots`), elements (joints, effects, shapes), the keys of a
+//! model file with its schema (`keys`), the model's tree written out (`expand`), and its meaning (`model`).
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]

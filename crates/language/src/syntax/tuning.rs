@@ -1,5 +1,6 @@
 //! Constants of a room that could be other numbers: limits, defaults and thresholds, each with its reason and with the
-//! results that move if it changes. A room has them in one struct, `Tuning`; `mbint explain --tuning` lists them all.
+//! results that move if it changes. A room has them in one struct, `Tuning`; `mbint explain --tuning` lists them
+//! (decision 0157).
 
 use serde::Serialize;
 

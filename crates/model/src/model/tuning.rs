@@ -9,8 +9,8 @@ tuning! {
         parameters: usize = 20_000, moves "which models are refused";
         /// Most uncertain parameters: every formula is checked at both ends of each.
         uncertain: usize = 1000, moves "which models are refused";
-        /// Uncertain parameters up to which requirements on values are checked at every corner of their box; beyond, one
-        /// parameter at a time.
+        /// Uncertain parameters up to which requirements on values are checked at every corner of their box; beyond,
+        /// one parameter at a time.
         corners: usize = 5, moves "which models are refused";
         /// Standard deviations of a tolerance whose law does not give them.
         sigmas: f64 = 3.0, moves "statistics";

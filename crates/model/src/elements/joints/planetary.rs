@@ -4,12 +4,12 @@
 //! Φ = φ_s − φ_c + ρ (φ_r − φ_c) − offset = 0,   ρ = z_r/z_s          1 row, rad
 //! ```
 //!
-//! Angles are those of joints about parallel axes, against the one body on which all are held; a member that is not named stands
-//! still. Against the carrier the sun turns the ring backwards (Willis). −Φ_qᵀ λ is the torque −λ on the sun, −ρ λ on
-//! the ring and (1 + ρ) λ on the carrier: together they are zero, and planets at even distances push no bearing aside.
-//! The planets have no inertia of their own here: that of their masses about the common axis belongs to the carrier's,
-//! and their spin, where it matters, is that of a body with an `angle` alone and an `equation`, φ_p = φ_c − (φ_s − φ_c)
-//! z_s/z_p.
+//! Angles are those of joints about parallel axes, against the one body on which all are held; a member without a name
+//! stands still. Against the carrier the sun turns the ring backwards (Willis). −Φ_qᵀ λ is the torque −λ on the sun,
+//! −ρ λ on the ring and (1 + ρ) λ on the carrier: together they are zero, and planets at even distances push no
+//! bearing aside. The planets have no inertia of their own here: that of their masses about the common axis belongs to
+//! the carrier's, and their spin, where it matters, is that of a body with an `angle` alone and an `equation`, φ_p =
+//! φ_c − (φ_s − φ_c) z_s/z_p.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

@@ -1,7 +1,8 @@
 //! `mjcf:`, a robot's file as the beginning of a model; or alone, as a model of a second.
 //!
-//! The robot of the file ([`crate::robots::mjcf`]) → parameters (`numbers`) → entries of the model's tree with the places
-//! of the MJCF (`build`, `start`, `effects`). All that comes after reads the tree as if it were written out.
+//! The robot of the file ([`crate::robots::mjcf`]) → parameters (`numbers`) → entries of the model's tree with the
+//! places of the MJCF (`build`, `start`, `effects`). All that comes after reads the tree as if it were written out
+//! (decision 0086).
 
 mod build;
 mod drives;

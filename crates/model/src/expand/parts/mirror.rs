@@ -2,7 +2,8 @@
 //!
 //! M is the reflection at the plane through the instance's origin across the axis. A body at r with the rotation R is
 //! at M r with M R M, so a polar vector v of any frame becomes M v, an axial one, of a rotation or a torque, −M v. Axes
-//! of joints are reflected as polar vectors; so their angles count the other way, in the plane and in space.
+//! of joints are reflected as polar vectors; so their angles count the other way, in the plane and in space. Decisions
+//! 0077 and 0130.
 
 use super::Writer;
 use crate::elements::effects::EffectKind;

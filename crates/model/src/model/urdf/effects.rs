@@ -1,5 +1,5 @@
-//! Effects of a [`Robot`](crate::robots::urdf::robot::Robot)'s joints: damping and friction as the file has them and, where the model
-//! asks for it, stops at their limits.
+//! Effects of a [`Robot`](crate::robots::urdf::robot::Robot)'s joints: damping and friction as the file has them
+//! and, where the model asks for it, stops at their limits.
 //!
 //! Damping is −d v, Coulomb friction −f v/√(v² + v₀²), each between the joint's two bodies, v the joint's velocity.
 //! They are called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be left out by these names.

@@ -1,7 +1,8 @@
 //! `urdf:`, a robot's file as the beginning of a model; or alone, as a model with gravity.
 //!
 //! The robot of the file ([`crate::robots::urdf`]) → parameters (`expand::numbers`) → bodies, joints and effects
-//! (`build`, `effects`, `start`), with formulas (`robots::algebra`) where a number is a parameter. A number is one where something names it; all others stay numbers.
+//! (`build`, `effects`, `start`), with formulas (`robots::algebra`) where a number is a parameter. A number is one
+//! where something names it; all others stay numbers. Not a tree: decision 0156.
 
 mod bodies;
 mod build;

@@ -1,5 +1,5 @@
-//! URDF: XML with places (`check`), values by urdf-rs (`read`) → [`Robot`](robot::Robot), whose links and joints are one
-//! tree (`tree`).
+//! URDF: XML with places (`check`), values by urdf-rs (`read`) → [`Robot`](robot::Robot), whose links and joints are
+//! one tree (`tree`).
 
 mod check;
 mod format;
