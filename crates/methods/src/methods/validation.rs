@@ -110,7 +110,7 @@ impl ValidationTable {
 }
 
 /// A few of the samples, simulated with steps that are no multiple of the others and shorter than halved ones.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OddSteps {
     /// Numbers of the samples.
     places: Vec<usize>,
@@ -133,10 +133,12 @@ pub struct Ensembles<'e> {
 }
 
 /// The validation samples of one box under one schedule.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Validation {
     /// ξ of each.
     pub points: Vec<Vec<f64>>,
+    /// How many of them are spread over the box; they come last.
+    pub spread: usize,
     /// With the schedule's steps.
     pub direct: ValidationTable,
     /// The first of them, with each step halved.
@@ -190,7 +192,8 @@ impl Validation {
         effort += with_odd_steps;
         let simulations = points.len() + first + odd.places.len();
         let spans = direct.spans(ensemble);
-        Ok(Self { points, direct, halved, odd, simulations, effort, simulated, spans })
+        let spread = points.len() - first;
+        Ok(Self { points, spread, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
     /// Where nothing is uncertain: the nominal motion, of which so many rows are known, is the only sample, and is
@@ -211,12 +214,13 @@ impl Validation {
         let spans = direct.spans(ensemble);
         let mut effort = simulated.effort;
         effort += with_odd_steps;
-        Ok(Self { points, direct, halved, odd, simulations, effort, simulated: Simulated::default(), spans })
+        let simulated = Simulated::default();
+        Ok(Self { points, spread: 0, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
-    /// How many of the samples are spread over the box; they come last.
-    pub fn spread(&self) -> usize {
-        self.points.len() - self.points.first().map_or(0, |xi| step_validation(xi.len()).len())
+    /// The same samples at other ξ, over which they are not spread.
+    pub fn at(&self, points: Vec<Vec<f64>>) -> Self {
+        Self { points, spread: 0, ..self.clone() }
     }
 
     /// Notes what the samples have been simulated to be with the schedule's steps.

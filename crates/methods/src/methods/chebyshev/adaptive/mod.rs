@@ -25,7 +25,7 @@ use crate::methods::kept::KeptSurrogate;
 use crate::methods::request::Budget;
 use crate::methods::result::Estimate;
 use crate::methods::validation::{Validation, ValidationTable};
-use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, union};
+use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest, union};
 
 /// Indices are added whose expected surplus is at least this share of the largest.
 const ADDED: f64 = 0.3;
@@ -45,6 +45,7 @@ const DOUBTED: usize = 2;
 const CHECKED: usize = 48;
 
 /// What a surrogate has to meet.
+#[derive(Clone)]
 pub(super) struct Goal {
     /// Error allowed of each output.
     pub allowed: Vec<f64>,
@@ -57,6 +58,8 @@ pub(super) struct Goal {
 
 /// What an adaptive search finds.
 pub(super) struct Adapted {
+    /// Largest error of a row that counts over the one that is allowed; NaN where one is not known.
+    pub error: f64,
     /// By row and output; with sensitivities only where the box was not split.
     pub found: Vec<Estimate>,
     /// Simulations of these and those before.
@@ -113,7 +116,7 @@ impl<'r> Adaptation<'r> {
     /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
     pub fn search(mut self) -> Result<Adapted, EnsembleError> {
         let direct = (Cow::Borrowed(self.validation.points.as_slice()), Cow::Borrowed(&self.validation.direct));
-        let spread = self.validation.spread();
+        let spread = self.validation.spread;
         let mut boxes = vec![self.sub_box(self.ensemble.domain().clone(), direct, spread)?];
         loop {
             let worst = (0..boxes.len()).max_by(|&a, &b| boxes[a].error.total_cmp(&boxes[b].error)).unwrap_or(0);
@@ -162,7 +165,7 @@ impl<'r> Adaptation<'r> {
                         let (inherited, known) = whole.validation_in_half(axis, side);
                         let points = [self.validation.points.as_slice(), &inherited].concat();
                         let direct = if inherited.is_empty() { direct } else { direct.with(&known) };
-                        let spread = self.validation.spread();
+                        let spread = self.validation.spread;
                         boxes.push(self.sub_box(half, (Cow::Owned(points), Cow::Owned(direct)), spread)?);
                     }
                 }
@@ -315,8 +318,9 @@ impl<'r> Adaptation<'r> {
                 all.is_expanded |= own.is_expanded;
             }
         }
+        let error = largest(boxes.iter().map(|sub_box| sub_box.error));
         let (simulations, boxes) = (self.goal.spent, boxes.len());
-        Ok(Adapted { found, simulations, boxes, order, simulated: self.simulated, kept: self.kept })
+        Ok(Adapted { error, found, simulations, boxes, order, simulated: self.simulated, kept: self.kept })
     }
 }
 

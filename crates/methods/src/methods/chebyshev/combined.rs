@@ -1,0 +1,345 @@
+//! An ensemble over fewer parameters: where several act through one number alone, a line through the box from where it
+//! is least to where it is greatest has all that there is to see.
+//!
+//! The number is continuous, so that along the line it takes every value that it has in the box, and each value of an
+//! output occurs there. Of eight parameters that a stiffness sees through their sum one remains, and a polynomial in it
+//! costs a simulation a degree ([decision 0148](../../../../../docs/decisions/0148-parameters-that-act-through-one-number.md)).
+
+use std::ops::Range as Rows;
+
+use symdiff::jet::JetSpace;
+use symdiff::taylor_model::ModelSpace;
+
+use super::adaptive::{Adaptation, Adapted, Goal};
+use super::range_search::{Functions, Previous, RangeSearch};
+use crate::methods::ensemble::{
+    Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
+};
+use crate::methods::request::Budget;
+use crate::methods::validation::Validation;
+use crate::numerics::{ParameterBox, Range, Sample, SegmentMotions, largest};
+
+/// A combination's range is searched for as that of a polynomial of this degree, and where that is too low more closely.
+const DEGREE: u8 = 24;
+
+/// Share of a combination's range by which its values beside an end may exceed it, and how far beside that is looked at.
+const EXCEEDED: f64 = 1e-6;
+const BESIDE: f64 = 1e-3;
+
+/// One in so many simulations (and seconds) of a budget is left for lines through the box, where there are such.
+const FOR_LINES: usize = 4;
+
+/// Halvings that find where a combination has a value, to the last bit.
+const HALVINGS: usize = 60;
+
+/// A surrogate over the box; where a part of the budget is not enough for it and parameters act through one number, over
+/// lines through the box with the rest. Of those no surrogate is kept, and there are no sensitivities.
+///
+/// # Errors
+/// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
+pub(super) fn search(
+    ensemble: &dyn Ensemble,
+    goal: Goal,
+    validation: &Validation,
+    keep: bool,
+) -> Result<Adapted, EnsembleError> {
+    let Some(combined) = Some(ensemble).filter(|_| !keep).and_then(Combined::new) else {
+        return Adaptation::new(ensemble, goal, validation, keep).search();
+    };
+    let Budget { simulations, seconds } = goal.budget;
+    let seconds_for_lines = seconds.map(|seconds| seconds / FOR_LINES as f64);
+    let over_box = Budget {
+        simulations: simulations - simulations / FOR_LINES,
+        seconds: seconds.zip(seconds_for_lines).map(|(all, for_lines)| all - for_lines),
+    };
+    let found = Adaptation::new(ensemble, Goal { budget: over_box, ..goal.clone() }, validation, false).search()?;
+    // NaN is not met.
+    if found.error <= 1.0 || found.simulated.stop.is_some() {
+        return Ok(found);
+    }
+    let budget = Budget { simulations, seconds: seconds_for_lines };
+    let over_lines = Goal { budget, spent: found.simulations, ..goal };
+    let mut along = Adaptation::new(&combined, over_lines, &combined.validation(validation), false).search()?;
+    let mut simulated = found.simulated;
+    simulated.add(0, std::mem::take(&mut along.simulated));
+    if along.error < found.error || found.error.is_nan() {
+        along.found.iter_mut().for_each(|estimate| estimate.sensitivity = None);
+        return Ok(Adapted { order: combined.of_parameters(&along.order), simulated, ..along });
+    }
+    Ok(Adapted { simulated, simulations: along.simulations, ..found })
+}
+
+/// Motions of an ensemble over lines through its box.
+pub(super) struct Combined<'e> {
+    ensemble: &'e dyn Ensemble,
+    lines: Vec<Line<'e>>,
+    /// From −1 to 1 along each line.
+    domain: ParameterBox,
+}
+
+/// A line through the intervals of some parameters.
+struct Line<'e> {
+    /// Along it this has all values that it has in the box; `None` for a parameter alone.
+    combination: Option<Combination<'e>>,
+    /// The parameters, by number.
+    parameters: Vec<usize>,
+    /// Their values at both ends.
+    ends: [Vec<f64>; 2],
+}
+
+impl<'e> Combined<'e> {
+    /// `None` where the ensemble has no combinations whose ranges can be found.
+    pub fn new(ensemble: &'e dyn Ensemble) -> Option<Self> {
+        let domain = ensemble.domain();
+        let mut lines = Vec::new();
+        for combination in ensemble.combinations() {
+            lines.push(Line::through(domain, combination)?);
+        }
+        if lines.is_empty() {
+            return None;
+        }
+        let alone = (0..domain.dimension()).filter(|own| lines.iter().all(|line| !line.parameters.contains(own)));
+        let alone: Vec<Line> = alone.map(|parameter| Line::along(domain, parameter)).collect();
+        lines.extend(alone);
+        let nominal: Sample = lines.iter().map(|line| line.project(&domain.nominal)).collect();
+        let domain = ParameterBox { nominal, lower: vec![-1.0; lines.len()], upper: vec![1.0; lines.len()] };
+        Some(Self { ensemble, lines, domain })
+    }
+
+    /// The same validation samples where the lines have their combinations' values.
+    pub fn validation(&self, validation: &Validation) -> Validation {
+        let domain = self.ensemble.domain();
+        let project = |xi: &Vec<f64>| {
+            let sample = domain.sample(xi);
+            self.lines.iter().map(|line| line.project(&sample)).collect()
+        };
+        validation.at(validation.points.iter().map(project).collect())
+    }
+
+    /// What holds along each line for each parameter of the box.
+    pub fn of_parameters<T: Copy + Default>(&self, of_lines: &[T]) -> Vec<T> {
+        let mut all = vec![T::default(); self.ensemble.domain().dimension()];
+        for (line, &own) in self.lines.iter().zip(of_lines) {
+            line.parameters.iter().for_each(|&parameter| all[parameter] = own);
+        }
+        all
+    }
+
+    /// The box's parameters at a point of the lines.
+    fn embed(&self, along: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; self.ensemble.domain().dimension()];
+        for (line, &xi) in self.lines.iter().zip(along) {
+            line.parameters.iter().zip(line.at(xi)).for_each(|(&parameter, value)| values[parameter] = value);
+        }
+        values
+    }
+
+    fn samples(&self, samples: &[Sample]) -> Vec<Sample> {
+        samples.iter().map(|along| self.embed(along).into()).collect()
+    }
+}
+
+impl<'e> Line<'e> {
+    fn along(domain: &ParameterBox, parameter: usize) -> Self {
+        let ends = [vec![domain.lower[parameter]], vec![domain.upper[parameter]]];
+        Self { combination: None, parameters: vec![parameter], ends }
+    }
+
+    /// `None` where the combination's range cannot be found.
+    fn through(domain: &ParameterBox, combination: Combination<'e>) -> Option<Self> {
+        let parameters = combination.parameters.clone();
+        let at = |xi: &Vec<f64>| {
+            let own = parameters.iter().zip(xi).map(|(&parameter, &xi)| domain.value(parameter, xi));
+            own.collect::<Vec<f64>>()
+        };
+        let evaluate = |_: &[usize], points: &[Vec<f64>]| -> Vec<f64> {
+            points.iter().map(|xi| (combination.value)(&at(xi))).collect()
+        };
+        let search = RangeSearch::new(parameters.len());
+        let functions = Functions {
+            outputs: vec![0],
+            degrees: &vec![DEGREE; parameters.len()],
+            are_polynomials: false,
+            rounding: &[0.0],
+            places: &[],
+            evaluate: &evaluate,
+        };
+        let values = evaluate(&[0], search.points());
+        let found = search.range(&functions, &[values], &mut Previous::default()).pop()?;
+        let beside: Vec<Vec<f64>> = found.places.iter().flat_map(|end| points_beside(end)).collect();
+        let exceeded = largest(evaluate(&[0], &beside).into_iter().map(|value| found.range.distance(value)));
+        // Written so that NaN is no range.
+        if !(found.range.width().is_finite() && exceeded <= EXCEEDED * found.range.width()) {
+            return None;
+        }
+        let ends = found.places.each_ref().map(at);
+        Some(Self { combination: Some(combination), parameters, ends })
+    }
+
+    /// Values of its parameters at ξ ∈ [−1, 1] of the line.
+    fn at(&self, xi: f64) -> Vec<f64> {
+        let [from, to] = &self.ends;
+        let between = |(&from, &to): (&f64, &f64)| {
+            let value = 0.5 * (1.0 - xi) * from + 0.5 * (1.0 + xi) * to;
+            value.clamp(f64::min(from, to), f64::max(from, to))
+        };
+        from.iter().zip(to).map(between).collect()
+    }
+
+    /// Where on the line a sample's combination has the same value; the nearest end where it lies beyond.
+    fn project(&self, sample: &Sample) -> f64 {
+        let own: Vec<f64> = self.parameters.iter().map(|&parameter| sample[parameter]).collect();
+        let value = |values: &[f64]| self.combination.as_ref().map_or(values[0], |of| (of.value)(values));
+        let wanted = value(&own);
+        let [mut below, mut above] = [-1.0, 1.0];
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (below + above);
+            let end = if value(&self.at(middle)) <= wanted { &mut below } else { &mut above };
+            *end = middle;
+        }
+        0.5 * (below + above)
+    }
+}
+
+/// A little to both sides of a point along each axis, inside of the box.
+fn points_beside(point: &[f64]) -> impl Iterator<Item = Vec<f64>> + '_ {
+    (0..point.len()).flat_map(move |axis| {
+        [-BESIDE, BESIDE].map(|by| {
+            let mut beside = point.to_vec();
+            beside[axis] = (beside[axis] + by).clamp(-1.0, 1.0);
+            beside
+        })
+    })
+}
+
+impl Ensemble for Combined<'_> {
+    fn domain(&self) -> &ParameterBox {
+        &self.domain
+    }
+
+    fn outputs(&self) -> usize {
+        self.ensemble.outputs()
+    }
+
+    fn rows(&self) -> usize {
+        self.ensemble.rows()
+    }
+
+    fn time(&self, row: usize) -> f64 {
+        self.ensemble.time(row)
+    }
+
+    fn rounding(&self, output: usize) -> f64 {
+        self.ensemble.rounding(output)
+    }
+
+    fn has_kink(&self, output: usize) -> bool {
+        self.ensemble.has_kink(output)
+    }
+
+    fn is_extreme(&self, output: usize) -> bool {
+        self.ensemble.is_extreme(output)
+    }
+
+    fn jumps(&self, output: usize) -> bool {
+        self.ensemble.jumps(output)
+    }
+
+    fn seen(&self, row: usize, output: usize) -> Range {
+        self.ensemble.seen(row, output)
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.ensemble.is_interrupted()
+    }
+
+    fn simulate(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, EnsembleError> {
+        self.ensemble.simulate(&self.samples(samples), sampling, reduce)
+    }
+
+    fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
+        self.ensemble.dense_motions(&self.samples(samples))
+    }
+
+    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
+        self.ensemble.segments(&self.samples(samples))
+    }
+
+    fn jets(&self, _: &JetSpace, _: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
+        Err("a combination of parameters has no Taylor polynomial of its own".into())
+    }
+
+    fn obstacle_to_enclosure(&self) -> Option<String> {
+        Some("a combination of parameters".to_owned())
+    }
+
+    fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+        None
+    }
+
+    fn scales(&self) -> &[f64] {
+        self.ensemble.scales()
+    }
+
+    fn independent(&self, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize> {
+        self.ensemble.independent(&self.embed(parameters), motion, time)
+    }
+
+    fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError> {
+        Ok(Box::new(AlongLines { combined: self, closure: self.ensemble.closure(independent)? }))
+    }
+}
+
+/// A closure of the box at points of the lines.
+struct AlongLines<'c> {
+    combined: &'c Combined<'c>,
+    closure: Box<dyn Closure + 'c>,
+}
+
+impl Closure for AlongLines<'_> {
+    fn independent(&self) -> &[usize] {
+        self.closure.independent()
+    }
+
+    fn needs_velocities(&self) -> bool {
+        self.closure.needs_velocities()
+    }
+
+    fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64> {
+        let dimension = self.combined.ensemble.domain().dimension();
+        let mut embedded = vec![0.0; dimension * count];
+        for point in 0..count {
+            let along: Vec<f64> = parameters.iter().skip(point).step_by(count).copied().collect();
+            let values = self.combined.embed(&along);
+            values.into_iter().enumerate().for_each(|(place, value)| embedded[place * count + point] = value);
+        }
+        self.closure.outputs(time, count, embedded, motion)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bell on a ring: from its middle, inside of the box, to the farthest corner.
+    #[test]
+    fn a_line_has_all_values_of_a_combination() {
+        let domain = ParameterBox { nominal: vec![1.0, 0.0].into(), lower: vec![0.5, -1.0], upper: vec![2.0, 1.5] };
+        let value = |p: &[f64]| (p[0] - 1.2).powi(2) + 2.0 * (p[1] - 0.1).powi(2);
+        let combination = Combination { parameters: vec![0, 1], value: Box::new(value) };
+        let line = Line::through(&domain, combination).unwrap();
+        assert!(value(&line.at(-1.0)) < 1e-9, "{:?}", line.at(-1.0));
+        assert_eq!(line.at(1.0), [2.0, 1.5]);
+        for sample in [[0.5, -1.0], [1.7, 0.3], [1.2, 1.5], [2.0, 1.5]] {
+            let along = line.at(line.project(&sample.to_vec().into()));
+            assert!((value(&along) - value(&sample)).abs() < 1e-12, "{sample:?} {along:?}");
+        }
+        let undefined = Combination { parameters: vec![0, 1], value: Box::new(|p| (p[0] - 1.0).ln()) };
+        assert!(Line::through(&domain, undefined).is_none());
+    }
+}
