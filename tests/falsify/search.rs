@@ -6,7 +6,7 @@ use crate::draw::{Parameter, Term};
 use crate::truth::Range;
 
 /// Candidates of each end that are refined.
-const CANDIDATES: usize = 3;
+const CANDIDATES: usize = 6;
 
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
@@ -177,13 +177,14 @@ impl<'t> Grid<'t> {
         refined.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether no neighbour along a parameter is greater.
+    /// Whether no neighbour along a parameter is greater. Of equals, as along a parameter that does not matter to the channel,
+    /// the first.
     fn is_local(&self, sample: usize, value: &impl Fn(usize) -> f64) -> bool {
         let here = value(sample);
         let mut stride = 1;
         for _ in &self.uncertain {
             let coordinate = sample / stride % self.points;
-            let below = coordinate > 0 && value(sample - stride) > here;
+            let below = coordinate > 0 && value(sample - stride) >= here;
             let above = coordinate + 1 < self.points && value(sample + stride) > here;
             if below || above {
                 return false;

@@ -1,5 +1,4 @@
-//! Numbers through which several parameters act alone: a product of a mass and a length, a sum of lengths, a formula of
-//! the model.
+//! Numbers through which alone parameters act: a product of a mass and a length, a sum of lengths, a formula of the model.
 //!
 //! An expression is such a number where every way from any of its parameters to an equation, a start value or an output
 //! leads through it. In the graph these are the nodes that dominate their parameters, seen from what is computed
@@ -11,7 +10,7 @@ use symdiff::{Expr, Graph, Node};
 use super::switches::jumps;
 use crate::assemble::System;
 
-/// A continuous function of several parameters through which alone they act.
+/// A continuous function of one or more parameters through which alone they act.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Combination {
     /// The uncertain parameters, by number, ascending.
@@ -37,7 +36,7 @@ pub fn combinations(system: &System) -> Vec<Combination> {
             let Some(parameters) = of_parameters.get(&gate) else { break };
             let is_gate_of_all =
                 parameters.iter().all(|&other| gates.after(system.parameters[other].symbol).any(|of| of == gate));
-            if is_gate_of_all && parameters.len() > best.map_or(1, |(known, _)| known.len()) {
+            if is_gate_of_all && parameters.len() > best.map_or(0, |(known, _)| known.len()) {
                 best = Some((parameters, gate));
             }
         }

@@ -185,7 +185,7 @@ pub struct Lost {
 /// Times, and motions at them.
 pub type DenseMotions = (Vec<f64>, Vec<f64>);
 
-/// A continuous function of several parameters through which alone these act.
+/// A continuous function of one or more parameters through which alone these act.
 pub struct Combination<'e> {
     /// The parameters, by number.
     pub parameters: Vec<usize>,
@@ -222,7 +222,7 @@ pub trait Ensemble: Sync {
     /// Whether an output's formula jumps.
     fn jumps(&self, output: usize) -> bool;
 
-    /// Functions of several parameters through which alone these act, no parameter in two of them; none where that is
+    /// Functions of parameters through which alone these act, no parameter in two of them; none where that is
     /// not known.
     fn combinations(&self) -> Vec<Combination<'_>> {
         Vec::new()

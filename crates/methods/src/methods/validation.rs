@@ -1,6 +1,7 @@
 //! Validation samples: held out from every surrogate, simulated with the steps as they are and some with each step
 //! halved.
 
+use super::chebyshev::Combined;
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
     BandError, Correction, Differences, Ledger, Range, Sample, TimeShift, Turning, corrections, largest,
@@ -181,8 +182,12 @@ impl Validation {
     pub fn run(ensembles: Ensembles, observed: Observed, degree: usize) -> Result<Self, EnsembleError> {
         let Ensembles { direct: ensemble, halved, .. } = ensembles;
         let domain = ensemble.domain();
-        let points = validation(domain.dimension(), degree);
-        let first = step_validation(domain.dimension()).len();
+        let mut points = step_validation(domain.dimension());
+        let spread_over_box = validation(domain.dimension(), degree).split_off(points.len());
+        // Steps err most where parameters that act through one number are fastest, which may be in any corner.
+        points.extend(Combined::new(ensemble).iter().flat_map(Combined::ends));
+        let first = points.len();
+        points.extend(spread_over_box);
         let samples = domain.samples(&points);
         let (direct, simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
         let (halved, with_halved_steps) = ValidationTable::of(halved, &samples[..first], observed, false)?;

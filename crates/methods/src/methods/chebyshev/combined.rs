@@ -15,25 +15,21 @@ use super::range_search::{Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{
     Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
 };
-use crate::methods::request::Budget;
 use crate::methods::validation::Validation;
 use crate::numerics::{ParameterBox, Range, Sample, SegmentMotions, largest};
 
 /// A combination's range is searched for as that of a polynomial of this degree, and where that is too low more closely.
-const DEGREE: u8 = 24;
+const DEGREE: u8 = 8;
 
 /// Share of a combination's range by which its values beside an end may exceed it, and how far beside that is looked at.
 const EXCEEDED: f64 = 1e-6;
 const BESIDE: f64 = 1e-3;
 
-/// One in so many simulations (and seconds) of a budget is left for lines through the box, where there are such.
-const FOR_LINES: usize = 4;
-
 /// Halvings that find where a combination has a value, to the last bit.
 const HALVINGS: usize = 60;
 
-/// A surrogate over the box; where a part of the budget is not enough for it and parameters act through one number, over
-/// lines through the box with the rest. Of those no surrogate is kept, and there are no sensitivities.
+/// A surrogate within a goal: over lines through the box where parameters act through one number, else over the box. Over
+/// lines none can be kept.
 ///
 /// # Errors
 /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
@@ -46,31 +42,13 @@ pub(super) fn search(
     let Some(combined) = Some(ensemble).filter(|_| !keep).and_then(Combined::new) else {
         return Adaptation::new(ensemble, goal, validation, keep).search();
     };
-    let Budget { simulations, seconds } = goal.budget;
-    let seconds_for_lines = seconds.map(|seconds| seconds / FOR_LINES as f64);
-    let over_box = Budget {
-        simulations: simulations - simulations / FOR_LINES,
-        seconds: seconds.zip(seconds_for_lines).map(|(all, for_lines)| all - for_lines),
-    };
-    let found = Adaptation::new(ensemble, Goal { budget: over_box, ..goal.clone() }, validation, false).search()?;
-    // NaN is not met.
-    if found.error <= 1.0 || found.simulated.stop.is_some() {
-        return Ok(found);
-    }
-    let budget = Budget { simulations, seconds: seconds_for_lines };
-    let over_lines = Goal { budget, spent: found.simulations, ..goal };
-    let mut along = Adaptation::new(&combined, over_lines, &combined.validation(validation), false).search()?;
-    let mut simulated = found.simulated;
-    simulated.add(0, std::mem::take(&mut along.simulated));
-    if along.error < found.error || found.error.is_nan() {
-        along.found.iter_mut().for_each(|estimate| estimate.sensitivity = None);
-        return Ok(Adapted { order: combined.of_parameters(&along.order), simulated, ..along });
-    }
-    Ok(Adapted { simulated, simulations: along.simulations, ..found })
+    let on_lines = combined.validation(validation);
+    let adapted = Adaptation::over(&combined, goal, &on_lines).search()?;
+    Ok(Adapted { order: combined.of_parameters(&adapted.order), ..adapted })
 }
 
 /// Motions of an ensemble over lines through its box.
-pub(super) struct Combined<'e> {
+pub(in crate::methods) struct Combined<'e> {
     ensemble: &'e dyn Ensemble,
     lines: Vec<Line<'e>>,
     /// From −1 to 1 along each line.
@@ -88,13 +66,11 @@ struct Line<'e> {
 }
 
 impl<'e> Combined<'e> {
-    /// `None` where the ensemble has no combinations whose ranges can be found.
+    /// `None` where the ensemble has no combinations from which anything is gained, or whose ranges can be found.
     pub fn new(ensemble: &'e dyn Ensemble) -> Option<Self> {
         let domain = ensemble.domain();
-        let mut lines = Vec::new();
-        for combination in ensemble.combinations() {
-            lines.push(Line::through(domain, combination)?);
-        }
+        let through = |combination| Line::through(domain, combination).filter(|line| line.is_shorter(domain));
+        let mut lines: Vec<Line> = ensemble.combinations().into_iter().filter_map(through).collect();
         if lines.is_empty() {
             return None;
         }
@@ -108,17 +84,34 @@ impl<'e> Combined<'e> {
 
     /// The same validation samples where the lines have their combinations' values.
     pub fn validation(&self, validation: &Validation) -> Validation {
-        let domain = self.ensemble.domain();
-        let project = |xi: &Vec<f64>| {
-            let sample = domain.sample(xi);
-            self.lines.iter().map(|line| line.project(&sample)).collect()
-        };
-        validation.at(validation.points.iter().map(project).collect())
+        validation.at(validation.points.iter().map(|xi| self.project(xi)).collect())
+    }
+
+    /// The box with all its parameters.
+    pub fn of_box(&self) -> &ParameterBox {
+        self.ensemble.domain()
+    }
+
+    /// ξ of the box where all combinations are least, and where they are greatest.
+    pub fn ends(&self) -> Vec<Vec<f64>> {
+        let ends = |xi: f64| self.xi(&vec![xi; self.lines.len()]);
+        [-1.0, 1.0].map(ends).into()
+    }
+
+    /// Where on the lines the combinations are as at ξ of the box.
+    pub fn project(&self, xi: &[f64]) -> Vec<f64> {
+        let sample = self.of_box().sample(xi);
+        self.lines.iter().map(|line| line.project(&sample)).collect()
+    }
+
+    /// ξ of the box at a point of the lines.
+    pub fn xi(&self, along: &[f64]) -> Vec<f64> {
+        self.of_box().xi(&self.embed(along).into())
     }
 
     /// What holds along each line for each parameter of the box.
     pub fn of_parameters<T: Copy + Default>(&self, of_lines: &[T]) -> Vec<T> {
-        let mut all = vec![T::default(); self.ensemble.domain().dimension()];
+        let mut all = vec![T::default(); self.of_box().dimension()];
         for (line, &own) in self.lines.iter().zip(of_lines) {
             line.parameters.iter().for_each(|&parameter| all[parameter] = own);
         }
@@ -127,7 +120,7 @@ impl<'e> Combined<'e> {
 
     /// The box's parameters at a point of the lines.
     fn embed(&self, along: &[f64]) -> Vec<f64> {
-        let mut values = vec![0.0; self.ensemble.domain().dimension()];
+        let mut values = vec![0.0; self.of_box().dimension()];
         for (line, &xi) in self.lines.iter().zip(along) {
             line.parameters.iter().zip(line.at(xi)).for_each(|(&parameter, value)| values[parameter] = value);
         }
@@ -174,6 +167,13 @@ impl<'e> Line<'e> {
         }
         let ends = found.places.each_ref().map(at);
         Some(Self { combination: Some(combination), parameters, ends })
+    }
+
+    /// Whether it spares a parameter, or a part of one's interval.
+    fn is_shorter(&self, domain: &ParameterBox) -> bool {
+        let ends = |parameter: usize| [domain.lower[parameter], domain.upper[parameter]];
+        let is_end = |end: &Vec<f64>| ends(self.parameters[0]).contains(&end[0]);
+        self.parameters.len() > 1 || !self.ends.iter().all(is_end)
     }
 
     /// Values of its parameters at ξ ∈ [−1, 1] of the line.
@@ -311,7 +311,7 @@ impl Closure for AlongLines<'_> {
     }
 
     fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64> {
-        let dimension = self.combined.ensemble.domain().dimension();
+        let dimension = self.combined.of_box().dimension();
         let mut embedded = vec![0.0; dimension * count];
         for point in 0..count {
             let along: Vec<f64> = parameters.iter().skip(point).step_by(count).copied().collect();

@@ -14,7 +14,7 @@ pub(super) struct RangeEstimator<'a> {
     /// Samples of the whole box with the schedule's steps and with halved ones, where the time steps' errors are asked
     /// for.
     pub halved: Option<(&'a ValidationTable, &'a ValidationTable)>,
-    pub sensitivity: Option<SensitivityAnalysis>,
+    pub sensitivity: Option<SensitivityAnalysis<'a>>,
 }
 
 impl RangeEstimator<'_> {

@@ -107,8 +107,10 @@ impl Adaptation<'_> {
             search: &self.search,
             validation: (&sub_box.points, &sub_box.direct),
             halved: (detail != Detail::Errors).then_some((&self.validation.direct, &self.validation.halved)),
-            sensitivity: (detail == Detail::Sensitivities)
-                .then(|| SensitivityAnalysis::new(&sub_box.domain, &surrogate)),
+            sensitivity: (detail == Detail::Sensitivities).then(|| match self.combined {
+                Some(combined) => SensitivityAnalysis::over(combined),
+                None => SensitivityAnalysis::new(&sub_box.domain, &surrogate),
+            }),
         };
         let keeps = self.kept.is_some() && detail != Detail::Errors;
         let look = |place: usize, row: &Row, previous: &mut Previous| {

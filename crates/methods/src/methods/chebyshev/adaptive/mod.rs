@@ -16,6 +16,7 @@ use std::time::Instant;
 
 use rustc_hash::FxHashMap;
 
+use super::combined::Combined;
 use super::composition::{Composer, courses, turning};
 use super::detail::Detail;
 use super::range_search::RangeSearch;
@@ -25,7 +26,7 @@ use crate::methods::kept::KeptSurrogate;
 use crate::methods::request::Budget;
 use crate::methods::result::Estimate;
 use crate::methods::validation::{Validation, ValidationTable};
-use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest, union};
+use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, union};
 
 /// Indices are added whose expected surplus is at least this share of the largest.
 const ADDED: f64 = 0.3;
@@ -45,7 +46,6 @@ const DOUBTED: usize = 2;
 const CHECKED: usize = 48;
 
 /// What a surrogate has to meet.
-#[derive(Clone)]
 pub(super) struct Goal {
     /// Error allowed of each output.
     pub allowed: Vec<f64>,
@@ -58,8 +58,6 @@ pub(super) struct Goal {
 
 /// What an adaptive search finds.
 pub(super) struct Adapted {
-    /// Largest error of a row that counts over the one that is allowed; NaN where one is not known.
-    pub error: f64,
     /// By row and output; with sensitivities only where the box was not split.
     pub found: Vec<Estimate>,
     /// Simulations of these and those before.
@@ -86,6 +84,8 @@ pub(super) struct Adaptation<'r> {
     /// Surrogates are looked at in every so many rows.
     every: usize,
     search: RangeSearch,
+    /// The ensemble, where it is one over lines through a box.
+    combined: Option<&'r Combined<'r>>,
     /// Of the whole box.
     validation: &'r Validation,
     /// The surrogate that is kept, box by box, where one is.
@@ -105,9 +105,15 @@ impl<'r> Adaptation<'r> {
             exhausted: false,
             every,
             search: RangeSearch::new(ensemble.domain().dimension()),
+            combined: None,
             validation,
             kept: keep.then(KeptSurrogate::default),
         }
+    }
+
+    /// Over lines through a box, before the first simulation.
+    pub fn over(combined: &'r Combined<'r>, goal: Goal, validation: &'r Validation) -> Self {
+        Self { combined: Some(combined), ..Self::new(combined, goal, validation, false) }
     }
 
     /// Refines until the goal is met or the budget is spent.
@@ -318,9 +324,8 @@ impl<'r> Adaptation<'r> {
                 all.is_expanded |= own.is_expanded;
             }
         }
-        let error = largest(boxes.iter().map(|sub_box| sub_box.error));
         let (simulations, boxes) = (self.goal.spent, boxes.len());
-        Ok(Adapted { error, found, simulations, boxes, order, simulated: self.simulated, kept: self.kept })
+        Ok(Adapted { found, simulations, boxes, order, simulated: self.simulated, kept: self.kept })
     }
 }
 
