@@ -10,17 +10,18 @@ use symdiff::{Expr, Graph, Node};
 use super::switches::jumps;
 use crate::assemble::System;
 
-/// A continuous function of one or more parameters through which alone they act.
+/// Continuous functions of one or more parameters through which alone they act.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Combination {
     /// The uncertain parameters, by number, ascending.
     pub parameters: Vec<usize>,
-    /// Their function.
-    pub value: Expr,
+    /// The first such function that is computed,
+    pub first: Expr,
+    /// and the last, a function of the first.
+    pub last: Expr,
 }
 
-/// The combinations of a system, each of as many parameters as there are, and of such the first that is computed. No
-/// parameter is in two of them.
+/// The combinations of a system, each of as many parameters as there are. No parameter is in two of them.
 pub fn combinations(system: &System) -> Vec<Combination> {
     // Nearest starts have equations in a graph of their own; results of an analysis follow from parameters directly.
     if system.start.nearest.is_some() || system.outputs.iter().any(|output| output.is_derived()) {
@@ -31,20 +32,21 @@ pub fn combinations(system: &System) -> Vec<Combination> {
     let gates = Gates::new(graph, &roots);
     let mut found: Vec<Combination> = Vec::new();
     for parameter in &system.parameters {
-        let mut best: Option<(&Vec<usize>, Expr)> = None;
+        let mut best: Option<Combination> = None;
         for gate in gates.after(parameter.symbol) {
-            let Some(parameters) = of_parameters.get(&gate) else { break };
+            let Some(parameters) = of_parameters.get(&gate).filter(|_| !jumps(graph, gate)) else { break };
             let is_gate_of_all =
                 parameters.iter().all(|&other| gates.after(system.parameters[other].symbol).any(|of| of == gate));
-            if is_gate_of_all && parameters.len() > best.map_or(0, |(known, _)| known.len()) {
-                best = Some((parameters, gate));
+            match &mut best {
+                _ if !is_gate_of_all => {}
+                Some(best) if best.parameters == *parameters => best.last = gate,
+                best => *best = Some(Combination { parameters: parameters.clone(), first: gate, last: gate }),
             }
         }
-        if let Some((parameters, value)) = best
-            && found.iter().all(|known| known.value != value)
-            && !jumps(graph, value)
+        if let Some(best) = best
+            && !found.contains(&best)
         {
-            found.push(Combination { parameters: parameters.clone(), value });
+            found.push(best);
         }
     }
     found
@@ -159,9 +161,12 @@ mod tests {
         let mut m = Model::new();
         m.interval("p", [1.0, 1.5, 2.0]);
         m.interval("q", [1.0, 1.5, 2.0]);
-        m.body("b", "1 + floor(p*q)", "1", "x", &[]);
+        m.body("b", "1 + floor((p*q)^2)", "1", "x", &[]);
         m.output("b.x");
-        // The product below the jump is continuous.
-        assert_eq!(combinations(&m.build()).len(), 1);
+        let system = m.build();
+        let found = combinations(&system);
+        // What is below the jump is continuous.
+        let at = |expr| system.graph.evaluate(&[expr], |_| 1.5)[0];
+        assert_eq!(found.iter().map(|found| [at(found.first), at(found.last)]).collect::<Vec<_>>(), [[2.25, 5.0625]]);
     }
 }

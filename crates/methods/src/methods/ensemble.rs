@@ -185,13 +185,18 @@ pub struct Lost {
 /// Times, and motions at them.
 pub type DenseMotions = (Vec<f64>, Vec<f64>);
 
-/// A continuous function of one or more parameters through which alone these act.
+/// Continuous functions of one or more parameters through which alone these act.
 pub struct Combination<'e> {
     /// The parameters, by number.
     pub parameters: Vec<usize>,
-    /// The function of their values.
-    pub value: Box<dyn Fn(&[f64]) -> f64 + Sync + 'e>,
+    /// A function of their values,
+    pub first: OfParameters<'e>,
+    /// and one that is a function of the first.
+    pub last: OfParameters<'e>,
 }
+
+/// A number from values of some parameters.
+pub type OfParameters<'e> = Box<dyn Fn(&[f64]) -> f64 + Sync + 'e>;
 
 /// Outputs over time as functions of the uncertain parameters.
 pub trait Ensemble: Sync {

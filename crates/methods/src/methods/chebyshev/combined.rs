@@ -138,35 +138,22 @@ impl<'e> Line<'e> {
         Self { combination: None, parameters: vec![parameter], ends }
     }
 
-    /// `None` where the combination's range cannot be found.
+    /// `None` where a range of the combination cannot be found.
     fn through(domain: &ParameterBox, combination: Combination<'e>) -> Option<Self> {
         let parameters = combination.parameters.clone();
-        let at = |xi: &Vec<f64>| {
-            let own = parameters.iter().zip(xi).map(|(&parameter, &xi)| domain.value(parameter, xi));
-            own.collect::<Vec<f64>>()
+        let at = |xi: &[f64]| -> Vec<f64> {
+            parameters.iter().zip(xi).map(|(&parameter, &xi)| domain.value(parameter, xi)).collect()
         };
-        let evaluate = |_: &[usize], points: &[Vec<f64>]| -> Vec<f64> {
-            points.iter().map(|xi| (combination.value)(&at(xi))).collect()
-        };
-        let search = RangeSearch::new(parameters.len());
-        let functions = Functions {
-            outputs: vec![0],
-            degrees: &vec![DEGREE; parameters.len()],
-            are_polynomials: false,
-            rounding: &[0.0],
-            places: &[],
-            evaluate: &evaluate,
-        };
-        let values = evaluate(&[0], search.points());
-        let found = search.range(&functions, &[values], &mut Previous::default()).pop()?;
-        let beside: Vec<Vec<f64>> = found.places.iter().flat_map(|end| points_beside(end)).collect();
-        let exceeded = largest(evaluate(&[0], &beside).into_iter().map(|value| found.range.distance(value)));
-        // Written so that NaN is no range.
-        if !(found.range.width().is_finite() && exceeded <= EXCEEDED * found.range.width()) {
-            return None;
-        }
-        let ends = found.places.each_ref().map(at);
-        Some(Self { combination: Some(combination), parameters, ends })
+        // The first has all its values along this, so that the last has, too; of those a part may be enough.
+        let ends = ends_of(parameters.len(), &|xi| (combination.first)(&at(xi)))?.map(|end| at(&end));
+        let whole = Self { combination: Some(combination), parameters, ends };
+        let ends = ends_of(1, &|xi| whole.value(&whole.at(xi[0])))?.map(|end| whole.at(end[0]));
+        Some(Self { ends, ..whole })
+    }
+
+    /// The last function of its combination.
+    fn value(&self, values: &[f64]) -> f64 {
+        self.combination.as_ref().map_or(values[0], |combination| (combination.last)(values))
     }
 
     /// Whether it spares a parameter, or a part of one's interval.
@@ -189,16 +176,36 @@ impl<'e> Line<'e> {
     /// Where on the line a sample's combination has the same value; the nearest end where it lies beyond.
     fn project(&self, sample: &Sample) -> f64 {
         let own: Vec<f64> = self.parameters.iter().map(|&parameter| sample[parameter]).collect();
-        let value = |values: &[f64]| self.combination.as_ref().map_or(values[0], |of| (of.value)(values));
-        let wanted = value(&own);
+        let wanted = self.value(&own);
         let [mut below, mut above] = [-1.0, 1.0];
         for _ in 0..HALVINGS {
             let middle = 0.5 * (below + above);
-            let end = if value(&self.at(middle)) <= wanted { &mut below } else { &mut above };
+            let end = if self.value(&self.at(middle)) <= wanted { &mut below } else { &mut above };
             *end = middle;
         }
         0.5 * (below + above)
     }
+}
+
+/// ξ at which a function of k of them is least and greatest; `None` where that is not found.
+fn ends_of(k: usize, function: &dyn Fn(&[f64]) -> f64) -> Option<[Vec<f64>; 2]> {
+    let evaluate = |_: &[usize], points: &[Vec<f64>]| -> Vec<f64> { points.iter().map(|xi| function(xi)).collect() };
+    let search = RangeSearch::new(k);
+    let functions = Functions {
+        outputs: vec![0],
+        degrees: &vec![DEGREE; k],
+        are_polynomials: false,
+        rounding: &[0.0],
+        places: &[],
+        evaluate: &evaluate,
+    };
+    let values = evaluate(&[0], search.points());
+    let found = search.range(&functions, &[values], &mut Previous::default()).pop()?;
+    let beside: Vec<Vec<f64>> = found.places.iter().flat_map(|end| points_beside(end)).collect();
+    let exceeded = largest(evaluate(&[0], &beside).into_iter().map(|value| found.range.distance(value)));
+    // Written so that NaN is no range.
+    let is_found = found.range.width().is_finite() && exceeded <= EXCEEDED * found.range.width();
+    is_found.then_some(found.places)
 }
 
 /// A little to both sides of a point along each axis, inside of the box.
@@ -326,20 +333,22 @@ impl Closure for AlongLines<'_> {
 mod tests {
     use super::*;
 
-    /// A bell on a ring: from its middle, inside of the box, to the farthest corner.
+    /// A bell on a ring: from the ring, which is in the box, to the farthest corner.
     #[test]
     fn a_line_has_all_values_of_a_combination() {
         let domain = ParameterBox { nominal: vec![1.0, 0.0].into(), lower: vec![0.5, -1.0], upper: vec![2.0, 1.5] };
-        let value = |p: &[f64]| (p[0] - 1.2).powi(2) + 2.0 * (p[1] - 0.1).powi(2);
-        let combination = Combination { parameters: vec![0, 1], value: Box::new(value) };
+        let squares = |p: &[f64]| (p[0] - 1.2).powi(2) + 2.0 * (p[1] - 0.1).powi(2);
+        let bell = move |p: &[f64]| (-(squares(p) - 0.5).powi(2)).exp();
+        let combination = Combination { parameters: vec![0, 1], first: Box::new(squares), last: Box::new(bell) };
         let line = Line::through(&domain, combination).unwrap();
-        assert!(value(&line.at(-1.0)) < 1e-9, "{:?}", line.at(-1.0));
-        assert_eq!(line.at(1.0), [2.0, 1.5]);
+        assert_eq!(line.at(-1.0), [2.0, 1.5]);
+        assert!((squares(&line.at(1.0)) - 0.5).abs() < 1e-6, "{:?}", line.at(1.0));
         for sample in [[0.5, -1.0], [1.7, 0.3], [1.2, 1.5], [2.0, 1.5]] {
             let along = line.at(line.project(&sample.to_vec().into()));
-            assert!((value(&along) - value(&sample)).abs() < 1e-12, "{sample:?} {along:?}");
+            assert!((bell(&along) - bell(&sample)).abs() < 1e-12, "{sample:?} {along:?}");
         }
-        let undefined = Combination { parameters: vec![0, 1], value: Box::new(|p| (p[0] - 1.0).ln()) };
+        let undefined = |p: &[f64]| (p[0] - 1.0).ln();
+        let undefined = Combination { parameters: vec![0, 1], first: Box::new(undefined), last: Box::new(undefined) };
         assert!(Line::through(&domain, undefined).is_none());
     }
 }

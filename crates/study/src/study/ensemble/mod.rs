@@ -21,7 +21,9 @@ use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
 use crate::compile::{self, has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated, Until};
+use crate::methods::{
+    self, Combination, DenseMotions, Ensemble, EnsembleError, OfParameters, Sampling, Simulated, Until,
+};
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
@@ -277,14 +279,16 @@ impl Ensemble for Motions<'_> {
 
     fn combinations(&self) -> Vec<Combination<'_>> {
         let system = &self.simulator.system;
-        let known = |combination: compile::Combination| {
-            let compile::Combination { parameters, value } = combination;
-            let symbols: Vec<Expr> = parameters.iter().map(|&number| system.parameters[number].symbol).collect();
-            let value = move |values: &[f64]| {
-                let of = |symbol: Expr| symbols.iter().position(|&own| own == symbol).map_or(f64::NAN, |at| values[at]);
-                system.graph.evaluate(&[value], of)[0]
+        let known = |found: compile::Combination| {
+            let of = |expr: Expr| -> OfParameters<'_> {
+                let symbols = found.parameters.iter().map(|&number| system.parameters[number].symbol);
+                let symbols: Vec<Expr> = symbols.collect();
+                Box::new(move |values| {
+                    let at = |symbol: Expr| symbols.iter().position(|&own| own == symbol);
+                    system.graph.evaluate(&[expr], |symbol| at(symbol).map_or(f64::NAN, |at| values[at]))[0]
+                })
             };
-            Combination { parameters, value: Box::new(value) }
+            Combination { first: of(found.first), last: of(found.last), parameters: found.parameters }
         };
         compile::combinations(system).into_iter().map(known).collect()
     }
