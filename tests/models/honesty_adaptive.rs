@@ -39,7 +39,8 @@ fn a_bump_in_two_parameters_is_covered() {
     }
 }
 
-/// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too.
+/// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too. The
+/// parameters act by themselves as well, on a velocity of nanometres a second, so that no one number stands for them.
 #[test]
 fn a_ring_that_the_budget_does_not_resolve_is_flagged_or_covered() {
     let bounds = run(&read(

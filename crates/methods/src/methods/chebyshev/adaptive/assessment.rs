@@ -77,10 +77,16 @@ impl Adaptation<'_> {
         Ok(())
     }
 
-    /// Largest error of some rows' estimates over the one that is allowed, with its safety.
+    /// Largest error of some rows' estimates, as far as samples make it smaller, over the one that is allowed, with its
+    /// safety.
     fn worst(&self, found: &[Estimate]) -> f64 {
         let allowed = self.goal.allowed.iter().cycle();
-        largest(found.iter().zip(allowed).map(|(found, allowed)| SAFETY_OF_SURROGATE * found.error / allowed))
+        largest(
+            found
+                .iter()
+                .zip(allowed)
+                .map(|(found, allowed)| SAFETY_OF_SURROGATE * (found.error - found.of_search) / allowed),
+        )
     }
 
     /// For each of some rows the largest error at the samples with the least and the largest values, over the one that

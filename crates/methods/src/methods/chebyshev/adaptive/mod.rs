@@ -299,6 +299,7 @@ impl<'r> Adaptation<'r> {
         let nothing = Estimate {
             range: EMPTY,
             error: 0.0,
+            of_search: 0.0,
             step_error: 0.0,
             sensitivity: None,
             is_expanded: false,
