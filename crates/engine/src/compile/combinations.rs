@@ -140,6 +140,7 @@ mod tests {
         }
         m.body("b", "p*q", "1", "x", &[]);
         m.initial("b", 'x', TimeOrder::Position, "r + s*u");
+        m.initial("b", 'x', TimeOrder::Velocity, "0");
         m.output(output);
         let system = m.build();
         combinations(&system).into_iter().map(|combination| combination.parameters).collect()
@@ -162,6 +163,8 @@ mod tests {
         m.interval("p", [1.0, 1.5, 2.0]);
         m.interval("q", [1.0, 1.5, 2.0]);
         m.body("b", "1 + floor((p*q)^2)", "1", "x", &[]);
+        m.initial("b", 'x', TimeOrder::Position, "0");
+        m.initial("b", 'x', TimeOrder::Velocity, "0");
         m.output("b.x");
         let system = m.build();
         let found = combinations(&system);
