@@ -8,7 +8,8 @@
 //!
 //! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that
 //! number, `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600` begins no draw after ten
-//! minutes, `MBINT_FALSIFY_PATIENCE=300` waits five minutes for one (60 s), as a busy machine needs.
+//! minutes, `MBINT_FALSIFY_THREADS=1` makes them one after the other, `MBINT_FALSIFY_PATIENCE=300` waits five minutes for one (60 s), as a busy machine needs.
+//! `MBINT_FALSIFY_RECORD=FILE` notes every draw in a file; those that it has are not repeated, and count in the table.
 //! `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and method simple and prints them as models;
 //! `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.
 
@@ -19,6 +20,7 @@ mod families;
 mod known;
 mod questions;
 mod random;
+mod record;
 mod runge_kutta;
 mod search;
 mod shrink;
@@ -37,7 +39,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use draw::Draw;
-use table::Table;
+use record::Record;
+use table::{Scored, Table};
 use verdict::{Outcome, Verdict, examine};
 
 /// A number from the environment.
@@ -72,6 +75,7 @@ fn describe(draw: &Draw, verdict: &Verdict, number: u64) -> String {
 #[derive(Default)]
 struct Findings {
     table: Table,
+    record: Option<Record>,
     /// How often a miss of a family by a method was made simple.
     shown: BTreeMap<(&'static str, &'static str), usize>,
 }
@@ -80,11 +84,15 @@ struct Findings {
 fn falsify(seed: u64, numbers: Range<u64>, shown: usize) -> Table {
     let family: Option<String> = asked("MBINT_FALSIFY_FAMILY");
     let (begun, patience) = (Instant::now(), asked("MBINT_FALSIFY_SECONDS").unwrap_or(u64::MAX));
-    let findings = Mutex::new(Findings::default());
+    let mut findings = Findings::default();
+    findings.record =
+        asked::<String>("MBINT_FALSIFY_RECORD").map(|path| Record::open(Path::new(&path), &mut findings.table));
+    let findings = Mutex::new(findings);
     let next = AtomicU64::new(numbers.start);
     // Not by rayon, whose threads would begin another draw while one waits for its study.
     std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, NonZero::get) {
+        let threads = asked("MBINT_FALSIFY_THREADS").or_else(|| std::thread::available_parallelism().ok());
+        for _ in 0..threads.map_or(1, NonZero::get) {
             scope.spawn(|| {
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
@@ -103,13 +111,19 @@ fn falsify(seed: u64, numbers: Range<u64>, shown: usize) -> Table {
 /// One draw: what came of it is noted and, where something is wrong, shown.
 fn attack(draw: &Draw, number: u64, findings: &Mutex<Findings>, shown: usize) {
     let lock = || findings.lock().expect("no draw panics with the findings");
-    let verdicts = match examine(draw) {
-        Outcome::Judged(verdicts, seconds) => {
-            lock().table.add(draw.family, &verdicts, seconds);
-            verdicts
-        }
+    if lock().record.as_ref().is_some_and(|record| record.has(number)) {
+        return;
+    }
+    let outcome = examine(draw);
+    let scored = Scored::new(draw.family, &outcome);
+    {
+        let mut findings = lock();
+        findings.table.add(&scored);
+        findings.record.iter_mut().for_each(|record| record.add(number, &scored));
+    }
+    let verdicts = match outcome {
+        Outcome::Judged(verdicts, _) => verdicts,
         Outcome::Failed(failure) => {
-            lock().table.add_failure(draw.family, &failure);
             println!("# draw {number}, {}: {failure}\n{}", draw.family, draw.yaml());
             return;
         }

@@ -6,7 +6,11 @@ use crate::draw::{Parameter, Term};
 use crate::truth::Range;
 
 /// Candidates of each end that are refined.
-const CANDIDATES: usize = 3;
+const CANDIDATES: usize = 6;
+
+/// Most stages of a local search, and its smallest step, in cells.
+const STAGES: usize = 60;
+const FINEST: f64 = 1e-8;
 
 /// Samples of a term on a grid over its uncertain parameters.
 struct Grid<'t> {
@@ -41,6 +45,73 @@ fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -
         (term.curves)(&parameters.iter().enumerate().map(value).collect::<Vec<f64>>(), times)
     };
     parameters[which].half > 0.0 && (0..3).any(|others| curves(others, 0) != curves(others, 1))
+}
+
+/// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method
+/// (Computer Journal 3 (1960) 175): after each stage the first direction is that of its progress, since along a ridge that no
+/// axis follows the axes alone gain next to nothing.
+fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let (n, last) = (start.len(), (points - 1) as f64);
+    let (mut best, mut place, mut size) = (known, start.to_vec(), 0.25_f64);
+    let mut directions = axes(n);
+    for _ in 0..STAGES {
+        let (mut steps, mut progress) = (vec![size; n], vec![0.0; n]);
+        let (mut gained, mut failed) = (vec![false; n], vec![false; n]);
+        while steps.iter().any(|step| step.abs() > FINEST) && !gained.iter().zip(&failed).all(|(a, b)| *a && *b) {
+            for along in 0..n {
+                let moved = place.iter().zip(&directions[along]).zip(start).map(|((at, direction), start)| {
+                    (at + steps[along] * direction).clamp((start - 1.0).max(0.0), (start + 1.0).min(last))
+                });
+                let next: Vec<f64> = moved.collect();
+                let value = f(&next);
+                if value > best {
+                    (best, place, gained[along]) = (value, next, true);
+                    progress[along] += steps[along];
+                    steps[along] *= 3.0;
+                } else {
+                    failed[along] = true;
+                    steps[along] *= -0.5;
+                }
+            }
+        }
+        let length = length(&progress);
+        if length < FINEST {
+            break;
+        }
+        size = (0.5 * length).min(0.5);
+        directions = turned(&directions, &progress);
+    }
+    best
+}
+
+fn axes(n: usize) -> Vec<Vec<f64>> {
+    (0..n).map(|axis| (0..n).map(|other| f64::from(u8::from(other == axis))).collect()).collect()
+}
+
+fn length(vector: &[f64]) -> f64 {
+    vector.iter().map(|along| along * along).sum::<f64>().sqrt()
+}
+
+/// Orthonormal directions, of which the first is that of all the progress, the second that of the progress along all but the
+/// first, and so on.
+fn turned(directions: &[Vec<f64>], progress: &[f64]) -> Vec<Vec<f64>> {
+    let n = progress.len();
+    let rest = |first: usize| -> Vec<f64> {
+        (0..n).map(|axis| (first..n).map(|along| progress[along] * directions[along][axis]).sum()).collect()
+    };
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for wanted in (0..n).map(rest).chain(axes(n)) {
+        let mut own = wanted.clone();
+        for known in &found {
+            let along: f64 = own.iter().zip(known).map(|(a, b)| a * b).sum();
+            own.iter_mut().zip(known).for_each(|(own, known)| *own -= along * known);
+        }
+        let length_left = length(&own);
+        if found.len() < n && length_left > 1e-3 * length(&wanted) && length_left > FINEST {
+            found.push(own.into_iter().map(|along| along / length_left).collect());
+        }
+    }
+    found
 }
 
 impl<'t> Grid<'t> {
@@ -101,18 +172,19 @@ impl<'t> Grid<'t> {
             let exact = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[time])[channel][0];
             let between = |place: &[f64]| sign * self.interpolated(sample, place, channel, row);
             let f: &dyn Fn(&[f64]) -> f64 = if self.term.integrated { &between } else { &exact };
-            self.climb(self.place(sample), known, f)
+            climb(&self.place(sample), self.points, known, f)
         });
         refined.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether no neighbour along a parameter is greater.
+    /// Whether no neighbour along a parameter is greater. Of equals, as along a parameter that does not matter to the channel,
+    /// the first.
     fn is_local(&self, sample: usize, value: &impl Fn(usize) -> f64) -> bool {
         let here = value(sample);
         let mut stride = 1;
         for _ in &self.uncertain {
             let coordinate = sample / stride % self.points;
-            let below = coordinate > 0 && value(sample - stride) > here;
+            let below = coordinate > 0 && value(sample - stride) >= here;
             let above = coordinate + 1 < self.points && value(sample + stride) > here;
             if below || above {
                 return false;
@@ -120,30 +192,6 @@ impl<'t> Grid<'t> {
             stride *= self.points;
         }
         true
-    }
-
-    /// From a point of the grid uphill, in steps that fall from half a cell, at most one cell away.
-    fn climb(&self, start: Vec<f64>, known: f64, f: &dyn Fn(&[f64]) -> f64) -> f64 {
-        let last = (self.points - 1) as f64;
-        let (mut best, mut place, mut step) = (known, start.clone(), 0.5);
-        while step > 1e-7 {
-            let mut moved = false;
-            for axis in 0..place.len() {
-                for direction in [-1.0, 1.0] {
-                    let mut next = place.clone();
-                    next[axis] = (place[axis] + direction * step)
-                        .clamp((start[axis] - 1.0).max(0.0), (start[axis] + 1.0).min(last));
-                    let value = f(&next);
-                    if value > best {
-                        (best, place, moved) = (value, next, true);
-                    }
-                }
-            }
-            if !moved {
-                step *= 0.5;
-            }
-        }
-        best
     }
 
     /// By the polynomial of degree 4 in each parameter through the points around a sample.
@@ -178,5 +226,20 @@ impl<'t> Grid<'t> {
             total += weight * self.values[index][channel][row];
         }
         total
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::climb;
+
+    /// A bent ridge as of r cos(ω t + α(r) t²): the best point, where it leaves the cell, is off the axes.
+    #[test]
+    fn a_bent_ridge_is_followed_to_its_end() {
+        let beside = |p: &[f64]| p[1] - 1.0 - 0.7 * (p[0] - 1.0) - 0.2 * (p[0] - 1.0).powi(2);
+        let f = |p: &[f64]| 0.01 * p[0] - 50.0 * beside(p).powi(2) - 3.0 * (p[2] - 1.2).powi(2);
+        let found = climb(&[1.0; 3], 3, f(&[1.0; 3]), &f);
+        // At p₀ = 2 the ridge is at p₁ = 1.9.
+        assert!((found - 0.02).abs() < 1e-9, "{found}");
     }
 }

@@ -3,10 +3,79 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
-use crate::verdict::{Failure, Verdict};
+use crate::verdict::{Failure, Outcome, Verdict, is_missed};
 
 /// In place of a family's or a method's name.
 const ALL: &str = "all";
+
+/// What of a verdict goes into the table.
+#[derive(Clone, Debug)]
+pub struct Score {
+    /// Of the method.
+    pub label: String,
+    pub rows: usize,
+    pub flagged: usize,
+    pub misses: usize,
+    pub contradicted: usize,
+    /// Over the rows without a flag: the sum of stated and of true errors, and each row's ratio.
+    pub stated: f64,
+    pub off: f64,
+    pub ratios: Vec<f64>,
+}
+
+/// Why a draw has no bands.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    Refused,
+    Panicked,
+    OutOfTime,
+}
+
+impl Kind {
+    pub const ALL: [Self; 3] = [Self::Refused, Self::Panicked, Self::OutOfTime];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Refused => "refused",
+            Self::Panicked => "panicked",
+            Self::OutOfTime => "out of time",
+        }
+    }
+}
+
+/// A draw in the table: its bands and the seconds of the run, or why there are none.
+#[derive(Clone, Debug)]
+pub struct Scored {
+    pub family: String,
+    pub outcome: Result<(Vec<Score>, f64), Kind>,
+}
+
+impl Scored {
+    pub fn new(family: &str, outcome: &Outcome) -> Self {
+        let outcome = match outcome {
+            Outcome::Judged(verdicts, seconds) => Ok((verdicts.iter().map(Score::new).collect(), *seconds)),
+            Outcome::Failed(Failure::Refused(_)) => Err(Kind::Refused),
+            Outcome::Failed(Failure::Panicked) => Err(Kind::Panicked),
+            Outcome::Failed(Failure::OutOfTime) => Err(Kind::OutOfTime),
+        };
+        Self { family: family.to_owned(), outcome }
+    }
+}
+
+impl Score {
+    fn new(verdict: &Verdict) -> Self {
+        Self {
+            label: verdict.label.to_owned(),
+            rows: verdict.rows,
+            flagged: verdict.flagged,
+            misses: verdict.misses.len(),
+            contradicted: verdict.contradicted,
+            stated: verdict.stated,
+            off: verdict.off,
+            ratios: verdict.ratios.clone(),
+        }
+    }
+}
 
 /// Bands of a family by a method.
 #[derive(Default)]
@@ -22,23 +91,21 @@ struct Line {
     rows_excess: Vec<f64>,
     /// Of every band the mean stated over the mean true error.
     bands_excess: Vec<f64>,
-    seconds: f64,
 }
 
 impl Line {
-    fn add(&mut self, verdict: &Verdict) {
+    fn add(&mut self, score: &Score) {
         self.bands += 1;
-        self.missed += usize::from(verdict.is_missed());
-        self.rows += verdict.rows;
-        self.flagged += verdict.flagged;
-        self.misses += verdict.misses.len();
-        self.contradicted += usize::from(verdict.contradicted > 0);
-        self.rows_excess.extend(&verdict.ratios);
+        self.missed += usize::from(is_missed(score.misses, score.rows - score.flagged));
+        self.rows += score.rows;
+        self.flagged += score.flagged;
+        self.misses += score.misses;
+        self.contradicted += usize::from(score.contradicted > 0);
+        self.rows_excess.extend(&score.ratios);
         // A band that is exact up to rounding says nothing here.
-        if !verdict.ratios.is_empty() && verdict.stated.is_finite() {
-            self.bands_excess.push(verdict.stated / verdict.off);
+        if !score.ratios.is_empty() && score.stated.is_finite() {
+            self.bands_excess.push(score.stated / score.off);
         }
-        self.seconds += verdict.seconds;
     }
 }
 
@@ -51,41 +118,42 @@ fn median(values: &[f64]) -> f64 {
 /// Bands, and draws that have none.
 #[derive(Default)]
 pub struct Table {
-    lines: BTreeMap<(&'static str, &'static str), Line>,
+    /// By family and method.
+    lines: BTreeMap<(String, String), Line>,
     /// Of every family: draws, refused, panicked, out of time, seconds, the longest.
-    draws: BTreeMap<&'static str, [f64; 6]>,
+    draws: BTreeMap<String, [f64; 6]>,
 }
 
 impl Table {
-    pub fn add(&mut self, family: &'static str, verdicts: &[Verdict], seconds: f64) {
-        for verdict in verdicts {
-            for line in [(family, verdict.label), (family, ALL), (ALL, verdict.label), (ALL, ALL)] {
-                self.lines.entry(line).or_default().add(verdict);
+    pub fn add(&mut self, scored: &Scored) {
+        let draws = self.draws.entry(scored.family.clone()).or_default();
+        draws[0] += 1.0;
+        match &scored.outcome {
+            Ok((scores, seconds)) => {
+                (draws[4], draws[5]) = (draws[4] + seconds, draws[5].max(*seconds));
+                for score in scores {
+                    let (family, label) = (&*scored.family, &*score.label);
+                    for (family, label) in [(family, label), (family, ALL), (ALL, label), (ALL, ALL)] {
+                        self.lines.entry((family.to_owned(), label.to_owned())).or_default().add(score);
+                    }
+                }
             }
+            Err(kind) => draws[1 + *kind as usize] += 1.0,
         }
-        let draws = self.draws.entry(family).or_default();
-        (draws[0], draws[4]) = (draws[0] + 1.0, draws[4] + seconds);
-        draws[5] = draws[5].max(seconds);
     }
 
-    pub fn add_failure(&mut self, family: &'static str, failure: &Failure) {
-        let kind = match failure {
-            Failure::Refused(_) => 1,
-            Failure::Panicked => 2,
-            Failure::OutOfTime => 3,
-        };
-        let draws = self.draws.entry(family).or_default();
-        (draws[0], draws[kind]) = (draws[0] + 1.0, draws[kind] + 1.0);
+    fn of_all(&self, family: &str) -> Option<&Line> {
+        self.lines.get(&(family.to_owned(), ALL.to_owned()))
     }
 
     /// Bands of a family that are missed.
-    pub fn missed(&self, family: &'static str) -> usize {
-        self.lines.get(&(family, ALL)).map_or(0, |line| line.missed)
+    pub fn missed(&self, family: &str) -> usize {
+        self.of_all(family).map_or(0, |line| line.missed)
     }
 
     /// Bands with rows that contradict their own run.
     pub fn contradicted(&self) -> usize {
-        self.lines.get(&(ALL, ALL)).map_or(0, |line| line.contradicted)
+        self.of_all(ALL).map_or(0, |line| line.contradicted)
     }
 
     /// Draws that were refused or panicked. (How many are out of time hangs on the machine.)
@@ -103,7 +171,7 @@ impl Display for Table {
         writeln!(f, "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|")?;
         // The families' sums come last.
         for sums in [false, true] {
-            for ((family, method), line) in self.lines.iter().filter(|((_, method), _)| (*method == ALL) == sums) {
+            for ((family, method), line) in self.lines.iter().filter(|((_, method), _)| (method == ALL) == sums) {
                 write_line(f, family, method, line)?;
             }
         }

@@ -70,17 +70,21 @@ pub struct Verdict {
     pub ratios: Vec<f64>,
     /// Largest true width.
     pub width: f64,
-    pub seconds: f64,
 }
 
 impl Verdict {
     pub fn is_missed(&self) -> bool {
-        self.misses.len() as f64 > MISSES * (self.rows - self.flagged) as f64
+        is_missed(self.misses.len(), self.rows - self.flagged)
     }
 
     pub fn worst(&self) -> Option<&Miss> {
         self.misses.iter().max_by(|a, b| (a.off / a.stated).total_cmp(&(b.off / b.stated)))
     }
+}
+
+/// Whether a band is, given how many of its rows without a flag are.
+pub fn is_missed(misses: usize, open: usize) -> bool {
+    misses as f64 > MISSES * open as f64
 }
 
 /// Runs a draw and compares. A band that seems to be missed is compared with the truth of a denser search.
@@ -122,8 +126,6 @@ fn judge(draw: &Draw, result: &StudyResult, truth: &[Vec<Range>], unsure: &[Vec<
         let inputs = draw.outputs[place].inputs.iter();
         let coordinates: f64 = inputs.map(|&(term, _)| draw.terms[term].size).sum();
         for &band in &bands {
-            let seconds = result.summary().methods.iter().find(|taken| taken.method == band.method().name());
-            let seconds = seconds.and_then(|taken| taken.seconds).unwrap_or(0.0);
             let size = truth[place].iter().fold(coordinates, |size, range| size.max(range.upper.abs()));
             let slack: Vec<f64> = unsure[place].iter().map(|unsure| unsure + ROUNDING * size).collect();
             let ends = result.failure().is_some();
@@ -134,7 +136,7 @@ fn judge(draw: &Draw, result: &StudyResult, truth: &[Vec<Range>], unsure: &[Vec<
             let name = band.method().name();
             let label =
                 if draw.bounds.tolerance.is_some() && name == "chebyshev" { "chebyshev to a tolerance" } else { name };
-            verdicts.push(Verdict { output: place, seconds, label, contradicted, ..verdict });
+            verdicts.push(Verdict { output: place, label, contradicted, ..verdict });
         }
     }
     verdicts
@@ -167,7 +169,6 @@ fn compare(band: Band, times: &[f64], truth: &[Range], slack: &[f64], ended: boo
         off: 0.0,
         ratios: Vec::new(),
         width: truth.iter().fold(0.0, |width, range| width.max(range.upper - range.lower)),
-        seconds: 0.0,
     };
     for (row, &truth) in truth.iter().enumerate() {
         let found = Range { lower: band.lower()[row], upper: band.upper()[row] };

@@ -39,7 +39,8 @@ fn a_bump_in_two_parameters_is_covered() {
     }
 }
 
-/// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too.
+/// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too. The
+/// parameters act by themselves as well, on a velocity of nanometres a second, so that no one number stands for them.
 #[test]
 fn a_ring_that_the_budget_does_not_resolve_is_flagged_or_covered() {
     let bounds = run(&read(
@@ -59,6 +60,23 @@ bounds: { chebyshev: {}, tolerance: 0.001, budget: { solves: 1000 } }
         (a.min(b), a.max(b))
     };
     assert_honest(&bounds, "x", Method::Chebyshev, truth);
+}
+
+/// A bell on a shell of four parameters and a step across eight, of which a stiffness sees one number: no budget is enough for
+/// polynomials in all of them, and one parameter is left. No row is flagged.
+#[test]
+fn parameters_that_act_through_one_number_are_resolved() {
+    let settings = "simulation: { duration: 6, step: 0.01, output_step: 0.5 }\nbounds: { chebyshev: {}, tolerance: 1e-3, budget: { solves: 600 } }";
+    let squares = ["p0 - 0.3", "1.2*p1", "0.9*p2 + 0.2", "p3"].map(|u| format!("({u})^2")).join(" + ");
+    // From inside of the shell to the corner (−1, 1, 1, 1), where the squares are 5.34.
+    let shell = (4, format!("1 + 0.4*exp(-(({squares} - 0.8)/0.6)^2)"), (1.0 + 0.4 * (-57.25_f64).exp(), 1.4));
+    let sum: String = (0..8).map(|i| format!("{}p{i}", if i % 3 == 0 { " - " } else { " + " })).collect();
+    let step = (8, format!("1 + 0.5*tanh(0{sum})"), (1.0 - 0.5 * 8.0_f64.tanh(), 1.0 + 0.5 * 8.0_f64.tanh()));
+    for (count, s, (least, most)) in [shell, step] {
+        let bounds = softened(count, &s, settings);
+        let counted = assert_honest(&bounds, "x", Method::Chebyshev, softened_range((least, most)));
+        assert_eq!(counted, 13, "{s}");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Oscillators that see many parameters through one number: bumps, ridges, corners, rings and sums. That number's range
-//! over the box is known exactly, whatever the number of parameters.
+//! over the box is known exactly, whatever the number of parameters. Half of those that change a stiffness have two forces,
+//! which write the number in two ways: a program that looks for one number finds two.
 
 use std::sync::Arc;
 
@@ -28,6 +29,13 @@ enum Outer {
     Bell(f64, f64),
     /// tanh z
     Step,
+}
+
+/// How uᵢ are written.
+#[derive(Clone, Copy)]
+enum Form {
+    Quotients,
+    Differences,
 }
 
 #[derive(Clone)]
@@ -129,10 +137,20 @@ fn oscillator(
         })
         .collect();
     let shape = shape(random, &boxes);
-    let of_shape = format!("(1 + ({gain:?})*{})", shape.formula(&boxes));
     let is_stiffness = random.chance(0.7);
-    let (stiffness, start) = if is_stiffness { (&*of_shape, "1") } else { ("1", &*of_shape) };
-    let force = format!("s#: {{ force: {{ on: b#, value: [\"-k#*{stiffness}*b#.x\", 0] }} }}");
+    // By the last of three digits that were drawn: another number would change all that are drawn after it.
+    let is_twice = is_stiffness && (x * 100.0 / 10.0_f64.powf(x.log10().floor())).round() as u64 % 2 == 1;
+    let share = if is_twice { 0.5 * gain } else { gain };
+    let of_shape = |form: Form| format!("({share:?})*{}", shape.formula(&boxes, form));
+    let once = format!("(1 + {})", of_shape(Form::Quotients));
+    let (stiffness, start) = if is_stiffness { (&*once, "1") } else { ("1", &*once) };
+    let force = |name: &str, stiffness: &str| {
+        named(&format!("{name}#: {{ force: {{ on: b#, value: [\"-k#*{stiffness}*b#.x\", 0] }} }}"), place)
+    };
+    let mut effects = vec![force("s", stiffness)];
+    if is_twice {
+        effects.push(force("f", &of_shape(Form::Differences)));
+    }
     let start = format!("b#.x: \"x#*{start}\"");
     let hidden = move |all: &[Parameter]| {
         let (boxes, own) = all.split_at(count);
@@ -148,7 +166,7 @@ fn oscillator(
         parameters: [boxes, vec![parameter("k", place, k, 0.0), parameter("x", place, x, 0.0)]].concat(),
         bodies: vec![named("b#: { mass: 1, coordinates: [x] }", place)],
         joints: vec![],
-        effects: vec![named(&force, place)],
+        effects,
         initial: lines(&[&start, "b#.vx: 0"], place),
         guess: vec![],
         channels: lines(&["b#.x", "b#.vx"], place),
@@ -161,9 +179,12 @@ fn oscillator(
 }
 
 impl Shape {
-    fn formula(&self, boxes: &[Parameter]) -> String {
+    fn formula(&self, boxes: &[Parameter], form: Form) -> String {
         let terms = boxes.iter().zip(&self.centres).zip(&self.widths);
-        let mut terms = terms.map(|((own, centre), width)| format!("({} - ({centre:?}))/({width:?})", own.name));
+        let mut terms = terms.map(|((own, centre), width)| match form {
+            Form::Quotients => format!("({} - ({centre:?}))/({width:?})", own.name),
+            Form::Differences => format!("({}/({width:?}) - ({centre:?})/({width:?}))", own.name),
+        });
         let inner = match self.inner {
             Inner::Sum => terms.collect::<Vec<_>>().join(" + "),
             Inner::SumOfSquares => terms.map(|u| format!("({u})^2")).collect::<Vec<_>>().join(" + "),

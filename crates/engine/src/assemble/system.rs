@@ -308,8 +308,8 @@ pub enum ConditionOf {
 }
 
 impl System {
-    /// Uncertain parameters that no equation, output or start value depends on, by number.
-    pub fn unused_parameters(&self) -> Vec<usize> {
+    /// All equations, outputs and start values.
+    pub fn roots(&self) -> Vec<Expr> {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();
         roots.extend(self.inertia.iter().chain(&self.force).chain(&self.start.guess));
         roots.extend(self.named_constraints().map(|(value, _)| value));
@@ -319,7 +319,12 @@ impl System {
         roots.extend(
             self.start.conditions.iter().flat_map(|condition| [Some(condition.value), condition.rate]).flatten(),
         );
-        let used = self.graph.symbols_of(&roots);
+        roots
+    }
+
+    /// Uncertain parameters that no equation, output or start value depends on, by number.
+    pub fn unused_parameters(&self) -> Vec<usize> {
+        let used = self.graph.symbols_of(&self.roots());
         let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
         (0..self.parameters.len()).filter(unused).collect()
     }

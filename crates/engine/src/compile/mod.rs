@@ -9,10 +9,12 @@
 //!   `start`: the tapes of a consistent start (`start_equations`, `start_program`, `start_factors`), `at_sample` the
 //!   numbers that it is planned by, `nearest` what decides where it is open; `rounding`: how exactly constraints can
 //!   be computed; `equation_tapes`: the equations alone;
-//! - `switches`: where the equations switch, as at contacts;
+//! - `switches`: where the equations switch, as at contacts; `combinations`: numbers through which several parameters
+//!   act alone;
 //! - `layout`: the memory that all of them share.
 
 mod at_sample;
+mod combinations;
 mod elimination;
 mod equation_tapes;
 mod equations;
@@ -34,6 +36,7 @@ mod step;
 mod switches;
 mod tapes;
 
+pub use combinations::{Combination, combinations};
 pub use equation_tapes::{EquationsProgram, compile_equations};
 pub use equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 pub use layout::Layout;

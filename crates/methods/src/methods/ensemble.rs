@@ -185,6 +185,19 @@ pub struct Lost {
 /// Times, and motions at them.
 pub type DenseMotions = (Vec<f64>, Vec<f64>);
 
+/// Continuous functions of one or more parameters through which alone these act.
+pub struct Combination<'e> {
+    /// The parameters, by number.
+    pub parameters: Vec<usize>,
+    /// A function of their values,
+    pub first: OfParameters<'e>,
+    /// and one that is a function of the first.
+    pub last: OfParameters<'e>,
+}
+
+/// A number from values of some parameters.
+pub type OfParameters<'e> = Box<dyn Fn(&[f64]) -> f64 + Sync + 'e>;
+
 /// Outputs over time as functions of the uncertain parameters.
 pub trait Ensemble: Sync {
     /// The box of the uncertain parameters.
@@ -213,6 +226,12 @@ pub trait Ensemble: Sync {
 
     /// Whether an output's formula jumps.
     fn jumps(&self, output: usize) -> bool;
+
+    /// Functions of parameters through which alone these act, no parameter in two of them; none where that is
+    /// not known.
+    fn combinations(&self) -> Vec<Combination<'_>> {
+        Vec::new()
+    }
 
     /// From the least to the largest value of an output in a row that has been simulated so far, by whatever asked for
     /// it; empty where that is not noted.

@@ -20,8 +20,8 @@ mod taylor;
 pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose};
 pub use ensemble::{
-    Closure, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed, Sampling, Simulated,
-    Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
+    Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed,
+    OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
 pub use kept::KeptSurrogate;
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};

@@ -1,6 +1,7 @@
 //! Validation samples: held out from every surrogate, simulated with the steps as they are and some with each step
 //! halved.
 
+use super::chebyshev::Combined;
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
     BandError, Correction, Differences, Ledger, Range, Sample, TimeShift, Turning, corrections, largest,
@@ -127,7 +128,7 @@ impl ValidationTable {
 }
 
 /// A few of the samples, simulated with steps that are no multiple of the others and shorter than halved ones.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OddSteps {
     /// Numbers of the samples.
     places: Vec<usize>,
@@ -150,10 +151,12 @@ pub struct Ensembles<'e> {
 }
 
 /// The validation samples of one box under one schedule.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Validation {
     /// ξ of each.
     pub points: Vec<Vec<f64>>,
+    /// How many of them are spread over the box; they come last.
+    pub spread: usize,
     /// With the schedule's steps.
     pub direct: ValidationTable,
     /// The first of them, with each step halved.
@@ -196,8 +199,12 @@ impl Validation {
     pub fn run(ensembles: Ensembles, observed: Observed, degree: usize) -> Result<Self, EnsembleError> {
         let Ensembles { direct: ensemble, halved, .. } = ensembles;
         let domain = ensemble.domain();
-        let points = validation(domain.dimension(), degree);
-        let first = step_validation(domain.dimension()).len();
+        let mut points = step_validation(domain.dimension());
+        let spread_over_box = validation(domain.dimension(), degree).split_off(points.len());
+        // Steps err most where parameters that act through one number are fastest, which may be in any corner.
+        points.extend(Combined::new(ensemble).iter().flat_map(Combined::ends));
+        let first = points.len();
+        points.extend(spread_over_box);
         let samples = domain.samples(&points);
         let (direct, simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
         let (halved, with_halved_steps) = ValidationTable::of(halved, &samples[..first], observed, false)?;
@@ -207,7 +214,8 @@ impl Validation {
         effort += with_odd_steps;
         let simulations = points.len() + first + odd.places.len();
         let spans = direct.spans(&halved, &odd, ensemble);
-        Ok(Self { points, direct, halved, odd, simulations, effort, simulated, spans })
+        let spread = points.len() - first;
+        Ok(Self { points, spread, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
     /// Where nothing is uncertain: the nominal motion, of which so many rows are known, is the only sample, and is
@@ -228,12 +236,13 @@ impl Validation {
         let spans = direct.spans(&halved, &odd, ensemble);
         let mut effort = simulated.effort;
         effort += with_odd_steps;
-        Ok(Self { points, direct, halved, odd, simulations, effort, simulated: Simulated::default(), spans })
+        let simulated = Simulated::default();
+        Ok(Self { points, spread: 0, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
-    /// How many of the samples are spread over the box; they come last.
-    pub fn spread(&self) -> usize {
-        self.points.len() - self.points.first().map_or(0, |xi| step_validation(xi.len()).len())
+    /// The same samples at other ξ, over which they are not spread.
+    pub fn at(&self, points: Vec<Vec<f64>>) -> Self {
+        Self { points, spread: 0, ..self.clone() }
     }
 
     /// Notes what the samples have been simulated to be with the schedule's steps.

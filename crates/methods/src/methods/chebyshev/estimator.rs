@@ -14,7 +14,7 @@ pub(super) struct RangeEstimator<'a> {
     /// Samples of the whole box with the schedule's steps and with halved ones, where the time steps' errors are asked
     /// for.
     pub halved: Option<(&'a ValidationTable, &'a ValidationTable)>,
-    pub sensitivity: Option<SensitivityAnalysis>,
+    pub sensitivity: Option<SensitivityAnalysis<'a>>,
 }
 
 impl RangeEstimator<'_> {
@@ -30,15 +30,18 @@ impl RangeEstimator<'_> {
             Some(analysis) => analysis.of_row(row, &found.extents).into_iter().map(Some).collect(),
             None => vec![None; errors.len()],
         };
-        let ranges = found.extents.iter().map(|found| found.range).zip(found.expanded.into_iter().zip(found.own));
-        let estimate = |((((range, (is_expanded, is_own)), error), step_error), sensitivity)| Estimate {
-            range,
-            error,
-            step_error,
-            sensitivity,
-            is_expanded,
-            is_own,
+        let estimate = |(output, sensitivity): (usize, Option<Sensitivity>)| {
+            let extent = &found.extents[output];
+            Estimate {
+                range: extent.range,
+                error: errors[output],
+                of_search: row.of_search(output, extent),
+                step_error: step_errors[output],
+                sensitivity,
+                is_expanded: found.expanded[output],
+                is_own: found.own[output],
+            }
         };
-        ranges.zip(errors).zip(step_errors).zip(sensitivities).map(estimate).collect()
+        sensitivities.into_iter().enumerate().map(estimate).collect()
     }
 }

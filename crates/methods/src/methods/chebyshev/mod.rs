@@ -5,6 +5,7 @@
 //! (`outputs_alone`).
 
 mod adaptive;
+mod combined;
 mod composition;
 mod detail;
 mod estimator;
@@ -24,7 +25,8 @@ use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, Sample, Surrogate, largest};
-use adaptive::{Adaptation, Goal};
+use adaptive::Goal;
+pub(super) use combined::Combined;
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, Row};
 use estimator::RangeEstimator;
@@ -318,7 +320,7 @@ fn adapted(
     if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
         return Ok(found);
     }
-    let adapted = Adaptation::new(ensemble, goal, validation, request.keep).search()?;
+    let adapted = combined::search(ensemble, goal, validation, request.keep)?;
     let outputs = ensemble.outputs();
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
     for (place, estimate) in adapted.found.into_iter().enumerate() {

@@ -6,7 +6,7 @@ use std::ops::Range as Rows;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated};
+use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated};
 use crate::numerics::{ParameterBox, Range, Sample};
 
 /// The outputs of an ensemble, and nothing that they follow from.
@@ -39,6 +39,10 @@ impl Ensemble for OutputsAlone<'_> {
 
     fn jumps(&self, output: usize) -> bool {
         self.0.jumps(output)
+    }
+
+    fn combinations(&self) -> Vec<Combination<'_>> {
+        self.0.combinations()
     }
 
     fn seen(&self, row: usize, output: usize) -> Range {

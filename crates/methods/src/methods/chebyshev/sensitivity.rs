@@ -4,11 +4,13 @@ use std::f64::consts::PI;
 
 use symdiff::math;
 
+use super::combined::Combined;
 use super::composition::Row;
 use super::range_search::block;
 use crate::methods::result::Sensitivity;
 use crate::numerics::{
-    Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseWork, Surrogate, SurrogateWork, TensorGrid,
+    Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseGrid, SparseWork, Surrogate, SurrogateWork,
+    TensorGrid,
 };
 
 /// Degree of the polynomials whose variance is decomposed, by the number of parameters: those of the outputs, which
@@ -55,17 +57,31 @@ impl Predicted for Row<'_> {
     }
 }
 
+/// Most nodes of the polynomials of many parameters that act through few numbers, and their highest degree.
+const MOST_NODES: usize = 500;
+const MOST_DEGREE: u8 = 6;
+
+/// Outputs that follow from surrogates over lines through the box.
+struct OverLines<'a> {
+    combined: &'a Combined<'a>,
+    /// Polynomials over the box, of more parameters than fine ones are made of.
+    surrogate: Surrogate,
+    /// Where on the lines the samples are of these, or of the fine polynomials.
+    along: Vec<Vec<f64>>,
+}
+
 /// What is the same in all rows.
-pub(super) struct SensitivityAnalysis {
+pub(super) struct SensitivityAnalysis<'a> {
     /// ξ of the nominal parameters.
     nominal: Vec<f64>,
     fine: Option<Fine>,
+    lines: Option<OverLines<'a>>,
     own: SobolDecomposition,
     /// Whether any interval is wider than its rounding: else all that varies is rounding.
     varies: bool,
 }
 
-impl SensitivityAnalysis {
+impl<'a> SensitivityAnalysis<'a> {
     /// For outputs that follow from a surrogate over a box.
     pub fn new(domain: &ParameterBox, surrogate: &Surrogate) -> Self {
         let k = domain.dimension();
@@ -73,17 +89,28 @@ impl SensitivityAnalysis {
         let degree = k.checked_sub(1).and_then(|place| DEGREES.get(place));
         let fine = degree.map(|&degree| Fine::new(degree, &nominal));
         let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
-        Self { nominal, fine, own: SobolDecomposition::new(surrogate.basis()), varies }
+        Self { nominal, fine, lines: None, own: SobolDecomposition::new(surrogate.basis()), varies }
+    }
+
+    /// For outputs that follow from surrogates over lines through a box: of the parameters of the box.
+    pub fn over(combined: &'a Combined<'a>) -> Self {
+        let domain = combined.of_box();
+        let surrogate = Surrogate::sparse(&of_total_degree(domain.dimension()));
+        let of_box = Self::new(domain, &surrogate);
+        let samples = of_box.fine.as_ref().map_or(&surrogate, |fine| &fine.surrogate).samples();
+        let along = samples.iter().map(|xi| combined.project(xi)).collect();
+        Self { lines: Some(OverLines { combined, surrogate, along }), ..of_box }
     }
 
     /// Sensitivities of every output, whose ranges are known.
     pub fn of_row(&self, row: &impl Predicted, found: &[Extent]) -> Vec<Sensitivity> {
         let (surrogate, decomposition) = match &self.fine {
             Some(fine) => (&fine.surrogate, &fine.decomposition),
-            None => (row.surrogate(), &self.own),
+            None => (self.lines.as_ref().map_or(row.surrogate(), |lines| &lines.surrogate), &self.own),
         };
         let every: Vec<usize> = (0..row.outputs()).collect();
-        let values = row.predict_some(&every, surrogate.samples());
+        let points = self.lines.as_ref().map_or(surrogate.samples(), |lines| &lines.along);
+        let values = row.predict_some(&every, points);
         let coefficients = surrogate.coefficients(&values, &mut SurrogateWork::default());
         let k = self.nominal.len();
         let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, &coefficients, found, axis)).collect();
@@ -106,9 +133,10 @@ impl SensitivityAnalysis {
             return fine.widths_without(coefficients, axis);
         }
         let replaced = |place: &Vec<f64>| {
-            let mut place = place.clone();
+            let lines = self.lines.as_ref().map(|lines| lines.combined);
+            let mut place = lines.map_or_else(|| place.clone(), |combined| combined.xi(place));
             place[axis] = self.nominal[axis];
-            place
+            lines.map_or(place.clone(), |combined| combined.project(&place))
         };
         let outputs: Vec<usize> = (0..found.len()).collect();
         let of_block = |outputs: &[usize]| -> Vec<f64> {
@@ -119,6 +147,20 @@ impl SensitivityAnalysis {
         };
         outputs.chunk_by(|a, b| block(*a) == block(*b)).flat_map(of_block).collect()
     }
+}
+
+/// A sparse grid of all terms up to the highest degree that does not take too many nodes.
+fn of_total_degree(k: usize) -> SparseGrid {
+    let mut grid = SparseGrid::new(&vec![MOST_DEGREE; k]);
+    for _ in 0..MOST_DEGREE {
+        // All of the next degree.
+        let next = grid.candidates();
+        if grid.len() > 1 && grid.len() + next.len() > MOST_NODES {
+            break;
+        }
+        next.iter().for_each(|levels| grid.add(levels));
+    }
+    grid
 }
 
 impl Fine {

@@ -13,14 +13,17 @@ use std::ops::Range as Rows;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use symdiff::Expr;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
-use crate::compile::{has_kink, jumps};
+use crate::compile::{self, has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated, Until};
+use crate::methods::{
+    self, Combination, DenseMotions, Ensemble, EnsembleError, OfParameters, Sampling, Simulated, Until,
+};
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
@@ -267,6 +270,22 @@ impl Ensemble for Motions<'_> {
             system.outputs.iter().map(|output| jumps(&system.graph, output.expr)).collect()
         };
         self.jumps.get_or_init(of_all)[output]
+    }
+
+    fn combinations(&self) -> Vec<Combination<'_>> {
+        let system = &self.simulator.system;
+        let known = |found: compile::Combination| {
+            let of = |expr: Expr| -> OfParameters<'_> {
+                let symbols = found.parameters.iter().map(|&number| system.parameters[number].symbol);
+                let symbols: Vec<Expr> = symbols.collect();
+                Box::new(move |values| {
+                    let at = |symbol: Expr| symbols.iter().position(|&own| own == symbol);
+                    system.graph.evaluate(&[expr], |symbol| at(symbol).map_or(f64::NAN, |at| values[at]))[0]
+                })
+            };
+            Combination { first: of(found.first), last: of(found.last), parameters: found.parameters }
+        };
+        compile::combinations(system).into_iter().map(known).collect()
     }
 
     fn seen(&self, row: usize, output: usize) -> Range {

@@ -77,10 +77,16 @@ impl Adaptation<'_> {
         Ok(())
     }
 
-    /// Largest error of some rows' estimates over the one that is allowed, with its safety.
+    /// Largest error of some rows' estimates, as far as samples make it smaller, over the one that is allowed, with its
+    /// safety.
     fn worst(&self, found: &[Estimate]) -> f64 {
         let allowed = self.goal.allowed.iter().cycle();
-        largest(found.iter().zip(allowed).map(|(found, allowed)| SAFETY_OF_SURROGATE * found.error / allowed))
+        largest(
+            found
+                .iter()
+                .zip(allowed)
+                .map(|(found, allowed)| SAFETY_OF_SURROGATE * (found.error - found.of_search) / allowed),
+        )
     }
 
     /// For each of some rows the largest error at the samples with the least and the largest values, over the one that
@@ -107,8 +113,10 @@ impl Adaptation<'_> {
             search: &self.search,
             validation: (&sub_box.points, &sub_box.direct),
             halved: (detail != Detail::Errors).then_some((&self.validation.direct, &self.validation.halved)),
-            sensitivity: (detail == Detail::Sensitivities)
-                .then(|| SensitivityAnalysis::new(&sub_box.domain, &surrogate)),
+            sensitivity: (detail == Detail::Sensitivities).then(|| match self.combined {
+                Some(combined) => SensitivityAnalysis::over(combined),
+                None => SensitivityAnalysis::new(&sub_box.domain, &surrogate),
+            }),
         };
         let keeps = self.kept.is_some() && detail != Detail::Errors;
         let look = |place: usize, row: &Row, previous: &mut Previous| {

@@ -16,6 +16,7 @@ use std::time::Instant;
 
 use rustc_hash::FxHashMap;
 
+use super::combined::Combined;
 use super::composition::{Composer, courses, turning};
 use super::detail::Detail;
 use super::range_search::RangeSearch;
@@ -83,6 +84,8 @@ pub(super) struct Adaptation<'r> {
     /// Surrogates are looked at in every so many rows.
     every: usize,
     search: RangeSearch,
+    /// The ensemble, where it is one over lines through a box.
+    combined: Option<&'r Combined<'r>>,
     /// Of the whole box.
     validation: &'r Validation,
     /// The surrogate that is kept, box by box, where one is.
@@ -102,9 +105,15 @@ impl<'r> Adaptation<'r> {
             exhausted: false,
             every,
             search: RangeSearch::new(ensemble.domain().dimension()),
+            combined: None,
             validation,
             kept: keep.then(KeptSurrogate::default),
         }
+    }
+
+    /// Over lines through a box, before the first simulation.
+    pub fn over(combined: &'r Combined<'r>, goal: Goal, validation: &'r Validation) -> Self {
+        Self { combined: Some(combined), ..Self::new(combined, goal, validation, false) }
     }
 
     /// Refines until the goal is met or the budget is spent.
@@ -113,7 +122,7 @@ impl<'r> Adaptation<'r> {
     /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
     pub fn search(mut self) -> Result<Adapted, EnsembleError> {
         let direct = (Cow::Borrowed(self.validation.points.as_slice()), Cow::Borrowed(&self.validation.direct));
-        let spread = self.validation.spread();
+        let spread = self.validation.spread;
         let mut boxes = vec![self.sub_box(self.ensemble.domain().clone(), direct, spread)?];
         loop {
             let worst = (0..boxes.len()).max_by(|&a, &b| boxes[a].error.total_cmp(&boxes[b].error)).unwrap_or(0);
@@ -162,7 +171,7 @@ impl<'r> Adaptation<'r> {
                         let (inherited, known) = whole.validation_in_half(axis, side);
                         let points = [self.validation.points.as_slice(), &inherited].concat();
                         let direct = if inherited.is_empty() { direct } else { direct.with(&known) };
-                        let spread = self.validation.spread();
+                        let spread = self.validation.spread;
                         boxes.push(self.sub_box(half, (Cow::Owned(points), Cow::Owned(direct)), spread)?);
                     }
                 }
@@ -290,6 +299,7 @@ impl<'r> Adaptation<'r> {
         let nothing = Estimate {
             range: EMPTY,
             error: 0.0,
+            of_search: 0.0,
             step_error: 0.0,
             sensitivity: None,
             is_expanded: false,

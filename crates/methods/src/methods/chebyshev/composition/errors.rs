@@ -17,6 +17,11 @@ const MOST_MOVED: usize = 4;
 const FAR: f64 = 0.1;
 
 impl Row<'_> {
+    /// What of an output's error no sample makes smaller: that of the search for ends at jumps.
+    pub fn of_search(&self, output: usize, found: &Extent) -> f64 {
+        if self.ensemble.jumps(output) { found.gap } else { 0.0 }
+    }
+
     /// Errors of the outputs at a glance: how far the coordinates' errors move them where the samples have their least
     /// and largest values. Near an extreme that is an upper bound of what moves the extreme itself.
     pub fn errors_at_samples(&self, (points, direct): (&[Vec<f64>], &ValidationTable), row: usize) -> Vec<f64> {

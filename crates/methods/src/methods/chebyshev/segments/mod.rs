@@ -119,6 +119,7 @@ fn composed(
             Estimate {
                 range: extent.range,
                 error: largest(outside.chain([moved])),
+                of_search: 0.0,
                 step_error: f64::NAN,
                 sensitivity: Some(sensitivity),
                 is_expanded: false,
