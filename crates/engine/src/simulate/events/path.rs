@@ -51,6 +51,11 @@ const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 6.0;
 
+/// Share of a step over which the change of a rate is taken, and rates beside an extreme that are none, as a share of
+/// those at the step's ends.
+const FOR_BEND: f64 = 1e-3;
+const FLAT: f64 = 1e-7;
+
 /// Steps that are tried at most: motions that are worth cutting take hundreds.
 const MOST_STEPS: usize = 3000;
 
@@ -213,6 +218,53 @@ impl<'s> Path<'s> {
         // Of those that cross at once, the first by number.
         let at_once = |(_, share): &(usize, f64)| (share - first) * step <= SAME * self.duration;
         found.into_iter().find(at_once)
+    }
+
+    /// (value, rate) of a switch at the end of the step that was taken.
+    pub fn at_end(&self, switch: usize) -> [f64; 2] {
+        self.watch.at_end(switch, 0)
+    }
+
+    /// Change of a switch's rate with the time at the end of the step that was taken.
+    pub fn bend(&mut self, step: PathStep, switch: usize) -> f64 {
+        let back = FOR_BEND * (step.end - step.begin);
+        let [_, rate] = self.at_end(switch);
+        self.attempt(step.end - back);
+        let [_, before] = self.at_end(switch);
+        self.attempt(step.end);
+        (rate - before) / back
+    }
+
+    /// The least value of `sign` times a switch within the step that was taken, where it falls first and rises at the
+    /// end: the zero of its rate by the secant method that keeps both sides.
+    pub fn least(&mut self, step: PathStep, switch: usize, sign: f64) -> Option<f64> {
+        let [[_, first], [_, last]] = [self.watch.at_beginning(switch, 0), self.at_end(switch)];
+        let (mut low, mut high) = ((step.begin, sign * first), (step.end, sign * last));
+        // Written so that unknown rates end it.
+        if !(low.1 < 0.0 && high.1 > 0.0) {
+            return None;
+        }
+        let mut least = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            let time = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            if !(time > step.begin && time < step.end) {
+                break;
+            }
+            self.attempt(time);
+            let [value, rate] = self.at_end(switch).map(|value| sign * value);
+            least = least.min(value);
+            if rate.abs() <= FLAT * (first.abs() + last.abs()) {
+                break;
+            }
+            // The end that stays counts half the next time.
+            if rate < 0.0 {
+                (low, high.1) = ((time, rate), 0.5 * high.1);
+            } else {
+                (high, low.1) = ((time, rate), 0.5 * low.1);
+            }
+        }
+        self.attempt(step.end);
+        Some(least)
     }
 
     /// Prepares [`interpolate`](Self::interpolate) in the step that was taken.

@@ -3,11 +3,15 @@
 use rayon::prelude::*;
 use symdiff::WIDTHS;
 
-use super::segments::Segments;
-use super::tile::SegmentTile;
-use crate::numerics::{Sample, SegmentMotions};
+use super::boundary::margins;
+use super::followed::Spelled;
+use super::path::Path;
+use super::segments::{Boundary, Segments};
+use super::tile::{Lanes, SegmentTile};
+use crate::compile::SwitchProgram;
+use crate::numerics::{BoundaryMargins, CutMotions, Sample, SegmentMotions};
 use crate::simulate::control::Schedule;
-use crate::simulate::ensemble::{Observed, RowClosure, Stop, put_lanes, stops_of_lost};
+use crate::simulate::ensemble::{Observed, RowClosure, Stop, stops_of_lost};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
@@ -19,8 +23,12 @@ const WIDTH: usize = 16;
 #[derive(Debug)]
 pub struct SegmentRun<'s> {
     simulator: &'s Simulator,
+    segments: &'s Segments,
     tiles: Vec<RowTile<'s>>,
-    samples: usize,
+    samples: Vec<Sample>,
+    /// By sample.
+    words: Vec<Option<usize>>,
+    duration: f64,
     interruption: Interruption<'s>,
     /// Whether it ended at an interruption.
     is_cut: bool,
@@ -47,21 +55,44 @@ impl<'s> SegmentRun<'s> {
         segments: &'s Segments,
         duration: f64,
     ) -> Result<Self, SimulationError> {
-        let interruption = Interruption::default();
-        let Some(program) = simulator.switches() else {
-            return Ok(Self { simulator, tiles: Vec::new(), samples: 0, interruption, is_cut: false });
+        let mut run = Self {
+            simulator,
+            segments,
+            tiles: Vec::new(),
+            samples: samples.to_vec(),
+            words: Vec::new(),
+            duration,
+            interruption: Interruption::default(),
+            is_cut: false,
         };
-        let at_once = samples.len().div_ceil(rayon::current_num_threads().max(1)).clamp(1, WIDTH);
-        let of_tile = |(place, samples): (usize, &[Sample])| {
-            let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
-            let tile = SegmentTile::start(simulator, (program, segments), (place * at_once, samples, width), duration)?;
-            let start = simulator.assemble(width, 0.0, |lane| samples[lane.min(samples.len() - 1)].clone())?;
+        let Some(program) = simulator.switches() else { return Ok(run) };
+        let spell = |sample: &Sample| Ok(Spelled::by(run.path(program, sample)?, segments));
+        let spelled: Vec<Spelled> = samples.par_iter().map(spell).collect::<Result<_, SimulationError>>()?;
+        let mut lanes: Vec<Lanes> = Vec::new();
+        for word in (0..segments.words.len()).map(Some).chain([None]) {
+            let indices: Vec<usize> = (0..samples.len()).filter(|&sample| spelled[sample].word == word).collect();
+            let at_once = indices.len().div_ceil(rayon::current_num_threads().max(1)).clamp(1, WIDTH);
+            lanes.extend(indices.chunks(at_once).map(|indices| Lanes {
+                word: word.map(|word| &segments.words[word]),
+                indices: indices.to_vec(),
+                spelled: indices.iter().map(|&sample| spelled[sample].clone()).collect(),
+            }));
+        }
+        let of_lanes = |lanes: Lanes<'s>| {
+            let own: Vec<Sample> = lanes.indices.iter().map(|&sample| samples[sample].clone()).collect();
+            let width = WIDTHS.into_iter().find(|&width| width >= own.len()).unwrap_or(own.len());
+            let tile = SegmentTile::start(simulator, (program, segments), lanes, (&own, width), duration)?;
+            let start = simulator.assemble(width, 0.0, |lane| own[lane.min(own.len() - 1)].clone())?;
             let rows = RowClosure::new(simulator, &start)?;
             Ok(RowTile { tile, rows, alive: vec![true; width], deviates: None })
         };
-        let chunks: Vec<(usize, &[Sample])> = samples.chunks(at_once).enumerate().collect();
-        let tiles = chunks.into_par_iter().map(of_tile).collect::<Result<Vec<_>, SimulationError>>()?;
-        Ok(Self { simulator, tiles, samples: samples.len(), interruption, is_cut: false })
+        run.tiles = lanes.into_par_iter().map(of_lanes).collect::<Result<_, SimulationError>>()?;
+        run.words = spelled.iter().map(|spelled| spelled.word).collect();
+        Ok(run)
+    }
+
+    fn path(&self, program: &'s SwitchProgram, sample: &Sample) -> Result<Path<'s>, SimulationError> {
+        Path::start(self.simulator, program, sample, (self.duration, self.segments.tolerance))
     }
 
     /// As [`EnsembleRun::heeding`](crate::simulate::EnsembleRun::heeding).
@@ -92,12 +123,16 @@ impl<'s> SegmentRun<'s> {
             return Vec::new();
         };
         into.clear();
-        into.resize(rows.len() * lines * self.samples, 0.0);
+        let samples = self.samples.len();
+        into.resize(rows.len() * lines * samples, 0.0);
         let mut stops = Vec::new();
         for (RowTile { tile, .. }, (values, stopped)) in self.tiles.iter().zip(parts) {
-            put_lanes(&values, tile.width(), tile.first..tile.first + tile.count, into, self.samples);
-            stops.extend(stopped);
+            for (line, of_tile) in values.chunks_exact(tile.width()).enumerate() {
+                tile.samples.iter().zip(of_tile).for_each(|(sample, value)| into[line * samples + sample] = *value);
+            }
+            stops.extend(stopped.into_iter().map(|stop| Stop { sample: tile.samples[stop.sample], ..stop }));
         }
+        stops.sort_by_key(|stop| (stop.row, stop.sample));
         stops
     }
 
@@ -106,35 +141,71 @@ impl<'s> SegmentRun<'s> {
         self.tiles.iter().filter_map(|tile| tile.deviates).min()
     }
 
-    /// The motions in their segments, to the end; `None` where a sample meets other events.
-    pub fn motions(mut self, segments: &Segments) -> Option<SegmentMotions> {
-        if self.tiles.iter().any(|tile| tile.tile.deviates.is_some()) {
+    /// The motions in their segments, to the end; `None` where an instant cannot be solved for.
+    pub fn motions(mut self) -> Option<CutMotions> {
+        let strays = |tile: &&RowTile| tile.tile.word.is_none();
+        let deviates = |tile: &RowTile| tile.tile.deviates.unwrap_or(f64::INFINITY);
+        let known_to = self.tiles.iter().filter(strays).map(deviates).fold(self.segments.horizon, f64::min);
+        self.tiles.retain(|tile| tile.tile.word.is_some());
+        self.tiles.par_iter_mut().for_each(|tile| tile.tile.march_to_the_end());
+        if self.tiles.iter().any(|tile| deviates(tile) < self.segments.horizon) {
             return None;
         }
-        let count = segments.steps.len();
-        self.tiles.par_iter_mut().for_each(|tile| (0..count).for_each(|_| tile.tile.march()));
-        let gathered = |of_tile: &dyn Fn(&SegmentTile) -> Vec<f64>| -> Vec<f64> {
-            let parts: Vec<(Vec<f64>, &SegmentTile)> =
-                self.tiles.iter().map(|tile| (of_tile(&tile.tile), &tile.tile)).collect();
-            let lines = parts.first().map_or(0, |(values, tile)| values.len() / tile.width());
-            let line = |line: usize| {
-                parts.iter().flat_map(move |(values, tile)| values[line * tile.width()..][..tile.count].iter().copied())
-            };
-            (0..lines).flat_map(line).collect()
+        let of_word = |number: usize| {
+            let word = &self.segments.words[number];
+            let is_of_word = |tile: &&RowTile| tile.tile.word.is_some_and(|own| std::ptr::eq(own, word));
+            let tiles: Vec<&SegmentTile> = self.tiles.iter().filter(is_of_word).map(|tile| &tile.tile).collect();
+            gathered(&tiles, &word.steps)
         };
-        let begin = |number: usize| gathered(&|tile| tile.recorded[number].begin.clone());
-        let end = |number: usize| {
-            gathered(&|tile| {
-                let Some(last) = tile.recorded.get(number) else { return Vec::new() };
-                last.begin.iter().zip(&last.length).map(|(begin, length)| begin + length).collect()
+        let words = (0..self.segments.words.len()).map(of_word).collect();
+        let boundaries = self.segments.boundaries.iter().map(|boundary| self.margins(boundary)).collect();
+        Some(CutMotions { words, boundaries, known_to })
+    }
+
+    /// Margins of all samples.
+    fn margins(&self, boundary: &Boundary) -> BoundaryMargins {
+        let is_of = |words: &[usize], sample: usize| self.words[sample].is_some_and(|word| words.contains(&word));
+        let all = (0..self.samples.len())
+            .map(|sample| (sample, is_of(&boundary.met, sample)))
+            .filter(|&(sample, is_met)| is_met || is_of(&boundary.missed, sample));
+        let all: Vec<(usize, bool)> = all.collect();
+        let path = |sample: usize| self.path(self.simulator.switches()?, &self.samples[sample]).ok();
+        let found = margins(boundary, &all, path, self.segments.horizon);
+        let mut values = vec![f64::NAN; self.samples.len()];
+        all.iter().zip(found).for_each(|((sample, _), margin)| values[*sample] = margin);
+        BoundaryMargins { met: boundary.met.clone(), missed: boundary.missed.clone(), values }
+    }
+}
+
+/// Motions of all samples of a word.
+fn gathered(tiles: &[&SegmentTile], steps: &[Vec<f64>]) -> SegmentMotions {
+    let count = steps.len();
+    let of_all = |of_tile: &dyn Fn(&SegmentTile) -> Vec<f64>| -> Vec<f64> {
+        let parts: Vec<(Vec<f64>, &SegmentTile)> = tiles.iter().map(|tile| (of_tile(tile), *tile)).collect();
+        let lines = parts.first().map_or(0, |(values, tile)| values.len() / tile.width());
+        let line = |line: usize| {
+            parts.iter().flat_map(move |(values, tile)| {
+                values[line * tile.width()..][..tile.samples.len()].iter().copied()
             })
         };
-        let times = (0..count).map(begin).chain(count.checked_sub(1).map(end)).collect();
-        let nodes = |number: usize| {
-            let count = self.tiles.first().map_or(0, |tile| tile.tile.recorded[number].nodes.len());
-            (0..count).map(|node| gathered(&|tile| tile.recorded[number].nodes[node].clone())).collect()
-        };
-        Some(SegmentMotions { steps: segments.steps.clone(), times, nodes: (0..count).map(nodes).collect() })
+        (0..lines).flat_map(line).collect()
+    };
+    let begin = |number: usize| of_all(&|tile| tile.recorded[number].begin.clone());
+    let end = |number: usize| {
+        of_all(&|tile| {
+            let Some(last) = tile.recorded.get(number) else { return Vec::new() };
+            last.begin.iter().zip(&last.length).map(|(begin, length)| begin + length).collect()
+        })
+    };
+    let nodes = |number: usize| {
+        let count = tiles.first().map_or(0, |tile| tile.recorded[number].nodes.len());
+        (0..count).map(|node| of_all(&|tile| tile.recorded[number].nodes[node].clone())).collect()
+    };
+    SegmentMotions {
+        samples: tiles.iter().flat_map(|tile| tile.samples.iter().copied()).collect(),
+        steps: steps.to_vec(),
+        times: (0..count).map(begin).chain(count.checked_sub(1).map(end)).collect(),
+        nodes: (0..count).map(nodes).collect(),
     }
 }
 
@@ -165,7 +236,7 @@ impl RowTile<'_> {
             self.rows.record(observed, &state, values);
             stops.extend(stops_of_lost(
                 &mut self.alive,
-                self.tile.first..self.tile.first + self.tile.count,
+                0..self.tile.samples.len(),
                 &state,
                 row,
                 time,

@@ -277,9 +277,9 @@ impl BoundingMethod for Chebyshev {
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
         if composes
             && self.expand == Expand::Coordinates
-            && let Some((bands, simulated)) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
+            && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
         {
-            return Ok(bands.finish(samples.len(), simulated));
+            return Ok(result);
         }
         let mut kept_rows = request.keep.then(Vec::new);
         let (bands, simulated) = match self.expand {

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 
 use super::Motions;
 use crate::methods::Ensemble;
-use crate::numerics::{STEP_NODES, Sample, SegmentMotions};
+use crate::numerics::{STEP_NODES, Sample, CutMotions};
 use crate::simulate::{SegmentRun, SimulationError};
 
 /// Values of motions that are held at once, at most.
@@ -15,7 +15,7 @@ impl Motions<'_> {
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
-    pub(super) fn cut(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, SimulationError> {
+    pub(super) fn cut(&self, samples: &[Sample]) -> Result<Option<CutMotions>, SimulationError> {
         let Some(segments) = self.schedule.segments() else { return Ok(None) };
         if STEP_NODES * segments.count() * 2 * self.scales().len() * samples.len() > MOST_VALUES {
             return Ok(None);
@@ -23,6 +23,6 @@ impl Motions<'_> {
         let run = SegmentRun::start(self.simulator, samples, segments, self.schedule.end())?;
         self.progress.advance(samples.len() * self.schedule.rows);
         self.over.fetch_add(samples.len(), Ordering::Relaxed);
-        Ok(run.motions(segments))
+        Ok(run.motions())
     }
 }

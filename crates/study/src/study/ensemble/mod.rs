@@ -21,7 +21,7 @@ use super::reduced::{Store, steps_of};
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
 use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated, Until};
-use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
+use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
     SimulationError, Simulator, Steps, Stop, choose_independent,
@@ -307,7 +307,7 @@ impl Ensemble for Motions<'_> {
         Ok(self.dense(samples)?)
     }
 
-    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
+    fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         Ok(self.cut(samples)?)
     }
 

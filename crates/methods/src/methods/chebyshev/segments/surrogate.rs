@@ -1,14 +1,15 @@
-//! Polynomials of the instants of events, and of the motion between them.
+//! Polynomials of the instants of events, and of the motion between them, of one word.
 
-use crate::numerics::{
-    STEP_NODES, SegmentMotions, SparseBasis, SparseWork, Surrogate, SurrogateWork, largest, step_weights, truncation,
-};
+use super::basis::{Basis, Level};
+use crate::numerics::{STEP_NODES, SegmentMotions, largest, step_weights};
 
-/// Motions cut at events, as functions of the parameters.
+/// Motions of one word, as functions of the parameters in a part of the box.
 pub(super) struct SegmentSurrogate<'a> {
-    basis: &'a SparseBasis,
+    basis: Basis<'a>,
+    /// Surfaces that end the part: it is where each of them, times the sign, is positive.
+    pub ends: Vec<(Level, f64)>,
     /// Ends of the steps of each segment, as shares of its length.
-    steps: &'a [Vec<f64>],
+    steps: Vec<Vec<f64>>,
     /// Coefficients of the times at which segments begin, and at which the last ends.
     times: Vec<Vec<f64>>,
     /// Coefficients of each of the 2n lines, by segment and node.
@@ -24,9 +25,12 @@ pub(super) struct Point {
     terms: Vec<f64>,
     /// When segments begin, and when the last ends, s.
     pub times: Vec<f64>,
+    /// Distance from each surface that ends the part, in its own units; negative beyond it.
+    pub margins: Vec<f64>,
 }
 
 /// Largest errors at validation samples, or what the polynomials lack.
+#[derive(Clone, Debug)]
 pub(super) struct SegmentErrors {
     /// Of the instants, s.
     pub times: Vec<f64>,
@@ -39,15 +43,18 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl<'a> SegmentSurrogate<'a> {
-    pub fn new(surrogate: &'a Surrogate, motions: &'a SegmentMotions) -> Self {
-        let mut work = SurrogateWork::default();
-        let mut coefficients = |values: &[f64]| surrogate.coefficients(values, &mut work);
+    /// From what gives the coefficients of values at the motions' samples, line by line.
+    pub fn new(
+        basis: Basis<'a>,
+        ends: Vec<(Level, f64)>,
+        motions: &SegmentMotions,
+        mut coefficients: impl FnMut(&[f64]) -> Vec<f64>,
+    ) -> Self {
         let times = motions.times.iter().map(|times| coefficients(times)).collect();
         let nodes: Vec<Vec<Vec<f64>>> =
             motions.nodes.iter().map(|nodes| nodes.iter().map(|node| coefficients(node)).collect()).collect();
-        let basis = surrogate.basis();
         let lines = nodes.first().and_then(|nodes| nodes.first()).map_or(0, |node| node.len() / basis.len());
-        Self { basis, steps: &motions.steps, times, nodes, lines }
+        Self { basis, ends, steps: motions.steps.clone(), times, nodes, lines }
     }
 
     /// Number of positions and velocities, 2n.
@@ -62,18 +69,13 @@ impl<'a> SegmentSurrogate<'a> {
 
     /// Points with the instants of their events.
     pub fn points(&self, xi: Vec<Vec<f64>>) -> Vec<Point> {
-        let terms = self.basis.len();
-        let mut unit = vec![0.0; terms * terms];
-        (0..terms).for_each(|term| unit[term * terms + term] = 1.0);
-        let mut values = vec![0.0; terms * xi.len()];
-        self.basis.values(&xi, &unit, &mut values, &mut SparseWork::default());
-        let count = xi.len();
-        let point = |(place, xi): (usize, Vec<f64>)| {
-            let terms: Vec<f64> = values.iter().skip(place).step_by(count).copied().collect();
+        let values = self.basis.values(&xi);
+        let point = |(xi, terms): (Vec<f64>, Vec<f64>)| {
             let times = self.times.iter().map(|time| dot(time, &terms)).collect();
-            Point { xi, terms, times }
+            let margins = self.ends.iter().map(|(level, sign)| sign * level.at(&xi)).collect();
+            Point { xi, terms, times, margins }
         };
-        xi.into_iter().enumerate().map(point).collect()
+        xi.into_iter().zip(values).map(point).collect()
     }
 
     /// The motion (2n) of a point at a time on the branch of a segment, which goes on beyond its ends.
@@ -101,6 +103,11 @@ impl Point {
         let inner = &self.times[1..self.times.len() - 1];
         inner.iter().take_while(|&&begin| begin <= time).count()
     }
+
+    /// Whether it is in the word's part of the box.
+    pub fn is_inside(&self) -> bool {
+        self.margins.iter().all(|margin| *margin >= 0.0)
+    }
 }
 
 impl SegmentErrors {
@@ -109,7 +116,7 @@ impl SegmentErrors {
         let points = surrogate.points(xi.to_vec());
         let differences = |coefficients: &[f64], values: &[f64]| {
             let own = points.iter().zip(values).map(|(point, value)| dot(coefficients, &point.terms) - value);
-            largest(own.chain([truncation(surrogate.basis, coefficients)]))
+            largest(own.chain([surrogate.basis.truncation(coefficients)]))
         };
         let times = surrogate.times.iter().zip(&direct.times).map(|(own, values)| differences(own, values)).collect();
         let terms = surrogate.basis.len();
@@ -121,5 +128,33 @@ impl SegmentErrors {
         let of_segment = |nodes| (0..surrogate.lines).map(|line| of_line(nodes, line)).collect();
         let lines = surrogate.nodes.iter().zip(&direct.nodes).map(of_segment).collect();
         Self { times, lines }
+    }
+
+    /// From the differences of values at the motions' samples, line by line.
+    pub fn of_samples(motions: &SegmentMotions, mut differences: impl FnMut(&[f64]) -> Vec<f64>) -> Self {
+        let count = motions.samples.len();
+        let times = motions.times.iter().map(|times| largest(differences(times))).collect();
+        let mut of_segment = |nodes: &Vec<Vec<f64>>| {
+            let mut lines: Vec<f64> = Vec::new();
+            for node in nodes {
+                let own: Vec<f64> =
+                    differences(node).chunks_exact(count).map(|line| largest(line.iter().copied())).collect();
+                lines.resize(own.len(), 0.0);
+                lines.iter_mut().zip(own).for_each(|(line, own)| *line = largest([*line, own]));
+            }
+            lines
+        };
+        Self { times, lines: motions.nodes.iter().map(&mut of_segment).collect() }
+    }
+
+    /// The larger of both.
+    #[must_use]
+    pub fn or(mut self, other: &Self) -> Self {
+        let raise = |own: &mut Vec<f64>, other: &Vec<f64>| {
+            own.iter_mut().zip(other).for_each(|(own, other)| *own = largest([*own, *other]));
+        };
+        raise(&mut self.times, &other.times);
+        self.lines.iter_mut().zip(&other.lines).for_each(|(own, other)| raise(own, other));
+        self
     }
 }
