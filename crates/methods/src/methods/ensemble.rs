@@ -10,7 +10,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use crate::multibody::{ConstraintId, EquationId};
-use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
+use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -259,6 +259,16 @@ pub trait Ensemble: Sync {
     /// Where a sample cannot be assembled.
     fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         let _ = samples;
+        Ok(None)
+    }
+
+    /// Taylor coefficients, about some ξ and in scaled parameters, of the motion that is cut at the events there, as the
+    /// values of so many samples, with the index of its word; `None` where motions are not cut.
+    ///
+    /// # Errors
+    /// Where the sample cannot be assembled.
+    fn segment_jets(&self, space: &JetSpace, xi: &[f64]) -> Result<Option<(usize, SegmentMotions)>, EnsembleError> {
+        let _ = (space, xi);
         Ok(None)
     }
 

@@ -8,10 +8,11 @@
 //! - `path`: one sample by the explicit method, whose steps end at events, and `followed`: its word;
 //! - `word`: the words of some samples, and `boundary`: the surfaces between them;
 //! - `stretched`: segments on a time from 0 to 1, and `tile`: samples on it in lockstep;
-//! - `run`: an ensemble, row by row.
+//! - `run`: an ensemble, row by row, and `jets`: a jet.
 
 mod boundary;
 mod followed;
+mod jets;
 pub(in crate::simulate) mod locate;
 mod path;
 mod run;
@@ -20,5 +21,6 @@ mod stretched;
 mod tile;
 mod word;
 
+pub use jets::segment_jets;
 pub use run::SegmentRun;
 pub use word::segments_of;

@@ -11,7 +11,7 @@ mod estimator;
 mod outputs_alone;
 mod polynomials;
 mod range_search;
-mod segments;
+pub(super) mod segments;
 mod sensitivity;
 mod sub_box;
 
@@ -259,7 +259,8 @@ impl BoundingMethod for Chebyshev {
     }
 
     fn follows_events(&self, problem: &Problem) -> bool {
-        self.observes(problem) == Observed::Motion
+        // Of an output alone nothing is cut.
+        problem.composes && (self.expand == Expand::Coordinates || self.degree != Degree::Adaptive)
     }
 
     fn bound(
@@ -275,8 +276,8 @@ impl BoundingMethod for Chebyshev {
         let surrogate = Surrogate::tensor(order, nodes);
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
+        // An output is no polynomial behind an event, whatever is to be expanded.
         if composes
-            && self.expand == Expand::Coordinates
             && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
         {
             return Ok(result);

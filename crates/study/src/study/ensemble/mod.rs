@@ -21,7 +21,7 @@ use super::reduced::{Store, steps_of};
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
 use crate::methods::{self, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated, Until};
-use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid};
+use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
     SimulationError, Simulator, Steps, Stop, choose_independent,
@@ -309,6 +309,10 @@ impl Ensemble for Motions<'_> {
 
     fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         Ok(self.cut(samples)?)
+    }
+
+    fn segment_jets(&self, space: &JetSpace, xi: &[f64]) -> Result<Option<(usize, SegmentMotions)>, EnsembleError> {
+        Ok(self.cut_jet(space, xi)?)
     }
 
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {

@@ -1,5 +1,7 @@
 //! Terms of the polynomials of instants and motions.
 
+use symdiff::jet::Monomials;
+
 use crate::numerics::{LeastSquares, SparseBasis, SparseWork, largest, truncation};
 
 /// Terms in ξ.
@@ -9,6 +11,8 @@ pub(super) enum Basis<'a> {
     Grid(&'a SparseBasis),
     /// Those of a part of the box, which are fitted to samples in it.
     Fitted(Fitted),
+    /// Powers of distances from a centre, those of a jet.
+    Taylor { monomials: Monomials, centre: Vec<f64> },
 }
 
 /// Products of Chebyshev polynomials up to a total degree.
@@ -30,7 +34,16 @@ pub(super) struct Level {
     powers: Powers,
     coefficients: Vec<f64>,
     /// How far its zero may be from the true one, in its own units.
-    pub error: f64,
+    error: f64,
+}
+
+/// A surface that ends a part: it is on one side of a level, or of what is parallel to it.
+#[derive(Clone, Debug)]
+pub(super) struct End {
+    pub level: Level,
+    /// The part is where this times the level is more than the offset.
+    pub sign: f64,
+    pub offset: f64,
 }
 
 /// A sample at a share of the largest margin weighs as one on the surface over this share and it.
@@ -94,10 +107,27 @@ impl Level {
         (1..=highest).filter_map(of_degree).min_by(|a, b| a.error.total_cmp(&b.error))
     }
 
+    /// How far its zero may be from the true one, in its own units.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+
     pub fn at(&self, xi: &[f64]) -> f64 {
         let mut terms = Vec::with_capacity(self.coefficients.len());
         self.powers.values(xi, &mut terms);
         terms.iter().zip(&self.coefficients).map(|(term, coefficient)| term * coefficient).sum()
+    }
+}
+
+impl End {
+    /// Distance from the surface, in the level's units; negative beyond it.
+    pub fn margin(&self, xi: &[f64]) -> f64 {
+        self.sign * self.level.at(xi) - self.offset
+    }
+
+    /// How far the surface may be from the true one: what only divides a part is where it is put.
+    pub fn error(&self) -> f64 {
+        if self.offset == 0.0 { self.level.error } else { 0.0 }
     }
 }
 
@@ -127,6 +157,7 @@ impl Basis<'_> {
         match self {
             Self::Grid(basis) => basis.len(),
             Self::Fitted(fitted) => fitted.len(),
+            Self::Taylor { monomials, .. } => monomials.len(),
         }
     }
 
@@ -135,6 +166,15 @@ impl Basis<'_> {
         let basis = match self {
             Self::Grid(basis) => basis,
             Self::Fitted(fitted) => return values_of(xi.iter().map(Vec::as_slice), |xi, into| fitted.values(xi, into)),
+            Self::Taylor { monomials, centre } => {
+                let power = |(xi, (centre, &exponent)): (&f64, (&f64, &usize))| (xi - centre).powi(exponent as i32);
+                let term = |xi: &[f64], term: usize| -> f64 {
+                    xi.iter().zip(centre.iter().zip(monomials.exponents(term))).map(power).product()
+                };
+                return values_of(xi.iter().map(Vec::as_slice), |xi, into| {
+                    into.extend((0..monomials.len()).map(|number| term(xi, number)));
+                });
+            }
         };
         let (terms, count) = (basis.len(), xi.len());
         let mut unit = vec![0.0; terms * terms];
@@ -144,11 +184,11 @@ impl Basis<'_> {
         (0..count).map(|point| values.iter().skip(point).step_by(count).copied().collect()).collect()
     }
 
-    /// Size of the terms that coefficients lack; of those that are fitted, the samples that are left out tell.
+    /// Size of the terms that coefficients lack; of those that are fitted or a jet's, other samples tell.
     pub fn truncation(&self, coefficients: &[f64]) -> f64 {
         match self {
             Self::Grid(basis) => truncation(basis, coefficients),
-            Self::Fitted(_) => 0.0,
+            Self::Fitted(_) | Self::Taylor { .. } => 0.0,
         }
     }
 }

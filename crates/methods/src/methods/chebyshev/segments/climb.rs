@@ -98,7 +98,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
         lattice.points.iter().map(|point| (point.segment(time), point.clone())).collect();
     for end in 0..surrogate.ends.len() {
         // A little inside.
-        let found = lattice.at_zeros(surrogate, |point| point.margins[end] - ON_END * surrogate.ends[end].0.error);
+        let found = lattice.at_zeros(surrogate, |point| point.margins[end] - ON_END * surrogate.ends[end].error());
         seeds.extend(found.into_iter().map(|point| (point.segment(time), point)));
     }
     for segment in 0..surrogate.segments() {

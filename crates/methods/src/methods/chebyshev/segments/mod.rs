@@ -5,19 +5,23 @@
 //!
 //! - `basis`: the terms of polynomials, and the surfaces;
 //! - `surrogate`: polynomials of the instants, and of the motion at the nodes of each segment, in one part of the box;
-//! - `pieces`: all parts;
+//! - `pieces`: all parts, `parts`: which samples are in which, `fitting`: polynomials by least squares, and the samples
+//!   that these need;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces.
 
 mod basis;
 mod climb;
+mod fitting;
+mod parts;
 mod pieces;
 mod row;
 mod seeds;
 mod surrogate;
 
 use rayon::prelude::*;
+use symdiff::jet::JetSpace;
 
 use super::adaptive::Goal;
 use super::composition::can_compose;
@@ -25,9 +29,9 @@ use super::sensitivity::SensitivityAnalysis;
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Simulated};
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
-use crate::numerics::{CutMotions, Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
+use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
 use pieces::{Piece, Pieces};
-use row::BoxRow;
+use row::{BoxRow, SensedRow};
 use seeds::Lattice;
 
 /// Degrees that are tried to a tolerance.
@@ -43,8 +47,12 @@ pub(super) fn of_degree(
     samples: &[Sample],
     validation: &Validation,
 ) -> Result<Option<MethodResult>, EnsembleError> {
-    match ensemble.segments(samples)? {
-        Some(motions) => composed(ensemble, surrogate, motions, validation),
+    let Some(motions) = ensemble.segments(samples)? else { return Ok(None) };
+    match Pieces::new(ensemble, surrogate, motions, validation)? {
+        Some(pieces) => {
+            let bands = composed(ensemble, &pieces, Some(surrogate), validation)?;
+            Ok(Some(finished(bands, samples.len(), &pieces)))
+        }
         None => Ok(None),
     }
 }
@@ -84,21 +92,39 @@ pub(super) fn adapted(
     Ok(best)
 }
 
-/// Bounds from the motions of a grid's samples, cut at their events; `None` where validation samples cannot be.
+/// By jets in segments between events, where the ensemble's motions are cut there.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
-fn composed(
+pub(in crate::methods) fn of_jets(
     ensemble: &dyn Ensemble,
-    grid: &Surrogate,
-    motions: CutMotions,
+    space: &JetSpace,
     validation: &Validation,
 ) -> Result<Option<MethodResult>, EnsembleError> {
+    match Pieces::of_jets(ensemble, space, validation)? {
+        Some(pieces) => composed(ensemble, &pieces, None, validation).map(|bands| Some(finished(bands, 1, &pieces))),
+        None => Ok(None),
+    }
+}
+
+fn finished((bands, simulated): (BandBuilder, Simulated), simulations: usize, pieces: &Pieces) -> MethodResult {
+    bands.finish(simulations + pieces.added, simulated)
+}
+
+/// Bounds from the polynomials in all parts of the box; sensitivities where there is a grid.
+///
+/// # Errors
+/// Where a closure cannot be compiled, and at an interruption.
+fn composed(
+    ensemble: &dyn Ensemble,
+    pieces: &Pieces,
+    grid: Option<&Surrogate>,
+    validation: &Validation,
+) -> Result<(BandBuilder, Simulated), EnsembleError> {
     let domain = ensemble.domain();
-    let Some(pieces) = Pieces::new(ensemble, grid, motions, validation)? else { return Ok(None) };
     let lattice = |piece: &Piece| Lattice::new(&piece.surrogate, &piece.samples, domain.dimension());
     let lattices: Vec<Lattice> = pieces.all.iter().map(lattice).collect();
-    let analysis = SensitivityAnalysis::new(domain, grid);
+    let analysis = grid.map(|grid| (grid, SensitivityAnalysis::new(domain, grid)));
     let middle = vec![0.0; domain.dimension()];
     let parameters = domain.sample(&middle);
     let mut closures: Vec<Box<dyn Closure + '_>> = Vec::new();
@@ -118,7 +144,7 @@ fn composed(
             return (0..ensemble.outputs()).map(|output| unknown(ensemble.seen(row, output))).collect();
         }
         let (time, closure) = (ensemble.time(row), closures[chosen[row]].as_ref());
-        let row_of = BoxRow { ensemble, grid, pieces: &pieces, closure, time };
+        let row_of = BoxRow { ensemble, pieces, closure, time };
         let of_part = |(piece, lattice)| {
             let row_of = row_of.in_part(piece);
             let extents = climb::extents(&row_of, lattice);
@@ -128,15 +154,18 @@ fn composed(
         let parts: Vec<(Vec<Extent>, Vec<f64>)> = pieces.all.iter().zip(&lattices).map(of_part).collect();
         let joined: Vec<(Extent, f64)> = (0..ensemble.outputs()).map(|output| joined(&parts, output)).collect();
         let extents: Vec<Extent> = joined.iter().map(|(extent, _)| extent.clone()).collect();
-        let sensitivities = analysis.of_row(&row_of, &extents);
-        let all = joined.into_iter().zip(sensitivities).enumerate();
-        all.map(|(output, ((extent, moved), sensitivity))| {
+        let of_grid = |(grid, analysis): &(&Surrogate, SensitivityAnalysis)| {
+            analysis.of_row(&SensedRow { row: &row_of, grid }, &extents)
+        };
+        let mut sensitivities = analysis.as_ref().map(of_grid).into_iter().flatten();
+        let all = joined.into_iter().enumerate();
+        all.map(|(output, (extent, moved))| {
             let outside = validation.direct.at(row, output).into_iter().map(|value| extent.range.distance(value));
             Estimate {
                 range: extent.range,
                 error: largest(outside.chain([moved])),
                 step_error: f64::NAN,
-                sensitivity: Some(sensitivity),
+                sensitivity: sensitivities.next(),
                 is_expanded: false,
                 is_own: false,
             }
@@ -151,8 +180,7 @@ fn composed(
         estimates.into_iter().enumerate().for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
     }
     let beyond_tolerance_from = (known_rows < ensemble.rows()).then_some(known_rows);
-    let simulated = Simulated { beyond_tolerance_from, ..Simulated::default() };
-    Ok(Some(bands.finish(grid.samples().len() + pieces.added, simulated)))
+    Ok((bands, Simulated { beyond_tolerance_from, ..Simulated::default() }))
 }
 
 /// A row of which only what was simulated is known.

@@ -18,12 +18,17 @@ pub(super) struct SegmentRow<'r> {
 /// A row of output in all of it.
 pub(super) struct BoxRow<'r> {
     pub ensemble: &'r dyn Ensemble,
-    /// By which instants and motions of a box of one word are expanded.
-    pub grid: &'r Surrogate,
     pub pieces: &'r Pieces<'r>,
     pub closure: &'r dyn Closure,
     /// s
     pub time: f64,
+}
+
+/// The same for sensitivities.
+pub(super) struct SensedRow<'r> {
+    pub row: &'r BoxRow<'r>,
+    /// By which instants and motions of a box of one word are expanded.
+    pub grid: &'r Surrogate,
 }
 
 /// Difference by which slopes of surfaces are taken.
@@ -110,24 +115,22 @@ impl SegmentRow<'_> {
 
     /// Points that are beside a surface, moved across it as far as its error is.
     fn beside(&self, points: &[Point], end: usize, sign: f64) -> Vec<Point> {
-        let (level, _) = &self.piece.surrogate.ends[end];
+        let surface = &self.piece.surrogate.ends[end];
         let across = |point: &Point| {
             let mut xi = point.xi.clone();
-            if point.margins[end].abs() > NEAR * level.error {
+            if point.margins[end].abs() > NEAR * surface.error() {
                 return xi;
             }
-            let here = level.at(&xi);
-            let slopes: Vec<f64> = (0..xi.len())
-                .map(|axis| {
-                    let mut beside = xi.clone();
-                    beside[axis] += DIFFERENCE;
-                    (level.at(&beside) - here) / DIFFERENCE
-                })
-                .collect();
+            let of = |axis: usize| {
+                let mut beside = point.xi.clone();
+                beside[axis] += DIFFERENCE;
+                (surface.margin(&beside) - point.margins[end]) / DIFFERENCE
+            };
+            let slopes: Vec<f64> = (0..xi.len()).map(of).collect();
             let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
-            if square > 0.0 {
-                let by = |(xi, slope): (&mut f64, &f64)| *xi = (*xi + sign * level.error * slope / square).clamp(-1.0, 1.0);
-                xi.iter_mut().zip(&slopes).for_each(by);
+            let by = sign * surface.error() / square;
+            if by.is_finite() {
+                xi.iter_mut().zip(&slopes).for_each(|(xi, slope)| *xi = (*xi + by * slope).clamp(-1.0, 1.0));
             }
             xi
         };
@@ -142,9 +145,9 @@ impl<'r> BoxRow<'r> {
     }
 }
 
-impl Predicted for BoxRow<'_> {
+impl Predicted for SensedRow<'_> {
     fn outputs(&self) -> usize {
-        self.ensemble.outputs()
+        self.row.ensemble.outputs()
     }
 
     fn surrogate(&self) -> &Surrogate {
@@ -153,13 +156,13 @@ impl Predicted for BoxRow<'_> {
 
     fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
         let mut values = vec![f64::NAN; outputs.len() * points.len()];
-        for piece in &self.pieces.all {
+        for piece in &self.row.pieces.all {
             let is_own = |point: &usize| {
-                self.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece))
+                self.row.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece))
             };
             let own: Vec<usize> = (0..points.len()).filter(is_own).collect();
             let at = piece.surrogate.points(own.iter().map(|&point| points[point].clone()).collect());
-            let found = self.in_part(piece).outputs_at(&at);
+            let found = self.row.in_part(piece).outputs_at(&at);
             for (line, output) in outputs.iter().enumerate() {
                 for (place, point) in own.iter().enumerate() {
                     values[line * points.len() + point] = found[output * own.len() + place];

@@ -1,13 +1,13 @@
 //! Polynomials of the instants of events, and of the motion between them, of one word.
 
-use super::basis::{Basis, Level};
+use super::basis::{Basis, End};
 use crate::numerics::{STEP_NODES, SegmentMotions, largest, step_weights};
 
 /// Motions of one word, as functions of the parameters in a part of the box.
 pub(super) struct SegmentSurrogate<'a> {
     basis: Basis<'a>,
-    /// Surfaces that end the part: it is where each of them, times the sign, is positive.
-    pub ends: Vec<(Level, f64)>,
+    /// Surfaces that end the part.
+    pub ends: Vec<End>,
     /// Ends of the steps of each segment, as shares of its length.
     steps: Vec<Vec<f64>>,
     /// Coefficients of the times at which segments begin, and at which the last ends.
@@ -46,7 +46,7 @@ impl<'a> SegmentSurrogate<'a> {
     /// From what gives the coefficients of values at the motions' samples, line by line.
     pub fn new(
         basis: Basis<'a>,
-        ends: Vec<(Level, f64)>,
+        ends: Vec<End>,
         motions: &SegmentMotions,
         mut coefficients: impl FnMut(&[f64]) -> Vec<f64>,
     ) -> Self {
@@ -72,7 +72,7 @@ impl<'a> SegmentSurrogate<'a> {
         let values = self.basis.values(&xi);
         let point = |(xi, terms): (Vec<f64>, Vec<f64>)| {
             let times = self.times.iter().map(|time| dot(time, &terms)).collect();
-            let margins = self.ends.iter().map(|(level, sign)| sign * level.at(&xi)).collect();
+            let margins = self.ends.iter().map(|end| end.margin(&xi)).collect();
             Point { xi, terms, times, margins }
         };
         xi.into_iter().zip(values).map(point).collect()

@@ -1,0 +1,201 @@
+//! Polynomials by least squares in the parts of a box of several words.
+//!
+//! In each part the degree is that at which instants, and states there, of samples that are left out are met best;
+//! samples are added where a part has few. Behind a surface that is grazed motions change within a layer, which becomes
+//! a part of its own where one polynomial does not do.
+
+use super::basis::{Basis, Fitted, Level, SAMPLES_A_TERM};
+use super::parts::{Part, Samples};
+use super::pieces::Piece;
+use super::surrogate::{SegmentErrors, SegmentSurrogate};
+use crate::methods::ensemble::{Ensemble, EnsembleError};
+use crate::methods::validation::Validation;
+use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, corners, largest, spread};
+
+/// Rounds in which samples are added to parts, and the layers that are cut off one after the other.
+const ROUNDS: usize = 2;
+const LAYERS: usize = 4;
+
+/// A polynomial does that misses samples that are left out by no more than this share of how far they range.
+const ENOUGH: f64 = 1e-3;
+
+/// Candidates of each round, and corners among them.
+const CANDIDATES: usize = 512;
+pub(super) const CORNERS: usize = 16;
+
+/// Halvings of a line on which a level is looked for.
+const HALVINGS: usize = 40;
+
+/// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
+const BESIDE: usize = 3;
+
+/// Samples, and what their polynomials are held against.
+pub(super) struct Fitting<'v> {
+    pub samples: Samples,
+    /// Highest degree.
+    pub degree: usize,
+    pub validation: &'v Validation,
+    /// Motions of the validation samples.
+    pub direct: CutMotions,
+}
+
+/// Pieces, the number of samples, and the time from which motions of no word are met, s.
+type Found<'b> = (Vec<Piece<'b>>, usize, f64);
+
+impl Fitting<'_> {
+    /// The polynomials; `None` where samples that are added cannot be cut.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn pieces<'b>(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found<'b>>, EnsembleError> {
+        let words = self.samples.motions.words.len();
+        let mut parts: Vec<Part> = (0..words).map(|word| Part::of_word(word, &self.samples.motions)).collect();
+        for layer in 0.. {
+            for _ in 0..ROUNDS {
+                let wanted = self.wanted(&parts);
+                if wanted.is_empty() || ensemble.is_interrupted() {
+                    break;
+                }
+                let samples = ensemble.domain().samples(&wanted);
+                let Some(motions) = ensemble.segments(&samples)? else { return Ok(None) };
+                self.samples.motions.append(motions, self.samples.xi.len());
+                self.samples.xi.extend(wanted);
+            }
+            let levels = self.samples.levels();
+            let mut found = Vec::new();
+            let mut next = Vec::new();
+            for part in &parts {
+                let fitted = self.fitted(part, &levels);
+                let misses = fitted.as_ref().is_some_and(|(misses, _)| *misses > ENOUGH);
+                let divided = fitted.as_ref().filter(|_| misses && layer < LAYERS);
+                match divided.and_then(|(_, piece)| part.layers(&levels, &piece.samples)) {
+                    Some(layers) => next.extend(layers),
+                    None => next.push(part.clone()),
+                }
+                found.extend(fitted.map(|(_, piece)| piece));
+            }
+            if next.len() == parts.len() {
+                let known_to = self.samples.motions.known_to.min(self.direct.known_to);
+                return Ok(Some((found, self.samples.xi.len(), known_to)));
+            }
+            parts = next;
+        }
+        Ok(None)
+    }
+
+    /// Points at which samples are missing.
+    fn wanted(&self, parts: &[Part]) -> Vec<Vec<f64>> {
+        let levels = self.samples.levels();
+        let xi = &self.samples.xi;
+        let k = xi.first().map_or(0, Vec::len);
+        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES + xi.len()).split_off(xi.len())].concat();
+        let mut wanted: Vec<Vec<f64>> = Vec::new();
+        for part in parts {
+            let (ends, depths) = (part.ends(&levels), part.depths(&levels));
+            let own = &self.samples.motions.words[part.word].samples;
+            let inside: Vec<&Vec<f64>> =
+                self.samples.places(part, &levels).iter().map(|&place| &xi[own[place]]).collect();
+            let terms = Fitted::new(self.degree, &depths, k).len();
+            let lacks = ((SAMPLES_A_TERM * terms as f64) as usize + 2).saturating_sub(inside.len());
+            let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
+            // Those beside a surface, on lines across it.
+            let beside = if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) { lacks } else { lacks / BESIDE };
+            let of_word: Vec<&Vec<f64>> = own.iter().map(|&sample| &xi[sample]).collect();
+            let on_lines = ends.iter().filter(|end| end.offset == 0.0).flat_map(|end| {
+                let margin = |point: &Vec<f64>| end.margin(point);
+                let deepest = of_word.iter().map(|point| margin(point)).fold(0.0, f64::max);
+                // A layer ends before.
+                let limits = ends.iter().filter(|other| other.offset < 0.0).map(|other| -other.offset);
+                let depth = limits.fold(deepest, f64::min);
+                let others: Vec<&Vec<f64>> = xi.iter().filter(|point| margin(point) < 0.0).collect();
+                across(&of_word, &others, beside, margin, depth)
+            });
+            let mut own: Vec<Vec<f64>> = on_lines.filter(fits).take(beside).collect();
+            let others = of_box.iter().filter(|point| fits(point)).cloned();
+            own.extend(others.take(lacks - own.len().min(lacks)));
+            wanted.extend(own);
+        }
+        wanted.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        wanted.dedup();
+        wanted
+    }
+
+    /// The polynomials of a part, and by what share of their range they miss samples that are left out.
+    fn fitted<'b>(&self, part: &Part, levels: &[Option<Level>]) -> Option<(f64, Piece<'b>)> {
+        let places = self.samples.places(part, levels);
+        let motions = picked(&self.samples.motions.words[part.word], &places);
+        let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| self.samples.xi[sample].clone()).collect();
+        let (k, count) = (xi.first()?.len(), xi.len());
+        let depths = part.depths(levels);
+        let of_degree = |degree: usize, depths: &[Level]| {
+            let basis = Basis::Fitted(Fitted::new(degree, depths, k));
+            let is_enough = count as f64 >= SAMPLES_A_TERM * basis.len() as f64 || degree == 0;
+            let squares = LeastSquares::new(&basis.values(&xi), vec![1.0; count]).filter(|_| is_enough)?;
+            let left_out = |values: &[f64]| {
+                let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(0.0));
+                let error = squares.fit(values).map_or(f64::INFINITY, |(_, error)| largest(error));
+                // What does not vary says nothing of a degree.
+                if high > low { error / (high - low) } else { 0.0 }
+            };
+            let ends = motions.nodes.iter().filter_map(|nodes| nodes.last()).flat_map(|node| node.chunks_exact(count));
+            let misses = motions.times.iter().map(Vec::as_slice).chain(ends).map(left_out).fold(0.0, f64::max);
+            Some((misses, basis, squares))
+        };
+        let none: &[Level] = &[];
+        let tried = (0..=self.degree).flat_map(|degree| [none, &depths].map(|depths| of_degree(degree, depths)));
+        let (misses, basis, squares) = tried.flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let by_line = |values: &[f64], pick: fn((Vec<f64>, Vec<f64>)) -> Vec<f64>| -> Vec<f64> {
+            values.chunks_exact(count).filter_map(|line| squares.fit(line)).flat_map(pick).collect()
+        };
+        let ends = part.ends(levels);
+        let surrogate = SegmentSurrogate::new(basis, ends, &motions, |values| by_line(values, |(own, _)| own));
+        let errors = SegmentErrors::of_samples(&motions, |values| by_line(values, |(_, left_out)| left_out));
+        let points = &self.validation.points;
+        let held_out = &self.direct.words[part.word];
+        let is_inside = |place: &usize| {
+            surrogate.ends.iter().all(|end| end.offset == 0.0 || end.margin(&points[held_out.samples[*place]]) >= 0.0)
+        };
+        let held_out = picked(held_out, &(0..held_out.samples.len()).filter(is_inside).collect::<Vec<_>>());
+        let at: Vec<Vec<f64>> = held_out.samples.iter().map(|&sample| points[sample].clone()).collect();
+        let errors = if at.is_empty() { errors } else { errors.or(&SegmentErrors::new(&surrogate, &at, &held_out)) };
+        Some((misses, Piece { surrogate, errors, samples: xi }))
+    }
+}
+
+/// Motions of some of the samples.
+fn picked(motions: &SegmentMotions, places: &[usize]) -> SegmentMotions {
+    let count = motions.samples.len();
+    let pick = |line: &[f64]| places.iter().map(|&place| line[place]).collect::<Vec<f64>>();
+    let of_node = |node: &Vec<f64>| node.chunks_exact(count.max(1)).flat_map(pick).collect();
+    SegmentMotions {
+        samples: places.iter().map(|&place| motions.samples[place]).collect(),
+        steps: motions.steps.clone(),
+        times: motions.times.iter().map(|times| pick(times)).collect(),
+        nodes: motions.nodes.iter().map(|nodes| nodes.iter().map(of_node).collect()).collect(),
+    }
+}
+
+/// So many points on lines from points inside of a surface to others beyond it, evenly in the root of the margin.
+fn across(
+    inside: &[&Vec<f64>],
+    others: &[&Vec<f64>],
+    count: usize,
+    margin: impl Fn(&Vec<f64>) -> f64,
+    depth: f64,
+) -> Vec<Vec<f64>> {
+    if inside.is_empty() || others.is_empty() {
+        return Vec::new();
+    }
+    let of = |index: usize| {
+        let (from, to) = (inside[index % inside.len()], others[index % others.len()]);
+        let wanted = depth * ((index as f64 + 0.5) / count as f64).powi(2);
+        let at = |share: f64| from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect::<Vec<f64>>();
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if margin(&at(middle)) > wanted { low = middle } else { high = middle }
+        }
+        at(0.5 * (low + high))
+    };
+    (0..count).map(of).collect()
+}
