@@ -33,6 +33,9 @@ impl Study<'_> {
         let asked = of_steps.into_iter().chain(self.request.tolerance).map(|tolerance| OF_TOLERANCE * tolerance);
         let tolerance = asked.fold(OF_STEPS, f64::min);
         let segments = segments_of(&self.simulator, &self.event_samples(), times.0, tolerance)?;
+        // A number that is accumulated over a motion is one of the whole of it.
+        let accumulates = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
+        let segments = segments.filter(|segments| !accumulates || segments.horizon >= times.0);
         Ok(segments.map(|segments| Schedule::segmented(times, segments)))
     }
 
@@ -59,7 +62,6 @@ impl Study<'_> {
 
     fn may_be_cut(&self) -> bool {
         let problem = problem(self.description, &self.simulator);
-        let reduces = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
         let methods = self.request.methods();
         // What depends on nothing keeps the steps that it is given.
         let within = match self.domain.dimension() {
@@ -71,7 +73,6 @@ impl Study<'_> {
             && !methods.is_empty()
             && !self.request.keep
             && self.stored.is_none()
-            && !reduces
             // Constraints that open later are not watched for.
             && self.simulator.mobility.redundant.is_empty()
     }

@@ -11,10 +11,13 @@ use super::tile::{Lanes, SegmentTile};
 use crate::compile::SwitchProgram;
 use crate::numerics::{BoundaryMargins, CutMotions, Sample, SegmentMotions};
 use crate::simulate::control::Schedule;
-use crate::simulate::ensemble::{Observed, RowClosure, Stop, stops_of_lost};
+use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, stops_of_lost};
 use crate::simulate::error::SimulationError;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
+
+/// Parts of a step at whose ends outputs are taken that are reduced to one number: between them they are cubics.
+const REDUCED: usize = 16;
 
 /// Samples whose segments are passed together.
 const WIDTH: usize = 16;
@@ -42,6 +45,19 @@ struct RowTile<'s> {
     alive: Vec<bool>,
     /// The first row behind the first event that others do not meet.
     deviates: Option<usize>,
+    /// Where outputs are reduced to one number: of each lane, whose steps are its own.
+    reduced: Vec<Reduced<'s>>,
+    /// Segments that are reduced.
+    segments: usize,
+    /// Number of outputs.
+    outputs: usize,
+}
+
+/// The reduction of a lane's outputs, and the time up to which they are, s.
+#[derive(Debug)]
+struct Reduced<'s> {
+    reduction: Reduction<'s>,
+    time: f64,
 }
 
 impl<'s> SegmentRun<'s> {
@@ -78,13 +94,14 @@ impl<'s> SegmentRun<'s> {
                 spelled: indices.iter().map(|&sample| spelled[sample].clone()).collect(),
             }));
         }
+        let outputs = simulator.program.outputs.len();
         let of_lanes = |lanes: Lanes<'s>| {
             let own: Vec<Sample> = lanes.indices.iter().map(|&sample| samples[sample].clone()).collect();
             let width = WIDTHS.into_iter().find(|&width| width >= own.len()).unwrap_or(own.len());
             let tile = SegmentTile::start(simulator, (program, segments), lanes, (&own, width), duration)?;
             let start = simulator.assemble(width, 0.0, |lane| own[lane.min(own.len() - 1)].clone())?;
             let rows = RowClosure::new(simulator, &start)?;
-            Ok(RowTile { tile, rows, alive: vec![true; width], deviates: None })
+            Ok(RowTile { tile, rows, alive: vec![true; width], deviates: None, reduced: Vec::new(), segments: 0, outputs })
         };
         run.tiles = lanes.into_par_iter().map(of_lanes).collect::<Result<_, SimulationError>>()?;
         run.words = spelled.iter().map(|spelled| spelled.word).collect();
@@ -93,6 +110,35 @@ impl<'s> SegmentRun<'s> {
 
     fn path(&self, program: &'s SwitchProgram, sample: &Sample) -> Result<Path<'s>, SimulationError> {
         Path::start(self.simulator, program, sample, (self.duration, self.segments.tolerance))
+    }
+
+    /// As [`EnsembleRun::reducing`](crate::simulate::EnsembleRun::reducing); of samples that spell no word nothing is
+    /// reduced.
+    #[must_use]
+    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
+        let outputs = self.simulator.program.outputs.len();
+        let start = || Reduced { reduction: Reduction::new(channels, outputs, 1), time: f64::NEG_INFINITY };
+        for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
+            tile.reduced = tile.tile.samples.iter().map(|_| start()).collect();
+        }
+        self
+    }
+
+    /// As [`EnsembleRun::reduced`](crate::simulate::EnsembleRun::reduced).
+    pub fn reduced(&mut self) -> Vec<f64> {
+        let samples = self.samples.len();
+        let mut values = Vec::new();
+        for tile in &mut self.tiles {
+            let is_known = tile.tile.deviates.is_none();
+            for (sample, reduced) in tile.tile.samples.iter().zip(&mut tile.reduced) {
+                let found = reduced.reduction.finish();
+                values.resize(found.len() * samples, f64::NAN);
+                for (channel, value) in found.into_iter().enumerate().filter(|_| is_known) {
+                    values[channel * samples + sample] = value;
+                }
+            }
+        }
+        values
     }
 
     /// As [`EnsembleRun::heeding`](crate::simulate::EnsembleRun::heeding).
@@ -210,6 +256,41 @@ fn gathered(tiles: &[&SegmentTile], steps: &[Vec<f64>]) -> SegmentMotions {
 }
 
 impl RowTile<'_> {
+    /// Reduces outputs over the segments that were passed since the last call, up to the end of the rows.
+    fn reduce(&mut self, end: f64) {
+        let Some(word) = self.tile.word.filter(|_| !self.reduced.is_empty()) else { return };
+        let (width, lines) = (self.tile.width(), self.tile.lines());
+        let mut state = vec![0.0; lines * width];
+        let mut own = vec![0.0; lines];
+        let mut outputs = vec![0.0; self.outputs * width];
+        while let Some(recorded) = self.tile.recorded.iter().find(|recorded| recorded.number == self.segments) {
+            let steps = &word.steps[recorded.number];
+            let begins = std::iter::once(0.0).chain(steps.iter().copied());
+            let of_step = |(begin, end): (f64, f64)| (0..=REDUCED).map(move |part| begin + (end - begin) * part as f64 / REDUCED as f64);
+            for share in begins.zip(steps.iter().copied()).flat_map(of_step) {
+                for lane in 0..width {
+                    let time = (recorded.begin[lane] + share * recorded.length[lane]).min(end);
+                    self.rows.times_mut()[lane] = time;
+                    recorded.interpolate(steps, (lane, width), time, &mut own);
+                    state.iter_mut().skip(lane).step_by(width).zip(&own).for_each(|(value, own)| *value = *own);
+                }
+                self.rows.close_at_times(&mut state);
+                self.rows.observe(&mut outputs);
+                let times = self.rows.times_mut().to_vec();
+                for ((lane, reduced), time) in self.reduced.iter_mut().enumerate().zip(times) {
+                    // The end of one step is the beginning of the next, and nothing is behind the end.
+                    if time > reduced.time {
+                        let mut values = reduced.reduction.buffer();
+                        values.iter_mut().zip(outputs.iter().skip(lane).step_by(width)).for_each(|(own, value)| *own = *value);
+                        reduced.reduction.push(time, values, &[true]);
+                        reduced.time = time;
+                    }
+                }
+            }
+            self.segments += 1;
+        }
+    }
+
     /// None at an interruption.
     fn advance(
         &mut self,
@@ -232,6 +313,8 @@ impl RowTile<'_> {
                 self.deviates.get_or_insert(row);
             }
             self.tile.reach(time, &mut state);
+            self.reduce(schedule.end());
+            self.tile.forget_before(time);
             self.rows.close(time, &mut state);
             self.rows.record(observed, &state, values);
             stops.extend(stops_of_lost(

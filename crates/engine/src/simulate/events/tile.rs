@@ -22,7 +22,7 @@ use crate::simulate::simulator::Simulator;
 /// A segment of all lanes.
 #[derive(Debug)]
 pub(super) struct Recorded {
-    number: usize,
+    pub number: usize,
     /// When it begins and how long it is, s; lane by lane.
     pub begin: Vec<f64>,
     pub length: Vec<f64>,
@@ -141,9 +141,6 @@ impl<'s> SegmentTile<'s> {
             while self.next < word.steps.len() && !self.reaches(time) {
                 self.march(word);
             }
-            while self.recorded.len() > 1 && self.recorded[0].ends().all(|end| end < time) {
-                self.recorded.pop_front();
-            }
         }
         for lane in 0..width {
             match word {
@@ -159,6 +156,13 @@ impl<'s> SegmentTile<'s> {
                 },
             }
             into.iter_mut().skip(lane).step_by(width).zip(&own).for_each(|(value, own)| *value = *own);
+        }
+    }
+
+    /// Forgets segments that end before a time.
+    pub fn forget_before(&mut self, time: f64) {
+        while self.recorded.len() > 1 && self.recorded[0].ends().all(|end| end < time) {
+            self.recorded.pop_front();
         }
     }
 
@@ -254,7 +258,7 @@ impl Recorded {
     }
 
     /// A lane's positions and velocities (2n) at a time.
-    fn interpolate(&self, steps: &[f64], (lane, width): (usize, usize), time: f64, into: &mut [f64]) {
+    pub fn interpolate(&self, steps: &[f64], (lane, width): (usize, usize), time: f64, into: &mut [f64]) {
         let share = ((time - self.begin[lane]) / self.length[lane]).clamp(0.0, 1.0);
         let (step, weights) = step_weights(steps, share);
         let nodes = &self.nodes[step * (STEP_NODES - 1)..][..STEP_NODES];

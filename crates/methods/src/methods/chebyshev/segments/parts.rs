@@ -26,7 +26,7 @@ struct Limit {
 
 /// A layer reaches to this share of the depth of the part that it is cut off from: beside the surface everything goes
 /// with the root of the depth.
-const LAYER: f64 = 1.0 / 12.0;
+const LAYER: f64 = 1.0 / 150.0;
 
 impl Samples {
     /// The surfaces between words, as far as samples tell.
@@ -71,7 +71,7 @@ impl Part {
 
     /// Levels of the surfaces behind which the part is.
     pub fn depths(&self, levels: &[Option<Level>]) -> Vec<Level> {
-        let own = self.limits.iter().filter(|limit| limit.sign < 0.0 && limit.offset <= 0.0);
+        let own = self.limits.iter().filter(|limit| limit.sign < 0.0);
         own.filter_map(|limit| levels[limit.boundary].clone()).collect()
     }
 

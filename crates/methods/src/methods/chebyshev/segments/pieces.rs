@@ -71,7 +71,7 @@ impl<'a> Pieces<'a> {
         let order = grid.basis().orders().iter().copied().max().map_or(0, usize::from);
         let highest = DEGREES.get(domain.dimension() - 1).or(DEGREES.last()).map_or(0, |&most| most);
         let samples = Samples { xi: grid.samples().to_vec(), motions };
-        let fitting = Fitting { samples, degree: order.max(LEAST_DEGREE).min(highest), validation, direct };
+        let fitting = Fitting { samples, degree: order.max(LEAST_DEGREE).min(highest), points: &validation.points, direct };
         fitting.pieces(ensemble).map(|fitted| {
             fitted.map(|(all, samples, known_to)| Self { all, known_to, added: samples - grid.samples().len() })
         })
