@@ -42,6 +42,15 @@ impl LeastSquares {
         (diagonal.min() > RANK * diagonal.max()).then_some(Self { q, r, scales, weights, leverages })
     }
 
+    /// Square of how far an error of one in every sample may move the fit at a point with these values of the terms; of
+    /// points among the samples it is at most 1.
+    pub fn leverage(&self, terms: &[f64]) -> f64 {
+        let scaled =
+            DVector::from_iterator(terms.len(), terms.iter().zip(&self.scales).map(|(term, scale)| term * scale));
+        let solved = self.r.tr_solve_upper_triangular(&scaled);
+        solved.map_or(f64::INFINITY, |solved| solved.norm_squared())
+    }
+
     /// Coefficients of the terms, and by how much each sample differs from the fit to all others.
     pub fn fit(&self, values: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let weighted = DVector::from_iterator(values.len(), values.iter().zip(&self.weights).map(|(y, w)| y * w));
@@ -71,5 +80,8 @@ mod tests {
         let expected = [3.0, -1.5, 3.0];
         assert!(left_out.iter().zip(expected).all(|(own, other)| (own - other).abs() < 1e-13), "{left_out:?}");
         assert!(LeastSquares::new(&terms[..1], vec![1.0]).is_none());
+        // 1/3 + 1/2 at an end of the three, 1/3 + 9/2 two beyond it.
+        let leverages = [2.0, 4.0].map(|x| squares.leverage(&[1.0, x]));
+        assert!((leverages[0] - 5.0 / 6.0).abs() < 1e-14 && (leverages[1] - 29.0 / 6.0).abs() < 1e-13);
     }
 }

@@ -6,9 +6,8 @@ use super::segments::{Event, Segments, Word};
 /// Motions are followed so many times as long as they are asked for, so that an event beside the end is met by all.
 pub(super) const REACH: f64 = 1.25;
 
-/// Most events of a motion, and so many that what is behind them may be left open: they have accumulated.
+/// Most events of a motion.
 const MOST_EVENTS: usize = 128;
-const MANY_EVENTS: usize = 20;
 
 /// The events of one sample, and the ends of its steps between them.
 #[derive(Clone, Debug, Default)]
@@ -35,11 +34,6 @@ impl Followed {
         }
         followed.steps.push(ends);
         followed
-    }
-
-    /// Whether it could be followed to a time, or through many events.
-    pub fn is_known_to(&self, time: f64) -> bool {
-        self.known_to >= time || self.events.len() >= MANY_EVENTS
     }
 
     /// Whether another motion meets the same events up to a time.

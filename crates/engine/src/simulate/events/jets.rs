@@ -76,8 +76,7 @@ pub fn segment_jets(
     let mut state = closure.start(simulator, space, about)?;
     let mut watch = JetWatch::new(program, space, &closure);
     let zero = vec![0.0; space.len()];
-    let mut motion =
-        StretchedJet { closure, space, begin: zero.clone(), length: zero.clone(), product: zero.clone() };
+    let mut motion = StretchedJet { closure, space, begin: zero.clone(), length: zero.clone(), product: zero.clone() };
     let mut motions = SegmentMotions {
         samples: (0..space.len()).collect(),
         steps: word.steps.clone(),

@@ -23,4 +23,5 @@ mod word;
 
 pub use jets::segment_jets;
 pub use run::SegmentRun;
+pub use segments::Boundary;
 pub use word::segments_of;

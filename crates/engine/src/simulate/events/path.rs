@@ -141,6 +141,13 @@ impl<'s> Path<'s> {
                 self.h = step * if ratio <= 1.0 { share } else { share.max(LEAST_SHARE) };
                 continue;
             }
+            if let Some((time, switch)) =
+                self.touched(PathStep { begin, end, event: None }).filter(|_| crossing.is_none())
+            {
+                cut = Some(cut.map_or((self.h, switch), |(uncut, _)| (uncut, switch)));
+                self.h = time - begin;
+                continue;
+            }
             let near = |(_, switch): &(f64, usize)| {
                 let [value, rate] = self.watch.at_end(*switch, 0);
                 value * rate < 0.0 && (value / rate).abs() < (1.0 - NEAR) * step
@@ -235,16 +242,16 @@ impl<'s> Path<'s> {
         (rate - before) / back
     }
 
-    /// The least value of `sign` times a switch within the step that was taken, where it falls first and rises at the
-    /// end: the zero of its rate by the secant method that keeps both sides.
-    pub fn least(&mut self, step: PathStep, switch: usize, sign: f64) -> Option<f64> {
+    /// The least value of `sign` times a switch within the step that was taken, and when it is, where it falls first and
+    /// rises at the end: the zero of its rate by the secant method that keeps both sides.
+    pub fn least(&mut self, step: PathStep, switch: usize, sign: f64) -> Option<(f64, f64)> {
         let [[_, first], [_, last]] = [self.watch.at_beginning(switch, 0), self.at_end(switch)];
         let (mut low, mut high) = ((step.begin, sign * first), (step.end, sign * last));
         // Written so that unknown rates end it.
         if !(low.1 < 0.0 && high.1 > 0.0) {
             return None;
         }
-        let mut least = f64::INFINITY;
+        let mut least = (step.end, f64::INFINITY);
         for _ in 0..CORRECTIONS {
             let time = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             if !(time > step.begin && time < step.end) {
@@ -252,7 +259,9 @@ impl<'s> Path<'s> {
             }
             self.attempt(time);
             let [value, rate] = self.at_end(switch).map(|value| sign * value);
-            least = least.min(value);
+            if value < least.1 {
+                least = (time, value);
+            }
             if rate.abs() <= FLAT * (first.abs() + last.abs()) {
                 break;
             }
@@ -265,6 +274,18 @@ impl<'s> Path<'s> {
         }
         self.attempt(step.end);
         Some(least)
+    }
+
+    /// When a switch passes zero and comes back within the step that was tried, as far as both of its ends approach
+    /// zero: a step is long beside a small stop, and a cubic through its ends passes over it.
+    fn touched(&mut self, step: PathStep) -> Option<(f64, usize)> {
+        let count = self.sizes.len();
+        let mut found = |switch: usize| {
+            let sign = self.at_end(switch)[0].signum();
+            let (time, least) = self.least(step, switch, sign)?;
+            (least < -ZERO * self.sizes[switch] && time - self.event > SAME * self.duration).then_some((time, switch))
+        };
+        (0..count).filter_map(&mut found).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Prepares [`interpolate`](Self::interpolate) in the step that was taken.

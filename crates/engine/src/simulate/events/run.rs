@@ -101,7 +101,15 @@ impl<'s> SegmentRun<'s> {
             let tile = SegmentTile::start(simulator, (program, segments), lanes, (&own, width), duration)?;
             let start = simulator.assemble(width, 0.0, |lane| own[lane.min(own.len() - 1)].clone())?;
             let rows = RowClosure::new(simulator, &start)?;
-            Ok(RowTile { tile, rows, alive: vec![true; width], deviates: None, reduced: Vec::new(), segments: 0, outputs })
+            Ok(RowTile {
+                tile,
+                rows,
+                alive: vec![true; width],
+                deviates: None,
+                reduced: Vec::new(),
+                segments: 0,
+                outputs,
+            })
         };
         run.tiles = lanes.into_par_iter().map(of_lanes).collect::<Result<_, SimulationError>>()?;
         run.words = spelled.iter().map(|spelled| spelled.word).collect();
@@ -230,9 +238,9 @@ fn gathered(tiles: &[&SegmentTile], steps: &[Vec<f64>]) -> SegmentMotions {
         let parts: Vec<(Vec<f64>, &SegmentTile)> = tiles.iter().map(|tile| (of_tile(tile), *tile)).collect();
         let lines = parts.first().map_or(0, |(values, tile)| values.len() / tile.width());
         let line = |line: usize| {
-            parts.iter().flat_map(move |(values, tile)| {
-                values[line * tile.width()..][..tile.samples.len()].iter().copied()
-            })
+            parts
+                .iter()
+                .flat_map(move |(values, tile)| values[line * tile.width()..][..tile.samples.len()].iter().copied())
         };
         (0..lines).flat_map(line).collect()
     };
@@ -266,7 +274,9 @@ impl RowTile<'_> {
         while let Some(recorded) = self.tile.recorded.iter().find(|recorded| recorded.number == self.segments) {
             let steps = &word.steps[recorded.number];
             let begins = std::iter::once(0.0).chain(steps.iter().copied());
-            let of_step = |(begin, end): (f64, f64)| (0..=REDUCED).map(move |part| begin + (end - begin) * part as f64 / REDUCED as f64);
+            let of_step = |(begin, end): (f64, f64)| {
+                (0..=REDUCED).map(move |part| begin + (end - begin) * part as f64 / REDUCED as f64)
+            };
             for share in begins.zip(steps.iter().copied()).flat_map(of_step) {
                 for lane in 0..width {
                     let time = (recorded.begin[lane] + share * recorded.length[lane]).min(end);
@@ -281,7 +291,10 @@ impl RowTile<'_> {
                     // The end of one step is the beginning of the next, and nothing is behind the end.
                     if time > reduced.time {
                         let mut values = reduced.reduction.buffer();
-                        values.iter_mut().zip(outputs.iter().skip(lane).step_by(width)).for_each(|(own, value)| *own = *value);
+                        values
+                            .iter_mut()
+                            .zip(outputs.iter().skip(lane).step_by(width))
+                            .for_each(|(own, value)| *own = *value);
                         reduced.reduction.push(time, values, &[true]);
                         reduced.time = time;
                     }
@@ -317,14 +330,7 @@ impl RowTile<'_> {
             self.tile.forget_before(time);
             self.rows.close(time, &mut state);
             self.rows.record(observed, &state, values);
-            stops.extend(stops_of_lost(
-                &mut self.alive,
-                0..self.tile.samples.len(),
-                &state,
-                row,
-                time,
-                values,
-            ));
+            stops.extend(stops_of_lost(&mut self.alive, 0..self.tile.samples.len(), &state, row, time, values));
         }
         Some((values, stops))
     }

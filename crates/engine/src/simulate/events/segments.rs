@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::simulate::diagnostics::{place_of, written};
+use crate::simulate::simulator::Simulator;
+
 /// A switch that changes its sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Event {
@@ -9,6 +12,15 @@ pub struct Event {
     pub switch: usize,
     /// Whether its value is positive afterwards.
     pub rises: bool,
+}
+
+impl Event {
+    /// The term that switches, and the motion that it is part of.
+    pub fn name(self, simulator: &Simulator) -> Option<String> {
+        let switch = simulator.switches()?.switches.get(self.switch)?;
+        let system = &simulator.system;
+        Some(place_of(system, switch.of, &written(&system.graph, switch.of)))
+    }
 }
 
 /// A motion cut into segments that end at events.
@@ -29,9 +41,14 @@ pub struct Boundary {
     pub before: usize,
     /// The event.
     pub event: Event,
-    /// Indices of the words that have it there, and of those that do not.
+    /// Indices of the words that have it there.
     pub met: Vec<usize>,
+    /// Indices of those that do not.
     pub missed: Vec<usize>,
+    /// Number of samples that meet the event, and of those that do not.
+    pub samples: [usize; 2],
+    /// Value of each parameter, SI, at which it is grazed while the others are nominal, if that is in the box.
+    pub grazed_at: Vec<Option<f64>>,
 }
 
 /// The words of a box.

@@ -92,8 +92,11 @@ impl<'s> SegmentTile<'s> {
             Ok(Alone { path, step: None, lost: false })
         };
         let goes_alone = word.is_none() || horizon < duration;
-        let alone: Vec<Alone> =
-            samples.iter().take(if goes_alone { samples.len() } else { 0 }).map(alone).collect::<Result<_, SimulationError>>()?;
+        let alone: Vec<Alone> = samples
+            .iter()
+            .take(if goes_alone { samples.len() } else { 0 })
+            .map(alone)
+            .collect::<Result<_, SimulationError>>()?;
         let first = spelled.iter().map(|spelled| spelled.deviates).fold(horizon, f64::min);
         let deviates = goes_alone.then_some(first);
         let lane = |lane: usize| lane.min(samples.len() - 1);

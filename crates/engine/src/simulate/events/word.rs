@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::boundary::{boundaries, margins};
+use super::boundary::{boundaries, grazed_at, margins};
 use super::followed::{Followed, REACH};
 use super::path::Path;
 use super::segments::{Boundary, Event, Segments, Word};
-use crate::numerics::Sample;
+use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
@@ -33,6 +33,7 @@ const WORTHWHILE: f64 = 0.25;
 /// Where the first sample cannot be assembled.
 pub fn segments_of(
     simulator: &Simulator,
+    domain: &ParameterBox,
     samples: &[Sample],
     duration: f64,
     tolerance: f64,
@@ -41,11 +42,11 @@ pub fn segments_of(
     let path = |sample: &Sample| Path::start(simulator, program, sample, (duration, tolerance));
     let follow = |sample: &Sample| {
         let followed = Followed::to(path(sample).ok()?, REACH * duration);
-        followed.is_known_to(duration).then_some(followed)
+        (followed.known_to >= duration).then_some(followed)
     };
     let Some((first, others)) = samples.split_first() else { return Ok(None) };
     let first = Followed::to(path(first)?, REACH * duration);
-    if !first.is_known_to(duration) {
+    if first.known_to < duration {
         return Ok(None);
     }
     // The first few, at the ends of the box, decide whether there is anything to cut.
@@ -57,11 +58,8 @@ pub fn segments_of(
             return Ok(None);
         }
     }
-    let Some((horizon, groups)) = within_budget(&all, duration) else { return Ok(None) };
-    let members = |group: &Vec<usize>| group.iter().map(|&sample| &all[sample]).collect::<Vec<&Followed>>();
-    let words: Option<Vec<Word>> =
-        groups.iter().map(|group| shared(&members(group), horizon, groups.len() > 1)).collect();
-    let Some(words) = words else { return Ok(None) };
+    let Some((horizon, found)) = within_budget(&all, duration) else { return Ok(None) };
+    let (words, groups): (Vec<Word>, Vec<Vec<usize>>) = found.into_iter().unzip();
     let margins = |boundary: &Boundary| {
         let of = |words: &[usize], is_met: bool| {
             words.iter().flat_map(|&word| groups[word].iter().map(move |&sample| (sample, is_met))).collect::<Vec<_>>()
@@ -69,7 +67,17 @@ pub fn segments_of(
         let both = [of(&boundary.met, true), of(&boundary.missed, false)].concat();
         margins(boundary, &both, |sample| path(&samples[sample]).ok(), horizon)
     };
-    Ok(boundaries(&words, margins).map(|boundaries| Segments { words, boundaries, horizon, tolerance }))
+    let Some(mut boundaries) = boundaries(&words, &margins) else { return Ok(None) };
+    for boundary in &mut boundaries {
+        let of = |words: &[usize]| words.iter().flat_map(|&word| groups[word].iter().copied()).collect::<Vec<usize>>();
+        let [met, missed] = [of(&boundary.met), of(&boundary.missed)];
+        let xi: Vec<Vec<f64>> = met.iter().chain(&missed).map(|&sample| domain.xi(&samples[sample])).collect();
+        let found = grazed_at(&xi, &domain.xi(&domain.nominal), &margins(boundary));
+        let value = |(axis, xi): (usize, Option<f64>)| xi.map(|xi| domain.value(axis, xi));
+        boundary.grazed_at = found.into_iter().enumerate().map(value).collect();
+        boundary.samples = [met.len(), missed.len()];
+    }
+    Ok(Some(Segments { words, boundaries, horizon, tolerance }))
 }
 
 /// Whether motions may be cut at all: what else steps have to resolve is left to the schedules that do.
@@ -92,37 +100,54 @@ fn groups(all: &[Followed], end: f64) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The latest time up to the duration before which there are no more words than the budget and all motions are known,
-/// with the groups; `None` where that is too early.
-fn within_budget(all: &[Followed], duration: f64) -> Option<(f64, Vec<Vec<usize>>)> {
-    let known_to = all.iter().map(|followed| followed.known_to).fold(f64::INFINITY, f64::min);
-    if known_to >= duration {
-        let groups = groups(all, duration);
-        if groups.len() <= MOST_WORDS {
-            return Some((duration, groups));
-        }
+/// Words up to a time, with the indices of their samples.
+type Found = (f64, Vec<(Word, Vec<usize>)>);
+
+/// The words up to the duration; where there are more than the budget, up to the last event that all have, before which
+/// there are no more. `None` where that is too early, or a motion does not go on.
+fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
+    let members = |group: &[usize]| group.iter().map(|&sample| &all[sample]).collect::<Vec<&Followed>>();
+    let whole = groups(all, duration);
+    if whole.len() <= MOST_WORDS {
+        let is_one = whole.len() == 1;
+        let word = |group: Vec<usize>| Some((shared(&members(&group), duration, is_one)?, group));
+        return Some((duration, whole.into_iter().map(word).collect::<Option<_>>()?));
     }
-    let limit = duration.min(known_to);
-    let instants = all.iter().flat_map(|followed| followed.events.iter().map(|(_, time)| *time));
-    let mut ends: Vec<f64> = instants.filter(|&time| time < limit && time >= WORTHWHILE * duration).collect();
-    ends.sort_by(f64::total_cmp);
-    // The number of words does not fall with the time.
-    let within = |end: &f64| groups(all, *end).len() <= MOST_WORDS;
-    let latest = ends.partition_point(within).checked_sub(1)?;
-    Some((ends[latest], groups(all, ends[latest])))
+    let fewest = all.iter().map(|followed| followed.events.len()).min()?;
+    let spelled = |sample: usize, count: usize| all[sample].events[..count].iter().map(|(event, _)| *event);
+    let of_count = |count: usize| {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for index in 0..all.len() {
+            match groups.iter_mut().find(|group| spelled(group[0], count).eq(spelled(index, count))) {
+                Some(group) => group.push(index),
+                None => groups.push(vec![index]),
+            }
+        }
+        (groups.len() <= MOST_WORDS).then_some((count, groups))
+    };
+    let (count, groups) = (1..=fewest).rev().find_map(of_count)?;
+    let horizon = all.iter().map(|followed| followed.events[count - 1].1).fold(duration, f64::min);
+    let word = |group: Vec<usize>| Some((of_extent(&members(&group), (count, None), horizon)?, group));
+    let words = groups.into_iter().map(word).collect::<Option<_>>()?;
+    (horizon >= WORTHWHILE * duration).then_some((horizon, words))
 }
 
-/// What some motions share up to a time; instants that are the same in all count where there are other words.
-fn shared(all: &[&Followed], end: f64, always: bool) -> Option<Word> {
+/// What some motions share up to a time, if instants are to differ between them.
+fn shared(all: &[&Followed], end: f64, is_one: bool) -> Option<Word> {
     let (count, tail) = extent(all, end)?;
     // Instants that are the same in all samples are kinks in time, none in the parameters.
     let differs = |event: usize| {
         let times = || all.iter().map(|followed| followed.events[event].1);
         times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min) > SAME * end
     };
-    if all.len() > 1 && !always && !(0..count).any(differs) {
+    if all.len() > 1 && is_one && !(0..count).any(differs) {
         return None;
     }
+    of_extent(all, (count, tail), end)
+}
+
+/// The word of some motions that are followed through so many events, and to the end of a last segment without one.
+fn of_extent(all: &[&Followed], (count, tail): (usize, Option<f64>), end: f64) -> Option<Word> {
     let word = |followed: &Followed| followed.events.iter().map(|(event, _)| *event).take(count).collect();
     let events: Vec<Event> = word(all.first()?);
     if all.iter().any(|followed| word(followed) != events) {
@@ -183,7 +208,7 @@ mod tests {
     }
 
     fn spelled(all: &[Followed]) -> Option<Word> {
-        shared(&all.iter().collect::<Vec<_>>(), 1.0, false)
+        shared(&all.iter().collect::<Vec<_>>(), 1.0, true)
     }
 
     #[test]
@@ -218,11 +243,17 @@ mod tests {
         assert_eq!(groups(&all, 1.0), [vec![0], vec![1, 2], vec![3]]);
     }
 
-    /// Seven words at the end, of which two differ in the first event, and the others later and later.
+    /// Eight words at the end: which of two switches three events are of. Two events make four of them.
     #[test]
     fn a_budget_of_words_ends_the_time() {
-        let all: Vec<Followed> = (0..7).map(|count| followed(&[0.3, 0.4, 0.5, 0.6, 0.7, 0.8][..count])).collect();
-        let (horizon, groups) = within_budget(&all, 1.0).unwrap();
-        assert_eq!((horizon, groups.len()), (0.8, 6));
+        let of_number = |number: usize| {
+            let mut own = followed(&[0.4, 0.5 + 0.01 * number as f64, 0.8]);
+            own.events.iter_mut().enumerate().for_each(|(place, (event, _))| event.switch = number >> place & 1);
+            own
+        };
+        let all: Vec<Followed> = (0..8).map(of_number).collect();
+        let (horizon, words) = within_budget(&all, 1.0).unwrap();
+        assert_eq!((horizon, words.len()), (0.5, 4));
+        assert!(words.iter().all(|(word, samples)| word.events.len() == 2 && samples.len() == 2));
     }
 }

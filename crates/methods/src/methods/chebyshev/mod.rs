@@ -277,9 +277,7 @@ impl BoundingMethod for Chebyshev {
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
         // An output is no polynomial behind an event, whatever is to be expanded.
-        if composes
-            && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
-        {
+        if composes && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)? {
             return Ok(result);
         }
         let mut kept_rows = request.keep.then(Vec::new);

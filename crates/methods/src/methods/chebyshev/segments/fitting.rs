@@ -31,6 +31,13 @@ const HALVINGS: usize = 40;
 /// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
 const BESIDE: usize = 3;
 
+/// A fit at a point outside of the samples may be off by so many times, squared, what samples are off by; such points
+/// are added, so many at once and so far apart, in so many rounds.
+const FAR: f64 = 2.0;
+const COVERING: usize = 4;
+const APART: f64 = 0.2;
+const COVERINGS: usize = 6;
+
 /// Samples, and what their polynomials are held against.
 pub(super) struct Fitting<'v> {
     pub samples: Samples,
@@ -52,22 +59,22 @@ impl Fitting<'_> {
     pub fn pieces<'b>(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found<'b>>, EnsembleError> {
         let words = self.samples.motions.words.len();
         let mut parts: Vec<Part> = (0..words).map(|word| Part::of_word(word, &self.samples.motions)).collect();
-        for layer in 0.. {
+        let (mut layer, mut covered) = (0, 0);
+        loop {
             for _ in 0..ROUNDS {
                 let wanted = self.wanted(&parts);
                 if wanted.is_empty() || ensemble.is_interrupted() {
                     break;
                 }
-                let samples = ensemble.domain().samples(&wanted);
-                let Some(motions) = ensemble.segments(&samples)? else { return Ok(None) };
-                self.samples.motions.append(motions, self.samples.xi.len());
-                self.samples.xi.extend(wanted);
+                if !self.add(ensemble, wanted)? {
+                    return Ok(None);
+                }
             }
             let levels = self.samples.levels();
-            let mut found = Vec::new();
-            let mut next = Vec::new();
+            let (mut found, mut next, mut wanted) = (Vec::new(), Vec::new(), Vec::new());
             for part in &parts {
                 let fitted = self.fitted(part, &levels);
+                wanted.extend(fitted.iter().flat_map(|(_, piece)| self.uncovered(part, piece)));
                 let misses = fitted.as_ref().is_some_and(|(misses, _)| *misses > ENOUGH);
                 let divided = fitted.as_ref().filter(|_| misses && layer < LAYERS);
                 match divided.and_then(|(_, piece)| part.layers(&levels, &piece.samples)) {
@@ -76,13 +83,62 @@ impl Fitting<'_> {
                 }
                 found.extend(fitted.map(|(_, piece)| piece));
             }
-            if next.len() == parts.len() {
+            if next.len() == parts.len() && !wanted.is_empty() && covered < COVERINGS {
+                covered += 1;
+                if !self.add(ensemble, wanted)? {
+                    return Ok(None);
+                }
+            } else if next.len() == parts.len() {
                 let known_to = self.samples.motions.known_to.min(self.direct.known_to);
                 return Ok(Some((found, self.samples.xi.len(), known_to)));
             }
+            layer += usize::from(next.len() > parts.len());
             parts = next;
         }
-        Ok(None)
+    }
+
+    /// Adds samples; whether they can be cut.
+    fn add(&mut self, ensemble: &dyn Ensemble, xi: Vec<Vec<f64>>) -> Result<bool, EnsembleError> {
+        let Some(motions) = ensemble.segments(&ensemble.domain().samples(&xi))? else { return Ok(false) };
+        self.samples.motions.append(motions, self.samples.xi.len());
+        self.samples.xi.extend(xi);
+        Ok(true)
+    }
+
+    /// Points of a part that are far outside of its samples, the farthest first: what is fitted there may be anything.
+    fn uncovered(&self, part: &Part, piece: &Piece) -> Vec<Vec<f64>> {
+        let k = self.samples.xi.first().map_or(0, Vec::len);
+        let surrogate = &piece.surrogate;
+        let margin = |xi: &Vec<f64>| surrogate.ends.iter().map(|end| end.margin(xi)).fold(f64::INFINITY, f64::min);
+        let is_own = |sample: &usize| self.samples.motions.words[part.word].samples.contains(sample);
+        let others: Vec<&Vec<f64>> = (0..self.samples.xi.len())
+            .filter(|sample| !is_own(sample))
+            .map(|sample| &self.samples.xi[sample])
+            .collect();
+        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES)].concat();
+        let inside: Vec<Vec<f64>> = of_box.iter().filter(|xi| margin(xi) >= 0.0).cloned().collect();
+        let outside: Vec<&Vec<f64>> = of_box.iter().filter(|xi| margin(xi) < 0.0).chain(others).collect();
+        let from: Vec<&Vec<f64>> =
+            if inside.is_empty() { piece.samples.iter().collect() } else { inside.iter().collect() };
+        let ends = across(&from, &outside, CANDIDATES / 4, margin, 0.0);
+        let mut all: Vec<Vec<f64>> = inside.iter().cloned().chain(ends).filter(|xi| margin(xi) >= 0.0).collect();
+        let mut found = Vec::new();
+        while found.len() < COVERING {
+            let leverage = |xi: &Vec<f64>| surrogate.leverage(xi);
+            let Some((worst, xi)) = all
+                .iter()
+                .map(|xi| (leverage(xi), xi.clone()))
+                .max_by(|a, b| a.0.total_cmp(&b.0))
+                .filter(|(worst, xi)| *worst > FAR && !self.samples.xi.contains(xi))
+            else {
+                break;
+            };
+            // Those beside it are covered with it.
+            all.retain(|other| leverage(other) < 0.5 * worst || distance(other, &xi) > APART);
+            all.retain(|other| *other != xi);
+            found.push(xi);
+        }
+        found
     }
 
     /// Points at which samples are missing.
@@ -101,7 +157,8 @@ impl Fitting<'_> {
             let lacks = ((SAMPLES_A_TERM * terms as f64) as usize + 2).saturating_sub(inside.len());
             let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
             // Those beside a surface, on lines across it.
-            let beside = if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) { lacks } else { lacks / BESIDE };
+            let beside =
+                if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) { lacks } else { lacks / BESIDE };
             let of_word: Vec<&Vec<f64>> = own.iter().map(|&sample| &xi[sample]).collect();
             let on_lines = ends.iter().filter(|end| end.offset == 0.0).flat_map(|end| {
                 let margin = |point: &Vec<f64>| end.margin(point);
@@ -152,6 +209,7 @@ impl Fitting<'_> {
         };
         let ends = part.ends(levels);
         let surrogate = SegmentSurrogate::new(basis, ends, &motions, |values| by_line(values, |(own, _)| own));
+        let surrogate = surrogate.fitted_by(squares.clone());
         let errors = SegmentErrors::of_samples(&motions, |values| by_line(values, |(_, left_out)| left_out));
         let points = self.points;
         let held_out = &self.direct.words[part.word];
@@ -176,6 +234,11 @@ fn picked(motions: &SegmentMotions, places: &[usize]) -> SegmentMotions {
         times: motions.times.iter().map(|times| pick(times)).collect(),
         nodes: motions.nodes.iter().map(|nodes| nodes.iter().map(of_node).collect()).collect(),
     }
+}
+
+/// Largest distance along an axis.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    largest(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
 /// So many points on lines from points inside of a surface to others beyond it, evenly in the root of the margin.
@@ -212,9 +275,7 @@ mod tests {
 
     use super::*;
     use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
-    use crate::numerics::{
-        BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, step_nodes,
-    };
+    use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, step_nodes};
 
     /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω².
     struct Throws {
@@ -272,9 +333,7 @@ mod tests {
             let word = |segments: usize| {
                 let own: Vec<usize> = (0..cut.len()).filter(|&sample| cut[sample].2.len() == segments).collect();
                 let node = |segment: usize, node: usize| {
-                    let line = |line: usize| {
-                        own.iter().map(move |&sample| (sample, line)).collect::<Vec<_>>()
-                    };
+                    let line = |line: usize| own.iter().map(move |&sample| (sample, line)).collect::<Vec<_>>();
                     let value = |(sample, line): (usize, usize)| {
                         let (_, times, starts) = &cut[sample];
                         self.nodes(times, starts, segment)[node][line]
@@ -352,9 +411,8 @@ mod tests {
             let (pieces, count, _) = fitting.pieces(&throws).unwrap().unwrap();
             assert!(count < 120, "{count}");
             for xi in spread(1, 97) {
-                let beyond = |piece: &&Piece| {
-                    piece.surrogate.ends.iter().map(|end| -end.margin(&xi)).fold(0.0, f64::max)
-                };
+                let beyond =
+                    |piece: &&Piece| piece.surrogate.ends.iter().map(|end| -end.margin(&xi)).fold(0.0, f64::max);
                 let piece = pieces.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b))).unwrap();
                 let [point] = &piece.surrogate.points(vec![xi.clone()])[..] else { panic!() };
                 let (_, times, _) = throws.cut(5.0 + 0.5 * xi[0]);

@@ -41,7 +41,8 @@ impl Samples {
     /// Places, among the samples of its word, of those in a part.
     pub fn places(&self, part: &Part, levels: &[Option<Level>]) -> Vec<usize> {
         // On which side of a boundary a sample is, its word tells.
-        let layers = Part { limits: part.limits.iter().filter(|limit| limit.offset != 0.0).copied().collect(), ..*part };
+        let layers =
+            Part { limits: part.limits.iter().filter(|limit| limit.offset != 0.0).copied().collect(), ..*part };
         let ends = layers.ends(levels);
         let own = self.motions.words[part.word].samples.iter().enumerate();
         own.filter(|(_, sample)| ends.iter().all(|end| end.margin(&self.xi[**sample]) >= 0.0))
@@ -65,7 +66,8 @@ impl Part {
     }
 
     pub fn ends(&self, levels: &[Option<Level>]) -> Vec<End> {
-        let of = |&Limit { boundary, sign, offset }: &Limit| Some(End { level: levels[boundary].clone()?, sign, offset });
+        let of =
+            |&Limit { boundary, sign, offset }: &Limit| Some(End { level: levels[boundary].clone()?, sign, offset });
         self.limits.iter().filter_map(of).collect()
     }
 

@@ -12,9 +12,7 @@ use super::parts::{Part, Samples};
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::Validation;
-use crate::numerics::{
-    CutMotions, SegmentMotions, Surrogate, SurrogateWork, corners, spread,
-};
+use crate::numerics::{CutMotions, SegmentMotions, Surrogate, SurrogateWork, corners, spread};
 
 /// Least and highest total degree in a part, the latter by the number of parameters.
 const LEAST_DEGREE: usize = 3;
@@ -71,7 +69,8 @@ impl<'a> Pieces<'a> {
         let order = grid.basis().orders().iter().copied().max().map_or(0, usize::from);
         let highest = DEGREES.get(domain.dimension() - 1).or(DEGREES.last()).map_or(0, |&most| most);
         let samples = Samples { xi: grid.samples().to_vec(), motions };
-        let fitting = Fitting { samples, degree: order.max(LEAST_DEGREE).min(highest), points: &validation.points, direct };
+        let fitting =
+            Fitting { samples, degree: order.max(LEAST_DEGREE).min(highest), points: &validation.points, direct };
         fitting.pieces(ensemble).map(|fitted| {
             fitted.map(|(all, samples, known_to)| Self { all, known_to, added: samples - grid.samples().len() })
         })
@@ -121,9 +120,7 @@ impl<'a> Pieces<'a> {
 
     /// The part that some ξ is in: where errors of surfaces leave it in none, that which it is least far from.
     pub fn part_of(&self, xi: &[f64]) -> Option<&Piece<'a>> {
-        let beyond = |piece: &&Piece| {
-            piece.surrogate.ends.iter().map(|end| -end.margin(xi)).fold(0.0, f64::max)
-        };
+        let beyond = |piece: &&Piece| piece.surrogate.ends.iter().map(|end| -end.margin(xi)).fold(0.0, f64::max);
         self.all.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b)))
     }
 }
@@ -132,9 +129,8 @@ impl<'a> Pieces<'a> {
 fn central(points: &[Vec<f64>]) -> Option<&Vec<f64>> {
     let count = points.len() as f64;
     let distance = |xi: &Vec<f64>| -> f64 {
-        let of_axis = |(axis, own): (usize, &f64)| {
-            (own - points.iter().map(|point| point[axis]).sum::<f64>() / count).powi(2)
-        };
+        let of_axis =
+            |(axis, own): (usize, &f64)| (own - points.iter().map(|point| point[axis]).sum::<f64>() / count).powi(2);
         xi.iter().enumerate().map(of_axis).sum()
     };
     points.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))

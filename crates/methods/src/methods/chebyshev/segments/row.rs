@@ -109,7 +109,11 @@ impl SegmentRow<'_> {
         for end in 0..surrogate.ends.len() {
             add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(&points, end, sign))));
         }
-        let own = |(output, moved): (usize, &Vec<f64>)| largest(moved[2 * output..][..2].iter().copied());
+        // Outside of the samples of a fit errors are larger.
+        let far: Vec<f64> = points.iter().map(|point| surrogate.leverage(&point.xi).max(1.0).sqrt()).collect();
+        let own = |(output, moved): (usize, &Vec<f64>)| {
+            largest(moved.iter().zip(&far).skip(2 * output).take(2).map(|(moved, far)| far * moved))
+        };
         moved.iter().enumerate().map(own).collect()
     }
 
@@ -157,9 +161,8 @@ impl Predicted for SensedRow<'_> {
     fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
         let mut values = vec![f64::NAN; outputs.len() * points.len()];
         for piece in &self.row.pieces.all {
-            let is_own = |point: &usize| {
-                self.row.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece))
-            };
+            let is_own =
+                |point: &usize| self.row.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece));
             let own: Vec<usize> = (0..points.len()).filter(is_own).collect();
             let at = piece.surrogate.points(own.iter().map(|&point| points[point].clone()).collect());
             let found = self.row.in_part(piece).outputs_at(&at);

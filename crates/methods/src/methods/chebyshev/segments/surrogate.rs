@@ -1,7 +1,7 @@
 //! Polynomials of the instants of events, and of the motion between them, of one word.
 
 use super::basis::{Basis, End};
-use crate::numerics::{STEP_NODES, SegmentMotions, largest, step_weights};
+use crate::numerics::{LeastSquares, STEP_NODES, SegmentMotions, largest, step_weights};
 
 /// Motions of one word, as functions of the parameters in a part of the box.
 pub(super) struct SegmentSurrogate<'a> {
@@ -15,6 +15,8 @@ pub(super) struct SegmentSurrogate<'a> {
     /// Coefficients of each of the 2n lines, by segment and node.
     nodes: Vec<Vec<Vec<f64>>>,
     lines: usize,
+    /// By what coefficients were fitted, where they were.
+    squares: Option<LeastSquares>,
 }
 
 /// A point of the box with its values that do not depend on the time.
@@ -54,7 +56,21 @@ impl<'a> SegmentSurrogate<'a> {
         let nodes: Vec<Vec<Vec<f64>>> =
             motions.nodes.iter().map(|nodes| nodes.iter().map(|node| coefficients(node)).collect()).collect();
         let lines = nodes.first().and_then(|nodes| nodes.first()).map_or(0, |node| node.len() / basis.len());
-        Self { basis, ends, steps: motions.steps.clone(), times, nodes, lines }
+        Self { basis, ends, steps: motions.steps.clone(), times, nodes, lines, squares: None }
+    }
+
+    /// The same, whose coefficients were fitted by these.
+    pub fn fitted_by(self, squares: LeastSquares) -> Self {
+        Self { squares: Some(squares), ..self }
+    }
+
+    /// How far some ξ is outside of the samples of a fit: by the square of so many times the errors of samples may the
+    /// fit be off there; at most 1 among them.
+    pub fn leverage(&self, xi: &[f64]) -> f64 {
+        let of = |squares: &LeastSquares| {
+            self.basis.values(&[xi.to_vec()]).first().map_or(f64::NAN, |terms| squares.leverage(terms))
+        };
+        self.squares.as_ref().map_or(0.0, of)
     }
 
     /// Number of positions and velocities, 2n.
