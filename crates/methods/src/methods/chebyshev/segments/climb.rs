@@ -17,7 +17,7 @@ const APART: f64 = 0.3;
 /// Radii of the first trust region, in ξ and in the share of the segment, and where a climb ends.
 const RADIUS: f64 = 0.15;
 const OF_SHARE: f64 = 0.25;
-const LEAST_RADIUS: f64 = 1e-4;
+const LEAST_RADIUS: f64 = 1e-6;
 
 /// Radii after a move that was none, and after one, over those before it.
 const SHRINKS: (f64, f64) = (0.5, 0.25);
@@ -32,6 +32,9 @@ const DIFFERENCE: f64 = 1e-6;
 /// Moves to a surface, and by how much of a segment it may be missed.
 const RETURNS: usize = 4;
 const MISSED: f64 = 1e-11;
+
+/// By how much of a segment a seed may be beyond its ends.
+const SEED: f64 = 1e-6;
 
 /// A point is moved back inside of a surface by a little more than it is beyond, and one on it is inside by this share
 /// of the surface's error.
@@ -109,7 +112,11 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
             seeds.extend(found.into_iter().map(|point| (segment, point)));
         }
     }
-    seeds.retain(|(_, point)| point.is_inside());
+    let is_in_segment = |segment: usize, point: &Point| {
+        let [begin, end] = [point.times[segment], point.times[segment + 1]];
+        (-SEED..=1.0 + SEED).contains(&((time - begin) / (end - begin)))
+    };
+    seeds.retain(|(segment, point)| point.is_inside() && is_in_segment(*segment, point));
     if seeds.is_empty() {
         return Vec::new();
     }

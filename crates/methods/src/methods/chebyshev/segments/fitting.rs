@@ -9,34 +9,20 @@ use super::parts::{Part, Samples};
 use super::pieces::Piece;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
 use crate::methods::ensemble::{Ensemble, EnsembleError};
-use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, corners, largest, spread};
+use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, largest};
 
 /// Rounds in which samples are added to parts, and the layers that are cut off one after the other.
 const ROUNDS: usize = 2;
 const LAYERS: usize = 3;
+
+/// Rounds in which points that are far outside of samples are added.
+const COVERINGS: usize = 6;
 
 /// A polynomial does that misses samples that are left out by no more than this share of how far they range.
 const ENOUGH: f64 = 1e-3;
 
 /// Values that differ by this share of them are the same.
 const ROUNDING: f64 = 1e-9;
-
-/// Candidates of each round, and corners among them.
-const CANDIDATES: usize = 512;
-pub(super) const CORNERS: usize = 16;
-
-/// Halvings of a line on which a level is looked for.
-const HALVINGS: usize = 40;
-
-/// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
-const BESIDE: usize = 3;
-
-/// A fit at a point outside of the samples may be off by so many times, squared, what samples are off by; such points
-/// are added, so many at once and so far apart, in so many rounds.
-const FAR: f64 = 2.0;
-const COVERING: usize = 4;
-const APART: f64 = 0.2;
-const COVERINGS: usize = 6;
 
 /// Samples, and what their polynomials are held against.
 pub(super) struct Fitting<'v> {
@@ -105,80 +91,6 @@ impl Fitting<'_> {
         Ok(true)
     }
 
-    /// Points of a part that are far outside of its samples, the farthest first: what is fitted there may be anything.
-    fn uncovered(&self, part: &Part, piece: &Piece) -> Vec<Vec<f64>> {
-        let k = self.samples.xi.first().map_or(0, Vec::len);
-        let surrogate = &piece.surrogate;
-        let margin = |xi: &Vec<f64>| surrogate.ends.iter().map(|end| end.margin(xi)).fold(f64::INFINITY, f64::min);
-        let is_own = |sample: &usize| self.samples.motions.words[part.word].samples.contains(sample);
-        let others: Vec<&Vec<f64>> = (0..self.samples.xi.len())
-            .filter(|sample| !is_own(sample))
-            .map(|sample| &self.samples.xi[sample])
-            .collect();
-        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES)].concat();
-        let inside: Vec<Vec<f64>> = of_box.iter().filter(|xi| margin(xi) >= 0.0).cloned().collect();
-        let outside: Vec<&Vec<f64>> = of_box.iter().filter(|xi| margin(xi) < 0.0).chain(others).collect();
-        let from: Vec<&Vec<f64>> =
-            if inside.is_empty() { piece.samples.iter().collect() } else { inside.iter().collect() };
-        let ends = across(&from, &outside, CANDIDATES / 4, margin, 0.0);
-        let mut all: Vec<Vec<f64>> = inside.iter().cloned().chain(ends).filter(|xi| margin(xi) >= 0.0).collect();
-        let mut found = Vec::new();
-        while found.len() < COVERING {
-            let leverage = |xi: &Vec<f64>| surrogate.leverage(xi);
-            let Some((worst, xi)) = all
-                .iter()
-                .map(|xi| (leverage(xi), xi.clone()))
-                .max_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|(worst, xi)| *worst > FAR && !self.samples.xi.contains(xi))
-            else {
-                break;
-            };
-            // Those beside it are covered with it.
-            all.retain(|other| leverage(other) < 0.5 * worst || distance(other, &xi) > APART);
-            all.retain(|other| *other != xi);
-            found.push(xi);
-        }
-        found
-    }
-
-    /// Points at which samples are missing.
-    fn wanted(&self, parts: &[Part]) -> Vec<Vec<f64>> {
-        let levels = self.samples.levels();
-        let xi = &self.samples.xi;
-        let k = xi.first().map_or(0, Vec::len);
-        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES + xi.len()).split_off(xi.len())].concat();
-        let mut wanted: Vec<Vec<f64>> = Vec::new();
-        for part in parts {
-            let (ends, depths) = (part.ends(&levels), part.depths(&levels));
-            let own = &self.samples.motions.words[part.word].samples;
-            let inside: Vec<&Vec<f64>> =
-                self.samples.places(part, &levels).iter().map(|&place| &xi[own[place]]).collect();
-            let terms = Fitted::new(self.degree, &depths, k).len();
-            let lacks = ((SAMPLES_A_TERM * terms as f64) as usize + 2).saturating_sub(inside.len());
-            let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
-            // Those beside a surface, on lines across it.
-            let beside =
-                if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) { lacks } else { lacks / BESIDE };
-            let of_word: Vec<&Vec<f64>> = own.iter().map(|&sample| &xi[sample]).collect();
-            let on_lines = ends.iter().filter(|end| end.offset == 0.0).flat_map(|end| {
-                let margin = |point: &Vec<f64>| end.margin(point);
-                let deepest = of_word.iter().map(|point| margin(point)).fold(0.0, f64::max);
-                // A layer ends before.
-                let limits = ends.iter().filter(|other| other.offset < 0.0).map(|other| -other.offset);
-                let depth = limits.fold(deepest, f64::min);
-                let others: Vec<&Vec<f64>> = xi.iter().filter(|point| margin(point) < 0.0).collect();
-                across(&of_word, &others, beside, margin, depth)
-            });
-            let mut own: Vec<Vec<f64>> = on_lines.filter(fits).take(beside).collect();
-            let others = of_box.iter().filter(|point| fits(point)).cloned();
-            own.extend(others.take(lacks - own.len().min(lacks)));
-            wanted.extend(own);
-        }
-        wanted.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-        wanted.dedup();
-        wanted
-    }
-
     /// The polynomials of a part, and by what share of their range they miss samples that are left out.
     fn fitted<'b>(&self, part: &Part, levels: &[Option<Level>]) -> Option<(f64, Piece<'b>)> {
         let places = self.samples.places(part, levels);
@@ -236,36 +148,6 @@ fn picked(motions: &SegmentMotions, places: &[usize]) -> SegmentMotions {
     }
 }
 
-/// Largest distance along an axis.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    largest(a.iter().zip(b).map(|(a, b)| a - b))
-}
-
-/// So many points on lines from points inside of a surface to others beyond it, evenly in the root of the margin.
-fn across(
-    inside: &[&Vec<f64>],
-    others: &[&Vec<f64>],
-    count: usize,
-    margin: impl Fn(&Vec<f64>) -> f64,
-    depth: f64,
-) -> Vec<Vec<f64>> {
-    if inside.is_empty() || others.is_empty() {
-        return Vec::new();
-    }
-    let of = |index: usize| {
-        let (from, to) = (inside[index % inside.len()], others[index % others.len()]);
-        let wanted = depth * ((index as f64 + 0.5) / count as f64).powi(2);
-        let at = |share: f64| from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect::<Vec<f64>>();
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if margin(&at(middle)) > wanted { low = middle } else { high = middle }
-        }
-        at(0.5 * (low + high))
-    };
-    (0..count).map(of).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use std::ops::Range as Rows;
@@ -275,7 +157,7 @@ mod tests {
 
     use super::*;
     use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
-    use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, step_nodes};
+    use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
 
     /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω².
     struct Throws {

@@ -5,8 +5,8 @@
 //!
 //! - `basis`: the terms of polynomials, and the surfaces;
 //! - `surrogate`: polynomials of the instants, and of the motion at the nodes of each segment, in one part of the box;
-//! - `pieces`: all parts, `parts`: which samples are in which, `fitting`: polynomials by least squares, and the samples
-//!   that these need;
+//! - `pieces`: all parts, `parts`: which samples are in which, `fitting`: polynomials by least squares, and
+//!   `sampling`: the samples that these need;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces.
@@ -17,6 +17,7 @@ mod fitting;
 mod parts;
 mod pieces;
 mod row;
+mod sampling;
 mod seeds;
 mod surrogate;
 

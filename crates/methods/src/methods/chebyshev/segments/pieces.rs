@@ -7,8 +7,9 @@
 use symdiff::jet::JetSpace;
 
 use super::basis::Basis;
-use super::fitting::{CORNERS, Fitting};
+use super::fitting::Fitting;
 use super::parts::{Part, Samples};
+use super::sampling::CORNERS;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::Validation;

@@ -3,6 +3,9 @@
 use super::basis::{Basis, End};
 use crate::numerics::{LeastSquares, STEP_NODES, SegmentMotions, largest, step_weights};
 
+/// How far the branch of a segment goes on beyond its ends, as a share of it.
+const BEYOND: f64 = 0.02;
+
 /// Motions of one word, as functions of the parameters in a part of the box.
 pub(super) struct SegmentSurrogate<'a> {
     basis: Basis<'a>,
@@ -94,10 +97,12 @@ impl<'a> SegmentSurrogate<'a> {
         xi.into_iter().zip(values).map(point).collect()
     }
 
-    /// The motion (2n) of a point at a time on the branch of a segment, which goes on beyond its ends.
+    /// The motion (2n) of a point at a time on the branch of a segment, which goes on a little beyond its ends: a segment
+    /// that is as short as its error is has no branch.
     pub fn motion(&self, point: &Point, segment: usize, time: f64) -> impl Iterator<Item = f64> {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
-        let (step, weights) = step_weights(&self.steps[segment], (time - begin) / (end - begin));
+        let share = ((time - begin) / (end - begin)).clamp(-BEYOND, 1.0 + BEYOND);
+        let (step, weights) = step_weights(&self.steps[segment], if share.is_nan() { 0.0 } else { share });
         let nodes = &self.nodes[segment][step * (STEP_NODES - 1)..][..STEP_NODES];
         let terms = point.terms.clone();
         (0..self.lines).map(move |line| {
