@@ -235,7 +235,7 @@ fn outputs_are_reduced_between_events() {
     }
 }
 
-/// A weight that is thrown up on a slack rope: about the height at which that is taut, it moves as the elastic ball does.
+/// A weight that is thrown up on a slack rope: about the height of the taut rope it moves as the elastic ball does.
 #[test]
 fn a_cable_slackens() {
     let text = "
@@ -245,7 +245,7 @@ effects:
   weight: { gravity: { acceleration: [0, -9.81] } }
   rope: { cable: { between: [ground, m], free_length: 1 m, stiffness: k } }
 initial: { m.y: -0.5, m.vy: u }
-outputs: { v: m.vy }
+outputs: { y: m.y }
 simulation: { duration: 1.2, step: 1e-3, output_step: 0.02 }
 bounds: { chebyshev: { order: 4 } }
 ";
@@ -256,11 +256,11 @@ bounds: { chebyshev: { order: 4 } }
             (0..301 * 9).map(|place| (f64::from(place % 301) / 150.0 - 1.0, f64::from(place / 301) / 4.0 - 1.0));
         let of = |(a, b): (f64, f64)| {
             let (u, stiffness) = (2.0 * (1.0 + 0.05 * a), 4e3 * (1.0 + 0.05 * b));
-            elastic(0.5 + u * u / (2.0 * 9.81), stiffness, t - u / 9.81)[1]
+            elastic(0.5 + u * u / (2.0 * 9.81), stiffness, t - u / 9.81)[0] - 1.0
         };
         range(points.map(of))
     };
-    assert_true(&bounds, "v", 1e-5, 5e-3, truth);
+    assert_true(&bounds, "y", 1e-6, 5e-5, truth);
 }
 
 /// A torque that changes its sign at an uncertain time: ω = (2T − (t − T))/I behind it.
@@ -280,7 +280,7 @@ bounds: { chebyshev: { order: 4 } }
     let speed = |t: f64, switch: f64| (2.0 * t.min(switch) - (t - switch).max(0.0)) / 0.35;
     // Largest where it switches just then.
     let truth = |t: f64| range([0.45, 0.55, t.clamp(0.45, 0.55)].into_iter().map(|switch| speed(t, switch)));
-    assert_true(&bounds, "speed", 1e-8, 1e-12, truth);
+    assert_true(&bounds, "speed", 1e-8, 1e-10, truth);
 }
 
 /// A mass between two stops that coincide, and one that begins within them: x = 1 + x₀ cos ωτ + v/ω sin ωτ.

@@ -262,8 +262,8 @@ pub trait Ensemble: Sync {
         Ok(None)
     }
 
-    /// Taylor coefficients, about some ξ and in scaled parameters, of the motion that is cut at the events there, as the
-    /// values of so many samples, with the index of its word; `None` where motions are not cut.
+    /// Taylor coefficients, about some ξ and in scaled parameters, of the motion that is cut at its events. They are
+    /// the values of so many samples, with the index of the word; `None` where motions are not cut.
     ///
     /// # Errors
     /// Where the sample cannot be assembled.

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 /// Diagonal entries of R below this share of the largest are zero.
 const RANK: f64 = 1e-10;
 
-/// A sample with this leverage or more is met by any fit: nothing is known of what it would be without it.
+/// A sample with this leverage or more is met by any fit, which says nothing of a fit without it.
 const MOST_LEVERAGE: f64 = 1.0 - 1e-9;
 
 /// The factorisation of a matrix whose rows are the values of all terms at a sample.

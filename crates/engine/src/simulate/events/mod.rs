@@ -1,7 +1,7 @@
 //! Events: instants at which equations switch, and motions that are cut there.
 //!
-//! Where samples meet the same events in the same order, which is their word, each segment between two of them has steps
-//! that are the same shares of its length in all of these samples, whose lengths are their own.
+//! Samples that meet the same events in the same order have one word. Each segment between two of these events has
+//! steps that are the same shares of its length in all samples of the word, whose lengths are their own.
 //!
 //! - `locate`: where a function of the time changes its sign within a step;
 //! - `segments`: the words of a box, the steps between their events, and the boundaries between words;

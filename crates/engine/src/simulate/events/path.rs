@@ -242,7 +242,7 @@ impl<'s> Path<'s> {
         (rate - before) / back
     }
 
-    /// The least value of `sign` times a switch within the step that was taken, and when it is, where it falls first and
+    /// Time and value of the minimum of `sign` times a switch within the step that was taken, where it falls first and
     /// rises at the end: the zero of its rate by the secant method that keeps both sides.
     pub fn least(&mut self, step: PathStep, switch: usize, sign: f64) -> Option<(f64, f64)> {
         let [[_, first], [_, last]] = [self.watch.at_beginning(switch, 0), self.at_end(switch)];

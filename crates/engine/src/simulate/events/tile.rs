@@ -68,7 +68,7 @@ pub(super) struct SegmentTile<'s> {
 #[derive(Debug)]
 pub(super) struct Lanes<'s> {
     pub word: Option<&'s Word>,
-    /// Indices of the samples, and what they spell.
+    /// Indices of the samples, and their words.
     pub indices: Vec<usize>,
     pub spelled: Vec<Spelled>,
 }

@@ -127,7 +127,7 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     };
     let (count, groups) = (1..=fewest).rev().find_map(of_count)?;
     let horizon = all.iter().map(|followed| followed.events[count - 1].1).fold(duration, f64::min);
-    let word = |group: Vec<usize>| Some((of_extent(&members(&group), (count, None), horizon)?, group));
+    let word = |group: Vec<usize>| Some((of_extent(&members(&group), count, None, horizon)?, group));
     let words = groups.into_iter().map(word).collect::<Option<_>>()?;
     (horizon >= WORTHWHILE * duration).then_some((horizon, words))
 }
@@ -143,11 +143,11 @@ fn shared(all: &[&Followed], end: f64, is_one: bool) -> Option<Word> {
     if all.len() > 1 && is_one && !(0..count).any(differs) {
         return None;
     }
-    of_extent(all, (count, tail), end)
+    of_extent(all, count, tail, end)
 }
 
 /// The word of some motions that are followed through so many events, and to the end of a last segment without one.
-fn of_extent(all: &[&Followed], (count, tail): (usize, Option<f64>), end: f64) -> Option<Word> {
+fn of_extent(all: &[&Followed], count: usize, tail: Option<f64>, end: f64) -> Option<Word> {
     let word = |followed: &Followed| followed.events.iter().map(|(event, _)| *event).take(count).collect();
     let events: Vec<Event> = word(all.first()?);
     if all.iter().any(|followed| word(followed) != events) {

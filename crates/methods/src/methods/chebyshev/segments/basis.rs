@@ -37,7 +37,7 @@ pub(super) struct Level {
     error: f64,
 }
 
-/// A surface that ends a part: it is on one side of a level, or of what is parallel to it.
+/// A surface that ends a part: a level's zero, or a surface parallel to it.
 #[derive(Clone, Debug)]
 pub(super) struct End {
     pub level: Level,

@@ -24,7 +24,7 @@ const SHRINKS: (f64, f64) = (0.5, 0.25);
 const GROWS: (f64, f64) = (2.0, 1.5);
 
 /// Moves of a climb, at most.
-const MOVES: usize = 60;
+const MOVES: usize = 120;
 
 /// Difference by which slopes are taken.
 const DIFFERENCE: f64 = 1e-6;

@@ -108,7 +108,8 @@ pub(in crate::methods) fn of_jets(
     }
 }
 
-fn finished((bands, simulated): (BandBuilder, Simulated), simulations: usize, pieces: &Pieces) -> MethodResult {
+fn finished(bands: (BandBuilder, Simulated), simulations: usize, pieces: &Pieces) -> MethodResult {
+    let (bands, simulated) = bands;
     bands.finish(simulations + pieces.added, simulated)
 }
 
@@ -184,7 +185,7 @@ fn composed(
     Ok((bands, Simulated { beyond_tolerance_from, ..Simulated::default() }))
 }
 
-/// A row of which only what was simulated is known.
+/// A row of which only simulated values are known.
 fn unknown(seen: Range) -> Estimate {
     let range = if seen.lower <= seen.upper { seen } else { Range::UNKNOWN };
     Estimate { range, error: f64::NAN, step_error: f64::NAN, sensitivity: None, is_expanded: false, is_own: false }

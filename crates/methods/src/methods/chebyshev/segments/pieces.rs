@@ -129,10 +129,8 @@ impl<'a> Pieces<'a> {
 /// The point that is nearest to the middle of all.
 fn central(points: &[Vec<f64>]) -> Option<&Vec<f64>> {
     let count = points.len() as f64;
-    let distance = |xi: &Vec<f64>| -> f64 {
-        let of_axis =
-            |(axis, own): (usize, &f64)| (own - points.iter().map(|point| point[axis]).sum::<f64>() / count).powi(2);
-        xi.iter().enumerate().map(of_axis).sum()
-    };
+    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count;
+    let means: Vec<f64> = (0..points.first()?.len()).map(mean).collect();
+    let distance = |xi: &Vec<f64>| xi.iter().zip(&means).map(|(xi, mean)| (xi - mean) * (xi - mean)).sum::<f64>();
     points.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }

@@ -1,4 +1,5 @@
-//! Samples that fits in the parts of a box need: enough of them, beside surfaces, and nowhere far outside of the others.
+//! Samples that fits in the parts of a box need: enough of them, some beside surfaces, and none far outside of the
+//! others.
 
 use super::basis::{Fitted, SAMPLES_A_TERM};
 use super::fitting::Fitting;
@@ -23,7 +24,7 @@ const COVERING: usize = 4;
 const APART: f64 = 0.2;
 
 impl Fitting<'_> {
-    /// Points of a part that are far outside of its samples, the farthest first: what is fitted there may be anything.
+    /// Points of a part that are far outside of its samples, the farthest first: a fit may have any value there.
     pub(super) fn uncovered(&self, part: &Part, piece: &Piece) -> Vec<Vec<f64>> {
         let k = self.samples.xi.first().map_or(0, Vec::len);
         let surrogate = &piece.surrogate;

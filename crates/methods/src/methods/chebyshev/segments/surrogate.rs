@@ -97,8 +97,8 @@ impl<'a> SegmentSurrogate<'a> {
         xi.into_iter().zip(values).map(point).collect()
     }
 
-    /// The motion (2n) of a point at a time on the branch of a segment, which goes on a little beyond its ends: a segment
-    /// that is as short as its error is has no branch.
+    /// The motion (2n) of a point at a time on the branch of a segment, which goes on a little beyond its ends: the
+    /// shortest segments are no longer than their errors.
     pub fn motion(&self, point: &Point, segment: usize, time: f64) -> impl Iterator<Item = f64> {
         let [begin, end] = [point.times[segment], point.times[segment + 1]];
         let share = ((time - begin) / (end - begin)).clamp(-BEYOND, 1.0 + BEYOND);
