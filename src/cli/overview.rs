@@ -8,7 +8,9 @@ use super::table::{Align, Table};
 use super::verdicts;
 use crate::export::rounded as rounded_number;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary, TooDeep};
+use crate::results::{
+    AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, EventSummary, ParameterSummary, Summary, TooDeep,
+};
 use crate::simulate::is_one_number;
 
 /// The largest width and error of each band.
@@ -187,6 +189,15 @@ fn singular(summary: &Summary) -> String {
             named(&passes[0].constraints)
         );
     }
+    for EventSummary { event, samples, met, grazed_at } in summary.events.iter().take(MOST) {
+        let at = |(name, value): &(String, f64)| {
+            let own = summary.parameters.iter().find(|parameter| parameter.name == *name);
+            own.map(|own| format!("{name} = {} {}", digits(*value), own.unit))
+        };
+        let at: Vec<String> = grazed_at.iter().filter_map(at).collect();
+        let at = if at.is_empty() { String::new() } else { format!("; it is grazed at {}", at.join(", or ")) };
+        text += &format!("  {event} switches in {met} of {samples} samples{at}\n");
+    }
     if !summary.undetermined_outputs.is_empty() {
         text += &format!(
             "  not unique: {}. Equilibrium does not determine these reactions, because {} are redundant; \
@@ -313,6 +324,7 @@ mod tests {
             shared_start: vec![],
             singular_configurations: vec![],
             damped_mode: None,
+            events: Vec::new(),
             unmet_switch: None,
             too_deep: None,
             beyond_tolerance: None,

@@ -54,7 +54,7 @@ pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetBox, JetRun, Observed, Stop};
 pub use error::SimulationError;
-pub use events::{SegmentRun, segments_of};
+pub use events::{Boundary, SegmentRun, segment_jets, segments_of};
 pub use explicit::{ExplicitJets, ExplicitObstacle, explicit_schedule};
 pub use interruption::Interruption;
 pub use modal::is_one_number;

@@ -65,8 +65,7 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => Self::Plain(run.reducing(channels)),
             Self::Extrapolated(run) => Self::Extrapolated(run.reducing(channels)),
             Self::Explicit(run) => Self::Explicit(run.reducing(channels)),
-            // Outputs are reduced over steps that all samples share.
-            Self::Segments(run) => Self::Segments(run),
+            Self::Segments(run) => Self::Segments(run.reducing(channels)),
         }
     }
 
@@ -98,7 +97,7 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => run.reduced(),
             Self::Extrapolated(run) => run.reduced(),
             Self::Explicit(run) => run.reduced(),
-            Self::Segments(_) => Vec::new(),
+            Self::Segments(run) => run.reduced(),
         }
     }
 

@@ -192,6 +192,7 @@ mod tests {
             shared_start: vec![],
             singular_configurations: vec![],
             damped_mode: None,
+            events: Vec::new(),
             unmet_switch: None,
             too_deep: None,
             beyond_tolerance: None,

@@ -10,7 +10,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use crate::multibody::{ConstraintId, EquationId};
-use crate::numerics::{EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
+use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -272,13 +272,22 @@ pub trait Ensemble: Sync {
         Ok(None)
     }
 
-    /// Motions of samples, cut at the events that all of them meet; `None` where motions are not cut, or a sample meets
-    /// others.
+    /// Motions of samples, cut at the events that they meet; `None` where motions are not cut.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
-    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
+    fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         let _ = samples;
+        Ok(None)
+    }
+
+    /// Taylor coefficients, about some ξ and in scaled parameters, of the motion that is cut at its events. They are
+    /// the values of so many samples, with the index of the word; `None` where motions are not cut.
+    ///
+    /// # Errors
+    /// Where the sample cannot be assembled.
+    fn segment_jets(&self, space: &JetSpace, xi: &[f64]) -> Result<Option<(usize, SegmentMotions)>, EnsembleError> {
+        let _ = (space, xi);
         Ok(None)
     }
 

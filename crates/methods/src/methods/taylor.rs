@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
 use super::BoundsRequest;
+use super::chebyshev::segments;
 use super::ensemble::{Ensemble, EnsembleError, JET_WORK};
 use super::registry::{About, BoundingMethod, CostCurve, Registered, Varied};
 use super::request::{self, Budget, Problem};
@@ -114,6 +115,10 @@ impl BoundingMethod for Taylor {
         JET_WORK * (self.order + 1)
     }
 
+    fn follows_events(&self, problem: &Problem) -> bool {
+        problem.composes
+    }
+
     fn bound(
         &self,
         ensemble: &dyn Ensemble,
@@ -122,6 +127,9 @@ impl BoundingMethod for Taylor {
     ) -> Result<MethodResult, EnsembleError> {
         let k = ensemble.domain().dimension();
         let space = JetSpace::new(k, self.order);
+        if let Some(found) = segments::of_jets(ensemble, &space, validation)? {
+            return Ok(found);
+        }
         let range = TaylorRange::new(k, self.order, self.range);
         let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
         let mut reached = 0;

@@ -12,9 +12,34 @@ use symdiff::math;
 /// Nodes of a step, both ends included: those of a dense output of order 7.
 pub const STEP_NODES: usize = 8;
 
-/// Motions of some samples, cut at the events that all of them have.
+/// Motions of some samples, cut at the events that they meet.
+#[derive(Clone, Debug, Default)]
+pub struct CutMotions {
+    /// Of each word, which is a sequence of events, those of its samples.
+    pub words: Vec<SegmentMotions>,
+    /// Surfaces between words.
+    pub boundaries: Vec<BoundaryMargins>,
+    /// Time from which some sample meets the events of no word, or at which words end, s.
+    pub known_to: f64,
+}
+
+/// Margins by which samples miss an event, or by how much they would pass it: a function of the parameters that is zero
+/// where the event is just grazed.
+#[derive(Clone, Debug, Default)]
+pub struct BoundaryMargins {
+    /// Indices of the words that have the event.
+    pub met: Vec<usize>,
+    /// Indices of those that do not.
+    pub missed: Vec<usize>,
+    /// By sample: positive without the event; NaN of samples of other words.
+    pub values: Vec<f64>,
+}
+
+/// Motions of the samples of one word.
 #[derive(Clone, Debug, Default)]
 pub struct SegmentMotions {
+    /// Indices of the samples, in the order of their values.
+    pub samples: Vec<usize>,
     /// Ends of the steps of each segment, as shares of its length; the last is 1.
     pub steps: Vec<Vec<f64>>,
     /// Times at which segments begin, and at which the last ends, s: by segment, each of all samples.
@@ -22,6 +47,43 @@ pub struct SegmentMotions {
     /// Positions and velocities at the nodes: by segment, by node (neighbouring steps share one), line by line, sample
     /// by sample.
     pub nodes: Vec<Vec<Vec<f64>>>,
+}
+
+impl CutMotions {
+    /// Adds other samples, which follow these.
+    pub fn append(&mut self, other: Self, own: usize) {
+        for (word, other) in self.words.iter_mut().zip(other.words) {
+            word.append(other, own);
+        }
+        for (boundary, other) in self.boundaries.iter_mut().zip(other.boundaries) {
+            boundary.values.extend(other.values);
+        }
+        self.known_to = self.known_to.min(other.known_to);
+    }
+}
+
+impl SegmentMotions {
+    fn append(&mut self, other: Self, offset: usize) {
+        if other.samples.is_empty() {
+            return;
+        }
+        if self.samples.is_empty() {
+            *self = Self { samples: Vec::new(), ..other.clone() };
+        } else {
+            for (times, other) in self.times.iter_mut().zip(&other.times) {
+                times.extend(other);
+            }
+            let (own, others) = (self.samples.len(), other.samples.len());
+            let joined = |node: &Vec<f64>, other: &Vec<f64>| -> Vec<f64> {
+                let lines = node.chunks_exact(own).zip(other.chunks_exact(others));
+                lines.flat_map(|(own, other)| own.iter().chain(other).copied()).collect()
+            };
+            for (nodes, other) in self.nodes.iter_mut().zip(&other.nodes) {
+                *nodes = nodes.iter().zip(other).map(|(node, other)| joined(node, other)).collect();
+            }
+        }
+        self.samples.extend(other.samples.iter().map(|sample| offset + sample));
+    }
 }
 
 static NODES: LazyLock<[f64; STEP_NODES]> =

@@ -45,6 +45,6 @@ pub use statistics::{
 };
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
-    AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary,
-    SingularSummary, SubsystemSummary, Summary,
+    AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, EventSummary, MethodSummary, ParameterSummary,
+    PieceSummary, SingularSummary, SubsystemSummary, Summary,
 };

@@ -40,6 +40,9 @@ pub struct Summary {
     /// A fast mode that the start excites and the steps damp, where that moves an output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damped_mode: Option<DampedMode>,
+    /// Events that a part of the box meets: bounds are divided where one is just grazed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<EventSummary>,
     /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unmet_switch: Option<f64>,
@@ -294,4 +297,17 @@ impl ErrorSummary {
         };
         bounds.outputs.iter().flat_map(|output| output.bands.iter().map(move |band| of_band(output, band))).collect()
     }
+}
+
+/// An event that a part of the box meets.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EventSummary {
+    /// The term of the equations that switches, and where.
+    pub event: String,
+    /// Number of samples that were followed, and of those that meet it.
+    pub samples: usize,
+    /// Of these.
+    pub met: usize,
+    /// Value of a parameter, SI, at which it is just grazed while the others are nominal.
+    pub grazed_at: Vec<(String, f64)>,
 }

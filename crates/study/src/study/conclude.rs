@@ -169,6 +169,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         damped_mode,
+        events: study.events_of_parts(&results.schedule),
         unmet_switch,
         too_deep: results.too_deep(),
         beyond_tolerance: results.beyond_tolerance(),

@@ -4,8 +4,8 @@ use super::outcome::Switches;
 use super::single::{Study, problem};
 use crate::model::Stepping;
 use crate::numerics::{Sample, spread};
-use crate::results::MethodSummary;
-use crate::simulate::{Counters, Schedule, SimulationError, SwitchSearch, segments_of};
+use crate::results::{EventSummary, MethodSummary};
+use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, segments_of};
 
 /// A step may err by this share of how far the motion has gone: steps of order 8 that are so accurate cost little.
 const OF_STEPS: f64 = 1e-10;
@@ -32,7 +32,10 @@ impl Study<'_> {
         };
         let asked = of_steps.into_iter().chain(self.request.tolerance).map(|tolerance| OF_TOLERANCE * tolerance);
         let tolerance = asked.fold(OF_STEPS, f64::min);
-        let segments = segments_of(&self.simulator, &self.event_samples(), times.0, tolerance)?;
+        let segments = segments_of(&self.simulator, &self.domain, &self.event_samples(), times.0, tolerance)?;
+        // A number that is accumulated over a motion is one of the whole of it.
+        let accumulates = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
+        let segments = segments.filter(|segments| !accumulates || segments.horizon >= times.0);
         Ok(segments.map(|segments| Schedule::segmented(times, segments)))
     }
 
@@ -49,6 +52,22 @@ impl Study<'_> {
         (found, summary)
     }
 
+    /// Events that a part of the samples meets.
+    pub(super) fn events_of_parts(&self, schedule: &Schedule) -> Vec<EventSummary> {
+        let parameters = &self.simulator.system.parameters;
+        let boundaries = schedule.segments().map_or(&[][..], |segments| &segments.boundaries);
+        let of_boundary = |boundary: &Boundary| {
+            let grazed = parameters.iter().zip(&boundary.grazed_at);
+            EventSummary {
+                event: boundary.event.name(&self.simulator).unwrap_or_default(),
+                samples: boundary.samples.iter().sum(),
+                met: boundary.samples[0],
+                grazed_at: grazed.filter_map(|(own, value)| Some((own.name.clone(), (*value)?))).collect(),
+            }
+        };
+        boundaries.iter().map(of_boundary).collect()
+    }
+
     /// Samples that show the events: the controlling ones, and some spread over the box.
     fn event_samples(&self) -> Vec<Sample> {
         let mut samples = self.controlling_samples();
@@ -59,7 +78,6 @@ impl Study<'_> {
 
     fn may_be_cut(&self) -> bool {
         let problem = problem(self.description, &self.simulator);
-        let reduces = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
         let methods = self.request.methods();
         // What depends on nothing keeps the steps that it is given.
         let within = match self.domain.dimension() {
@@ -71,7 +89,6 @@ impl Study<'_> {
             && !methods.is_empty()
             && !self.request.keep
             && self.stored.is_none()
-            && !reduces
             // Constraints that open later are not watched for.
             && self.simulator.mobility.redundant.is_empty()
     }

@@ -227,14 +227,29 @@ impl<'s> JetClosure<'s> {
         Ok((layout.q.start..layout.v.end).flat_map(|register| start.jet(register).to_vec()).collect())
     }
 
+    /// The jet in a register of the state, the parameters or the time.
+    pub fn jet(&self, register: usize) -> &[f64] {
+        self.memory.jet(register)
+    }
+
+    /// The time, s.
+    pub fn time_mut(&mut self) -> &mut [f64] {
+        self.memory.jet_mut(self.program.layout.time)
+    }
+
     /// Rates (v, w; 2n jets) of a state (q, v) at a time.
     pub fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        self.memory.set_constant(self.program.layout.time, time);
+        self.rate_at_time(state, into);
+    }
+
+    /// The same at the jet's own [time](Self::time_mut).
+    pub fn rate_at_time(&mut self, state: &[f64], into: &mut [f64]) {
         let layout = &self.program.layout;
         let terms = state.len() / (2 * layout.q.len());
         for (register, jet) in (layout.q.start..layout.v.end).zip(state.chunks_exact(terms)) {
             self.memory.jet_mut(register).copy_from_slice(jet);
         }
-        self.memory.set_constant(layout.time, time);
         if self.needs.linear {
             self.memory.run(self.program.acceleration());
             add_correction(&mut self.memory, layout.w.start..layout.lambda.end, layout.correction.start);
@@ -270,13 +285,18 @@ impl<'s> JetClosure<'s> {
 
     /// Makes a motion (2n jets, q and v) consistent at a time.
     pub fn close(&mut self, time: f64, motion: &mut [f64]) {
+        self.memory.set_constant(self.program.layout.time, time);
+        self.close_at_time(motion);
+    }
+
+    /// The same at the jet's own [time](Self::time_mut).
+    pub fn close_at_time(&mut self, motion: &mut [f64]) {
         let layout = &self.program.layout;
         let unknowns = layout.q.start..layout.v.end;
         let terms = motion.len() / unknowns.len();
         for (register, jet) in unknowns.clone().zip(motion.chunks_exact(terms)) {
             self.memory.jet_mut(register).copy_from_slice(jet);
         }
-        self.memory.set_constant(layout.time, time);
         if !self.needs.closure {
             return;
         }

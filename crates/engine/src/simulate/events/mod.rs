@@ -1,14 +1,18 @@
 //! Events: instants at which equations switch, and motions that are cut there.
 //!
-//! Where all samples meet the same events in the same order, each segment between two of them has steps that are the
-//! same shares of its length in all samples, whose lengths are their own.
+//! Samples that meet the same events in the same order have one word. Each segment between two of these events has
+//! steps that are the same shares of its length in all samples of the word, whose lengths are their own.
 //!
 //! - `locate`: where a function of the time changes its sign within a step;
-//! - `segments`: the events that all samples have, and the steps between them;
-//! - `path`: one sample by the explicit method, whose steps end at events, and `word`: whether all meet the same;
+//! - `segments`: the words of a box, the steps between their events, and the boundaries between words;
+//! - `path`: one sample by the explicit method, whose steps end at events, and `followed`: its word;
+//! - `word`: the words of some samples, and `boundary`: the surfaces between them;
 //! - `stretched`: segments on a time from 0 to 1, and `tile`: samples on it in lockstep;
-//! - `run`: an ensemble, row by row.
+//! - `run`: an ensemble, row by row, and `jets`: a jet.
 
+mod boundary;
+mod followed;
+mod jets;
 pub(in crate::simulate) mod locate;
 mod path;
 mod run;
@@ -17,5 +21,7 @@ mod stretched;
 mod tile;
 mod word;
 
+pub use jets::segment_jets;
 pub use run::SegmentRun;
+pub use segments::Boundary;
 pub use word::segments_of;

@@ -51,6 +51,11 @@ const SAFETY: f64 = 0.9;
 const LEAST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 6.0;
 
+/// Share of a step over which the change of a rate is taken, and rates beside an extreme that are none, as a share of
+/// those at the step's ends.
+const FOR_BEND: f64 = 1e-3;
+const FLAT: f64 = 1e-7;
+
 /// Steps that are tried at most: motions that are worth cutting take hundreds.
 const MOST_STEPS: usize = 3000;
 
@@ -136,6 +141,13 @@ impl<'s> Path<'s> {
                 self.h = step * if ratio <= 1.0 { share } else { share.max(LEAST_SHARE) };
                 continue;
             }
+            if let Some((time, switch)) =
+                self.touched(PathStep { begin, end, event: None }).filter(|_| crossing.is_none())
+            {
+                cut = Some(cut.map_or((self.h, switch), |(uncut, _)| (uncut, switch)));
+                self.h = time - begin;
+                continue;
+            }
             let near = |(_, switch): &(f64, usize)| {
                 let [value, rate] = self.watch.at_end(*switch, 0);
                 value * rate < 0.0 && (value / rate).abs() < (1.0 - NEAR) * step
@@ -213,6 +225,67 @@ impl<'s> Path<'s> {
         // Of those that cross at once, the first by number.
         let at_once = |(_, share): &(usize, f64)| (share - first) * step <= SAME * self.duration;
         found.into_iter().find(at_once)
+    }
+
+    /// (value, rate) of a switch at the end of the step that was taken.
+    pub fn at_end(&self, switch: usize) -> [f64; 2] {
+        self.watch.at_end(switch, 0)
+    }
+
+    /// Change of a switch's rate with the time at the end of the step that was taken.
+    pub fn bend(&mut self, step: PathStep, switch: usize) -> f64 {
+        let back = FOR_BEND * (step.end - step.begin);
+        let [_, rate] = self.at_end(switch);
+        self.attempt(step.end - back);
+        let [_, before] = self.at_end(switch);
+        self.attempt(step.end);
+        (rate - before) / back
+    }
+
+    /// Time and value of the minimum of `sign` times a switch within the step that was taken, where it falls first and
+    /// rises at the end: the zero of its rate by the secant method that keeps both sides.
+    pub fn least(&mut self, step: PathStep, switch: usize, sign: f64) -> Option<(f64, f64)> {
+        let [[_, first], [_, last]] = [self.watch.at_beginning(switch, 0), self.at_end(switch)];
+        let (mut low, mut high) = ((step.begin, sign * first), (step.end, sign * last));
+        // Written so that unknown rates end it.
+        if !(low.1 < 0.0 && high.1 > 0.0) {
+            return None;
+        }
+        let mut least = (step.end, f64::INFINITY);
+        for _ in 0..CORRECTIONS {
+            let time = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            if !(time > step.begin && time < step.end) {
+                break;
+            }
+            self.attempt(time);
+            let [value, rate] = self.at_end(switch).map(|value| sign * value);
+            if value < least.1 {
+                least = (time, value);
+            }
+            if rate.abs() <= FLAT * (first.abs() + last.abs()) {
+                break;
+            }
+            // The end that stays counts half the next time.
+            if rate < 0.0 {
+                (low, high.1) = ((time, rate), 0.5 * high.1);
+            } else {
+                (high, low.1) = ((time, rate), 0.5 * low.1);
+            }
+        }
+        self.attempt(step.end);
+        Some(least)
+    }
+
+    /// When a switch passes zero and comes back within the step that was tried, as far as both of its ends approach
+    /// zero: a step is long beside a small stop, and a cubic through its ends passes over it.
+    fn touched(&mut self, step: PathStep) -> Option<(f64, usize)> {
+        let count = self.sizes.len();
+        let mut found = |switch: usize| {
+            let sign = self.at_end(switch)[0].signum();
+            let (time, least) = self.least(step, switch, sign)?;
+            (least < -ZERO * self.sizes[switch] && time - self.event > SAME * self.duration).then_some((time, switch))
+        };
+        (0..count).filter_map(&mut found).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Prepares [`interpolate`](Self::interpolate) in the step that was taken.

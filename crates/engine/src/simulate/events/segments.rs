@@ -1,6 +1,9 @@
-//! The events that all samples have, and the steps between them.
+//! The events that samples meet, and the steps between them.
 
 use serde::{Deserialize, Serialize};
+
+use crate::simulate::diagnostics::{place_of, written};
+use crate::simulate::simulator::Simulator;
 
 /// A switch that changes its sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -11,24 +14,60 @@ pub struct Event {
     pub rises: bool,
 }
 
+impl Event {
+    /// The term that switches, and the motion that it is part of.
+    pub fn name(self, simulator: &Simulator) -> Option<String> {
+        let switch = simulator.switches()?.switches.get(self.switch)?;
+        let system = &simulator.system;
+        Some(place_of(system, switch.of, &written(&system.graph, switch.of)))
+    }
+}
+
 /// A motion cut into segments that end at events.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Segments {
-    /// The events, in the order in which each sample meets them.
+pub struct Word {
+    /// The events, in the order in which each sample of the word meets them.
     pub events: Vec<Event>,
     /// Time at which a last segment without an event ends, s; none where the last event is after the rows.
     pub tail: Option<f64>,
     /// Ends of the steps of each segment, as shares of its length; the last is 1.
     pub steps: Vec<Vec<f64>>,
+}
+
+/// A surface in the box on which an event is just grazed: words on its one side have it, on its other side not.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Boundary {
+    /// Number of events before it, which all these words share.
+    pub before: usize,
+    /// The event.
+    pub event: Event,
+    /// Indices of the words that have it there.
+    pub met: Vec<usize>,
+    /// Indices of those that do not.
+    pub missed: Vec<usize>,
+    /// Number of samples that meet the event, and of those that do not.
+    pub samples: [usize; 2],
+    /// Value of each parameter, SI, at which it is grazed while the others are nominal, if that is in the box.
+    pub grazed_at: Vec<Option<f64>>,
+}
+
+/// The words of a box.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Segments {
+    pub words: Vec<Word>,
+    pub boundaries: Vec<Boundary>,
+    /// Time up to which the words are followed, s: the end of the rows, or earlier where more words than a budget would
+    /// follow.
+    pub horizon: f64,
     /// How closely events are located: a motion that is followed alone errs by this share of how far it has gone, in
     /// each of its steps.
     pub tolerance: f64,
 }
 
 impl Segments {
-    /// Number of steps.
+    /// Number of steps of the word that has most.
     pub fn count(&self) -> usize {
-        self.steps.iter().map(Vec::len).sum()
+        self.words.iter().map(|word| word.steps.iter().map(Vec::len).sum()).max().unwrap_or(0)
     }
 
     /// The same with so many steps instead of those of each segment.
@@ -38,7 +77,8 @@ impl Segments {
             let times: Vec<f64> = std::iter::once(0.0).chain(ends.iter().copied()).collect();
             divided(&times, others(ends.len())).collect()
         };
-        Self { steps: self.steps.iter().map(of_segment).collect(), ..self.clone() }
+        let of_word = |word: &Word| Word { steps: word.steps.iter().map(of_segment).collect(), ..word.clone() };
+        Self { words: self.words.iter().map(of_word).collect(), ..self.clone() }
     }
 }
 

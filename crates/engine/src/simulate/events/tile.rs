@@ -1,5 +1,5 @@
-//! A tile of samples in segments: lanes of the same events in lockstep, each with steps of its own length, and lanes
-//! that meet others alone.
+//! A tile of samples of one word: lanes in lockstep, each with steps of its own length. Samples of no word, and all
+//! samples behind the time up to which words are followed, go on alone.
 //!
 //! A segment's length is each lane's own unknown. A motion of the lane alone finds its events and guesses the lengths;
 //! Newton's method on the switch's value and rate at the segment's end, with the steps that all samples share, solves
@@ -7,8 +7,9 @@
 
 use std::collections::VecDeque;
 
+use super::followed::Spelled;
 use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, PathStep, ROUNDED};
-use super::segments::Segments;
+use super::segments::{Segments, Word};
 use super::stretched::Stretched;
 use crate::compile::SwitchProgram;
 use crate::numerics::{STEP_NODES, Sample, step_nodes, step_weights};
@@ -21,7 +22,7 @@ use crate::simulate::simulator::Simulator;
 /// A segment of all lanes.
 #[derive(Debug)]
 pub(super) struct Recorded {
-    number: usize,
+    pub number: usize,
     /// When it begins and how long it is, s; lane by lane.
     pub begin: Vec<f64>,
     pub length: Vec<f64>,
@@ -41,7 +42,10 @@ struct Alone<'s> {
 /// Samples on their way.
 #[derive(Debug)]
 pub(super) struct SegmentTile<'s> {
-    segments: &'s Segments,
+    /// None of samples that meet the events of no word.
+    pub word: Option<&'s Word>,
+    /// Time up to which words are followed, s.
+    horizon: f64,
     duration: f64,
     motion: Stretched<'s>,
     watch: SwitchWatch<'s>,
@@ -52,12 +56,21 @@ pub(super) struct SegmentTile<'s> {
     guesses: Vec<Vec<f64>>,
     /// Segments that rows may lie in.
     pub recorded: VecDeque<Recorded>,
-    alone: Vec<Option<Alone<'s>>>,
-    /// When a lane first meets another event than the others, or an instant cannot be solved for, s.
+    /// Motions of lanes alone, where they are needed.
+    alone: Vec<Alone<'s>>,
+    /// When a lane first meets an event that its word does not have, or an instant cannot be solved for, s.
     pub deviates: Option<f64>,
-    /// First sample, and how many lanes are samples.
-    pub first: usize,
-    pub count: usize,
+    /// Indices of the samples: those of the first lanes.
+    pub samples: Vec<usize>,
+}
+
+/// Samples of one word, or of none.
+#[derive(Debug)]
+pub(super) struct Lanes<'s> {
+    pub word: Option<&'s Word>,
+    /// Indices of the samples, and their words.
+    pub indices: Vec<usize>,
+    pub spelled: Vec<Spelled>,
 }
 
 impl<'s> SegmentTile<'s> {
@@ -68,32 +81,47 @@ impl<'s> SegmentTile<'s> {
     pub fn start(
         simulator: &'s Simulator,
         (program, segments): (&'s SwitchProgram, &'s Segments),
-        (first, samples, width): (usize, &[Sample], usize),
+        lanes: Lanes<'s>,
+        (samples, width): (&[Sample], usize),
         duration: f64,
     ) -> Result<Self, SimulationError> {
-        let path = |sample: &Sample| Path::start(simulator, program, sample, (duration, segments.tolerance));
-        let (mut alone, mut guesses, mut deviates) = (Vec::new(), Vec::new(), None::<f64>);
-        for sample in samples {
-            let found = lengths(path(sample)?, segments);
-            if let Err(time) = found {
-                deviates = Some(deviates.map_or(time, |first| first.min(time)));
-            }
-            alone.push(match found {
-                Ok(_) => None,
-                Err(_) => Some(Alone { path: path(sample)?, step: None, lost: false }),
-            });
-            guesses.push(found.unwrap_or_else(|_| vec![f64::NAN; segments.steps.len()]));
-        }
+        let Lanes { word, indices, spelled } = lanes;
+        let horizon = segments.horizon;
+        let alone = |sample: &Sample| {
+            let path = Path::start(simulator, program, sample, (duration, segments.tolerance))?;
+            Ok(Alone { path, step: None, lost: false })
+        };
+        let goes_alone = word.is_none() || horizon < duration;
+        let alone: Vec<Alone> = samples
+            .iter()
+            .take(if goes_alone { samples.len() } else { 0 })
+            .map(alone)
+            .collect::<Result<_, SimulationError>>()?;
+        let first = spelled.iter().map(|spelled| spelled.deviates).fold(horizon, f64::min);
+        let deviates = goes_alone.then_some(first);
         let lane = |lane: usize| lane.min(samples.len() - 1);
         let start = simulator.assemble(width, 0.0, |l| samples[lane(l)].clone())?;
         let closure = RowClosure::new(simulator, &start)?;
         let watch = SwitchWatch::new(program, closure.tile());
         let layout = &simulator.start.layout;
         let state = start.values()[layout.q.start * width..layout.v.end * width].to_vec();
-        let guesses = (0..width).map(|l| guesses[lane(l)].clone()).collect();
+        let guesses = (0..width).map(|l| spelled[lane(l)].lengths.clone()).collect();
         let motion = Stretched { closure, begin: vec![0.0; width], length: vec![0.0; width] };
-        let (next, recorded, count) = (0, VecDeque::new(), samples.len());
-        Ok(Self { segments, duration, motion, watch, state, next, guesses, recorded, alone, deviates, first, count })
+        let (next, recorded) = (0, VecDeque::new());
+        Ok(Self {
+            word,
+            horizon,
+            duration,
+            motion,
+            watch,
+            state,
+            next,
+            guesses,
+            recorded,
+            alone,
+            deviates,
+            samples: indices,
+        })
     }
 
     /// Number of lanes.
@@ -109,48 +137,57 @@ impl<'s> SegmentTile<'s> {
     /// Positions and velocities (2n lines, lane by lane) at a time that is not before that of the last call; NaN where
     /// a lane cannot be followed.
     pub fn reach(&mut self, time: f64, into: &mut [f64]) {
-        while self.next < self.segments.steps.len() && !self.reaches(time) {
-            self.march();
-        }
-        while self.recorded.len() > 1 && self.recorded[0].ends().all(|end| end < time) {
-            self.recorded.pop_front();
-        }
         let width = self.width();
         let mut own = vec![0.0; into.len() / width];
+        let word = self.word.filter(|_| time <= self.horizon || self.alone.is_empty());
+        if let Some(word) = word {
+            while self.next < word.steps.len() && !self.reaches(time) {
+                self.march(word);
+            }
+        }
         for lane in 0..width {
-            match self.alone.get_mut(lane) {
-                Some(Some(alone)) => alone.reach(time, &mut own),
-                _ => {
+            match word {
+                Some(word) => {
                     let holds = |recorded: &&Recorded| recorded.begin[lane] + recorded.length[lane] >= time;
                     let Some(recorded) = self.recorded.iter().find(holds).or(self.recorded.back()) else { continue };
-                    recorded.interpolate(&self.segments.steps[recorded.number], (lane, width), time, &mut own);
+                    recorded.interpolate(&word.steps[recorded.number], (lane, width), time, &mut own);
                 }
+                None => match self.alone.get_mut(lane) {
+                    Some(alone) => alone.reach(time, &mut own),
+                    // Behind the samples: the last of them once more.
+                    None => {}
+                },
             }
             into.iter_mut().skip(lane).step_by(width).zip(&own).for_each(|(value, own)| *value = *own);
         }
     }
 
-    /// Whether the segments so far reach a time in all lanes.
-    fn reaches(&self, time: f64) -> bool {
-        // NaN, of lanes that go on alone, is beyond.
-        self.recorded.back().is_some_and(|last| last.ends().all(|end| end >= time || end.is_nan()))
+    /// Forgets segments that end before a time.
+    pub fn forget_before(&mut self, time: f64) {
+        while self.recorded.len() > 1 && self.recorded[0].ends().all(|end| end < time) {
+            self.recorded.pop_front();
+        }
     }
 
-    /// Goes through the next segment.
-    pub fn march(&mut self) {
-        let (segments, number) = (self.segments, self.next);
-        let event = segments.events.get(number);
+    /// Whether the segments so far reach a time in all lanes.
+    fn reaches(&self, time: f64) -> bool {
+        self.recorded.back().is_some_and(|last| last.ends().all(|end| end >= time))
+    }
+
+    /// Goes through the next segment of the word.
+    fn march(&mut self, word: &Word) {
+        let number = self.next;
+        let event = word.events.get(number);
         let width = self.width();
         for lane in 0..width {
-            self.motion.length[lane] = match (event, segments.tail) {
-                // NaN of a lane that goes on alone stays.
-                (None, Some(end)) => end - self.motion.begin[lane] + 0.0 * self.guesses[lane][number],
+            self.motion.length[lane] = match (event, word.tail) {
+                (None, Some(end)) => end - self.motion.begin[lane],
                 _ => self.guesses[lane][number],
             };
         }
-        let mut solved: Vec<bool> =
-            self.motion.length.iter().map(|length| event.is_none() || length.is_nan()).collect();
-        let mut nodes = self.pass(number);
+        let mut solved = vec![event.is_none(); width];
+        let steps = &word.steps[number];
+        let mut nodes = self.pass(steps);
         for _ in 0..CORRECTIONS {
             for lane in (0..width).filter(|&lane| !solved[lane]).collect::<Vec<_>>() {
                 let Some(event) = event else { continue };
@@ -164,15 +201,15 @@ impl<'s> SegmentTile<'s> {
             if !solved.contains(&false) {
                 break;
             }
-            nodes = self.pass(number);
+            nodes = self.pass(steps);
         }
         if let Some(event) = event {
             let is_off = |lane: &usize| {
                 let [value, rate] = self.watch.at_end(event.switch, *lane);
                 let off = (value / rate).abs();
-                !self.motion.length[*lane].is_nan() && (off > ROUNDED * self.duration || off.is_nan())
+                off > ROUNDED * self.duration || off.is_nan()
             };
-            if let Some(lane) = (0..self.count).find(is_off) {
+            if let Some(lane) = (0..self.samples.len()).find(is_off) {
                 let time = self.motion.begin[lane];
                 self.deviates = Some(self.deviates.map_or(time, |first| first.min(time)));
             }
@@ -186,12 +223,20 @@ impl<'s> SegmentTile<'s> {
         self.next += 1;
     }
 
-    /// Takes the steps of a segment with the lengths as they are: the states at its nodes.
-    fn pass(&mut self, number: usize) -> Vec<Vec<f64>> {
-        let Self { motion, watch, state, segments, .. } = self;
+    /// Goes through all segments of the word.
+    pub fn march_to_the_end(&mut self) {
+        if let Some(word) = self.word {
+            word.steps.iter().for_each(|_| self.march(word));
+        }
+    }
+
+    /// Takes the steps of a segment, which end at these shares of it, with the lengths as they are: the states at its
+    /// nodes.
+    fn pass(&mut self, steps: &[f64]) -> Vec<Vec<f64>> {
+        let Self { motion, watch, state, .. } = self;
         let mut run = RungeKutta::start(motion, 0.0, state.clone());
         let mut nodes = vec![state.clone()];
-        for &end in &segments.steps[number] {
+        for &end in steps {
             run.attempt(motion, end);
             run.finish(motion, end);
             if end == 1.0 {
@@ -216,7 +261,7 @@ impl Recorded {
     }
 
     /// A lane's positions and velocities (2n) at a time.
-    fn interpolate(&self, steps: &[f64], (lane, width): (usize, usize), time: f64, into: &mut [f64]) {
+    pub fn interpolate(&self, steps: &[f64], (lane, width): (usize, usize), time: f64, into: &mut [f64]) {
         let share = ((time - self.begin[lane]) / self.length[lane]).clamp(0.0, 1.0);
         let (step, weights) = step_weights(steps, share);
         let nodes = &self.nodes[step * (STEP_NODES - 1)..][..STEP_NODES];
@@ -245,27 +290,4 @@ impl Alone<'_> {
             None => into.fill(f64::NAN),
         }
     }
-}
-
-/// Lengths of the segments of a motion, s.
-///
-/// # Errors
-/// When it first meets another event, s.
-fn lengths(mut path: Path, segments: &Segments) -> Result<Vec<f64>, f64> {
-    let (mut lengths, mut time, mut begin) = (Vec::new(), 0.0, 0.0);
-    while lengths.len() < segments.steps.len() {
-        let expected = segments.events.get(lengths.len());
-        let goal = if expected.is_some() { f64::INFINITY } else { segments.tail.unwrap_or(time) };
-        let step = path.step(goal).map_err(|_| time)?;
-        path.go_on(step);
-        time = step.end;
-        if step.event.is_some() && step.event.as_ref() != expected {
-            return Err(time);
-        }
-        if step.event.is_some() || time >= goal {
-            lengths.push(time - begin);
-            begin = time;
-        }
-    }
-    Ok(lengths)
 }

@@ -1,16 +1,15 @@
-//! Whether some samples meet the same events in the same order, and the steps that they share between them.
+//! The words that samples spell: those that meet the same events in the same order share the steps between them.
 
 use rayon::prelude::*;
 
-use super::path::{Lost, Path};
-use super::segments::{Event, Segments};
-use crate::numerics::Sample;
+use super::boundary::{boundaries, grazed_at, margins};
+use super::followed::{Followed, REACH};
+use super::path::Path;
+use super::segments::{Boundary, Event, Segments, Word};
+use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
-
-/// Motions are followed so many times as long as they are asked for, so that an event beside the end is met by all.
-const REACH: f64 = 1.25;
 
 /// An event so close to the end, as a share of the duration, may be before it for other samples.
 const BESIDE: f64 = 0.02;
@@ -18,83 +17,67 @@ const BESIDE: f64 = 0.02;
 /// Instants that differ by no more than this share of the duration are the same.
 const SAME: f64 = 1e-9;
 
-/// Most events of a motion.
-const MOST_EVENTS: usize = 64;
+/// Samples after the first of which one has to meet an event.
+const DECIDING: usize = 8;
 
-/// The events of one sample, and the ends of its steps between them.
-#[derive(Clone, Debug, Default)]
-struct Followed {
-    events: Vec<(Event, f64)>,
-    steps: Vec<Vec<f64>>,
-}
+/// Most words.
+const MOST_WORDS: usize = 6;
 
-impl Followed {
-    /// Follows a sample up to a time.
-    fn to(mut path: Path, reach: f64) -> Result<Self, Lost> {
-        let (mut followed, mut ends, mut time) = (Self::default(), Vec::new(), 0.0);
-        while time < reach {
-            let step = path.step(reach)?;
-            path.go_on(step);
-            ends.push(step.end);
-            time = step.end;
-            if let Some(event) = step.event {
-                followed.events.push((event, time));
-                followed.steps.push(std::mem::take(&mut ends));
-                if followed.events.len() > MOST_EVENTS {
-                    return Err(Lost);
-                }
-            }
-        }
-        followed.steps.push(ends);
-        Ok(followed)
-    }
+/// Motions are cut if their words can be followed for at least this share of the duration.
+const WORTHWHILE: f64 = 0.25;
 
-    /// Whether another motion meets the same events up to a time, as far as both meet any.
-    fn agrees(&self, other: &Self, end: f64) -> bool {
-        let both = self.events.iter().zip(&other.events);
-        both.take_while(|(own, other)| own.1.min(other.1) < end).all(|(own, other)| own.0 == other.0)
-    }
-
-    /// When a segment begins, s.
-    fn begin(&self, segment: usize) -> f64 {
-        segment.checked_sub(1).map_or(0.0, |before| self.events[before].1)
-    }
-
-    /// Ends of the steps of a segment up to a time, as shares of it.
-    fn shares(&self, segment: usize, end: f64) -> Vec<f64> {
-        let (begin, own) = (self.begin(segment), &self.steps[segment]);
-        let inner = own.iter().take_while(|&&time| time < end).map(|time| (time - begin) / (end - begin));
-        inner.filter(|&share| share < 1.0).chain([1.0]).collect()
-    }
-}
-
-/// The events that all samples meet up to a time, at least one of them not at the same instant, and steps between
-/// them; `None` where samples meet different ones, or the explicit method cannot follow them.
+/// The words of samples up to a time, if there are events at different instants; `None` where there are none, or the
+/// explicit method cannot follow them.
 ///
 /// # Errors
 /// Where the first sample cannot be assembled.
 pub fn segments_of(
     simulator: &Simulator,
+    domain: &ParameterBox,
     samples: &[Sample],
     duration: f64,
     tolerance: f64,
 ) -> Result<Option<Segments>, SimulationError> {
     let Some(program) = simulator.switches().filter(|_| can_be_cut(simulator)) else { return Ok(None) };
-    let follow = |sample: &Sample| -> Result<Result<Followed, Lost>, SimulationError> {
-        let path = Path::start(simulator, program, sample, (duration, tolerance))?;
-        Ok(Followed::to(path, REACH * duration))
+    let path = |sample: &Sample| Path::start(simulator, program, sample, (duration, tolerance));
+    let follow = |sample: &Sample| {
+        let followed = Followed::to(path(sample).ok()?, REACH * duration);
+        (followed.known_to >= duration).then_some(followed)
     };
-    // The first decides whether there is anything to cut.
     let Some((first, others)) = samples.split_first() else { return Ok(None) };
-    let Ok(first) = follow(first)? else { return Ok(None) };
-    if first.events.first().is_none_or(|(_, time)| *time >= duration) {
+    let first = Followed::to(path(first)?, REACH * duration);
+    if first.known_to < duration {
         return Ok(None);
     }
-    // The first sample of another word ends the search, and one that cannot be assembled does.
-    let of_other = |sample: &Sample| follow(sample).ok()?.ok().filter(|other| first.agrees(other, duration));
-    let Some(others) = others.par_iter().map(of_other).collect::<Option<Vec<Followed>>>() else { return Ok(None) };
-    let all: Vec<Followed> = std::iter::once(first).chain(others).collect();
-    Ok(shared(&all, duration).map(|(events, tail, steps)| Segments { events, tail, steps, tolerance }))
+    // The first few, at the ends of the box, decide whether there is anything to cut.
+    let mut all = vec![first];
+    for others in [&others[..DECIDING.min(others.len())], &others[DECIDING.min(others.len())..]] {
+        let Some(followed) = others.par_iter().map(follow).collect::<Option<Vec<Followed>>>() else { return Ok(None) };
+        all.extend(followed);
+        if all.iter().all(|followed| followed.before(duration) == 0) {
+            return Ok(None);
+        }
+    }
+    let Some((horizon, found)) = within_budget(&all, duration) else { return Ok(None) };
+    let (words, groups): (Vec<Word>, Vec<Vec<usize>>) = found.into_iter().unzip();
+    let margins = |boundary: &Boundary| {
+        let of = |words: &[usize], is_met: bool| {
+            words.iter().flat_map(|&word| groups[word].iter().map(move |&sample| (sample, is_met))).collect::<Vec<_>>()
+        };
+        let both = [of(&boundary.met, true), of(&boundary.missed, false)].concat();
+        margins(boundary, &both, |sample| path(&samples[sample]).ok(), horizon)
+    };
+    let Some(mut boundaries) = boundaries(&words, &margins) else { return Ok(None) };
+    for boundary in &mut boundaries {
+        let of = |words: &[usize]| words.iter().flat_map(|&word| groups[word].iter().copied()).collect::<Vec<usize>>();
+        let [met, missed] = [of(&boundary.met), of(&boundary.missed)];
+        let xi: Vec<Vec<f64>> = met.iter().chain(&missed).map(|&sample| domain.xi(&samples[sample])).collect();
+        let found = grazed_at(&xi, &domain.xi(&domain.nominal), &margins(boundary));
+        let value = |(axis, xi): (usize, Option<f64>)| xi.map(|xi| domain.value(axis, xi));
+        boundary.grazed_at = found.into_iter().enumerate().map(value).collect();
+        boundary.samples = [met.len(), missed.len()];
+    }
+    Ok(Some(Segments { words, boundaries, horizon, tolerance }))
 }
 
 /// Whether motions may be cut at all: what else steps have to resolve is left to the schedules that do.
@@ -105,47 +88,109 @@ fn can_be_cut(simulator: &Simulator) -> bool {
         && !simulator.system.analysis.visits()
 }
 
-/// The events, the end of a last segment without one, and the steps of each segment.
-type Shared = (Vec<Event>, Option<f64>, Vec<Vec<f64>>);
+/// Indices of samples with the same events up to a time, group by group.
+fn groups(all: &[Followed], end: f64) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (index, followed) in all.iter().enumerate() {
+        match groups.iter_mut().find(|group| all[group[0]].agrees(followed, end)) {
+            Some(group) => group.push(index),
+            None => groups.push(vec![index]),
+        }
+    }
+    groups
+}
 
-/// What some motions share up to a time.
-fn shared(all: &[Followed], duration: f64) -> Option<Shared> {
-    let before = |followed: &Followed, end: f64| followed.events.iter().take_while(|(_, time)| *time < end).count();
-    let [least, most] = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| {
-        let counts = all.iter().map(|followed| before(followed, share * duration));
-        if share < 1.0 { counts.min() } else { counts.max() }
-    });
-    let (least, most) = (least?, most?);
-    // Where an event is beside the end for some, all go on to the next that all have.
-    let (count, tail) = match () {
-        () if least == most => (most, Some(duration)),
-        () if all.iter().all(|followed| followed.events.len() > most) => (most + 1, None),
-        () if all.iter().all(|followed| followed.events.len() == most) => (most, Some(REACH * duration)),
-        () => return None,
+/// Words up to a time, with the indices of their samples.
+type Found = (f64, Vec<(Word, Vec<usize>)>);
+
+/// The words up to the duration; where there are more than the budget, up to the last event that all have, before which
+/// there are no more. `None` where that is too early, or a motion does not go on.
+fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
+    let members = |group: &[usize]| group.iter().map(|&sample| &all[sample]).collect::<Vec<&Followed>>();
+    let whole = groups(all, duration);
+    if whole.len() <= MOST_WORDS {
+        let is_one = whole.len() == 1;
+        let word = |group: Vec<usize>| Some((shared(&members(&group), duration, is_one)?, group));
+        return Some((duration, whole.into_iter().map(word).collect::<Option<_>>()?));
+    }
+    let fewest = all.iter().map(|followed| followed.events.len()).min()?;
+    let spelled = |sample: usize, count: usize| all[sample].events[..count].iter().map(|(event, _)| *event);
+    let of_count = |count: usize| {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for index in 0..all.len() {
+            match groups.iter_mut().find(|group| spelled(group[0], count).eq(spelled(index, count))) {
+                Some(group) => group.push(index),
+                None => groups.push(vec![index]),
+            }
+        }
+        (groups.len() <= MOST_WORDS).then_some((count, groups))
     };
+    let (count, groups) = (1..=fewest).rev().find_map(of_count)?;
+    let horizon = all.iter().map(|followed| followed.events[count - 1].1).fold(duration, f64::min);
+    let word = |group: Vec<usize>| Some((of_extent(&members(&group), count, None, horizon)?, group));
+    let words = groups.into_iter().map(word).collect::<Option<_>>()?;
+    (horizon >= WORTHWHILE * duration).then_some((horizon, words))
+}
+
+/// What some motions share up to a time, if instants are to differ between them.
+fn shared(all: &[&Followed], end: f64, is_one: bool) -> Option<Word> {
+    let (count, tail) = extent(all, end)?;
     // Instants that are the same in all samples are kinks in time, none in the parameters.
     let differs = |event: usize| {
         let times = || all.iter().map(|followed| followed.events[event].1);
-        times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min) > SAME * duration
+        times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min) > SAME * end
     };
-    if all.len() > 1 && !(0..count).any(differs) {
+    if all.len() > 1 && is_one && !(0..count).any(differs) {
         return None;
     }
+    of_extent(all, count, tail, end)
+}
+
+/// The word of some motions that are followed through so many events, and to the end of a last segment without one.
+fn of_extent(all: &[&Followed], count: usize, tail: Option<f64>, end: f64) -> Option<Word> {
     let word = |followed: &Followed| followed.events.iter().map(|(event, _)| *event).take(count).collect();
-    let events: Vec<Event> = word(&all[0]);
+    let events: Vec<Event> = word(all.first()?);
     if all.iter().any(|followed| word(followed) != events) {
         return None;
     }
     let steps = |segment: usize| {
-        let of = |followed: &Followed| {
-            followed
-                .shares(segment, followed.events[..count].get(segment).map_or(tail.unwrap_or(duration), |own| own.1))
+        let of = |followed: &&Followed| {
+            followed.shares(segment, followed.events[..count].get(segment).map_or(tail.unwrap_or(end), |own| own.1))
         };
         // Those of the sample that takes most.
         all.iter().map(of).reduce(|a, b| if b.len() > a.len() { b } else { a })
     };
     let segments = count + usize::from(tail.is_some());
-    Some((events, tail, (0..segments).filter_map(steps).collect()))
+    let steps = (0..segments).filter_map(steps).collect();
+    Some(Word { events, tail, steps })
+}
+
+/// Number of events that some motions are followed through, and the end of a last segment without one.
+fn extent(all: &[&Followed], end: f64) -> Option<(usize, Option<f64>)> {
+    let [least, most] = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| {
+        let counts = all.iter().map(|followed| followed.before(share * end));
+        if share < 1.0 { counts.min() } else { counts.max() }
+    });
+    let (least, most) = (least?, most?);
+    let reach = REACH * end;
+    let are_known = |time: f64| all.iter().all(|followed| followed.known_to >= time);
+    // Where an event is beside the end for some, all go on to the next that all have.
+    let counts = || all.iter().map(|followed| followed.before(end));
+    Some(match () {
+        () if least == most => (most, Some(end)),
+        () if all.iter().all(|followed| followed.events.len() > most) => (most + 1, None),
+        () if all.iter().all(|followed| followed.before(reach) == most) && are_known(reach) => (most, Some(reach)),
+        () if counts().min() == counts().max() => (counts().min()?, Some(end)),
+        () => {
+            // Between the last event of all and the first that is not followed any more.
+            let last = all.iter().filter_map(|followed| Some(followed.events.get(most.checked_sub(1)?)?.1));
+            let last = last.fold(end, f64::max);
+            let next = |followed: &&Followed| followed.events.get(most).map_or(followed.known_to, |(_, time)| *time);
+            let next = all.iter().map(next).fold(f64::INFINITY, f64::min);
+            (next > last && all.iter().all(|followed| followed.events.len() >= most))
+                .then_some((most, Some(0.5 * (last + next))))?
+        }
+    })
 }
 
 #[cfg(test)]
@@ -159,33 +204,56 @@ mod tests {
         let begins = std::iter::once(0.0).chain(times.iter().copied());
         let ends = times.iter().copied().chain([REACH]);
         let steps = begins.zip(ends).map(|(begin, end)| vec![0.5 * (begin + end), end]).collect();
-        Followed { events, steps }
+        Followed { events, steps, known_to: REACH }
+    }
+
+    fn spelled(all: &[Followed]) -> Option<Word> {
+        shared(&all.iter().collect::<Vec<_>>(), 1.0, true)
     }
 
     #[test]
     fn what_all_meet_before_the_end_is_shared() {
-        let (events, tail, steps) = shared(&[followed(&[0.4, 0.6]), followed(&[0.5, 0.7, 1.2])], 1.0).unwrap();
-        assert_eq!((events.len(), tail), (2, Some(1.0)));
-        assert_eq!(steps[..2], [vec![0.5, 1.0], vec![0.5, 1.0]]);
-        assert_eq!(steps[2].last(), Some(&1.0));
+        let word = spelled(&[followed(&[0.4, 0.6]), followed(&[0.5, 0.7, 1.2])]).unwrap();
+        assert_eq!((word.events.len(), word.tail), (2, Some(1.0)));
+        assert_eq!(word.steps[..2], [vec![0.5, 1.0], vec![0.5, 1.0]]);
+        assert_eq!(word.steps[2].last(), Some(&1.0));
     }
 
     #[test]
     fn beside_the_end_all_go_on() {
-        let both = [followed(&[0.4, 0.99, 1.1]), followed(&[0.5, 1.01, 1.2])];
-        let (events, tail, steps) = shared(&both, 1.0).unwrap();
-        assert_eq!((events.len(), tail, steps.len()), (3, None, 3));
-        let (events, tail, _) = shared(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01])], 1.0).unwrap();
-        assert_eq!((events.len(), tail), (2, Some(REACH)));
-        assert!(shared(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01, 1.2])], 1.0).is_none());
+        let word = spelled(&[followed(&[0.4, 0.99, 1.1]), followed(&[0.5, 1.01, 1.2])]).unwrap();
+        assert_eq!((word.events.len(), word.tail, word.steps.len()), (3, None, 3));
+        let word = spelled(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01])]).unwrap();
+        assert_eq!((word.events.len(), word.tail), (2, Some(REACH)));
+        // Behind the last event of both, and before the next of one.
+        let word = spelled(&[followed(&[0.4, 0.99]), followed(&[0.5, 1.01, 1.2])]).unwrap();
+        assert_eq!((word.events.len(), word.tail), (2, Some(0.5 * (1.01 + 1.2))));
     }
 
     #[test]
-    fn other_words_and_the_same_instants_are_not_cut() {
-        assert!(shared(&[followed(&[0.4, 0.6]), followed(&[0.5])], 1.0).is_none());
-        assert!(shared(&[followed(&[0.4]), followed(&[0.4])], 1.0).is_none());
+    fn motions_of_the_same_instants_are_not_cut() {
+        assert!(spelled(&[followed(&[0.4]), followed(&[0.4])]).is_none());
+    }
+
+    #[test]
+    fn other_events_are_other_words() {
         let mut other = followed(&[0.5]);
         other.events[0].0.switch = 1;
-        assert!(shared(&[followed(&[0.4]), other], 1.0).is_none());
+        let all = [followed(&[0.4, 0.6]), followed(&[0.5]), followed(&[0.45, 1.1]), other];
+        assert_eq!(groups(&all, 1.0), [vec![0], vec![1, 2], vec![3]]);
+    }
+
+    /// Eight words at the end: which of two switches three events are of. Two events make four of them.
+    #[test]
+    fn a_budget_of_words_ends_the_time() {
+        let of_number = |number: usize| {
+            let mut own = followed(&[0.4, 0.5 + 0.01 * number as f64, 0.8]);
+            own.events.iter_mut().enumerate().for_each(|(place, (event, _))| event.switch = number >> place & 1);
+            own
+        };
+        let all: Vec<Followed> = (0..8).map(of_number).collect();
+        let (horizon, words) = within_budget(&all, 1.0).unwrap();
+        assert_eq!((horizon, words.len()), (0.5, 4));
+        assert!(words.iter().all(|(word, samples)| word.events.len() == 2 && samples.len() == 2));
     }
 }

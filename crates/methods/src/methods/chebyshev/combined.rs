@@ -16,7 +16,7 @@ use crate::methods::ensemble::{
     Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
 };
 use crate::methods::validation::Validation;
-use crate::numerics::{ParameterBox, Range, Sample, SegmentMotions, largest};
+use crate::numerics::{CutMotions, ParameterBox, Range, Sample, largest};
 
 /// A combination's range is searched for as that of a polynomial of this degree, and where that is too low more closely.
 const DEGREE: u8 = 8;
@@ -273,7 +273,7 @@ impl Ensemble for Combined<'_> {
         self.ensemble.dense_motions(&self.samples(samples))
     }
 
-    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
+    fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         self.ensemble.segments(&self.samples(samples))
     }
 

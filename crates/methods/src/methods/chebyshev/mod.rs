@@ -12,7 +12,7 @@ mod estimator;
 mod outputs_alone;
 mod polynomials;
 mod range_search;
-mod segments;
+pub(super) mod segments;
 mod sensitivity;
 mod sub_box;
 
@@ -261,7 +261,8 @@ impl BoundingMethod for Chebyshev {
     }
 
     fn follows_events(&self, problem: &Problem) -> bool {
-        self.observes(problem) == Observed::Motion
+        // Of an output alone nothing is cut.
+        problem.composes && (self.expand == Expand::Coordinates || self.degree != Degree::Adaptive)
     }
 
     fn bound(
@@ -277,11 +278,9 @@ impl BoundingMethod for Chebyshev {
         let surrogate = Surrogate::tensor(order, nodes);
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
-        if composes
-            && self.expand == Expand::Coordinates
-            && let Some((bands, simulated)) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
-        {
-            return Ok(bands.finish(samples.len(), simulated));
+        // An output is no polynomial behind an event, whatever is to be expanded.
+        if composes && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)? {
+            return Ok(result);
         }
         let mut kept_rows = request.keep.then(Vec::new);
         let (bands, simulated) = match self.expand {

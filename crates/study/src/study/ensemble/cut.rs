@@ -2,10 +2,12 @@
 
 use std::sync::atomic::Ordering;
 
+use symdiff::jet::JetSpace;
+
 use super::Motions;
 use crate::methods::Ensemble;
-use crate::numerics::{STEP_NODES, Sample, SegmentMotions};
-use crate::simulate::{SegmentRun, SimulationError};
+use crate::numerics::{CutMotions, STEP_NODES, Sample, SegmentMotions};
+use crate::simulate::{JetBox, SegmentRun, SimulationError, segment_jets};
 
 /// Values of motions that are held at once, at most.
 const MOST_VALUES: usize = 1 << 26;
@@ -15,7 +17,7 @@ impl Motions<'_> {
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
-    pub(super) fn cut(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, SimulationError> {
+    pub(super) fn cut(&self, samples: &[Sample]) -> Result<Option<CutMotions>, SimulationError> {
         let Some(segments) = self.schedule.segments() else { return Ok(None) };
         if STEP_NODES * segments.count() * 2 * self.scales().len() * samples.len() > MOST_VALUES {
             return Ok(None);
@@ -23,6 +25,22 @@ impl Motions<'_> {
         let run = SegmentRun::start(self.simulator, samples, segments, self.schedule.end())?;
         self.progress.advance(samples.len() * self.schedule.rows);
         self.over.fetch_add(samples.len(), Ordering::Relaxed);
-        Ok(run.motions(segments))
+        Ok(run.motions())
+    }
+
+    /// As [`Ensemble::segment_jets`].
+    ///
+    /// # Errors
+    /// Where the sample cannot be assembled.
+    pub(super) fn cut_jet(
+        &self,
+        space: &JetSpace,
+        xi: &[f64],
+    ) -> Result<Option<(usize, SegmentMotions)>, SimulationError> {
+        let Some(segments) = self.schedule.segments() else { return Ok(None) };
+        let center: Vec<f64> = self.domain.sample(xi).iter().copied().collect();
+        let half_width: Vec<f64> = (0..xi.len()).map(|parameter| self.domain.half_width(parameter)).collect();
+        let about = JetBox { center: &center, half_width: &half_width };
+        segment_jets(self.simulator, space, about, segments, self.schedule.end())
     }
 }

@@ -24,7 +24,7 @@ use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, Combination, DenseMotions, Ensemble, EnsembleError, OfParameters, Sampling, Simulated, Until,
 };
-use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
+use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
     SimulationError, Simulator, Steps, Stop, choose_independent,
@@ -321,8 +321,12 @@ impl Ensemble for Motions<'_> {
         Ok(self.dense(samples)?)
     }
 
-    fn segments(&self, samples: &[Sample]) -> Result<Option<SegmentMotions>, EnsembleError> {
+    fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
         Ok(self.cut(samples)?)
+    }
+
+    fn segment_jets(&self, space: &JetSpace, xi: &[f64]) -> Result<Option<(usize, SegmentMotions)>, EnsembleError> {
+        Ok(self.cut_jet(space, xi)?)
     }
 
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {

@@ -17,14 +17,14 @@ const APART: f64 = 0.3;
 /// Radii of the first trust region, in ξ and in the share of the segment, and where a climb ends.
 const RADIUS: f64 = 0.15;
 const OF_SHARE: f64 = 0.25;
-const LEAST_RADIUS: f64 = 1e-4;
+const LEAST_RADIUS: f64 = 1e-6;
 
 /// Radii after a move that was none, and after one, over those before it.
 const SHRINKS: (f64, f64) = (0.5, 0.25);
 const GROWS: (f64, f64) = (2.0, 1.5);
 
 /// Moves of a climb, at most.
-const MOVES: usize = 60;
+const MOVES: usize = 120;
 
 /// Difference by which slopes are taken.
 const DIFFERENCE: f64 = 1e-6;
@@ -32,6 +32,14 @@ const DIFFERENCE: f64 = 1e-6;
 /// Moves to a surface, and by how much of a segment it may be missed.
 const RETURNS: usize = 4;
 const MISSED: f64 = 1e-11;
+
+/// By how much of a segment a seed may be beyond its ends.
+const SEED: f64 = 1e-6;
+
+/// A point is moved back inside of a surface by a little more than it is beyond, and one on it is inside by this share
+/// of the surface's error.
+const BEYOND: f64 = 1.001;
+const ON_END: f64 = 1e-3;
 
 /// A place on the way to an extreme.
 struct Climb {
@@ -53,11 +61,12 @@ impl Climb {
     }
 }
 
-/// A move: where to, the share that is to be reached there, and the share's slopes.
+/// A move: where to, the share that is to be reached there, the share's slopes, and those of the margins.
 struct Move {
     xi: Vec<f64>,
     share: f64,
     slopes: Vec<f64>,
+    of_margins: Vec<Vec<f64>>,
 }
 
 /// The outputs' ranges, with the places of their ends.
@@ -87,15 +96,29 @@ pub(super) fn extents(row: &SegmentRow, lattice: &Lattice) -> Vec<Extent> {
 /// Climbs from the best of all places that are looked at.
 fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
     let time = row.time;
+    let surrogate = &row.piece.surrogate;
     let mut seeds: Vec<(usize, Point)> =
         lattice.points.iter().map(|point| (point.segment(time), point.clone())).collect();
-    for segment in 0..row.surrogate.segments() {
+    for end in 0..surrogate.ends.len() {
+        // A little inside.
+        let found = lattice.at_zeros(surrogate, |point| point.margins[end] - ON_END * surrogate.ends[end].error());
+        seeds.extend(found.into_iter().map(|point| (point.segment(time), point)));
+    }
+    for segment in 0..surrogate.segments() {
         for share in [0.0, 0.5, 1.0] {
             // The start and the end of the motion are no surfaces.
-            let is_end = segment == 0 && share == 0.0 || segment + 1 == row.surrogate.segments() && share == 1.0;
-            let found = if is_end { Vec::new() } else { lattice.on_surface(row.surrogate, (segment, share), time) };
+            let is_end = segment == 0 && share == 0.0 || segment + 1 == surrogate.segments() && share == 1.0;
+            let found = if is_end { Vec::new() } else { lattice.on_surface(surrogate, (segment, share), time) };
             seeds.extend(found.into_iter().map(|point| (segment, point)));
         }
+    }
+    let is_in_segment = |segment: usize, point: &Point| {
+        let [begin, end] = [point.times[segment], point.times[segment + 1]];
+        (-SEED..=1.0 + SEED).contains(&((time - begin) / (end - begin)))
+    };
+    seeds.retain(|(segment, point)| point.is_inside() && is_in_segment(*segment, point));
+    if seeds.is_empty() {
+        return Vec::new();
     }
     let at: Vec<(&Point, usize, f64)> = seeds.iter().map(|(segment, point)| (point, *segment, time)).collect();
     let values = row.outputs_on(&at);
@@ -140,7 +163,7 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
             xi
         })
     };
-    let around = row.surrogate.points(going.iter().flat_map(beside).collect());
+    let around = row.piece.surrogate.points(going.iter().flat_map(beside).collect());
     let at: Vec<(&Point, usize, f64)> =
         around.iter().enumerate().map(|(place, point)| (point, going[place / k].segment, row.time)).collect();
     let values = row.outputs_on(&at);
@@ -157,18 +180,31 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
         let opposite: Vec<f64> = slopes.iter().map(|slope| -slope).collect();
         let room = [share.min(climb.of_share), (1.0 - share).min(climb.of_share)];
         let limits = climb.point.xi.iter().map(|xi| [(-1.0 - xi).max(-climb.radius), (1.0 - xi).min(climb.radius)]);
-        let way = steepest(&ascent, &limits.collect::<Vec<_>>(), [(&slopes, room[0]), (&opposite, room[1])]);
+        let margins = &climb.point.margins;
+        let of_margins: Vec<Vec<f64>> = (0..margins.len())
+            .map(|end| {
+                let of = |axis: usize| (own[axis].margins[end] - margins[end]) / inward(climb.point.xi[axis]);
+                (0..k).map(of).collect()
+            })
+            .collect();
+        let surfaces = [(&slopes[..], room[0]), (&opposite[..], room[1])].into_iter();
+        let surfaces: Vec<(&[f64], f64)> =
+            surfaces.chain(of_margins.iter().map(Vec::as_slice).zip(margins.iter().copied())).collect();
+        let way = steepest(&ascent, &limits.collect::<Vec<_>>(), &surfaces);
         let by: f64 = slopes.iter().zip(&way).map(|(slope, by)| slope * by).sum();
         let xi = climb.point.xi.iter().zip(way).map(|(xi, by)| (xi + by).clamp(-1.0, 1.0)).collect();
-        moves.push(Move { xi, share: (share + by).clamp(0.0, 1.0), slopes });
+        moves.push(Move { xi, share: (share + by).clamp(0.0, 1.0), slopes, of_margins });
     }
-    let points_of = |moves: &[Move]| row.surrogate.points(moves.iter().map(|to| to.xi.clone()).collect());
+    let points_of = |moves: &[Move]| row.piece.surrogate.points(moves.iter().map(|to| to.xi.clone()).collect());
     let mut points = points_of(&moves);
     for _ in 0..RETURNS {
         let mut moved = false;
         for ((climb, to), point) in going.iter().zip(&mut moves).zip(&points) {
             let lacks = to.share - climb.share(point, row.time);
             moved |= lacks.abs() > MISSED && back(&mut to.xi, &to.slopes, lacks);
+            for (slopes, margin) in to.of_margins.iter().zip(&point.margins) {
+                moved |= *margin < 0.0 && back(&mut to.xi, slopes, -BEYOND * margin);
+            }
         }
         if !moved {
             break;
@@ -181,7 +217,8 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     let count = going.len();
     for (place, (climb, point)) in going.iter_mut().zip(&points).enumerate() {
         let value = values[climb.output * count + place];
-        let inside = (-2.0 * MISSED..=1.0 + 2.0 * MISSED).contains(&climb.share(point, row.time));
+        let in_segment = (-2.0 * MISSED..=1.0 + 2.0 * MISSED).contains(&climb.share(point, row.time));
+        let inside = in_segment && point.is_inside();
         let rises = inside && climb.sign * value > climb.sign * climb.value;
         if rises {
             (climb.value, climb.point) = (value, point.clone());
@@ -198,10 +235,11 @@ fn inward(xi: f64) -> f64 {
 }
 
 /// The move within limits that ascends most, and along the slopes of each surface by no less than −room.
-fn steepest(ascent: &[f64], limits: &[[f64; 2]], surfaces: [(&[f64], f64); 2]) -> Vec<f64> {
+/// One surface after the other: where several end a move, it may leave the first again, and is refused.
+fn steepest(ascent: &[f64], limits: &[[f64; 2]], surfaces: &[(&[f64], f64)]) -> Vec<f64> {
     let favoured = |slope: f64, [low, high]: [f64; 2]| if slope > 0.0 { high } else { low };
     let mut way: Vec<f64> = ascent.iter().zip(limits).map(|(&slope, &limits)| favoured(slope, limits)).collect();
-    for (slopes, room) in surfaces {
+    for &(slopes, room) in surfaces {
         let mut lacks = -room.max(0.0) - slopes.iter().zip(&way).map(|(slope, by)| slope * by).sum::<f64>();
         if lacks <= 0.0 {
             continue;
@@ -245,9 +283,9 @@ mod tests {
     fn moves_keep_to_the_side_of_a_surface() {
         let limits = [[-1.0, 1.0]; 2];
         let free = (&[0.0, 0.0][..], 1.0);
-        let way = steepest(&[2.0, 1.0], &limits, [(&[-1.0, -1.0], 0.5), free]);
+        let way = steepest(&[2.0, 1.0], &limits, &[(&[-1.0, -1.0], 0.5), free]);
         assert_eq!(way, [1.0, -0.5]);
-        assert_eq!(steepest(&[2.0, 1.0], &limits, [free, free]), [1.0, 1.0]);
+        assert_eq!(steepest(&[2.0, 1.0], &limits, &[free, free]), [1.0, 1.0]);
         let mut xi = [1.0, 0.8];
         assert!(back(&mut xi, &[-1.0, -1.0], 1.0));
         assert!((xi[0] + xi[1] - 0.8).abs() < 1e-15);

@@ -1,17 +1,28 @@
 //! Chebyshev bounds through events: the instants of the events and the motions between them are expanded, since at a
 //! fixed time some samples have met an event and their neighbours have not.
 //!
-//! - `surrogate`: polynomials of the instants, and of the motion at the nodes of each segment;
+//! Where samples meet different events, the box is divided along the surfaces on which one is just grazed.
+//!
+//! - `basis`: the terms of polynomials, and the surfaces;
+//! - `surrogate`: polynomials of the instants, and of the motion at the nodes of each segment, in one part of the box;
+//! - `pieces`: all parts, `parts`: which samples are in which, `fitting`: polynomials by least squares, and
+//!   `sampling`: the samples that these need;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces.
 
+mod basis;
 mod climb;
+mod fitting;
+mod parts;
+mod pieces;
 mod row;
+mod sampling;
 mod seeds;
 mod surrogate;
 
 use rayon::prelude::*;
+use symdiff::jet::JetSpace;
 
 use super::adaptive::Goal;
 use super::composition::can_compose;
@@ -19,10 +30,10 @@ use super::sensitivity::SensitivityAnalysis;
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Simulated};
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
-use crate::numerics::{SAFETY_OF_SURROGATE, Sample, SegmentMotions, Surrogate, largest};
-use row::SegmentRow;
+use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
+use pieces::{Piece, Pieces};
+use row::{BoxRow, SensedRow};
 use seeds::Lattice;
-use surrogate::{SegmentErrors, SegmentSurrogate};
 
 /// Degrees that are tried to a tolerance.
 const DEGREES: [usize; 6] = [2, 3, 4, 6, 8, 12];
@@ -36,9 +47,13 @@ pub(super) fn of_degree(
     surrogate: &Surrogate,
     samples: &[Sample],
     validation: &Validation,
-) -> Result<Option<(BandBuilder, Simulated)>, EnsembleError> {
-    match ensemble.segments(samples)? {
-        Some(motions) => composed(ensemble, surrogate, &motions, validation),
+) -> Result<Option<MethodResult>, EnsembleError> {
+    let Some(motions) = ensemble.segments(samples)? else { return Ok(None) };
+    match Pieces::new(ensemble, surrogate, motions, validation)? {
+        Some(pieces) => {
+            let bands = composed(ensemble, &pieces, Some(surrogate), validation)?;
+            Ok(Some(finished(bands, samples.len(), &pieces)))
+        }
         None => Ok(None),
     }
 }
@@ -59,17 +74,18 @@ pub(super) fn adapted(
     }
     for order in DEGREES {
         let count = (order + 1).checked_pow(k as u32);
-        let Some(count) = count.filter(|count| goal.spent + spent + count <= goal.budget.simulations) else { break };
+        if count.is_none_or(|count| goal.spent + spent + count > goal.budget.simulations) {
+            break;
+        }
         let surrogate = Surrogate::tensor(&vec![order; k], &vec![order + 1; k]);
         let samples = ensemble.domain().samples(surrogate.samples());
-        let Some((bands, simulated)) = of_degree(ensemble, &surrogate, &samples, validation)? else { break };
-        spent += count;
-        let result = bands.finish(spent, simulated);
+        let Some(result) = of_degree(ensemble, &surrogate, &samples, validation)? else { break };
+        spent += result.simulations;
         let rows = |(errors, allowed): (&Vec<f64>, &f64)| {
             errors.iter().take(goal.rows).all(|error| SAFETY_OF_SURROGATE * error <= *allowed)
         };
         let is_enough = result.surrogate.iter().zip(&goal.allowed).all(rows);
-        best = Some(MethodResult { order: Some(vec![order; k]), ..result });
+        best = Some(MethodResult { order: Some(vec![order; k]), simulations: spent, ..result });
         if is_enough || ensemble.is_interrupted() {
             break;
         }
@@ -77,51 +93,82 @@ pub(super) fn adapted(
     Ok(best)
 }
 
-/// Bounds from the motions of a surrogate's samples, cut at their events; `None` where validation samples meet others.
+/// By jets in segments between events, where the ensemble's motions are cut there.
 ///
 /// # Errors
 /// Where a sample cannot be assembled, or a closure not be compiled, and at an interruption.
+pub(in crate::methods) fn of_jets(
+    ensemble: &dyn Ensemble,
+    space: &JetSpace,
+    validation: &Validation,
+) -> Result<Option<MethodResult>, EnsembleError> {
+    match Pieces::of_jets(ensemble, space, validation)? {
+        Some(pieces) => composed(ensemble, &pieces, None, validation).map(|bands| Some(finished(bands, 1, &pieces))),
+        None => Ok(None),
+    }
+}
+
+fn finished(bands: (BandBuilder, Simulated), simulations: usize, pieces: &Pieces) -> MethodResult {
+    let (bands, simulated) = bands;
+    bands.finish(simulations + pieces.added, simulated)
+}
+
+/// Bounds from the polynomials in all parts of the box; sensitivities where there is a grid.
+///
+/// # Errors
+/// Where a closure cannot be compiled, and at an interruption.
 fn composed(
     ensemble: &dyn Ensemble,
-    tensor: &Surrogate,
-    motions: &SegmentMotions,
+    pieces: &Pieces,
+    grid: Option<&Surrogate>,
     validation: &Validation,
-) -> Result<Option<(BandBuilder, Simulated)>, EnsembleError> {
+) -> Result<(BandBuilder, Simulated), EnsembleError> {
     let domain = ensemble.domain();
-    let Some(direct) = ensemble.segments(&domain.samples(&validation.points))? else { return Ok(None) };
-    let surrogate = SegmentSurrogate::new(tensor, motions);
-    let errors = SegmentErrors::new(&surrogate, &validation.points, &direct);
-    let lattice = Lattice::new(&surrogate, domain.dimension());
-    let analysis = SensitivityAnalysis::new(domain, tensor);
+    let lattice = |piece: &Piece| Lattice::new(&piece.surrogate, &piece.samples, domain.dimension());
+    let lattices: Vec<Lattice> = pieces.all.iter().map(lattice).collect();
+    let analysis = grid.map(|grid| (grid, SensitivityAnalysis::new(domain, grid)));
     let middle = vec![0.0; domain.dimension()];
     let parameters = domain.sample(&middle);
     let mut closures: Vec<Box<dyn Closure + '_>> = Vec::new();
     let mut chosen = Vec::with_capacity(ensemble.rows());
     for row in 0..ensemble.rows() {
-        let motion = surrogate.motion_at(&middle, ensemble.time(row));
-        let independent = ensemble.independent(&parameters, &motion, ensemble.time(row));
+        let motion = pieces.part_of(&middle).map(|piece| piece.surrogate.motion_at(&middle, ensemble.time(row)));
+        let independent = ensemble.independent(&parameters, &motion.unwrap_or_default(), ensemble.time(row));
         let known = closures.iter().position(|closure| closure.independent() == independent);
         chosen.push(known.unwrap_or(closures.len()));
         if known.is_none() {
             closures.push(ensemble.closure(independent)?);
         }
     }
+    let known_rows = (0..ensemble.rows()).take_while(|&row| ensemble.time(row) <= pieces.known_to).count();
     let estimate = |row: usize| -> Vec<Estimate> {
-        let time = ensemble.time(row);
-        let row_of =
-            SegmentRow { ensemble, tensor, surrogate: &surrogate, closure: closures[chosen[row]].as_ref(), time };
-        let extents = climb::extents(&row_of, &lattice);
-        let moved = row_of.moved(&extents, &errors);
-        let sensitivities = analysis.of_row(&row_of, &extents);
-        let all = extents.into_iter().zip(moved).zip(sensitivities).enumerate();
-        all.map(|(output, ((extent, moved), sensitivity))| {
+        if row >= known_rows {
+            return (0..ensemble.outputs()).map(|output| unknown(ensemble.seen(row, output))).collect();
+        }
+        let (time, closure) = (ensemble.time(row), closures[chosen[row]].as_ref());
+        let row_of = BoxRow { ensemble, pieces, closure, time };
+        let of_part = |(piece, lattice)| {
+            let row_of = row_of.in_part(piece);
+            let extents = climb::extents(&row_of, lattice);
+            let moved = row_of.moved(&extents);
+            (extents, moved)
+        };
+        let parts: Vec<(Vec<Extent>, Vec<f64>)> = pieces.all.iter().zip(&lattices).map(of_part).collect();
+        let joined: Vec<(Extent, f64)> = (0..ensemble.outputs()).map(|output| joined(&parts, output)).collect();
+        let extents: Vec<Extent> = joined.iter().map(|(extent, _)| extent.clone()).collect();
+        let of_grid = |(grid, analysis): &(&Surrogate, SensitivityAnalysis)| {
+            analysis.of_row(&SensedRow { row: &row_of, grid }, &extents)
+        };
+        let mut sensitivities = analysis.as_ref().map(of_grid).into_iter().flatten();
+        let all = joined.into_iter().enumerate();
+        all.map(|(output, (extent, moved))| {
             let outside = validation.direct.at(row, output).into_iter().map(|value| extent.range.distance(value));
             Estimate {
                 range: extent.range,
                 error: largest(outside.chain([moved])),
                 of_search: 0.0,
                 step_error: f64::NAN,
-                sensitivity: Some(sensitivity),
+                sensitivity: sensitivities.next(),
                 is_expanded: false,
                 is_own: false,
             }
@@ -135,5 +182,34 @@ fn composed(
     for (row, estimates) in found.into_iter().enumerate() {
         estimates.into_iter().enumerate().for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
     }
-    Ok(Some((bands, Simulated::default())))
+    let beyond_tolerance_from = (known_rows < ensemble.rows()).then_some(known_rows);
+    Ok((bands, Simulated { beyond_tolerance_from, ..Simulated::default() }))
+}
+
+/// A row of which only simulated values are known.
+fn unknown(seen: Range) -> Estimate {
+    let range = if seen.lower <= seen.upper { seen } else { Range::UNKNOWN };
+    Estimate {
+        range,
+        error: f64::NAN,
+        of_search: 0.0,
+        step_error: f64::NAN,
+        sensitivity: None,
+        is_expanded: false,
+        is_own: false,
+    }
+}
+
+/// An output's range over all parts, and how far either end may be off.
+fn joined(parts: &[(Vec<Extent>, Vec<f64>)], output: usize) -> (Extent, f64) {
+    let of_part = |(extents, moved): &(Vec<Extent>, Vec<f64>)| (extents[output].clone(), moved[output]);
+    // Nothing is known of a part that no point is found in.
+    let known = parts.iter().map(of_part).filter(|(extent, _)| !extent.range.lower.is_nan());
+    let join = |(own, of_own): (Extent, f64), (other, of_other): (Extent, f64)| {
+        let (range, error) = union((own.range, of_own), (other.range, of_other));
+        let [least, most] = [other.range.lower < own.range.lower, other.range.upper > own.range.upper];
+        let place = |end: usize, is_other: bool| if is_other { &other } else { &own }.places[end].clone();
+        (Extent::at(range, 0.0, [place(0, least), place(1, most)]), error)
+    };
+    known.reduce(join).or(parts.first().map(of_part)).unwrap_or((Extent::unknown(0), f64::NAN))
 }

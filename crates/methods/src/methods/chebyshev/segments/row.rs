@@ -1,31 +1,59 @@
 //! The outputs at a time, through events.
 
-use super::surrogate::{Point, SegmentErrors, SegmentSurrogate};
+use super::pieces::{Piece, Pieces};
+use super::surrogate::Point;
 use crate::methods::chebyshev::sensitivity::Predicted;
 use crate::methods::ensemble::{Closure, Ensemble};
 use crate::numerics::{Extent, Surrogate, largest};
 
-/// A row of output.
+/// A row of output in one part of the box.
 pub(super) struct SegmentRow<'r> {
     pub ensemble: &'r dyn Ensemble,
-    /// By which instants and motions are expanded.
-    pub tensor: &'r Surrogate,
-    pub surrogate: &'r SegmentSurrogate<'r>,
+    pub piece: &'r Piece<'r>,
     pub closure: &'r dyn Closure,
     /// s
     pub time: f64,
 }
 
+/// A row of output in all of it.
+pub(super) struct BoxRow<'r> {
+    pub ensemble: &'r dyn Ensemble,
+    pub pieces: &'r Pieces<'r>,
+    pub closure: &'r dyn Closure,
+    /// s
+    pub time: f64,
+}
+
+/// The same for sensitivities.
+pub(super) struct SensedRow<'r> {
+    pub row: &'r BoxRow<'r>,
+    /// By which instants and motions of a box of one word are expanded.
+    pub grid: &'r Surrogate,
+}
+
+/// Difference by which slopes of surfaces are taken.
+const DIFFERENCE: f64 = 1e-6;
+
+/// An end beside a surface is moved with it where it is nearer than so many times the surface's error.
+const NEAR: f64 = 2.0;
+
 impl SegmentRow<'_> {
     /// All outputs (output, point), given the point's segment, and the time at which its motion is taken there.
     pub fn outputs_on(&self, points: &[(&Point, usize, f64)]) -> Vec<f64> {
-        let (count, lines) = (points.len(), self.surrogate.lines());
+        let surrogate = &self.piece.surrogate;
+        let (count, lines) = (points.len(), surrogate.lines());
         let mut motion = vec![0.0; lines * count];
         for (place, (point, segment, time)) in points.iter().enumerate() {
-            let values = self.surrogate.motion(point, *segment, *time);
+            let values = surrogate.motion(point, *segment, *time);
             values.enumerate().for_each(|(line, value)| motion[line * count + place] = value);
         }
         self.closed(points.iter().map(|(point, ..)| point.xi.as_slice()), count, motion)
+    }
+
+    /// The same of points in the segments that they are in at the row's time.
+    fn outputs_at(&self, points: &[Point]) -> Vec<f64> {
+        let at: Vec<_> = points.iter().map(|point| (point, point.segment(self.time), self.time)).collect();
+        self.outputs_on(&at)
     }
 
     fn closed<'x>(&self, xi: impl Iterator<Item = &'x [f64]>, count: usize, motion: Vec<f64>) -> Vec<f64> {
@@ -40,11 +68,13 @@ impl SegmentRow<'_> {
     }
 
     /// How far the polynomials' errors move the ends of ranges: an end is where a point is, and there the motion may be
-    /// what it is a little earlier or later, behind the event too, and each line may be off by its own error.
-    pub fn moved(&self, extents: &[Extent], errors: &SegmentErrors) -> Vec<f64> {
+    /// what it is a little earlier or later, behind the event too, each line may be off by its own error, and a surface
+    /// beside it by its.
+    pub fn moved(&self, extents: &[Extent]) -> Vec<f64> {
+        let Piece { surrogate, errors, .. } = self.piece;
         let xi = extents.iter().flat_map(|extent| extent.places.iter().cloned()).collect();
-        let points = self.surrogate.points(xi);
-        let (count, n) = (points.len(), self.surrogate.lines() / 2);
+        let points = surrogate.points(xi);
+        let (count, n) = (points.len(), surrogate.lines() / 2);
         let at = |shift: f64| {
             let shifted = |point: &Point| {
                 let segment = point.segment(self.time);
@@ -68,7 +98,7 @@ impl SegmentRow<'_> {
                 let mut motion = vec![0.0; 2 * n * count];
                 for (place, point) in points.iter().enumerate() {
                     let segment = point.segment(self.time);
-                    for (number, value) in self.surrogate.motion(point, segment, self.time).enumerate() {
+                    for (number, value) in surrogate.motion(point, segment, self.time).enumerate() {
                         let by = if number == line { sign * errors.lines[segment][line] } else { 0.0 };
                         motion[number * count + place] = value + by;
                     }
@@ -76,24 +106,72 @@ impl SegmentRow<'_> {
                 self.closed(points.iter().map(|point| point.xi.as_slice()), count, motion)
             }));
         }
-        let own = |(output, moved): (usize, &Vec<f64>)| largest(moved[2 * output..][..2].iter().copied());
+        for end in 0..surrogate.ends.len() {
+            add([-1.0, 1.0].map(|sign| self.outputs_at(&self.beside(&points, end, sign))));
+        }
+        // Outside of the samples of a fit errors are larger.
+        let far: Vec<f64> = points.iter().map(|point| surrogate.leverage(&point.xi).max(1.0).sqrt()).collect();
+        let own = |(output, moved): (usize, &Vec<f64>)| {
+            largest(moved.iter().zip(&far).skip(2 * output).take(2).map(|(moved, far)| far * moved))
+        };
         moved.iter().enumerate().map(own).collect()
+    }
+
+    /// Points that are beside a surface, moved across it as far as its error is.
+    fn beside(&self, points: &[Point], end: usize, sign: f64) -> Vec<Point> {
+        let surface = &self.piece.surrogate.ends[end];
+        let across = |point: &Point| {
+            let mut xi = point.xi.clone();
+            if point.margins[end].abs() > NEAR * surface.error() {
+                return xi;
+            }
+            let of = |axis: usize| {
+                let mut beside = point.xi.clone();
+                beside[axis] += DIFFERENCE;
+                (surface.margin(&beside) - point.margins[end]) / DIFFERENCE
+            };
+            let slopes: Vec<f64> = (0..xi.len()).map(of).collect();
+            let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+            let by = sign * surface.error() / square;
+            if by.is_finite() {
+                xi.iter_mut().zip(&slopes).for_each(|(xi, slope)| *xi = (*xi + by * slope).clamp(-1.0, 1.0));
+            }
+            xi
+        };
+        self.piece.surrogate.points(points.iter().map(across).collect())
     }
 }
 
-impl Predicted for SegmentRow<'_> {
+impl<'r> BoxRow<'r> {
+    /// The row in one part.
+    pub fn in_part(&self, piece: &'r Piece<'r>) -> SegmentRow<'r> {
+        SegmentRow { ensemble: self.ensemble, piece, closure: self.closure, time: self.time }
+    }
+}
+
+impl Predicted for SensedRow<'_> {
     fn outputs(&self) -> usize {
-        self.ensemble.outputs()
+        self.row.ensemble.outputs()
     }
 
     fn surrogate(&self) -> &Surrogate {
-        self.tensor
+        self.grid
     }
 
     fn predict_some(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
-        let points = self.surrogate.points(points.to_vec());
-        let at: Vec<_> = points.iter().map(|point| (point, point.segment(self.time), self.time)).collect();
-        let values = self.outputs_on(&at);
-        outputs.iter().flat_map(|output| values[output * at.len()..][..at.len()].iter().copied()).collect()
+        let mut values = vec![f64::NAN; outputs.len() * points.len()];
+        for piece in &self.row.pieces.all {
+            let is_own =
+                |point: &usize| self.row.pieces.part_of(&points[*point]).is_some_and(|own| std::ptr::eq(own, piece));
+            let own: Vec<usize> = (0..points.len()).filter(is_own).collect();
+            let at = piece.surrogate.points(own.iter().map(|&point| points[point].clone()).collect());
+            let found = self.row.in_part(piece).outputs_at(&at);
+            for (line, output) in outputs.iter().enumerate() {
+                for (place, point) in own.iter().enumerate() {
+                    values[line * points.len() + point] = found[output * own.len() + place];
+                }
+            }
+        }
+        values
     }
 }

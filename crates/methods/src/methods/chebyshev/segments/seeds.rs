@@ -23,9 +23,10 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    pub fn new(surrogate: &SegmentSurrogate, k: usize) -> Self {
+    /// With `others` beside the lattice's own points.
+    pub fn new(surrogate: &SegmentSurrogate, others: &[Vec<f64>], k: usize) -> Self {
         let Some(&intervals) = INTERVALS.get(k.saturating_sub(1)) else {
-            let xi = [corners(k, CORNERS), spread(k, SPREAD * k)].concat();
+            let xi = [&corners(k, CORNERS)[..], &spread(k, SPREAD * k), others].concat();
             let edges = (1..xi.len()).flat_map(|end| [(end - 1, end), (end / 2, end)]).collect();
             return Self { points: surrogate.points(xi), edges };
         };
@@ -39,16 +40,20 @@ impl Lattice {
             let inner = (0..k).filter(move |&axis| place(index, axis) < intervals);
             inner.map(move |axis| (index, index + stride(axis)))
         });
-        Self { points: surrogate.points(xi.collect()), edges: edges.collect() }
+        Self { points: surrogate.points(xi.chain(others.iter().cloned()).collect()), edges: edges.collect() }
     }
 
     /// Points at which the box is at a share of a segment at a time, where edges meet that surface.
     pub fn on_surface(&self, surrogate: &SegmentSurrogate, (segment, share): (usize, f64), time: f64) -> Vec<Point> {
-        let distance = |point: &Point| {
+        self.at_zeros(surrogate, |point| {
             let [begin, end] = [point.times[segment], point.times[segment + 1]];
             begin + share * (end - begin) - time
-        };
-        let distances: Vec<f64> = self.points.iter().map(distance).collect();
+        })
+    }
+
+    /// Points where edges meet the zeros of a distance.
+    pub fn at_zeros(&self, surrogate: &SegmentSurrogate, distance: impl Fn(&Point) -> f64) -> Vec<Point> {
+        let distances: Vec<f64> = self.points.iter().map(&distance).collect();
         let crossed: Vec<(usize, usize)> =
             self.edges.iter().copied().filter(|&(a, b)| distances[a] * distances[b] < 0.0).collect();
         let every = crossed.len().div_ceil(MOST_ON_SURFACE).max(1);

@@ -1,0 +1,175 @@
+//! A jet in the segments of its centre's word: instants are jets as the state is, so that both are Taylor polynomials
+//! that go through the events.
+//!
+//! The length of a segment is solved for by Newton's method in jets on the switch's value at its end. What the state is
+//! there follows with it: the saltation matrix of the first order, and all higher ones.
+
+use symdiff::JetMemory;
+use symdiff::jet::JetSpace;
+
+use super::followed::Spelled;
+use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, ROUNDED};
+use super::segments::Segments;
+use crate::compile::{SwitchProgram, Tapes};
+use crate::numerics::{STEP_NODES, Sample, SegmentMotions, step_nodes};
+use crate::simulate::ensemble::{JetBox, JetClosure};
+use crate::simulate::error::SimulationError;
+use crate::simulate::explicit::runge_kutta::{Motion, RungeKutta};
+use crate::simulate::simulator::Simulator;
+
+/// Segments of a jet on a time from 0 to 1.
+struct StretchedJet<'s> {
+    closure: JetClosure<'s>,
+    space: &'s JetSpace,
+    /// When the segment begins, and how long it is, s.
+    begin: Vec<f64>,
+    length: Vec<f64>,
+    product: Vec<f64>,
+}
+
+impl StretchedJet<'_> {
+    fn set_time(&mut self, share: f64) {
+        let sum = self.begin.iter().zip(&self.length).map(|(begin, length)| begin + share * length);
+        self.closure.time_mut().iter_mut().zip(sum).for_each(|(time, sum)| *time = sum);
+    }
+}
+
+impl Motion for StretchedJet<'_> {
+    fn rate(&mut self, share: f64, state: &[f64], into: &mut [f64]) {
+        self.set_time(share);
+        self.closure.rate_at_time(state, into);
+        for line in into.chunks_exact_mut(self.space.len()) {
+            self.space.mul(line, &self.length, &mut self.product);
+            line.copy_from_slice(&self.product);
+        }
+    }
+
+    fn close(&mut self, share: f64, state: &mut [f64]) {
+        self.set_time(share);
+        self.closure.close_at_time(state);
+    }
+
+    fn sample(&mut self, _: f64, _: &mut [f64]) -> bool {
+        false
+    }
+}
+
+/// Coefficients of the instants and motions about a centre, as the values of as many samples, with the index of its
+/// word; `None` where it meets the events of none, or the jet cannot go on.
+///
+/// # Errors
+/// Where the centre cannot be assembled.
+pub fn segment_jets(
+    simulator: &Simulator,
+    space: &JetSpace,
+    about: JetBox<'_>,
+    segments: &Segments,
+    duration: f64,
+) -> Result<Option<(usize, SegmentMotions)>, SimulationError> {
+    let Some(program) = simulator.switches() else { return Ok(None) };
+    let sample: Sample = about.center.iter().copied().collect();
+    let spelled = Spelled::by(Path::start(simulator, program, &sample, (duration, segments.tolerance))?, segments);
+    let Some(number) = spelled.word else { return Ok(None) };
+    let word = &segments.words[number];
+    let start = simulator.assemble(1, 0.0, |_| sample.clone())?;
+    let mut closure = JetClosure::new(simulator, space, about, &start)?;
+    let mut state = closure.start(simulator, space, about)?;
+    let mut watch = JetWatch::new(program, space, &closure);
+    let zero = vec![0.0; space.len()];
+    let mut motion = StretchedJet { closure, space, begin: zero.clone(), length: zero.clone(), product: zero.clone() };
+    let mut motions = SegmentMotions {
+        samples: (0..space.len()).collect(),
+        steps: word.steps.clone(),
+        times: vec![zero.clone()],
+        nodes: Vec::new(),
+    };
+    for (segment, steps) in word.steps.iter().enumerate() {
+        space.constant(spelled.lengths[segment], &mut motion.length);
+        let event = word.events.get(segment);
+        if let (None, Some(tail)) = (event, word.tail) {
+            motion.length.iter_mut().zip(&motion.begin).for_each(|(length, begin)| *length = -begin);
+            motion.length[0] += tail;
+        }
+        let mut nodes = pass(&mut motion, &state, steps);
+        let mut is_solved = event.is_none();
+        for _ in 0..CORRECTIONS {
+            let Some(event) = event.filter(|_| !is_solved) else { break };
+            let change = watch.change(&motion.closure, event.switch, BEYOND * duration);
+            motion.length.iter_mut().zip(&change).for_each(|(length, change)| *length += change);
+            nodes = pass(&mut motion, &state, steps);
+            let (first, others) = (change[0].abs(), change[1..].iter().fold(0.0, |most: f64, own| most.max(own.abs())));
+            if first.is_nan() {
+                return Ok(None);
+            }
+            is_solved = first <= LOCATED * duration && others <= ROUNDED * duration;
+        }
+        if !is_solved {
+            return Ok(None);
+        }
+        motion.begin.iter_mut().zip(&motion.length).for_each(|(begin, length)| *begin += length);
+        if let Some(last) = nodes.last() {
+            state.clone_from(last);
+        }
+        motions.times.push(motion.begin.clone());
+        motions.nodes.push(nodes);
+    }
+    let is_known = motions.nodes.iter().flatten().flatten().all(|value| value.is_finite());
+    Ok(is_known.then_some((number, motions)))
+}
+
+/// Takes the steps of a segment: the states at its nodes.
+fn pass(motion: &mut StretchedJet, state: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+    let mut run = RungeKutta::start(motion, 0.0, state.to_vec());
+    let mut nodes = vec![state.to_vec()];
+    for &end in steps {
+        run.attempt(motion, end);
+        run.finish(motion, end);
+        run.prepare_dense(motion, end);
+        for share in &step_nodes()[1..STEP_NODES - 1] {
+            let mut node = vec![0.0; state.len()];
+            run.interpolate(*share, &mut node);
+            nodes.push(node);
+        }
+        run.accept(motion, end);
+        nodes.push(run.state.clone());
+    }
+    // The rates at the end, which switches see.
+    let mut rates = vec![0.0; state.len()];
+    motion.rate(1.0, &run.state, &mut rates);
+    nodes
+}
+
+/// Values of switches in jets.
+struct JetWatch<'s> {
+    program: &'s SwitchProgram,
+    memory: JetMemory<'s>,
+    space: &'s JetSpace,
+}
+
+impl<'s> JetWatch<'s> {
+    fn new(program: &'s SwitchProgram, space: &'s JetSpace, closure: &JetClosure) -> Self {
+        let mut memory = JetMemory::new(space, program.registers(), program.constants());
+        for register in program.layout.parameters.clone() {
+            memory.jet_mut(register).copy_from_slice(closure.jet(register));
+        }
+        memory.run(program.sample());
+        Self { program, memory, space }
+    }
+
+    /// By how much a segment is to be longer, for its end to be this long behind the zero of a switch.
+    fn change(&mut self, closure: &JetClosure, switch: usize, beyond: f64) -> Vec<f64> {
+        let layout = &self.program.layout;
+        for register in layout.state().chain([layout.time]) {
+            self.memory.jet_mut(register).copy_from_slice(closure.jet(register));
+        }
+        self.memory.run(self.program.evaluate());
+        let switch = &self.program.switches[switch];
+        let mut change = vec![f64::NAN; self.space.len()];
+        if let Some(rate) = switch.rate {
+            self.space.div(self.memory.jet(switch.value), self.memory.jet(rate), &mut change);
+        }
+        change.iter_mut().for_each(|own| *own = -*own);
+        change[0] += beyond;
+        change
+    }
+}

@@ -1,0 +1,241 @@
+//! Terms of the polynomials of instants and motions.
+
+use symdiff::jet::Monomials;
+
+use crate::numerics::{LeastSquares, SparseBasis, SparseWork, largest, truncation};
+
+/// Terms in ξ.
+#[derive(Clone, Debug)]
+pub(super) enum Basis<'a> {
+    /// Those of a grid's surrogate.
+    Grid(&'a SparseBasis),
+    /// Those of a part of the box, which are fitted to samples in it.
+    Fitted(Fitted),
+    /// Powers of distances from a centre, those of a jet.
+    Taylor { monomials: Monomials, centre: Vec<f64> },
+}
+
+/// Products of Chebyshev polynomials up to a total degree.
+#[derive(Clone, Debug)]
+pub(super) struct Powers(Vec<Vec<u8>>);
+
+/// Products up to a degree, and the same up to one less times the root of each depth behind a surface: behind the
+/// surface on which an event is just grazed, instants and what follows go with the root of the distance to it.
+#[derive(Clone, Debug)]
+pub(super) struct Fitted {
+    powers: Powers,
+    depths: Vec<Level>,
+    of_depths: Powers,
+}
+
+/// A polynomial whose zeros are a surface in the box.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
+    powers: Powers,
+    coefficients: Vec<f64>,
+    /// How far its zero may be from the true one, in its own units.
+    error: f64,
+}
+
+/// A surface that ends a part: a level's zero, or a surface parallel to it.
+#[derive(Clone, Debug)]
+pub(super) struct End {
+    pub level: Level,
+    /// The part is where this times the level is more than the offset.
+    pub sign: f64,
+    pub offset: f64,
+}
+
+/// A sample at a share of the largest margin weighs as one on the surface over this share and it.
+const NEAR_SURFACE: f64 = 0.05;
+
+/// Highest total degree of a surface by the number of parameters; of more it is the last.
+const SURFACE_DEGREES: [usize; 4] = [8, 5, 3, 2];
+
+/// Samples for each term of a fit.
+pub(super) const SAMPLES_A_TERM: f64 = 1.5;
+
+impl Powers {
+    pub fn up_to(degree: usize, k: usize) -> Self {
+        let mut all = vec![Vec::new()];
+        for _ in 0..k {
+            let longer = |exponents: &Vec<u8>| {
+                let left = degree - exponents.iter().map(|&own| usize::from(own)).sum::<usize>();
+                (0..=left as u8).map(|own| [&exponents[..], &[own]].concat()).collect::<Vec<_>>()
+            };
+            all = all.iter().flat_map(longer).collect();
+        }
+        Self(all)
+    }
+
+    fn values(&self, xi: &[f64], into: &mut Vec<f64>) {
+        let degree = self.0.iter().flatten().copied().max().unwrap_or(0);
+        let chebyshev = |&xi: &f64| {
+            let mut values = vec![1.0, xi];
+            for place in 2..=usize::from(degree) {
+                values.push(2.0 * xi * values[place - 1] - values[place - 2]);
+            }
+            values
+        };
+        let of_axes: Vec<Vec<f64>> = xi.iter().map(chebyshev).collect();
+        let term = |exponents: &Vec<u8>| -> f64 {
+            exponents.iter().zip(&of_axes).map(|(&exponent, values)| values[usize::from(exponent)]).product()
+        };
+        into.extend(self.0.iter().map(term));
+    }
+}
+
+impl Level {
+    /// Through the zeros of margins that are given at samples.
+    pub fn through(samples: &[(&[f64], f64)]) -> Option<Self> {
+        let k = samples.first()?.0.len();
+        let size = largest(samples.iter().map(|(_, margin)| *margin));
+        let weight = |margin: f64| NEAR_SURFACE / (margin.abs() / size + NEAR_SURFACE);
+        let weights: Vec<f64> = samples.iter().map(|(_, margin)| weight(*margin)).collect();
+        let margins: Vec<f64> = samples.iter().map(|(_, margin)| *margin).collect();
+        let of_degree = |degree: usize| {
+            let powers = Powers::up_to(degree, k);
+            let terms = values_of(samples.iter().map(|(xi, _)| *xi), |xi, into| powers.values(xi, into));
+            if samples.len() as f64 <= SAMPLES_A_TERM * powers.0.len() as f64 {
+                return None;
+            }
+            let (coefficients, left_out) = LeastSquares::new(&terms, weights.clone())?.fit(&margins)?;
+            let error = largest(left_out.iter().zip(&weights).map(|(error, weight)| error * weight));
+            Some(Self { powers, coefficients, error })
+        };
+        let highest = SURFACE_DEGREES.get(k.saturating_sub(1)).or(SURFACE_DEGREES.last()).copied()?;
+        (1..=highest).filter_map(of_degree).min_by(|a, b| a.error.total_cmp(&b.error))
+    }
+
+    /// How far its zero may be from the true one, in its own units.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+
+    pub fn at(&self, xi: &[f64]) -> f64 {
+        let mut terms = Vec::with_capacity(self.coefficients.len());
+        self.powers.values(xi, &mut terms);
+        terms.iter().zip(&self.coefficients).map(|(term, coefficient)| term * coefficient).sum()
+    }
+}
+
+impl End {
+    /// Distance from the surface, in the level's units; negative beyond it.
+    pub fn margin(&self, xi: &[f64]) -> f64 {
+        self.sign * self.level.at(xi) - self.offset
+    }
+
+    /// How far the surface may be from the true one: what only divides a part is where it is put.
+    pub fn error(&self) -> f64 {
+        if self.offset == 0.0 { self.level.error } else { 0.0 }
+    }
+}
+
+impl Fitted {
+    pub fn new(degree: usize, depths: &[Level], k: usize) -> Self {
+        let depths = depths.to_vec();
+        Self { powers: Powers::up_to(degree, k), depths, of_depths: Powers::up_to(degree.saturating_sub(1), k) }
+    }
+
+    pub fn len(&self) -> usize {
+        self.powers.0.len() + self.depths.len() * self.of_depths.0.len()
+    }
+
+    fn values(&self, xi: &[f64], into: &mut Vec<f64>) {
+        self.powers.values(xi, into);
+        for depth in &self.depths {
+            let root = (-depth.at(xi)).max(0.0).sqrt();
+            let first = into.len();
+            self.of_depths.values(xi, into);
+            into[first..].iter_mut().for_each(|term| *term *= root);
+        }
+    }
+}
+
+impl Basis<'_> {
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Grid(basis) => basis.len(),
+            Self::Fitted(fitted) => fitted.len(),
+            Self::Taylor { monomials, .. } => monomials.len(),
+        }
+    }
+
+    /// Values of all terms, point by point.
+    pub fn values(&self, xi: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let basis = match self {
+            Self::Grid(basis) => basis,
+            Self::Fitted(fitted) => return values_of(xi.iter().map(Vec::as_slice), |xi, into| fitted.values(xi, into)),
+            Self::Taylor { monomials, centre } => {
+                let power = |(xi, (centre, &exponent)): (&f64, (&f64, &usize))| (xi - centre).powi(exponent as i32);
+                let term = |xi: &[f64], term: usize| -> f64 {
+                    xi.iter().zip(centre.iter().zip(monomials.exponents(term))).map(power).product()
+                };
+                return values_of(xi.iter().map(Vec::as_slice), |xi, into| {
+                    into.extend((0..monomials.len()).map(|number| term(xi, number)));
+                });
+            }
+        };
+        let (terms, count) = (basis.len(), xi.len());
+        let mut unit = vec![0.0; terms * terms];
+        (0..terms).for_each(|term| unit[term * terms + term] = 1.0);
+        let mut values = vec![0.0; terms * count];
+        basis.values(xi, &unit, &mut values, &mut SparseWork::default());
+        (0..count).map(|point| values.iter().skip(point).step_by(count).copied().collect()).collect()
+    }
+
+    /// Size of the terms that coefficients lack; of those that are fitted or a jet's, other samples tell.
+    pub fn truncation(&self, coefficients: &[f64]) -> f64 {
+        match self {
+            Self::Grid(basis) => truncation(basis, coefficients),
+            Self::Fitted(_) | Self::Taylor { .. } => 0.0,
+        }
+    }
+}
+
+fn values_of<'x>(xi: impl Iterator<Item = &'x [f64]>, of: impl Fn(&[f64], &mut Vec<f64>)) -> Vec<Vec<f64>> {
+    xi.map(|xi| {
+        let mut values = Vec::new();
+        of(xi, &mut values);
+        values
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_surface_is_where_margins_are_zero() {
+        // A circle of radius ½ about (0.1, 0), the margin twice as steep inside.
+        let margin = |xi: &[f64]| {
+            let distance = (xi[0] - 0.1).powi(2) + xi[1] * xi[1] - 0.25;
+            if distance < 0.0 { distance * (2.0 + distance) / 2.0 } else { distance }
+        };
+        let points = crate::numerics::spread(2, 60);
+        let samples: Vec<(&[f64], f64)> = points.iter().map(|xi| (xi.as_slice(), margin(xi))).collect();
+        let level = Level::through(&samples).unwrap();
+        for angle in [0.0_f64, 1.0, 2.0, 4.0] {
+            let on = [0.1 + 0.5 * angle.cos(), 0.5 * angle.sin()];
+            assert!(level.at(&on).abs() < level.error.max(1e-3), "{} at {angle}", level.at(&on));
+        }
+        assert!(level.error < 0.02, "{}", level.error);
+    }
+
+    #[test]
+    fn roots_behind_a_surface_are_terms() {
+        let f = |x: f64| 1.0 + 0.3 * x + if x > 0.2 { (x - 0.2).sqrt() * (0.5 - 0.1 * x) } else { 0.0 };
+        let margins: Vec<Vec<f64>> = (0..20).map(|place| vec![f64::from(place) / 10.0 - 0.95]).collect();
+        let level = Level::through(&margins.iter().map(|xi| (&xi[..], 0.2 - xi[0])).collect::<Vec<_>>()).unwrap();
+        let inside: Vec<Vec<f64>> = margins.into_iter().filter(|xi| xi[0] > 0.2).collect();
+        let basis = Basis::Fitted(Fitted::new(2, &[level], 1));
+        let values: Vec<f64> = inside.iter().map(|xi| f(xi[0])).collect();
+        let squares = LeastSquares::new(&basis.values(&inside), vec![1.0; inside.len()]).unwrap();
+        let (coefficients, left_out) = squares.fit(&values).unwrap();
+        assert!(largest(left_out) < 1e-9);
+        let [terms] = &basis.values(&[vec![0.201]])[..] else { panic!() };
+        let value: f64 = terms.iter().zip(&coefficients).map(|(term, coefficient)| term * coefficient).sum();
+        assert!((value - f(0.201)).abs() < 1e-8);
+    }
+}

@@ -1,0 +1,310 @@
+//! Polynomials by least squares in the parts of a box of several words.
+//!
+//! In each part the degree is that at which instants, and states there, of samples that are left out are met best;
+//! samples are added where a part has few. Behind a surface that is grazed motions change within a layer, which becomes
+//! a part of its own where one polynomial does not do.
+
+use super::basis::{Basis, Fitted, Level, SAMPLES_A_TERM};
+use super::parts::{Part, Samples};
+use super::pieces::Piece;
+use super::surrogate::{SegmentErrors, SegmentSurrogate};
+use crate::methods::ensemble::{Ensemble, EnsembleError};
+use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, largest};
+
+/// Rounds in which samples are added to parts, and the layers that are cut off one after the other.
+const ROUNDS: usize = 2;
+const LAYERS: usize = 3;
+
+/// Rounds in which points that are far outside of samples are added.
+const COVERINGS: usize = 6;
+
+/// A polynomial does that misses samples that are left out by no more than this share of how far they range.
+const ENOUGH: f64 = 1e-3;
+
+/// Values that differ by this share of them are the same.
+const ROUNDING: f64 = 1e-9;
+
+/// Samples, and what their polynomials are held against.
+pub(super) struct Fitting<'v> {
+    pub samples: Samples,
+    /// Highest degree.
+    pub degree: usize,
+    /// ξ of validation samples, and their motions.
+    pub points: &'v [Vec<f64>],
+    pub direct: CutMotions,
+}
+
+/// Pieces, the number of samples, and the time from which motions of no word are met, s.
+type Found<'b> = (Vec<Piece<'b>>, usize, f64);
+
+impl Fitting<'_> {
+    /// The polynomials; `None` where samples that are added cannot be cut.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn pieces<'b>(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found<'b>>, EnsembleError> {
+        let words = self.samples.motions.words.len();
+        let mut parts: Vec<Part> = (0..words).map(|word| Part::of_word(word, &self.samples.motions)).collect();
+        let (mut layer, mut covered) = (0, 0);
+        loop {
+            for _ in 0..ROUNDS {
+                let wanted = self.wanted(&parts);
+                if wanted.is_empty() || ensemble.is_interrupted() {
+                    break;
+                }
+                if !self.add(ensemble, wanted)? {
+                    return Ok(None);
+                }
+            }
+            let levels = self.samples.levels();
+            let (mut found, mut next, mut wanted) = (Vec::new(), Vec::new(), Vec::new());
+            for part in &parts {
+                let fitted = self.fitted(part, &levels);
+                wanted.extend(fitted.iter().flat_map(|(_, piece)| self.uncovered(part, piece)));
+                let misses = fitted.as_ref().is_some_and(|(misses, _)| *misses > ENOUGH);
+                let divided = fitted.as_ref().filter(|_| misses && layer < LAYERS);
+                match divided.and_then(|(_, piece)| part.layers(&levels, &piece.samples)) {
+                    Some(layers) => next.extend(layers),
+                    None => next.push(part.clone()),
+                }
+                found.extend(fitted.map(|(_, piece)| piece));
+            }
+            if next.len() == parts.len() && !wanted.is_empty() && covered < COVERINGS {
+                covered += 1;
+                if !self.add(ensemble, wanted)? {
+                    return Ok(None);
+                }
+            } else if next.len() == parts.len() {
+                let known_to = self.samples.motions.known_to.min(self.direct.known_to);
+                return Ok(Some((found, self.samples.xi.len(), known_to)));
+            }
+            layer += usize::from(next.len() > parts.len());
+            parts = next;
+        }
+    }
+
+    /// Adds samples; whether they can be cut.
+    fn add(&mut self, ensemble: &dyn Ensemble, xi: Vec<Vec<f64>>) -> Result<bool, EnsembleError> {
+        let Some(motions) = ensemble.segments(&ensemble.domain().samples(&xi))? else { return Ok(false) };
+        self.samples.motions.append(motions, self.samples.xi.len());
+        self.samples.xi.extend(xi);
+        Ok(true)
+    }
+
+    /// The polynomials of a part, and by what share of their range they miss samples that are left out.
+    fn fitted<'b>(&self, part: &Part, levels: &[Option<Level>]) -> Option<(f64, Piece<'b>)> {
+        let places = self.samples.places(part, levels);
+        let motions = picked(&self.samples.motions.words[part.word], &places);
+        let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| self.samples.xi[sample].clone()).collect();
+        let (k, count) = (xi.first()?.len(), xi.len());
+        let depths = part.depths(levels);
+        let of_degree = |degree: usize, depths: &[Level]| {
+            let basis = Basis::Fitted(Fitted::new(degree, depths, k));
+            let is_enough = count as f64 >= SAMPLES_A_TERM * basis.len() as f64 || degree == 0;
+            let squares = LeastSquares::new(&basis.values(&xi), vec![1.0; count]).filter(|_| is_enough)?;
+            let left_out = |values: &[f64]| {
+                let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(0.0));
+                let error = squares.fit(values).map_or(f64::INFINITY, |(_, error)| largest(error));
+                // What varies by rounding only says nothing of a degree.
+                let varies = high - low > ROUNDING * low.abs().max(high.abs());
+                if varies { error / (high - low) } else { 0.0 }
+            };
+            let ends = motions.nodes.iter().filter_map(|nodes| nodes.last()).flat_map(|node| node.chunks_exact(count));
+            let misses = motions.times.iter().map(Vec::as_slice).chain(ends).map(left_out).fold(0.0, f64::max);
+            Some((misses, basis, squares))
+        };
+        let none: &[Level] = &[];
+        let tried = (0..=self.degree).flat_map(|degree| [none, &depths].map(|depths| of_degree(degree, depths)));
+        let (misses, basis, squares) = tried.flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let by_line = |values: &[f64], pick: fn((Vec<f64>, Vec<f64>)) -> Vec<f64>| -> Vec<f64> {
+            values.chunks_exact(count).filter_map(|line| squares.fit(line)).flat_map(pick).collect()
+        };
+        let ends = part.ends(levels);
+        let surrogate = SegmentSurrogate::new(basis, ends, &motions, |values| by_line(values, |(own, _)| own));
+        let surrogate = surrogate.fitted_by(squares.clone());
+        let errors = SegmentErrors::of_samples(&motions, |values| by_line(values, |(_, left_out)| left_out));
+        let points = self.points;
+        let held_out = &self.direct.words[part.word];
+        let is_inside = |place: &usize| {
+            surrogate.ends.iter().all(|end| end.offset == 0.0 || end.margin(&points[held_out.samples[*place]]) >= 0.0)
+        };
+        let held_out = picked(held_out, &(0..held_out.samples.len()).filter(is_inside).collect::<Vec<_>>());
+        let at: Vec<Vec<f64>> = held_out.samples.iter().map(|&sample| points[sample].clone()).collect();
+        let errors = if at.is_empty() { errors } else { errors.or(&SegmentErrors::new(&surrogate, &at, &held_out)) };
+        Some((misses, Piece { surrogate, errors, samples: xi }))
+    }
+}
+
+/// Motions of some of the samples.
+fn picked(motions: &SegmentMotions, places: &[usize]) -> SegmentMotions {
+    let count = motions.samples.len();
+    let pick = |line: &[f64]| places.iter().map(|&place| line[place]).collect::<Vec<f64>>();
+    let of_node = |node: &Vec<f64>| node.chunks_exact(count.max(1)).flat_map(pick).collect();
+    SegmentMotions {
+        samples: places.iter().map(|&place| motions.samples[place]).collect(),
+        steps: motions.steps.clone(),
+        times: motions.times.iter().map(|times| pick(times)).collect(),
+        nodes: motions.nodes.iter().map(|nodes| nodes.iter().map(of_node).collect()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::Range as Rows;
+
+    use symdiff::jet::JetSpace;
+    use symdiff::taylor_model::ModelSpace;
+
+    use super::*;
+    use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
+    use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
+
+    /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω².
+    struct Throws {
+        domain: ParameterBox,
+        omega: f64,
+    }
+
+    const G: f64 = 9.81;
+
+    /// Position and velocity after a time, from those at a wall of ω (0 in flight) about an origin.
+    fn moved([y, v]: [f64; 2], omega: f64, t: f64) -> [f64; 2] {
+        if omega == 0.0 {
+            return [y + v * t - 0.5 * G * t * t, v - G * t];
+        }
+        let (sin, cos) = (omega * t).sin_cos();
+        let sag = G / (omega * omega);
+        [(y + sag) * cos + v / omega * sin - sag, -(y + sag) * omega * sin + v * cos]
+    }
+
+    impl Throws {
+        /// Margin, instants, and the motion in each segment of a speed.
+        fn cut(&self, speed: f64) -> (f64, Vec<f64>, Vec<[f64; 2]>) {
+            let height = 1.3;
+            let margin = height - speed * speed / (2.0 * G);
+            if margin >= 0.0 {
+                return (margin, vec![0.0, 1.0], vec![[0.0, speed]]);
+            }
+            let at = (speed * speed - 2.0 * G * height).sqrt();
+            let begins = (speed - at) / G;
+            let contact = 2.0 / self.omega * (at * self.omega / G).atan();
+            (margin, vec![0.0, begins, begins + contact, 1.0], vec![[0.0, speed], [0.0, at], [height, -at]])
+        }
+
+        /// Motion at the nodes of each segment.
+        fn nodes(&self, times: &[f64], starts: &[[f64; 2]], segment: usize) -> Vec<[f64; 2]> {
+            let length = times[segment + 1] - times[segment];
+            let omega = if segment == 1 { self.omega } else { 0.0 };
+            let at = |share: &f64| {
+                let [y, v] = moved(starts[segment], omega, share * length);
+                [if segment == 1 { 1.3 + y } else { y }, v]
+            };
+            step_nodes().iter().map(at).collect()
+        }
+    }
+
+    impl Ensemble for Throws {
+        fn domain(&self) -> &ParameterBox {
+            &self.domain
+        }
+        fn is_interrupted(&self) -> bool {
+            false
+        }
+        fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
+            let cut: Vec<_> = samples.iter().map(|sample| self.cut(sample[0])).collect();
+            let word = |segments: usize| {
+                let own: Vec<usize> = (0..cut.len()).filter(|&sample| cut[sample].2.len() == segments).collect();
+                let node = |segment: usize, node: usize| {
+                    let line = |line: usize| own.iter().map(move |&sample| (sample, line)).collect::<Vec<_>>();
+                    let value = |(sample, line): (usize, usize)| {
+                        let (_, times, starts) = &cut[sample];
+                        self.nodes(times, starts, segment)[node][line]
+                    };
+                    [line(0), line(1)].concat().into_iter().map(value).collect::<Vec<f64>>()
+                };
+                SegmentMotions {
+                    samples: own.clone(),
+                    steps: vec![vec![1.0]; segments],
+                    times: (0..=segments).map(|begin| own.iter().map(|&own| cut[own].1[begin]).collect()).collect(),
+                    nodes: (0..segments).map(|of| (0..STEP_NODES).map(|number| node(of, number)).collect()).collect(),
+                }
+            };
+            let values = cut.iter().map(|(margin, ..)| *margin).collect();
+            let boundaries = vec![BoundaryMargins { met: vec![1], missed: vec![0], values }];
+            Ok(Some(CutMotions { words: vec![word(1), word(3)], boundaries, known_to: 1.0 }))
+        }
+        fn outputs(&self) -> usize {
+            unreachable!()
+        }
+        fn rows(&self) -> usize {
+            unreachable!()
+        }
+        fn time(&self, _: usize) -> f64 {
+            unreachable!()
+        }
+        fn rounding(&self, _: usize) -> f64 {
+            unreachable!()
+        }
+        fn has_kink(&self, _: usize) -> bool {
+            unreachable!()
+        }
+        fn jumps(&self, _: usize) -> bool {
+            unreachable!()
+        }
+        fn simulate(
+            &self,
+            _: &[Sample],
+            _: Sampling,
+            _: &mut dyn FnMut(Rows<usize>, &[f64]),
+        ) -> Result<Simulated, EnsembleError> {
+            unreachable!()
+        }
+        fn jets(&self, _: &JetSpace, _: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
+            unreachable!()
+        }
+        fn obstacle_to_enclosure(&self) -> Option<String> {
+            unreachable!()
+        }
+        fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+            unreachable!()
+        }
+        fn scales(&self) -> &[f64] {
+            unreachable!()
+        }
+        fn independent(&self, _: &[f64], _: &[f64], _: f64) -> Vec<usize> {
+            unreachable!()
+        }
+        fn closure(&self, _: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError> {
+            unreachable!()
+        }
+    }
+
+    #[test]
+    fn layers_behind_a_surface_are_resolved() {
+        for omega in [30.0, 300.0] {
+            let domain = ParameterBox { nominal: vec![5.0].into(), lower: vec![4.5], upper: vec![5.5] };
+            let throws = Throws { domain, omega };
+            let grid = Surrogate::tensor(&[5], &[6]);
+            let cut = |xi: &[Vec<f64>]| throws.segments(&throws.domain.samples(xi)).unwrap().unwrap();
+            let samples = Samples { xi: grid.samples().to_vec(), motions: cut(grid.samples()) };
+            let points = spread(1, 8);
+            let direct = cut(&points);
+            let fitting = Fitting { samples, degree: 8, points: &points, direct };
+            let (pieces, count, _) = fitting.pieces(&throws).unwrap().unwrap();
+            assert!(count < 120, "{count}");
+            for xi in spread(1, 97) {
+                let beyond =
+                    |piece: &&Piece| piece.surrogate.ends.iter().map(|end| -end.margin(&xi)).fold(0.0, f64::max);
+                let piece = pieces.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b))).unwrap();
+                let [point] = &piece.surrogate.points(vec![xi.clone()])[..] else { panic!() };
+                let (_, times, _) = throws.cut(5.0 + 0.5 * xi[0]);
+                assert_eq!(times.len(), point.times.len(), "at {xi:?}");
+                let stated = &piece.errors.times;
+                for ((own, truth), stated) in point.times.iter().zip(times).zip(stated) {
+                    assert!((own - truth).abs() <= 3.0 * stated + 1e-12, "{own} {truth} {stated} at {xi:?}");
+                }
+                assert!(largest(stated.iter().copied()) < 1e-4);
+            }
+        }
+    }
+}

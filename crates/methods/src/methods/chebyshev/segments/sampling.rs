@@ -1,0 +1,130 @@
+//! Samples that fits in the parts of a box need: enough of them, some beside surfaces, and none far outside of the
+//! others.
+
+use super::basis::{Fitted, SAMPLES_A_TERM};
+use super::fitting::Fitting;
+use super::parts::Part;
+use super::pieces::Piece;
+use crate::numerics::{corners, largest, spread};
+
+/// Candidates of each round, and corners among them.
+const CANDIDATES: usize = 512;
+pub(super) const CORNERS: usize = 16;
+
+/// Halvings of a line on which a level is looked for.
+const HALVINGS: usize = 40;
+
+/// Of the samples that a part lacks on the side of a surface without the event, one in so many is beside it.
+const BESIDE: usize = 3;
+
+/// A fit at a point outside of the samples may be off by so many times, squared, what samples are off by; such points
+/// are added, so many at once and so far apart.
+const FAR: f64 = 2.0;
+const COVERING: usize = 4;
+const APART: f64 = 0.2;
+
+impl Fitting<'_> {
+    /// Points of a part that are far outside of its samples, the farthest first: a fit may have any value there.
+    pub(super) fn uncovered(&self, part: &Part, piece: &Piece) -> Vec<Vec<f64>> {
+        let k = self.samples.xi.first().map_or(0, Vec::len);
+        let surrogate = &piece.surrogate;
+        let margin = |xi: &Vec<f64>| surrogate.ends.iter().map(|end| end.margin(xi)).fold(f64::INFINITY, f64::min);
+        let is_own = |sample: &usize| self.samples.motions.words[part.word].samples.contains(sample);
+        let others: Vec<&Vec<f64>> = (0..self.samples.xi.len())
+            .filter(|sample| !is_own(sample))
+            .map(|sample| &self.samples.xi[sample])
+            .collect();
+        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES)].concat();
+        let inside: Vec<Vec<f64>> = of_box.iter().filter(|xi| margin(xi) >= 0.0).cloned().collect();
+        let outside: Vec<&Vec<f64>> = of_box.iter().filter(|xi| margin(xi) < 0.0).chain(others).collect();
+        let from: Vec<&Vec<f64>> =
+            if inside.is_empty() { piece.samples.iter().collect() } else { inside.iter().collect() };
+        let ends = across(&from, &outside, CANDIDATES / 4, margin, 0.0);
+        let mut all: Vec<Vec<f64>> = inside.iter().cloned().chain(ends).filter(|xi| margin(xi) >= 0.0).collect();
+        let mut found = Vec::new();
+        while found.len() < COVERING {
+            let leverage = |xi: &Vec<f64>| surrogate.leverage(xi);
+            let Some((worst, xi)) = all
+                .iter()
+                .map(|xi| (leverage(xi), xi.clone()))
+                .max_by(|a, b| a.0.total_cmp(&b.0))
+                .filter(|(worst, xi)| *worst > FAR && !self.samples.xi.contains(xi))
+            else {
+                break;
+            };
+            // Those beside it are covered with it.
+            all.retain(|other| leverage(other) < 0.5 * worst || distance(other, &xi) > APART);
+            all.retain(|other| *other != xi);
+            found.push(xi);
+        }
+        found
+    }
+
+    /// Points at which samples are missing.
+    pub(super) fn wanted(&self, parts: &[Part]) -> Vec<Vec<f64>> {
+        let levels = self.samples.levels();
+        let xi = &self.samples.xi;
+        let k = xi.first().map_or(0, Vec::len);
+        let of_box = [corners(k, CORNERS), spread(k, CANDIDATES + xi.len()).split_off(xi.len())].concat();
+        let mut wanted: Vec<Vec<f64>> = Vec::new();
+        for part in parts {
+            let (ends, depths) = (part.ends(&levels), part.depths(&levels));
+            let own = &self.samples.motions.words[part.word].samples;
+            let inside: Vec<&Vec<f64>> =
+                self.samples.places(part, &levels).iter().map(|&place| &xi[own[place]]).collect();
+            let terms = Fitted::new(self.degree, &depths, k).len();
+            let lacks = ((SAMPLES_A_TERM * terms as f64) as usize + 2).saturating_sub(inside.len());
+            let fits = |point: &Vec<f64>| ends.iter().all(|end| end.margin(point) >= 0.0) && !xi.contains(point);
+            // Those beside a surface, on lines across it.
+            let beside =
+                if ends.iter().any(|end| end.sign < 0.0 && end.offset == 0.0) { lacks } else { lacks / BESIDE };
+            let of_word: Vec<&Vec<f64>> = own.iter().map(|&sample| &xi[sample]).collect();
+            let on_lines = ends.iter().filter(|end| end.offset == 0.0).flat_map(|end| {
+                let margin = |point: &Vec<f64>| end.margin(point);
+                let deepest = of_word.iter().map(|point| margin(point)).fold(0.0, f64::max);
+                // A layer ends before.
+                let limits = ends.iter().filter(|other| other.offset < 0.0).map(|other| -other.offset);
+                let depth = limits.fold(deepest, f64::min);
+                let others: Vec<&Vec<f64>> = xi.iter().filter(|point| margin(point) < 0.0).collect();
+                across(&of_word, &others, beside, margin, depth)
+            });
+            let mut own: Vec<Vec<f64>> = on_lines.filter(fits).take(beside).collect();
+            let others = of_box.iter().filter(|point| fits(point)).cloned();
+            own.extend(others.take(lacks - own.len().min(lacks)));
+            wanted.extend(own);
+        }
+        wanted.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        wanted.dedup();
+        wanted
+    }
+}
+
+/// Largest distance along an axis.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    largest(a.iter().zip(b).map(|(a, b)| a - b))
+}
+
+/// So many points on lines from points inside of a surface to others beyond it, evenly in the root of the margin.
+fn across(
+    inside: &[&Vec<f64>],
+    others: &[&Vec<f64>],
+    count: usize,
+    margin: impl Fn(&Vec<f64>) -> f64,
+    depth: f64,
+) -> Vec<Vec<f64>> {
+    if inside.is_empty() || others.is_empty() {
+        return Vec::new();
+    }
+    let of = |index: usize| {
+        let (from, to) = (inside[index % inside.len()], others[index % others.len()]);
+        let wanted = depth * ((index as f64 + 0.5) / count as f64).powi(2);
+        let at = |share: f64| from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect::<Vec<f64>>();
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if margin(&at(middle)) > wanted { low = middle } else { high = middle }
+        }
+        at(0.5 * (low + high))
+    };
+    (0..count).map(of).collect()
+}
