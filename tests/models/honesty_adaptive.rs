@@ -79,6 +79,35 @@ fn parameters_that_act_through_one_number_are_resolved() {
     }
 }
 
+/// x = cos(√(k/m) t), of which a formula jumps: no sample makes the search for its ends better, and none is spent on that.
+#[test]
+fn a_formula_that_jumps_is_not_refined_without_end() {
+    let description = read(
+        "
+parameters: { k: { interval: [95, 105] }, m: { interval: [0.95, 1.05] } }
+bodies: { b: { mass: m, coordinates: [x] } }
+effects: { s: { force: { on: b, value: [\"-k*b.x\", 0] } } }
+initial: { b.x: 1, b.vx: 0 }
+outputs: { f: \"mod(b.x, 0.3)\" }
+simulation: { duration: 2, step: 0.01, output_step: 0.2 }
+bounds: { chebyshev: {}, tolerance: 1e-2 }
+",
+    );
+    let (bounds, summary) = run_methods(&description, None);
+    let simulations = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap().simulations;
+    assert!(simulations < 200, "{simulations}");
+    let found = band(output(&bounds, "f"), Method::Chebyshev);
+    let mut jumps = 0;
+    for (row, &t) in bounds.times.iter().enumerate() {
+        let (least, most) = cosine(1.0, (95.0_f64 / 1.05).sqrt() * t, (105.0_f64 / 0.95).sqrt() * t);
+        if (least / 0.3).floor() < (most / 0.3).floor() {
+            jumps += 1;
+            assert!(found.lower[row].abs() < 1e-9 && (found.upper[row] - 0.3).abs() < 1e-9, "at {t}");
+        }
+    }
+    assert!(jumps > 5, "{jumps}");
+}
+
 #[test]
 fn one_corner_of_many_is_covered() {
     let settings = "simulation: { duration: 10, step: 0.01, output_step: 0.5 }\nbounds: { tolerance: 1e-2 }";
