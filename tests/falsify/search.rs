@@ -48,8 +48,8 @@ fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -
 }
 
 /// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method
-/// (Computer Journal 3 (1960) 175): after each stage the first direction is that of its progress, since along a ridge that no
-/// axis follows the axes alone gain next to nothing.
+/// (Computer Journal 3 (1960) 175): after each stage the first direction is that of its progress, since along a ridge
+/// that no axis follows the axes alone gain next to nothing.
 fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) -> f64 {
     let (n, last) = (start.len(), (points - 1) as f64);
     let (mut best, mut place, mut size) = (known, start.to_vec(), 0.25_f64);
@@ -92,8 +92,8 @@ fn length(vector: &[f64]) -> f64 {
     vector.iter().map(|along| along * along).sum::<f64>().sqrt()
 }
 
-/// Orthonormal directions, of which the first is that of all the progress, the second that of the progress along all but the
-/// first, and so on.
+/// Orthonormal directions, of which the first is that of all the progress, the second that of the progress along all
+/// but the first, and so on.
 fn turned(directions: &[Vec<f64>], progress: &[f64]) -> Vec<Vec<f64>> {
     let n = progress.len();
     let rest = |first: usize| -> Vec<f64> {
@@ -177,8 +177,8 @@ impl<'t> Grid<'t> {
         refined.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether no neighbour along a parameter is greater. Of equals, as along a parameter that does not matter to the channel,
-    /// the first.
+    /// Whether no neighbour along a parameter is greater. Of equals, as along a parameter that does not matter to the
+    /// channel, the first.
     fn is_local(&self, sample: usize, value: &impl Fn(usize) -> f64) -> bool {
         let here = value(sample);
         let mut stride = 1;

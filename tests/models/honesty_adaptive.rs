@@ -39,8 +39,8 @@ fn a_bump_in_two_parameters_is_covered() {
     }
 }
 
-/// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too. The
-/// parameters act by themselves as well, on a velocity of nanometres a second, so that no one number stands for them.
+/// A start that is largest on a ring, which the budget is too small to follow: the last refinement is challenged, too.
+/// The parameters act by themselves as well, on a velocity of nanometres a second, so that no number stands for them.
 #[test]
 fn a_ring_that_the_budget_does_not_resolve_is_flagged_or_covered() {
     let bounds = run(&read(
@@ -62,8 +62,8 @@ bounds: { chebyshev: {}, tolerance: 0.001, budget: { solves: 1000 } }
     assert_honest(&bounds, "x", Method::Chebyshev, truth);
 }
 
-/// A bell on a shell of four parameters and a step across eight, of which a stiffness sees one number: no budget is enough for
-/// polynomials in all of them, and one parameter is left. No row is flagged.
+/// A bell on a shell of four parameters and a step across eight, of which a stiffness sees one number: no budget is
+/// enough for polynomials in all of them, and one parameter is left. No row is flagged.
 #[test]
 fn parameters_that_act_through_one_number_are_resolved() {
     let settings = "simulation: { duration: 6, step: 0.01, output_step: 0.5 }\nbounds: { chebyshev: {}, tolerance: 1e-3, budget: { solves: 600 } }";
@@ -77,6 +77,36 @@ fn parameters_that_act_through_one_number_are_resolved() {
         let counted = assert_honest(&bounds, "x", Method::Chebyshev, softened_range((least, most)));
         assert_eq!(counted, 13, "{s}");
     }
+}
+
+/// x = cos(√(k/m) t), of which a formula jumps: no sample makes the search for its ends better, and none is spent on
+/// that.
+#[test]
+fn a_formula_that_jumps_is_not_refined_without_end() {
+    let description = read(
+        "
+parameters: { k: { interval: [95, 105] }, m: { interval: [0.95, 1.05] } }
+bodies: { b: { mass: m, coordinates: [x] } }
+effects: { s: { force: { on: b, value: [\"-k*b.x\", 0] } } }
+initial: { b.x: 1, b.vx: 0 }
+outputs: { f: \"mod(b.x, 0.3)\" }
+simulation: { duration: 2, step: 0.01, output_step: 0.2 }
+bounds: { chebyshev: {}, tolerance: 1e-2 }
+",
+    );
+    let (bounds, summary) = run_methods(&description, None);
+    let simulations = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap().simulations;
+    assert!(simulations < 200, "{simulations}");
+    let found = band(output(&bounds, "f"), Method::Chebyshev);
+    let mut jumps = 0;
+    for (row, &t) in bounds.times.iter().enumerate() {
+        let (least, most) = cosine(1.0, (95.0_f64 / 1.05).sqrt() * t, (105.0_f64 / 0.95).sqrt() * t);
+        if (least / 0.3).floor() < (most / 0.3).floor() {
+            jumps += 1;
+            assert!(found.lower[row].abs() < 1e-9 && (found.upper[row] - 0.3).abs() < 1e-9, "at {t}");
+        }
+    }
+    assert!(jumps > 5, "{jumps}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Oscillators that see many parameters through one number: bumps, ridges, corners, rings and sums. That number's range
-//! over the box is known exactly, whatever the number of parameters. Half of those that change a stiffness have two forces,
-//! which write the number in two ways: a program that looks for one number finds two.
+//! over the box is known exactly, whatever the number of parameters. Half of those that change a stiffness have two
+//! forces, which write the number in two ways: a program that looks for one number finds two.
 
 use std::sync::Arc;
 

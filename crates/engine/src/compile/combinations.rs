@@ -1,7 +1,8 @@
-//! Numbers through which alone parameters act: a product of a mass and a length, a sum of lengths, a formula of the model.
+//! Numbers through which alone parameters act: a product of a mass and a length, a sum of lengths, a formula of the
+//! model.
 //!
 //! An expression is such a number where every way from any of its parameters to an equation, a start value or an output
-//! leads through it. In the graph these are the nodes that dominate their parameters, seen from what is computed
+//! leads through it. In the graph these are the nodes that dominate their parameters, seen from the roots
 //! (Lengauer & Tarjan, TOPLAS 1 (1979) 121; a graph without cycles needs one pass).
 
 use rustc_hash::FxHashMap;
@@ -87,7 +88,7 @@ impl Gates {
         // Where ways from an expression lead to, as far as its users are known.
         let mut ways: FxHashMap<Expr, Option<Expr>> = roots.iter().map(|&root| (root, None)).collect();
         for expr in graph.reachable(roots).into_iter().rev() {
-            // What is reached is a root, or has a user that came before.
+            // Every reachable expression is a root, or has a user that came before.
             let next = ways.get(&expr).copied().flatten();
             gates.next.insert(expr, (next, next.map_or(0, |next| gates.depth(next) + 1)));
             for child in graph.node(expr).children() {
@@ -119,7 +120,7 @@ impl Gates {
         a
     }
 
-    /// All gates of an expression, the first one first; none of what is not reached.
+    /// All gates of an expression, the first one first; none of an expression that is not reached.
     fn after(&self, expr: Expr) -> impl Iterator<Item = Expr> {
         let next = |expr: &Expr| self.next.get(expr).and_then(|(next, _)| *next);
         std::iter::successors(next(&expr), move |expr| next(expr))
@@ -149,7 +150,7 @@ mod tests {
     #[test]
     fn a_combination_has_as_many_parameters_as_act_through_it() {
         assert_eq!(found("b.x"), [vec![0, 1], vec![2, 3, 4]]);
-        // What is computed from it does no harm, and other combinations of the same do.
+        // Functions of it do no harm, and other combinations of the same parameters do.
         assert_eq!(found("p*q*b.x"), [vec![0, 1], vec![2, 3, 4]]);
         assert_eq!(found("(p + q)*b.x"), [vec![2, 3, 4]]);
         // A parameter that acts by itself, too: s u is not in the output, but u is.
@@ -168,7 +169,7 @@ mod tests {
         m.output("b.x");
         let system = m.build();
         let found = combinations(&system);
-        // What is below the jump is continuous.
+        // Everything below the jump is continuous.
         let at = |expr| system.graph.evaluate(&[expr], |_| 1.5)[0];
         assert_eq!(found.iter().map(|found| [at(found.first), at(found.last)]).collect::<Vec<_>>(), [[2.25, 5.0625]]);
     }

@@ -58,7 +58,7 @@ pub struct Estimate {
     pub range: Range,
     /// Error of the surrogate.
     pub error: f64,
-    /// What of the error no sample makes smaller: that of the search for the ends of an output that jumps.
+    /// The part of the error that no sample makes smaller: that of the search for the ends of an output that jumps.
     pub of_search: f64,
     /// Error of the time steps; NaN where not asked for.
     pub step_error: f64,

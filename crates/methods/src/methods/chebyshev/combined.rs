@@ -3,7 +3,7 @@
 //!
 //! The number is continuous, so that along the line it takes every value that it has in the box, and each value of an
 //! output occurs there. Of eight parameters that a stiffness sees through their sum one remains, and a polynomial in it
-//! costs a simulation a degree ([decision 0148](../../../../../docs/decisions/0148-parameters-that-act-through-one-number.md)).
+//! costs a simulation a degree (decision 0148).
 
 use std::ops::Range as Rows;
 
@@ -18,18 +18,20 @@ use crate::methods::ensemble::{
 use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, ParameterBox, Range, Sample, largest};
 
-/// A combination's range is searched for as that of a polynomial of this degree, and where that is too low more closely.
+/// A combination's range is searched for as that of a polynomial of this degree, and more closely where that is too
+/// low.
 const DEGREE: u8 = 8;
 
-/// Share of a combination's range by which its values beside an end may exceed it, and how far beside that is looked at.
+/// Share of a combination's range by which its values beside an end may exceed it, and the distance in ξ of these
+/// values.
 const EXCEEDED: f64 = 1e-6;
 const BESIDE: f64 = 1e-3;
 
 /// Halvings that find where a combination has a value, to the last bit.
 const HALVINGS: usize = 60;
 
-/// A surrogate within a goal: over lines through the box where parameters act through one number, else over the box. Over
-/// lines none can be kept.
+/// A surrogate within a goal: over lines through the box where parameters act through one number, else over the box.
+/// Over lines none can be kept.
 ///
 /// # Errors
 /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.

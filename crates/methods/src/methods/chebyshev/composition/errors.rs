@@ -17,7 +17,7 @@ const MOST_MOVED: usize = 4;
 const FAR: f64 = 0.1;
 
 impl Row<'_> {
-    /// What of an output's error no sample makes smaller: that of the search for ends at jumps.
+    /// The part of an output's error that no sample makes smaller: that of the search for ends at jumps.
     pub fn of_search(&self, output: usize, found: &Extent) -> f64 {
         if self.ensemble.jumps(output) { found.gap } else { 0.0 }
     }
