@@ -243,7 +243,7 @@ parameters: { u: { value: 2, unit: m/s, tolerance: 5% }, k: { value: 4e3, unit: 
 bodies: { m: { mass: 1, coordinates: [y] } }
 effects:
   weight: { gravity: { acceleration: [0, -9.81] } }
-  rope: { cable: { between: [ground, m], free_length: 1 m, stiffness: k } }
+  rope: { cable: { between: [ground, m], free_length: 1 m, stiffness: k, transition: 1e-6 m } }
 initial: { m.y: -0.5, m.vy: u }
 outputs: { y: m.y }
 simulation: { duration: 1.2, step: 1e-3, output_step: 0.02 }

@@ -6,7 +6,7 @@
 
 use super::basis::{Basis, Fitted, Level, SAMPLES_A_TERM};
 use super::parts::{Part, Samples};
-use super::pieces::Piece;
+use super::piece::Piece;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
 use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::numerics::{CutMotions, LeastSquares, SegmentMotions, largest};

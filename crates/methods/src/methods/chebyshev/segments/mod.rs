@@ -5,8 +5,8 @@
 //!
 //! - `basis`: the terms of polynomials, and the surfaces;
 //! - `surrogate`: polynomials of the instants, and of the motion at the nodes of each segment, in one part of the box;
-//! - `pieces`: all parts, `parts`: which samples are in which, `fitting`: polynomials by least squares, and
-//!   `sampling`: the samples that these need;
+//! - `piece`: a part of the box with its polynomials, `pieces`: all of them, `parts`: the samples in each;
+//! - `fitting`: polynomials by least squares, and `sampling`: the samples that these need;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces.
@@ -15,6 +15,7 @@ mod basis;
 mod climb;
 mod fitting;
 mod parts;
+mod piece;
 mod pieces;
 mod row;
 mod sampling;
@@ -31,7 +32,8 @@ use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Simulated};
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
 use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
-use pieces::{Piece, Pieces};
+use piece::Piece;
+use pieces::Pieces;
 use row::{BoxRow, SensedRow};
 use seeds::Lattice;
 

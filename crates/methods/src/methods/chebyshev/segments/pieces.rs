@@ -9,6 +9,7 @@ use symdiff::jet::JetSpace;
 use super::basis::Basis;
 use super::fitting::Fitting;
 use super::parts::{Part, Samples};
+use super::piece::Piece;
 use super::sampling::CORNERS;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
 use crate::methods::ensemble::{Ensemble, EnsembleError};
@@ -21,14 +22,6 @@ const DEGREES: [usize; 4] = [8, 5, 3, 2];
 
 /// Samples for each parameter that show the parts of jets.
 const JET_SAMPLES: usize = 24;
-
-/// A part of the box.
-pub(super) struct Piece<'a> {
-    pub surrogate: SegmentSurrogate<'a>,
-    pub errors: SegmentErrors,
-    /// ξ of its samples.
-    pub samples: Vec<Vec<f64>>,
-}
 
 /// All parts.
 pub(super) struct Pieces<'a> {

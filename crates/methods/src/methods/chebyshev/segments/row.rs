@@ -1,6 +1,7 @@
 //! The outputs at a time, through events.
 
-use super::pieces::{Piece, Pieces};
+use super::piece::Piece;
+use super::pieces::Pieces;
 use super::surrogate::Point;
 use crate::methods::chebyshev::sensitivity::Predicted;
 use crate::methods::ensemble::{Closure, Ensemble};

@@ -4,7 +4,7 @@
 use super::basis::{Fitted, SAMPLES_A_TERM};
 use super::fitting::Fitting;
 use super::parts::Part;
-use super::pieces::Piece;
+use super::piece::Piece;
 use crate::numerics::{corners, largest, spread};
 
 /// Candidates of each round, and corners among them.
