@@ -416,8 +416,8 @@ bounds: { chebyshev: { order: 3 } }
     assert!(!summary.methods.iter().any(|method| method.method.contains("earlier")), "{:?}", summary.methods);
 }
 
-/// Angular momentum about a spring's end is m v r at the start and stays: its changes are the steps' error, beside which
-/// no error is small. It takes no shorter steps than the position does.
+/// Angular momentum about a spring's end is m v r at the start and stays: its changes are the steps' error, beside
+/// which no error is small. It takes no shorter steps than the position does.
 #[test]
 fn what_is_conserved_is_resolved_under_a_tolerance() {
     let text = "
