@@ -130,7 +130,21 @@ impl Model {
     /// [`Error::Model`]: the model does not have a parameter, or a value does not fit it. A run that fails leaves its
     /// point without results.
     pub fn sweep(&self, axes: &[Axis], ask: impl Fn(Study<'static>) -> Study<'static>) -> Result<Sweep, Error> {
-        Sweep::of(self, axes, ask)
+        let mut sweep = Sweep::new(self.name(), axes);
+        for values in Axis::combinations(axes) {
+            let mut model = self.clone();
+            for (parameter, value) in Axis::settings(axes, &values) {
+                model = model.with(&parameter, value)?;
+            }
+            // A combination without a motion leaves the others.
+            let summary = match ask(model.study()).run() {
+                Ok(result) => Some(result.summary().clone()),
+                Err(Error::Run(_)) => None,
+                Err(error) => return Err(error),
+            };
+            sweep.add(values, summary);
+        }
+        Ok(sweep)
     }
 
     /// Derivatives of all outputs over time by all uncertain parameters, at their nominal values.

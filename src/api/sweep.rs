@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Error, Model, Study};
+use super::Error;
 use crate::export::{self, SweepAxis, write_sweep};
 use crate::results::Summary;
 
@@ -29,41 +29,41 @@ impl Axis {
         behind.clone_into(&mut self.behind);
         self
     }
+
+    /// Settings of a combination of values: each parameter with its value.
+    pub(super) fn settings(axes: &[Self], values: &[f64]) -> Vec<(String, String)> {
+        let of = |(axis, value): (&Self, &f64)| {
+            (axis.name.clone(), format!("{value:?} {}", axis.behind).trim_end().to_owned())
+        };
+        axes.iter().zip(values).map(of).collect()
+    }
+
+    /// All combinations of values; those of the last parameter change fastest.
+    pub(super) fn combinations(axes: &[Self]) -> Vec<Vec<f64>> {
+        let longer = |all: Vec<Vec<f64>>, axis: &Self| {
+            let with = |values: &Vec<f64>| {
+                let begun = values.clone();
+                axis.values.iter().map(move |value| [&begun[..], &[*value]].concat()).collect::<Vec<_>>()
+            };
+            all.iter().flat_map(with).collect()
+        };
+        axes.iter().fold(vec![Vec::new()], longer)
+    }
 }
 
 impl Sweep {
-    /// Runs the study that `ask` makes, for each combination of values.
-    pub(super) fn of(
-        model: &Model,
-        axes: &[Axis],
-        ask: impl Fn(Study<'static>) -> Study<'static>,
-    ) -> Result<Self, Error> {
-        let headings = axes.iter().map(|axis| {
+    /// Without points.
+    pub(super) fn new(model: &str, axes: &[Axis]) -> Self {
+        let heading = |axis: &Axis| {
             let unit = axis.behind.split('±').next().unwrap_or_default().trim().to_owned();
             SweepAxis { name: axis.name.clone(), unit, values: axis.values.clone() }
-        });
-        let mut sweep = export::Sweep { model: model.name().to_owned(), axes: headings.collect(), points: Vec::new() };
-        let runs: usize = axes.iter().map(|axis| axis.values.len()).product();
-        for run in 0..runs {
-            let mut rest = run;
-            let mut values = vec![0.0; axes.len()];
-            for (value, axis) in values.iter_mut().zip(axes).rev() {
-                *value = axis.values[rest % axis.values.len()];
-                rest /= axis.values.len();
-            }
-            let mut own = model.clone();
-            for (axis, value) in axes.iter().zip(&values) {
-                own = own.with(&axis.name, format!("{value:?} {}", axis.behind).trim_end())?;
-            }
-            // A position of the axes without a motion leaves the others.
-            let summary = match ask(own.study()).run() {
-                Ok(result) => Some(result.summary().clone()),
-                Err(Error::Run(_)) => None,
-                Err(error) => return Err(error),
-            };
-            sweep.points.push(export::SweepPoint { values, summary });
-        }
-        Ok(Self(sweep))
+        };
+        Self(export::Sweep { model: model.to_owned(), axes: axes.iter().map(heading).collect(), points: Vec::new() })
+    }
+
+    /// Adds results; `None` of a run that failed.
+    pub(super) fn add(&mut self, values: Vec<f64>, summary: Option<Summary>) {
+        self.0.points.push(export::SweepPoint { values, summary });
     }
 
     /// Values of the parameters, one for each, and the run's record there; `None` where it failed.

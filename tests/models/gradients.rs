@@ -8,12 +8,12 @@ use mbint::inner::compile::Scheme;
 use mbint::inner::model::{Description, Formulation, Stepping};
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
-    ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetRun, NoGradient, Observed,
-    SampleRun, Schedule, Simulator, Wanted, gradients,
+    ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetRun, NoGradient, Schedule,
+    Simulator, Wanted, gradients,
 };
 use symdiff::jet::JetSpace;
 
-use crate::common::{load_all, model, model_files};
+use crate::common::{load_all, model_files};
 
 const HHT: Scheme = Scheme::Hht { alpha: -0.1 };
 
@@ -180,56 +180,4 @@ fn gradients_are_jets_of_first_order() {
     println!("{agreed} agree, {neither} have neither, {refused} are no motions");
     assert!(failed.is_empty(), "{failed:?}");
     assert!(agreed > 100, "only {agreed} were compared");
-}
-
-/// The least of some times, s.
-fn seconds(mut work: impl FnMut()) -> f64 {
-    let once = |_| {
-        let begun = std::time::Instant::now();
-        work();
-        begun.elapsed().as_secs_f64()
-    };
-    (0..7).map(once).fold(f64::INFINITY, f64::min)
-}
-
-/// Of as many samples, each by all parameters, in the last row.
-#[test]
-#[ignore = "measures times: alone, on an idle machine"]
-fn a_gradient_costs_at_most_four_simulations() {
-    const SAMPLES: usize = 64;
-    let mut most = 0.0_f64;
-    for (name, steps) in [("slider_crank", 400), ("quarter_car", 400), ("six_axis_arm", 200), ("braking_car", 200)] {
-        let description = model(name);
-        let duration = description.simulation.duration.min(0.5);
-        let scheme = Schedule::fixed(duration, duration / steps as f64, duration / 10.0);
-        let ends: Vec<f64> = (1..=steps / 10).map(|step| duration * (10 * step) as f64 / steps as f64).collect();
-        let explicit = Schedule::passing((duration, duration / 10.0), ends, Vec::new()).taken(Integration::Explicit);
-        for schedule in [scheme.clone(), scheme.taken(Integration::Extrapolated { levels: 2 }), explicit] {
-            let system = assemble::build(&description).unwrap();
-            let simulator = Simulator::new(system, HHT, schedule.first_step()).unwrap();
-            let sample = |number: usize| -> Sample {
-                let share = number as f64 / SAMPLES as f64;
-                simulator.system.parameters.iter().map(|own| own.lower + share * (own.upper - own.lower)).collect()
-            };
-            let samples: Vec<Sample> = (0..SAMPLES).map(sample).collect();
-            let row = schedule.rows - 1;
-            let wanted: Vec<Wanted> = (0..SAMPLES).map(|sample| Wanted { sample, row, output: 0 }).collect();
-            let simulating = seconds(|| {
-                let mut run = SampleRun::start(&simulator, &samples, &schedule).unwrap();
-                run.advance(&schedule, 0..schedule.rows, None, Observed::Outputs, &mut Vec::new());
-            });
-            let pulling = seconds(|| {
-                gradients(&simulator, &schedule, &samples, &wanted, Interruption::default()).unwrap();
-            });
-            let ratio = pulling / simulating;
-            most = most.max(ratio);
-            println!(
-                "{name} {:?}: {:.3} ms a simulation, {ratio:.2} of them a gradient by {} parameters",
-                schedule.integration,
-                1e3 * simulating / SAMPLES as f64,
-                simulator.system.parameters.len()
-            );
-        }
-    }
-    assert!(most <= 4.0, "{most}");
 }

@@ -18,7 +18,7 @@ mod scan;
 mod taylor;
 
 pub use certified::Certified;
-pub use chebyshev::{Chebyshev, Degree, Expand, can_compose};
+pub use chebyshev::{Chebyshev, Degree, Expand, can_compose, ends_of_combinations};
 pub use ensemble::{
     Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed,
     OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,

@@ -1,7 +1,6 @@
 //! Validation samples: held out from every surrogate, simulated with the steps as they are and some with each step
 //! halved.
 
-use super::chebyshev::Combined;
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
     BandError, Correction, Differences, Ledger, Range, Sample, TimeShift, Turning, corrections, largest,
@@ -192,17 +191,22 @@ impl OddSteps {
 }
 
 impl Validation {
-    /// Simulates them, for surrogates of this degree at most.
+    /// Simulates them, for surrogates of this degree at most; `ends` are further ξ at which halved steps count.
     ///
     /// # Errors
     /// Where one cannot be assembled.
-    pub fn run(ensembles: Ensembles, observed: Observed, degree: usize) -> Result<Self, EnsembleError> {
+    pub fn run(
+        ensembles: Ensembles,
+        observed: Observed,
+        degree: usize,
+        ends: Vec<Vec<f64>>,
+    ) -> Result<Self, EnsembleError> {
         let Ensembles { direct: ensemble, halved, .. } = ensembles;
         let domain = ensemble.domain();
         let mut points = step_validation(domain.dimension());
         let spread_over_box = validation(domain.dimension(), degree).split_off(points.len());
         // Steps err most where parameters that act through one number are fastest, which may be in any corner.
-        points.extend(Combined::new(ensemble).iter().flat_map(Combined::ends));
+        points.extend(ends);
         let first = points.len();
         points.extend(spread_over_box);
         let samples = domain.samples(&points);

@@ -2,6 +2,7 @@
 
 use super::outcome::Switches;
 use super::single::{Study, problem};
+use crate::methods::Method;
 use crate::model::Stepping;
 use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, MethodSummary};
@@ -12,6 +13,9 @@ const OF_STEPS: f64 = 1e-10;
 
 /// The same as a share of a tolerance that is given.
 const OF_TOLERANCE: f64 = 1e-5;
+
+/// Parameters, at most, of boxes of which a part meets other events.
+const MOST_OF_PARTS: usize = 2;
 
 /// Samples spread over the box for each parameter, of which each has to meet the same events.
 const SPREAD: usize = 24;
@@ -33,6 +37,9 @@ impl Study<'_> {
         let asked = of_steps.into_iter().chain(self.request.tolerance).map(|tolerance| OF_TOLERANCE * tolerance);
         let tolerance = asked.fold(OF_STEPS, f64::min);
         let segments = segments_of(&self.simulator, &self.domain, &self.event_samples(), times.0, tolerance)?;
+        // Several words cost a surrogate each, of which the ranges of many parameters take long.
+        let is_small = self.domain.dimension() <= MOST_OF_PARTS;
+        let segments = segments.filter(|segments| is_small || segments.boundaries.is_empty());
         // A number that is accumulated over a motion is one of the whole of it.
         let accumulates = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
         let segments = segments.filter(|segments| !accumulates || segments.horizon >= times.0);
@@ -84,6 +91,9 @@ impl Study<'_> {
             0 => self.request.tolerance.is_some() || !problem.has_fixed_steps,
             _ => methods.iter().all(|(_, method)| method.follows_events(&problem)),
         };
+        // Errors of jets between events are larger than across contacts that the steps resolve: beside other methods,
+        // these steps are kept.
+        let within = within && (methods.len() == 1 || methods.iter().all(|(method, _)| *method != Method::Taylor));
         self.may_extrapolate()
             && within
             && !methods.is_empty()

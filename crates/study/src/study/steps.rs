@@ -3,7 +3,7 @@
 use super::ensemble::Progress;
 use super::single::{Study, problem, simulation_error, validation_summary};
 use super::step_search::StepSearch;
-use crate::methods::{BoundingMethod, Ensembles, Method, Observed, Validation};
+use crate::methods::{BoundingMethod, Ensembles, Method, Observed, Validation, ends_of_combinations};
 use crate::model::{SchemeChoice, Simulation, Stepping};
 use crate::results::MethodSummary;
 use crate::simulate::{Controller, Divided, ExcitedMode, Integration, Schedule, SimulationError, excited_modes};
@@ -111,6 +111,7 @@ impl Study<'_> {
         let finer_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
         let [halved, finer] = [&halved, &odd].map(|schedule| self.motions(schedule, finer_tolerance, progress));
         let ensembles = Ensembles { direct: &direct, halved: &halved, odd: &finer, ratio: schedule.ratio_to(&odd) };
-        Validation::run(ensembles, observed, self.request.degree()).map_err(simulation_error)
+        let ends = ends_of_combinations(ensembles.direct);
+        Validation::run(ensembles, observed, self.request.degree(), ends).map_err(simulation_error)
     }
 }

@@ -95,7 +95,7 @@ impl<'e> Combined<'e> {
     }
 
     /// ξ of the box where all combinations are least, and where they are greatest.
-    pub fn ends(&self) -> Vec<Vec<f64>> {
+    fn ends(&self) -> Vec<Vec<f64>> {
         let ends = |xi: f64| self.xi(&vec![xi; self.lines.len()]);
         [-1.0, 1.0].map(ends).into()
     }
@@ -329,6 +329,12 @@ impl Closure for AlongLines<'_> {
         }
         self.closure.outputs(time, count, embedded, motion)
     }
+}
+
+/// ξ of the box where the numbers through which parameters act are least, and where they are greatest; none where every
+/// parameter acts on its own.
+pub fn ends_of_combinations(ensemble: &dyn Ensemble) -> Vec<Vec<f64>> {
+    Combined::new(ensemble).iter().flat_map(Combined::ends).collect()
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, Sample, Surrogate, largest};
 use adaptive::Goal;
-pub(super) use combined::Combined;
+pub use combined::ends_of_combinations;
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, Row};
 use estimator::RangeEstimator;

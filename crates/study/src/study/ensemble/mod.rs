@@ -21,9 +21,8 @@ use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
 use crate::compile::{self, has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{
-    self, Combination, DenseMotions, Ensemble, EnsembleError, OfParameters, Sampling, Simulated, Until,
-};
+use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, OfParameters};
+use crate::methods::{Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
     Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
@@ -252,10 +251,8 @@ impl Ensemble for Motions<'_> {
         let duration = self.schedule.output_step * self.schedule.rows as f64;
         // Accelerations are second differences over steps, and forces are what these do to all masses.
         let sizes = [system.length, system.mass_of_bodies, duration, self.schedule.first_step()];
-        let share = match system.outputs[output].dimension {
-            None | Some(Dimension::NUMBER) => NUMBER_AT_REST,
-            Some(dimension) => AT_REST * dimension.size(sizes),
-        };
+        let dimension = system.outputs[output].dimension.filter(|own| *own != Dimension::NUMBER);
+        let share = dimension.map_or(NUMBER_AT_REST, |own| AT_REST * own.size(sizes));
         if share.is_finite() { share } else { 0.0 }
     }
 

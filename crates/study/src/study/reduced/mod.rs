@@ -33,7 +33,7 @@ use super::outcome::{Outcome, Results};
 use super::single::{Study, simulation_error, timed};
 use crate::methods::{
     BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated,
-    Until, Validation,
+    Until, Validation, ends_of_combinations,
 };
 use crate::model::ReducedOutput;
 use crate::numerics::{Ledger, Range, Sample};
@@ -207,8 +207,9 @@ impl Study<'_> {
             results.validation = Some((validation, summary));
             return Ok(results);
         }
+        let ends = ends_of_combinations(ensembles.direct);
         let validation =
-            Validation::run(ensembles, Observed::Motion, self.request.degree()).map_err(simulation_error)?;
+            Validation::run(ensembles, Observed::Motion, self.request.degree(), ends).map_err(simulation_error)?;
         let bound = |ensemble: &dyn Ensemble, schedule: &Schedule| {
             let of_method = |&(method, own): &(Method, &dyn BoundingMethod)| {
                 let bound = || Ok((own.bound(ensemble, &validation, &request).map_err(simulation_error)?, ()));
