@@ -152,11 +152,12 @@ impl<'s> SegmentTile<'s> {
                     let Some(recorded) = self.recorded.iter().find(holds).or(self.recorded.back()) else { continue };
                     recorded.interpolate(&word.steps[recorded.number], (lane, width), time, &mut own);
                 }
-                None => match self.alone.get_mut(lane) {
-                    Some(alone) => alone.reach(time, &mut own),
-                    // Behind the samples: the last of them once more.
-                    None => {}
-                },
+                // Behind the samples: the last of them once more.
+                None => {
+                    if let Some(alone) = self.alone.get_mut(lane) {
+                        alone.reach(time, &mut own);
+                    }
+                }
             }
             into.iter_mut().skip(lane).step_by(width).zip(&own).for_each(|(value, own)| *value = *own);
         }

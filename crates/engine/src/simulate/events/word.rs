@@ -67,7 +67,7 @@ pub fn segments_of(
         let both = [of(&boundary.met, true), of(&boundary.missed, false)].concat();
         margins(boundary, &both, |sample| path(&samples[sample]).ok(), horizon)
     };
-    let Some(mut boundaries) = boundaries(&words, &margins) else { return Ok(None) };
+    let Some(mut boundaries) = boundaries(&words, margins) else { return Ok(None) };
     for boundary in &mut boundaries {
         let of = |words: &[usize]| words.iter().flat_map(|&word| groups[word].iter().copied()).collect::<Vec<usize>>();
         let [met, missed] = [of(&boundary.met), of(&boundary.missed)];

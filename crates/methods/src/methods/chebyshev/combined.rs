@@ -10,7 +10,6 @@ use std::ops::Range as Rows;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::adaptive::{Adaptation, Adapted, Goal};
 use super::range_search::{Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{
     Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
@@ -29,25 +28,6 @@ const BESIDE: f64 = 1e-3;
 
 /// Halvings that find where a combination has a value, to the last bit.
 const HALVINGS: usize = 60;
-
-/// A surrogate within a goal: over lines through the box where parameters act through one number, else over the box.
-/// Over lines none can be kept.
-///
-/// # Errors
-/// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
-pub(super) fn search(
-    ensemble: &dyn Ensemble,
-    goal: Goal,
-    validation: &Validation,
-    keep: bool,
-) -> Result<Adapted, EnsembleError> {
-    let Some(combined) = Some(ensemble).filter(|_| !keep).and_then(Combined::new) else {
-        return Adaptation::new(ensemble, goal, validation, keep).search();
-    };
-    let on_lines = combined.validation(validation);
-    let adapted = Adaptation::over(&combined, goal, &on_lines).search()?;
-    Ok(Adapted { order: combined.of_parameters(&adapted.order), ..adapted })
-}
 
 /// Motions of an ensemble over lines through its box.
 pub(in crate::methods) struct Combined<'e> {

@@ -319,7 +319,7 @@ fn adapted(
     if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
         return Ok(found);
     }
-    let adapted = combined::search(ensemble, goal, validation, request.keep)?;
+    let adapted = adaptive::search(ensemble, goal, validation, request.keep)?;
     let outputs = ensemble.outputs();
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
     for (place, estimate) in adapted.found.into_iter().enumerate() {

@@ -92,6 +92,25 @@ pub(super) struct Adaptation<'r> {
     kept: Option<KeptSurrogate>,
 }
 
+/// A surrogate within a goal: over lines through the box where parameters act through one number, else over the box.
+/// Over lines none can be kept.
+///
+/// # Errors
+/// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
+pub(super) fn search(
+    ensemble: &dyn Ensemble,
+    goal: Goal,
+    validation: &Validation,
+    keep: bool,
+) -> Result<Adapted, EnsembleError> {
+    let Some(combined) = Some(ensemble).filter(|_| !keep).and_then(Combined::new) else {
+        return Adaptation::new(ensemble, goal, validation, keep).search();
+    };
+    let on_lines = combined.validation(validation);
+    let adapted = Adaptation::over(&combined, goal, &on_lines).search()?;
+    Ok(Adapted { order: combined.of_parameters(&adapted.order), ..adapted })
+}
+
 impl<'r> Adaptation<'r> {
     /// Before the first simulation.
     pub fn new(ensemble: &'r dyn Ensemble, goal: Goal, validation: &'r Validation, keep: bool) -> Self {

@@ -116,13 +116,14 @@ impl Fitting<'_> {
         let none: &[Level] = &[];
         let tried = (0..=self.degree).flat_map(|degree| [none, &depths].map(|depths| of_degree(degree, depths)));
         let (misses, basis, squares) = tried.flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let by_line = |values: &[f64], pick: fn((Vec<f64>, Vec<f64>)) -> Vec<f64>| -> Vec<f64> {
-            values.chunks_exact(count).filter_map(|line| squares.fit(line)).flat_map(pick).collect()
+        let fits = |values: &[f64]| -> Vec<(Vec<f64>, Vec<f64>)> {
+            values.chunks_exact(count).filter_map(|line| squares.fit(line)).collect()
         };
         let ends = part.ends(levels);
-        let surrogate = SegmentSurrogate::new(basis, ends, &motions, |values| by_line(values, |(own, _)| own));
-        let surrogate = surrogate.fitted_by(squares.clone());
-        let errors = SegmentErrors::of_samples(&motions, |values| by_line(values, |(_, left_out)| left_out));
+        let coefficients = |values: &[f64]| fits(values).into_iter().flat_map(|(own, _)| own).collect();
+        let surrogate = SegmentSurrogate::new(basis, ends, &motions, coefficients).fitted_by(squares.clone());
+        let left_out = |values: &[f64]| fits(values).into_iter().flat_map(|(_, left_out)| left_out).collect();
+        let errors = SegmentErrors::of_samples(&motions, left_out);
         let points = self.points;
         let held_out = &self.direct.words[part.word];
         let is_inside = |place: &usize| {
