@@ -11,7 +11,7 @@
 use super::ensemble::Motions;
 use super::outcome::{Attained, Outcome};
 use super::single::{Study, simulation_error, timed};
-use crate::methods::{Chebyshev, Degree, Ensemble, MethodResult, Observed, Sampling, Simulated, Until};
+use crate::methods::{Budget, Chebyshev, Degree, Ensemble, MethodResult, Observed, Sampling, Simulated, Until};
 use crate::numerics::Sample;
 use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
 
@@ -94,7 +94,10 @@ impl Study<'_> {
     ) -> Result<Option<(Outcome, Attained)>, SimulationError> {
         let is_adaptive = matches!(&self.request.chebyshev, Some(Chebyshev { degree: Degree::Adaptive, .. }));
         let has_motion = !self.simulator.system.analysis.visits() && schedule.segments().is_none();
-        if !is_adaptive || !has_motion || self.domain.dimension() < MANY || self.interruption.is_asked() {
+        // A smaller budget is left to the surrogate.
+        let is_afforded = self.request.budget.simulations >= Budget::default().simulations;
+        let is_wanted = is_adaptive && is_afforded && self.domain.dimension() >= MANY;
+        if !is_wanted || !has_motion || self.interruption.is_asked() {
             return Ok(None);
         }
         (self.stage)("attained ends");
