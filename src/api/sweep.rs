@@ -30,8 +30,24 @@ impl Axis {
         self
     }
 
+    /// Name of the parameter.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Number of values.
+    pub(crate) fn count(&self) -> usize {
+        self.values.len()
+    }
+
+    /// As files and plots name it.
+    pub(crate) fn heading(&self) -> SweepAxis {
+        let unit = self.behind.split('±').next().unwrap_or_default().trim().to_owned();
+        SweepAxis { name: self.name.clone(), unit, values: self.values.clone() }
+    }
+
     /// Settings of a combination of values: each parameter with its value.
-    pub(super) fn settings(axes: &[Self], values: &[f64]) -> Vec<(String, String)> {
+    pub(crate) fn settings(axes: &[Self], values: &[f64]) -> Vec<(String, String)> {
         let of = |(axis, value): (&Self, &f64)| {
             (axis.name.clone(), format!("{value:?} {}", axis.behind).trim_end().to_owned())
         };
@@ -39,7 +55,7 @@ impl Axis {
     }
 
     /// All combinations of values; those of the last parameter change fastest.
-    pub(super) fn combinations(axes: &[Self]) -> Vec<Vec<f64>> {
+    pub(crate) fn combinations(axes: &[Self]) -> Vec<Vec<f64>> {
         let longer = |all: Vec<Vec<f64>>, axis: &Self| {
             let with = |values: &Vec<f64>| {
                 let begun = values.clone();
@@ -54,11 +70,8 @@ impl Axis {
 impl Sweep {
     /// Without points.
     pub(super) fn new(model: &str, axes: &[Axis]) -> Self {
-        let heading = |axis: &Axis| {
-            let unit = axis.behind.split('±').next().unwrap_or_default().trim().to_owned();
-            SweepAxis { name: axis.name.clone(), unit, values: axis.values.clone() }
-        };
-        Self(export::Sweep { model: model.to_owned(), axes: axes.iter().map(heading).collect(), points: Vec::new() })
+        let axes = axes.iter().map(Axis::heading).collect();
+        Self(export::Sweep { model: model.to_owned(), axes, points: Vec::new() })
     }
 
     /// Adds results; `None` of a run that failed.

@@ -3,22 +3,19 @@
 use super::args::AllocateArgs;
 use super::console::{BOLD, Console, count, file_names};
 use super::progress::Progress;
-use super::run::results_of;
+use super::run::with_folder;
 use super::table::{Align, Table};
 use super::verdicts::{requirements, short};
 use super::{Failure, Status, interrupt, load, statistics};
-use crate::export::{OVERLAY, prepare_folder, rounded, shown_unit, write_allocation};
+use crate::export::{OVERLAY, rounded, shown_unit, write_allocation};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, ToleranceZone};
 use crate::study::{self, AllocateError, AllocateOptions, RunError};
 
 pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
-    let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
-        return Ok(Status::Wrong);
-    };
-    let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
-    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
+    let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
     let progress = Progress::new(&model.name, !args.run.quiet);
     let options = study::Options {
         threads: args.run.threads.number(),

@@ -5,22 +5,18 @@ use std::path::{Path, PathBuf};
 use super::args::CostArgs;
 use super::console::{BOLD, Console, count, file_names};
 use super::progress::Progress;
-use super::run::results_of;
+use super::run::with_folder;
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
-use crate::export::{prepare_folder, write_cost};
+use crate::export::write_cost;
 use crate::methods::BoundsRequest;
 use crate::model::{Description, Stepping};
 use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostOptions};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
-    let Some(model) = load::load(&args.model, &args.set.given()?, args.run.scene.as_ref(), console)? else {
-        return Ok(Status::Wrong);
-    };
-    let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
-    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
-
+    let model = load::load(&args.model, &args.set.given()?, args.run.scene.as_ref(), console)?;
+    let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", model.name));
     let progress = Progress::new(&model.name, !args.run.quiet);
     let options = CostOptions {

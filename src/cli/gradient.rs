@@ -1,15 +1,13 @@
 //! `mbint gradient`: derivatives of outputs over time by all uncertain parameters.
 
-use serde::Serialize;
-
 use super::args::{Format, GradientArgs};
 use super::console::{BOLD, Console, file_names, to_json};
 use super::progress::Progress;
-use super::run::results_of;
+use super::run::with_folder;
 use super::table::{Align, Table};
 use super::verdicts::short;
 use super::{Failure, Status, interrupt, load};
-use crate::export::{by_influence, prepare_folder, shown_derivative, write_gradients};
+use crate::export::{by_influence, shown_derivative, write_gradients};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::Gradients;
 use crate::study::{self, GradientError, RunError};
@@ -19,11 +17,8 @@ const MOST: usize = 30;
 
 pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
-    let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
-        return Ok(Status::Wrong);
-    };
-    let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
-    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
+    let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
     let progress = Progress::new(&model.name, !args.run.quiet);
     let options = study::Options {
         threads: args.run.threads.number(),
@@ -50,7 +45,7 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
     let files = write_gradients(&folder, &found, &rows);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
     match args.format {
-        Format::Json => console.print(&to_json(&Document::of(&found))?)?,
+        Format::Json => console.print(&to_json(&found)?)?,
         Format::Text if args.run.quiet => {}
         Format::Text => {
             let text = overview(&found, &rows) + &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
@@ -94,58 +89,4 @@ fn overview(found: &Gradients, rows: &[usize]) -> String {
         }
     }
     text
-}
-
-/// The derivatives as a document for programs, in SI.
-#[derive(Serialize)]
-struct Document<'g> {
-    model: &'g str,
-    times: &'g [f64],
-    parameters: Vec<ParameterOf<'g>>,
-    outputs: Vec<OutputOf<'g>>,
-}
-
-#[derive(Serialize)]
-struct ParameterOf<'g> {
-    name: &'g str,
-    unit: &'g str,
-    value: f64,
-    half_width: f64,
-}
-
-#[derive(Serialize)]
-struct OutputOf<'g> {
-    name: &'g str,
-    unit: &'g str,
-    /// Over the times.
-    values: &'g [f64],
-    /// For each time, by the parameters.
-    by_parameters: &'g [Vec<f64>],
-}
-
-impl<'g> Document<'g> {
-    fn of(found: &'g Gradients) -> Self {
-        let parameters = found.parameters.iter();
-        let outputs = found.outputs.iter();
-        Self {
-            model: &found.model,
-            times: &found.times,
-            parameters: parameters
-                .map(|own| ParameterOf {
-                    name: &own.name,
-                    unit: &own.unit,
-                    value: own.value,
-                    half_width: own.half_width,
-                })
-                .collect(),
-            outputs: outputs
-                .map(|own| OutputOf {
-                    name: &own.name,
-                    unit: &own.unit,
-                    values: &own.values,
-                    by_parameters: &own.by_parameters,
-                })
-                .collect(),
-        }
-    }
 }

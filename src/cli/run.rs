@@ -11,7 +11,7 @@ use super::scenes::Scenes;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{POINTS, file_stem, prepare_folder};
 use crate::methods::Certified;
-use crate::model::shown;
+use crate::model::{Description, shown};
 use crate::study;
 
 /// Work on a file.
@@ -110,6 +110,20 @@ fn run_and_report(
 /// The default folder of a model's results; a scene has a folder of its own in it.
 pub(super) fn results_of(name: &str) -> PathBuf {
     name.split('/').fold(PathBuf::from("results"), |folder, part| folder.join(file_stem(part)))
+}
+
+/// A model that could be read, with the folder of its results, which is ready.
+///
+/// # Errors
+/// If the folder cannot be made.
+pub(super) fn with_folder(
+    model: Option<Description>,
+    output: Option<&PathBuf>,
+) -> Result<Option<(Description, PathBuf)>, Failure> {
+    let Some(model) = model else { return Ok(None) };
+    let folder = output.cloned().unwrap_or_else(|| results_of(&model.name));
+    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    Ok(Some((model, folder)))
 }
 
 /// Gives every model a folder of its own.

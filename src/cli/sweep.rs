@@ -9,6 +9,7 @@ use super::run::results_of;
 use super::table::{Align, Table};
 use super::verdicts::{band, short};
 use super::{Failure, Status, interrupt, load, verdicts};
+use crate::api::Axis;
 use crate::export::{Sweep, SweepAxis, SweepPoint, prepare_folder, write_sweep};
 use crate::grammar::display_unit::ShownUnit;
 use crate::model::Override;
@@ -17,52 +18,31 @@ use crate::model::Override;
 const MOST_VALUES: usize = 10_000;
 const MOST_RUNS: usize = 100_000;
 
-/// A parameter over a range: `l1=0.1..0.2:11`, perhaps with a unit and a tolerance behind it.
-struct Axis {
-    name: String,
-    values: Vec<f64>,
-    /// What stands behind: ` mm ± 1%`.
-    behind: String,
-}
-
-impl Axis {
-    /// `None` where the text has no range.
-    fn parse(text: &str) -> Result<Option<Self>, Failure> {
-        let Some((name, range)) = text.split_once('=') else { return Ok(None) };
-        let Some((lower, rest)) = range.split_once("..") else { return Ok(None) };
-        let wrong =
-            || Failure::Wrong(format!("`{text}` is not of the form `NAME=FROM..TO:VALUES`, as `l1=0.1..0.2:11`"));
-        let (upper, rest) = rest.split_once(':').ok_or_else(wrong)?;
-        let digits = rest.trim_start().find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.trim_start().len());
-        let (values, behind) = rest.trim_start().split_at(digits);
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(wrong);
-        let (lower, upper) = (number(lower)?, number(upper)?);
-        let values: usize = values.parse().map_err(|_| wrong())?;
-        if !(2..=MOST_VALUES).contains(&values) {
-            return Err(Failure::Wrong(format!("`{text}`: from 2 to {MOST_VALUES} values can be swept")));
-        }
-        let last = (values - 1) as f64;
-        // Weights, so that the ends are exact.
-        let at = |place: usize| (lower * (last - place as f64) + upper * place as f64) / last;
-        let (name, behind) = (name.trim().to_owned(), behind.trim().to_owned());
-        Ok(Some(Self { name, values: (0..values).map(at).collect(), behind }))
+/// A parameter over a range: `l1=0.1..0.2:11`, perhaps with a unit and a tolerance behind it. `None` where the text has
+/// no range.
+fn axis(text: &str) -> Result<Option<Axis>, Failure> {
+    let Some((name, range)) = text.split_once('=') else { return Ok(None) };
+    let Some((lower, rest)) = range.split_once("..") else { return Ok(None) };
+    let wrong = || Failure::Wrong(format!("`{text}` is not of the form `NAME=FROM..TO:VALUES`, as `l1=0.1..0.2:11`"));
+    let (upper, rest) = rest.split_once(':').ok_or_else(wrong)?;
+    let digits = rest.trim_start().find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.trim_start().len());
+    let (values, behind) = rest.trim_start().split_at(digits);
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(wrong);
+    let (lower, upper) = (number(lower)?, number(upper)?);
+    let values: usize = values.parse().map_err(|_| wrong())?;
+    if !(2..=MOST_VALUES).contains(&values) {
+        return Err(Failure::Wrong(format!("`{text}`: from 2 to {MOST_VALUES} values can be swept")));
     }
-
-    /// The setting of one of the values.
-    fn setting(&self, value: f64) -> String {
-        format!("{}={value:?} {}", self.name, self.behind).trim_end().to_owned()
-    }
-
-    fn heading(&self) -> SweepAxis {
-        let unit = self.behind.split('±').next().unwrap_or_default().trim().to_owned();
-        SweepAxis { name: self.name.clone(), unit, values: self.values.clone() }
-    }
+    let last = (values - 1) as f64;
+    // Weights, so that the ends are exact.
+    let at = |index: usize| (lower * (last - index as f64) + upper * index as f64) / last;
+    Ok(Some(Axis::new(name.trim(), &(0..values).map(at).collect::<Vec<f64>>()).with(behind.trim())))
 }
 
 pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Failure> {
     let (mut axes, mut others) = (Vec::new(), Vec::new());
     for text in &args.set {
-        match Axis::parse(text)? {
+        match axis(text)? {
             Some(axis) => axes.push(axis),
             None => others.push(setting(text)?),
         }
@@ -72,13 +52,13 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
         return Err(Failure::Wrong(message.to_owned()));
     }
     if let [first, second] = &axes[..]
-        && first.name == second.name
+        && first.name() == second.name()
     {
-        return Err(Failure::Wrong(format!("parameter `{}` is swept twice", first.name)));
+        return Err(Failure::Wrong(format!("parameter `{}` is swept twice", first.name())));
     }
     let mut others = overlaid(&args.with, &others)?;
-    others.retain(|own| axes.iter().all(|axis| axis.name != own.name));
-    let runs: usize = axes.iter().map(|axis| axis.values.len()).product();
+    others.retain(|own| axes.iter().all(|axis| axis.name() != own.name));
+    let runs: usize = axes.iter().map(Axis::count).product();
     if runs > MOST_RUNS {
         return Err(Failure::Wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
     }
@@ -87,13 +67,10 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     let mut status = Status::Done;
     let mut points = Vec::with_capacity(runs);
     let mut name = String::new();
-    for run in 0..runs {
-        let inner = axes.last().map_or(1, |axis| axis.values.len());
-        let place = if axes.len() == 2 { vec![run / inner, run % inner] } else { vec![run] };
-        let values: Vec<f64> = axes.iter().zip(&place).map(|(axis, &place)| axis.values[place]).collect();
+    for values in Axis::combinations(&axes) {
         let mut given = Given { overrides: others.clone(), root: args.files.root.clone() };
-        for (axis, &value) in axes.iter().zip(&values) {
-            given.overrides.push(setting(&axis.setting(value))?);
+        for (parameter, value) in Axis::settings(&axes, &values) {
+            given.overrides.push(setting(&format!("{parameter}={value}"))?);
         }
         let scenes: Vec<String> = args.run.scene.iter().cloned().collect();
         let loaded = load::load_all(std::slice::from_ref(&args.model), &given, &scenes, console)?;

@@ -1,15 +1,18 @@
 //! Derivatives of outputs by parameters.
 
+use serde::Serialize;
+
 use crate::grammar::display_unit::DisplayUnit;
 
 /// A parameter by which outputs are differentiated.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GradientParameter {
     /// Name in the model.
     pub name: String,
     /// SI unit, empty where dimensionless or unknown.
     pub unit: String,
     /// The unit in which people see it, where the model names one.
+    #[serde(skip)]
     pub display: Option<DisplayUnit>,
     /// Where the derivatives are taken, SI.
     pub value: f64,
@@ -18,13 +21,14 @@ pub struct GradientParameter {
 }
 
 /// An output's derivatives.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OutputGradients {
     /// Name in the model.
     pub name: String,
     /// SI unit, empty where dimensionless or unknown.
     pub unit: String,
     /// The unit in which people see it, where the model names one.
+    #[serde(skip)]
     pub display: Option<DisplayUnit>,
     /// Its values over the times, SI.
     pub values: Vec<f64>,
@@ -49,7 +53,7 @@ impl OutputGradients {
 }
 
 /// Derivatives of a model's outputs by its uncertain parameters, at one point of the box.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Gradients {
     /// Name of the model.
     pub model: String,
