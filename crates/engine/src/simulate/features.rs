@@ -267,7 +267,6 @@ impl<'s> FeatureWatch<'s> {
 }
 
 fn copy(layout: &Layout, stepper: &Stepper, into: &mut Vec<f64>) {
-    let width = stepper.tile().width();
     into.clear();
-    into.extend_from_slice(&stepper.tile().values()[layout.q.start * width..layout.v.end * width]);
+    into.extend_from_slice(stepper.tile().block(layout.q.start..layout.v.end));
 }

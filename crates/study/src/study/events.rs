@@ -14,9 +14,6 @@ const OF_STEPS: f64 = 1e-10;
 /// The same as a share of a tolerance that is given.
 const OF_TOLERANCE: f64 = 1e-5;
 
-/// Parameters, at most, of boxes of which a part meets other events.
-const MOST_OF_PARTS: usize = 2;
-
 /// Samples spread over the box for each parameter, of which each has to meet the same events.
 const SPREAD: usize = 24;
 
@@ -37,9 +34,6 @@ impl Study<'_> {
         let asked = of_steps.into_iter().chain(self.request.tolerance).map(|tolerance| OF_TOLERANCE * tolerance);
         let tolerance = asked.fold(OF_STEPS, f64::min);
         let segments = segments_of(&self.simulator, &self.domain, &self.event_samples(), times.0, tolerance)?;
-        // Several words cost a surrogate each, of which the ranges of many parameters take long.
-        let is_small = self.domain.dimension() <= MOST_OF_PARTS;
-        let segments = segments.filter(|segments| is_small || segments.boundaries.is_empty());
         // A number that is accumulated over a motion is one of the whole of it.
         let accumulates = !self.description.reduced.is_empty() || !self.description.requirements.is_empty();
         let segments = segments.filter(|segments| !accumulates || segments.horizon >= times.0);

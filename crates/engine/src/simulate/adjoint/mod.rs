@@ -21,3 +21,8 @@ pub(in crate::simulate) use path::{Path, Stepping};
 pub(in crate::simulate) use rows::RowAdjoints;
 pub(in crate::simulate) use start::StartAdjoints;
 pub use tiles::{Gradient, NoGradient, Wanted, gradients};
+
+/// Adds values times a factor.
+pub(in crate::simulate) fn add(to: &mut [f64], factor: f64, values: &[f64]) {
+    to.iter_mut().zip(values).for_each(|(to, value)| *to += factor * value);
+}

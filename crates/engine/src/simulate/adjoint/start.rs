@@ -50,8 +50,7 @@ impl<'s> StartAdjoints<'s> {
 
     /// Values of consecutive registers.
     pub fn values(&self, registers: Range<usize>) -> &[f64] {
-        let width = self.assembly.tile().width();
-        &self.assembly.tile().values()[registers.start * width..registers.end * width]
+        self.assembly.tile().block(registers)
     }
 
     /// Sets values of registers from this one on, and the time.

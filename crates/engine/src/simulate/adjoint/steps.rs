@@ -15,7 +15,7 @@ use symdiff::{Adjoints, Tile};
 
 use super::path::{Path, Stepping};
 use super::start::StartAdjoints;
-use crate::compile::{Layout, Program, Tapes};
+use crate::compile::{Program, Tapes};
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
@@ -51,7 +51,7 @@ impl<'s> Steps<'s> {
 
 impl Stepping for Steps<'_> {
     fn state(&self) -> &[f64] {
-        state_of(self.stepper.tile(), &self.simulator.program.layout)
+        self.stepper.tile().block(self.simulator.program.layout.state())
     }
 
     fn restore(&mut self, step: usize, state: &[f64]) {
@@ -75,12 +75,6 @@ impl Stepping for Steps<'_> {
         }
         unchanged
     }
-}
-
-/// The registers q, v, a, w, λ.
-fn state_of<'t>(tile: &'t Tile, layout: &Layout) -> &'t [f64] {
-    let (state, width) = (layout.state(), tile.width());
-    &tile.values()[state.start * width..state.end * width]
 }
 
 /// Adjoints of a row: number of steps before it, and those of its state.

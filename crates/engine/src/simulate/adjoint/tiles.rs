@@ -3,11 +3,12 @@
 use rayon::prelude::*;
 use symdiff::Tile;
 
+use super::add;
 use super::path::Path;
 use super::rows::RowAdjoints;
 use super::start::StartAdjoints;
 use super::steps::{StepAdjoints, Steps};
-use crate::compile::{Layout, Tapes};
+use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::ensemble::{tiles, weights};
@@ -198,7 +199,7 @@ impl TileOf<'_> {
             let seeds: Vec<(usize, &[f64])> =
                 ends_of_rows.iter().copied().zip(seeds.iter().map(Vec::as_slice)).collect();
             let (positions, parameters) = run.pull(&seeds);
-            add(&mut total, &parameters);
+            add(&mut total, 1.0, &parameters);
             self.add_equilibrium(&start, &positions, &mut total);
         }
         Ok(total)
@@ -224,13 +225,13 @@ impl TileOf<'_> {
         let mut run = ExplicitAdjoints::new(simulator, &start, path)?;
         let by_start = run.pull(&rows, &mut closing, values);
         let mut total = run.finish();
-        add(&mut total, &closing.finish());
+        add(&mut total, 1.0, &closing.finish());
         let mut beginning = StartAdjoints::new(simulator, &simulator.start, &start);
         let layout = &simulator.start.layout;
         beginning.add(layout.q.start, &by_start);
-        beginning.pull_start(state_of(&start, layout), None);
+        beginning.pull_start(start.block(layout.state()), None);
         let positions = beginning.take(layout.q.clone());
-        add(&mut total, &beginning.finish());
+        add(&mut total, 1.0, &beginning.finish());
         self.add_equilibrium(&start, &positions, &mut total);
         Ok(total)
     }
@@ -249,14 +250,4 @@ impl TileOf<'_> {
             }
         }
     }
-}
-
-/// The registers q, v, a, w, λ.
-fn state_of<'t>(tile: &'t Tile, layout: &Layout) -> &'t [f64] {
-    let (state, width) = (layout.state(), tile.width());
-    &tile.values()[state.start * width..state.end * width]
-}
-
-fn add(to: &mut [f64], values: &[f64]) {
-    to.iter_mut().zip(values).for_each(|(to, value)| *to += value);
 }

@@ -117,7 +117,7 @@ impl<'s> RowClosure<'s> {
         let layout = &self.program.layout;
         let width = self.assembly.tile().width();
         let tile = self.assembly.tile_mut();
-        tile.values_mut()[layout.q.start * width..layout.v.end * width].copy_from_slice(state);
+        tile.block_mut(layout.q.start..layout.v.end).copy_from_slice(state);
         if self.needs.linear {
             tile.run(self.program.acceleration());
             let (known, corrections) = tile.values_mut().split_at_mut(layout.correction.start * width);
@@ -128,7 +128,7 @@ impl<'s> RowClosure<'s> {
         }
         let n = layout.q.len() * width;
         into[..n].copy_from_slice(&state[n..]);
-        into[n..].copy_from_slice(&self.assembly.tile().values()[layout.w.start * width..layout.w.end * width]);
+        into[n..].copy_from_slice(self.assembly.tile().block(layout.w.clone()));
     }
 
     /// Gives the states that change at a time their new values, where there are any; `state` is q and v then (2n

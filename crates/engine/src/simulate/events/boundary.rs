@@ -10,13 +10,13 @@ use super::path::{Lost, Path, PathStep};
 use super::segments::{Boundary, Event, Word};
 use crate::numerics::LeastSquares;
 
-/// The surfaces between words, given the margins of samples of a boundary.
-pub(super) fn boundaries(words: &[Word], margins: impl Fn(&Boundary) -> Vec<f64>) -> Option<Vec<Boundary>> {
-    let mut found: Vec<Boundary> = Vec::new();
+/// The surfaces between words, each with the margins of its samples, which `margins` gives.
+pub(super) fn boundaries(words: &[Word], margins: impl Fn(&Boundary) -> Vec<f64>) -> Option<Vec<(Boundary, Vec<f64>)>> {
+    let mut found: Vec<(Boundary, Vec<f64>)> = Vec::new();
     for (a, word) in words.iter().enumerate() {
         for (b, other) in words.iter().enumerate().skip(a + 1) {
             let before = word.events.iter().zip(&other.events).take_while(|(own, other)| own == other).count();
-            let is_known = |boundary: &Boundary| {
+            let is_known = |(boundary, _): &(Boundary, Vec<f64>)| {
                 let both = [(a, b), (b, a)];
                 both.iter().any(|(a, b)| boundary.met.contains(a) && boundary.missed.contains(b))
             };
@@ -41,11 +41,11 @@ pub(super) fn boundaries(words: &[Word], margins: impl Fn(&Boundary) -> Vec<f64>
                 let margins = margins(&boundary);
                 let size = margins.iter().fold(0.0, |size, margin| margin.abs().max(size));
                 let least = margins.iter().filter(|margin| **margin > 0.0).copied().fold(f64::INFINITY, f64::min);
-                (least / size, boundary)
+                (least / size, boundary, margins)
             };
-            let nearest = ways.into_iter().flatten().map(near).filter(|(share, _)| share.is_finite());
-            let (_, boundary) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            found.push(boundary);
+            let nearest = ways.into_iter().flatten().map(near).filter(|(share, ..)| share.is_finite());
+            let (_, boundary, margins) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            found.push((boundary, margins));
         }
     }
     Some(found)

@@ -8,13 +8,14 @@ use symdiff::JetMemory;
 use symdiff::jet::JetSpace;
 
 use super::followed::Spelled;
+use super::nodes;
 use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, ROUNDED};
 use super::segments::Segments;
 use crate::compile::{SwitchProgram, Tapes};
-use crate::numerics::{STEP_NODES, Sample, SegmentMotions, step_nodes};
+use crate::numerics::{Sample, SegmentMotions};
 use crate::simulate::ensemble::{JetBox, JetClosure};
 use crate::simulate::error::SimulationError;
-use crate::simulate::explicit::runge_kutta::{Motion, RungeKutta};
+use crate::simulate::explicit::runge_kutta::Motion;
 use crate::simulate::simulator::Simulator;
 
 /// Segments of a jet on a time from 0 to 1.
@@ -117,25 +118,12 @@ pub fn segment_jets(
     Ok(is_known.then_some((number, motions)))
 }
 
-/// Takes the steps of a segment: the states at its nodes.
+/// The states at the nodes of a segment's steps; the motion keeps the rates at its end, which switches see.
 fn pass(motion: &mut StretchedJet, state: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
-    let mut run = RungeKutta::start(motion, 0.0, state.to_vec());
-    let mut nodes = vec![state.to_vec()];
-    for &end in steps {
-        run.attempt(motion, end);
-        run.finish(motion, end);
-        run.prepare_dense(motion, end);
-        for share in &step_nodes()[1..STEP_NODES - 1] {
-            let mut node = vec![0.0; state.len()];
-            run.interpolate(*share, &mut node);
-            nodes.push(node);
-        }
-        run.accept(motion, end);
-        nodes.push(run.state.clone());
+    let nodes = nodes::pass(motion, state, steps, |_| ());
+    if let Some(last) = nodes.last() {
+        motion.rate(1.0, last, &mut vec![0.0; state.len()]);
     }
-    // The rates at the end, which switches see.
-    let mut rates = vec![0.0; state.len()];
-    motion.rate(1.0, &run.state, &mut rates);
     nodes
 }
 

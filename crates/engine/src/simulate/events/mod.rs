@@ -7,13 +7,14 @@
 //! - `segments`: the words of a box, the steps between their events, and the boundaries between words;
 //! - `path`: one sample by the explicit method, whose steps end at events, and `followed`: its word;
 //! - `word`: the words of some samples, and `boundary`: the surfaces between them;
-//! - `stretched`: segments on a time from 0 to 1, and `tile`: samples on it in lockstep;
+//! - `stretched`: segments on a time from 0 to 1, `nodes`: states there, and `tile`: samples on it in lockstep;
 //! - `run`: an ensemble, row by row, and `jets`: a jet.
 
 mod boundary;
 mod followed;
 mod jets;
 pub(in crate::simulate) mod locate;
+mod nodes;
 mod path;
 mod run;
 pub(in crate::simulate) mod segments;

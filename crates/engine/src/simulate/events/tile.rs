@@ -8,15 +8,15 @@
 use std::collections::VecDeque;
 
 use super::followed::Spelled;
+use super::nodes;
 use super::path::{BEYOND, CORRECTIONS, LOCATED, Path, PathStep, ROUNDED};
 use super::segments::{Segments, Word};
 use super::stretched::Stretched;
 use crate::compile::SwitchProgram;
-use crate::numerics::{STEP_NODES, Sample, step_nodes, step_weights};
+use crate::numerics::{STEP_NODES, Sample, step_weights};
 use crate::simulate::control::SwitchWatch;
 use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
-use crate::simulate::explicit::runge_kutta::RungeKutta;
 use crate::simulate::simulator::Simulator;
 
 /// A segment of all lanes.
@@ -104,7 +104,7 @@ impl<'s> SegmentTile<'s> {
         let closure = RowClosure::new(simulator, &start)?;
         let watch = SwitchWatch::new(program, closure.tile());
         let layout = &simulator.start.layout;
-        let state = start.values()[layout.q.start * width..layout.v.end * width].to_vec();
+        let state = start.block(layout.q.start..layout.v.end).to_vec();
         let guesses = (0..width).map(|l| spelled[lane(l)].lengths.clone()).collect();
         let motion = Stretched { closure, begin: vec![0.0; width], length: vec![0.0; width] };
         let (next, recorded) = (0, VecDeque::new());
@@ -235,24 +235,7 @@ impl<'s> SegmentTile<'s> {
     /// nodes.
     fn pass(&mut self, steps: &[f64]) -> Vec<Vec<f64>> {
         let Self { motion, watch, state, .. } = self;
-        let mut run = RungeKutta::start(motion, 0.0, state.clone());
-        let mut nodes = vec![state.clone()];
-        for &end in steps {
-            run.attempt(motion, end);
-            run.finish(motion, end);
-            if end == 1.0 {
-                watch.end(motion.closure.tile());
-            }
-            run.prepare_dense(motion, end);
-            for share in &step_nodes()[1..STEP_NODES - 1] {
-                let mut node = vec![0.0; state.len()];
-                run.interpolate(*share, &mut node);
-                nodes.push(node);
-            }
-            run.accept(motion, end);
-            nodes.push(run.state.clone());
-        }
-        nodes
+        nodes::pass(motion, state, steps, |motion| watch.end(motion.closure.tile()))
     }
 }
 

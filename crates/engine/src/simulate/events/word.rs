@@ -23,6 +23,10 @@ const DECIDING: usize = 8;
 /// Most words.
 const MOST_WORDS: usize = 6;
 
+/// Parameters, at most, of boxes with several words: each word costs a surrogate, of which the ranges of many parameters
+/// take long.
+const MOST_OF_PARTS: usize = 2;
+
 /// Motions are cut if their words can be followed for at least this share of the duration.
 const WORTHWHILE: f64 = 0.25;
 
@@ -59,24 +63,27 @@ pub fn segments_of(
         }
     }
     let Some((horizon, found)) = within_budget(&all, duration) else { return Ok(None) };
-    let (words, groups): (Vec<Word>, Vec<Vec<usize>>) = found.into_iter().unzip();
-    let margins = |boundary: &Boundary| {
-        let of = |words: &[usize], is_met: bool| {
-            words.iter().flat_map(|&word| groups[word].iter().map(move |&sample| (sample, is_met))).collect::<Vec<_>>()
-        };
-        let both = [of(&boundary.met, true), of(&boundary.missed, false)].concat();
-        margins(boundary, &both, |sample| path(&samples[sample]).ok(), horizon)
-    };
-    let Some(mut boundaries) = boundaries(&words, margins) else { return Ok(None) };
-    for boundary in &mut boundaries {
-        let of = |words: &[usize]| words.iter().flat_map(|&word| groups[word].iter().copied()).collect::<Vec<usize>>();
-        let [met, missed] = [of(&boundary.met), of(&boundary.missed)];
-        let xi: Vec<Vec<f64>> = met.iter().chain(&missed).map(|&sample| domain.xi(&samples[sample])).collect();
-        let found = grazed_at(&xi, &domain.xi(&domain.nominal), &margins(boundary));
-        let value = |(axis, xi): (usize, Option<f64>)| xi.map(|xi| domain.value(axis, xi));
-        boundary.grazed_at = found.into_iter().enumerate().map(value).collect();
-        boundary.samples = [met.len(), missed.len()];
+    if found.len() > 1 && domain.dimension() > MOST_OF_PARTS {
+        return Ok(None);
     }
+    let (words, groups): (Vec<Word>, Vec<Vec<usize>>) = found.into_iter().unzip();
+    let samples_of =
+        |words: &[usize]| words.iter().flat_map(|&word| groups[word].iter().copied()).collect::<Vec<usize>>();
+    let margins = |boundary: &Boundary| {
+        let [met, missed] = [&boundary.met, &boundary.missed].map(|words| samples_of(words));
+        let both = met.into_iter().map(|sample| (sample, true)).chain(missed.into_iter().map(|sample| (sample, false)));
+        margins(boundary, &both.collect::<Vec<_>>(), |sample| path(&samples[sample]).ok(), horizon)
+    };
+    let Some(found) = boundaries(&words, margins) else { return Ok(None) };
+    let described = |(boundary, margins): (Boundary, Vec<f64>)| {
+        let [met, missed] = [&boundary.met, &boundary.missed].map(|words| samples_of(words));
+        let xi: Vec<Vec<f64>> = met.iter().chain(&missed).map(|&sample| domain.xi(&samples[sample])).collect();
+        let found = grazed_at(&xi, &domain.xi(&domain.nominal), &margins);
+        let value = |(axis, xi): (usize, Option<f64>)| xi.map(|xi| domain.value(axis, xi));
+        let grazed_at = found.into_iter().enumerate().map(value).collect();
+        Boundary { grazed_at, samples: [met.len(), missed.len()], ..boundary }
+    };
+    let boundaries = found.into_iter().map(described).collect();
     Ok(Some(Segments { words, boundaries, horizon, tolerance }))
 }
 
@@ -88,16 +95,21 @@ fn can_be_cut(simulator: &Simulator) -> bool {
         && !simulator.system.analysis.visits()
 }
 
-/// Indices of samples with the same events up to a time, group by group.
-fn groups(all: &[Followed], end: f64) -> Vec<Vec<usize>> {
+/// Indices below a count, group by group: each is in the first group whose first member is alike.
+fn grouped(count: usize, are_alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for (index, followed) in all.iter().enumerate() {
-        match groups.iter_mut().find(|group| all[group[0]].agrees(followed, end)) {
+    for index in 0..count {
+        match groups.iter_mut().find(|group| are_alike(group[0], index)) {
             Some(group) => group.push(index),
             None => groups.push(vec![index]),
         }
     }
     groups
+}
+
+/// Indices of samples with the same events up to a time, group by group.
+fn groups(all: &[Followed], end: f64) -> Vec<Vec<usize>> {
+    grouped(all.len(), |own, other| all[own].agrees(&all[other], end))
 }
 
 /// Words up to a time, with the indices of their samples.
@@ -116,13 +128,7 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     let fewest = all.iter().map(|followed| followed.events.len()).min()?;
     let spelled = |sample: usize, count: usize| all[sample].events[..count].iter().map(|(event, _)| *event);
     let of_count = |count: usize| {
-        let mut groups: Vec<Vec<usize>> = Vec::new();
-        for index in 0..all.len() {
-            match groups.iter_mut().find(|group| spelled(group[0], count).eq(spelled(index, count))) {
-                Some(group) => group.push(index),
-                None => groups.push(vec![index]),
-            }
-        }
+        let groups = grouped(all.len(), |own, other| spelled(own, count).eq(spelled(other, count)));
         (groups.len() <= MOST_WORDS).then_some((count, groups))
     };
     let (count, groups) = (1..=fewest).rev().find_map(of_count)?;

@@ -8,7 +8,7 @@ use symdiff::Tile;
 
 use super::runge_kutta::RungeKutta;
 use super::tableau::{DENSE, Row, STAGES, TIMES, WEIGHTS, WITH_DENSE};
-use crate::simulate::adjoint::{Path, RowAdjoints, StartAdjoints, Stepping};
+use crate::simulate::adjoint::{Path, RowAdjoints, StartAdjoints, Stepping, add};
 use crate::simulate::ensemble::{Needs, RowClosure};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
@@ -31,8 +31,8 @@ impl<'s> ExplicitSteps<'s> {
     /// Where the closure's equations have no factors.
     pub fn new(simulator: &'s Simulator, start: &Tile, ends: Vec<f64>) -> Result<Self, SimulationError> {
         let mut motion = RowClosure::new(simulator, start)?;
-        let (layout, width) = (&simulator.start.layout, start.width());
-        let state = start.values()[layout.q.start * width..layout.v.end * width].to_vec();
+        let layout = &simulator.start.layout;
+        let state = start.block(layout.q.start..layout.v.end).to_vec();
         let run = RungeKutta::start(&mut motion, 0.0, state);
         Ok(Self { simulator, motion, run, ends })
     }
@@ -269,11 +269,6 @@ impl<'s> ExplicitAdjoints<'s> {
         self.closures.pull_acceleration();
         adjoints.copy_from_slice(&self.closures.take(layout.q.start..layout.v.end));
     }
-}
-
-/// Adds values times a factor.
-fn add(to: &mut [f64], factor: f64, values: &[f64]) {
-    to.iter_mut().zip(values).for_each(|(to, value)| *to += factor * value);
 }
 
 /// Dense output at a share of the step as a sum: the weight of the change over the step, and those of the rates times

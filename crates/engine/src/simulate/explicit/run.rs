@@ -71,7 +71,7 @@ pub(super) fn tiles<'s>(
         let start = simulator.assemble(width, 0.0, |lane| samples[lane.min(samples.len() - 1)].clone())?;
         let mut motion = RowClosure::new(simulator, &start)?;
         let layout = &simulator.start.layout;
-        let state = start.values()[layout.q.start * width..layout.v.end * width].to_vec();
+        let state = start.block(layout.q.start..layout.v.end).to_vec();
         let run = RungeKutta::start(&mut motion, 0.0, state.clone());
         let rows = RowClosure::new(simulator, &start)?;
         let alive = vec![true; width];

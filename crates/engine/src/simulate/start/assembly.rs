@@ -252,10 +252,9 @@ impl<'p> Assembly<'p> {
         }
         self.tile.lane_mut(layout.time).fill(time + shift);
         self.accelerate();
-        let width = self.tile.width();
-        let shifted: Vec<f64> = self.tile.values()[layout.w.start * width..layout.w.end * width].to_vec();
-        self.tile.values_mut()[layout.q.start * width..layout.lambda.end * width].copy_from_slice(&state);
-        self.tile.values_mut()[layout.a.start * width..layout.a.end * width].copy_from_slice(&shifted);
+        let shifted: Vec<f64> = self.tile.block(layout.w.clone()).to_vec();
+        self.tile.block_mut(layout.q.start..layout.lambda.end).copy_from_slice(&state);
+        self.tile.block_mut(layout.a.clone()).copy_from_slice(&shifted);
         self.tile.lane_mut(layout.time).fill(time);
     }
 

@@ -110,9 +110,8 @@ impl Newton {
     /// more: what Newton's tolerance leaves in positions is 1/(βh²) times as large in accelerations.
     pub fn solve(&mut self, program: &Program, tile: &mut Tile, h: f64, refine: bool, alive: &mut [bool]) {
         self.pending.copy_from_slice(alive);
-        let width = tile.width();
         self.start.clear();
-        self.start.extend_from_slice(&tile.values()[program.layout.w.start * width..program.layout.lambda.end * width]);
+        self.start.extend_from_slice(tile.block(program.layout.w.start..program.layout.lambda.end));
         if h != self.size_before {
             self.known = self.known.min(1);
         }

@@ -6,6 +6,8 @@
 
 mod record;
 
+use std::ops::Range;
+
 use crate::eval::functions;
 use crate::eval::sincos;
 use crate::eval::vectorised::{InstructionSet, Vectorise};
@@ -72,6 +74,19 @@ impl Tile {
         let all =
             unsafe { std::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast::<f64>(), self.lines.len() * 8) };
         &mut all[..self.registers * self.width]
+    }
+
+    /// The values of consecutive registers, register by register.
+    #[inline]
+    pub fn block(&self, registers: Range<usize>) -> &[f64] {
+        &self.values()[registers.start * self.width..registers.end * self.width]
+    }
+
+    /// The values of consecutive registers, register by register.
+    #[inline]
+    pub fn block_mut(&mut self, registers: Range<usize>) -> &mut [f64] {
+        let width = self.width;
+        &mut self.values_mut()[registers.start * width..registers.end * width]
     }
 
     /// A register's value in every sample.
