@@ -104,3 +104,42 @@ fn a_table_within_a_step_is_found() {
     let counted = covered(&text, WORK, 1e-3);
     assert!(counted >= least("tolerance"), "{counted}");
 }
+
+/// Two sledges that travel together past one another's place: a bell of 8 mm in their distance.
+fn convoy(speed: f64, apart: f64) -> String {
+    format!(
+        "
+parameters: {{ v: {{ interval: [1.8, 2.2], unit: m/s }} }}
+bodies:
+  front: {{ mass: 1.5, coordinates: [x] }}
+  back: {{ mass: 0.5, coordinates: [x] }}
+effects:
+  push: {{ force: {{ on: front, value: [\"10*exp(-((front.x - back.x)/8e-3)^2)\", 0] }} }}
+  recoil: {{ force: {{ on: back, value: [\"-10*exp(-((front.x - back.x)/8e-3)^2)\", 0] }} }}
+initial: {{ front.x: {apart:?}, back.x: 0, front.vx: {speed:?}, back.vx: \"{speed:?} + v\" }}
+outputs: {{ distance: front.x - back.x }}
+simulation: {{ duration: 0.5, step: 1e-3, output_step: 0.05 }}
+bounds: {{ chebyshev: {{ order: 5 }} }}
+"
+    )
+}
+
+/// Galilean invariance: what two bodies do to one another is seen, or missed, whatever speed they have in common.
+#[test]
+fn a_common_velocity_hides_nothing_and_flags_nothing() {
+    let band = |speed: f64| {
+        let text = convoy(speed, 0.4);
+        let result = Model::from_yaml_str("convoy", &text).unwrap().study().run().unwrap();
+        let output = result.outputs().next().unwrap();
+        let band = output.bands().next().unwrap();
+        let reliable: Vec<bool> = (0..result.times().len()).map(|row| band.is_reliable(row)).collect();
+        (band.lower().to_vec(), band.upper().to_vec(), reliable)
+    };
+    let at_rest = band(0.0);
+    assert!(at_rest.2.iter().all(|reliable| *reliable), "{:?}", at_rest.2);
+    let moving = band(20.0);
+    assert_eq!(at_rest.2, moving.2);
+    for (row, ends) in at_rest.0.iter().zip(&moving.0).chain(at_rest.1.iter().zip(&moving.1)).enumerate() {
+        assert!((ends.0 - ends.1).abs() < 1e-9, "row {row}: {ends:?}");
+    }
+}

@@ -1,21 +1,23 @@
 //! Features of the forces in space: functions of the positions, bounded as a whole, that a step may pass over from one
 //! side to the other. The ends of a step that jumps over a bump show nothing of it, and those of its halves neither.
 //!
-//! Every such function is enclosed over all positions between the ends of a step. Functions of the time alone are
-//! enclosed before the run (`time_functions`).
+//! Every such function is enclosed over all positions between the ends of a step, and where that shows a feature of a
+//! fixed step, over the parts of the step's path on which the forces use it. Functions of the time alone are enclosed
+//! before the run (`time_functions`).
 
-use rustc_hash::{FxHashMap, FxHashSet};
-use symdiff::{Binary, Expr, Graph, Interval, Node, Ranges, Unary};
+mod candidates;
+mod path;
 
+use symdiff::{Expr, Interval, Node, Ranges, Unary};
+
+use self::candidates::{Candidate, candidates};
+use self::path::Path;
 use super::step::Stepper;
 use crate::assemble::System;
 use crate::compile::Layout;
 
 /// Positions over which a function's whole range is taken.
 const FAR: f64 = 1e6;
-
-/// Operations of a function, counted as if nothing were shared; those of long chains of bodies are left out.
-const MOST_OPERATIONS: usize = 2000;
 
 /// A function that changes by less than this, relative to its values, is constant.
 const CONSTANT: f64 = 1e-9;
@@ -38,6 +40,8 @@ struct Function {
     ranges: Ranges,
     /// The width of its range.
     whole: f64,
+    /// Conditions of which each has to be positive for the function to be used.
+    conditions: Ranges,
 }
 
 /// A sample's step.
@@ -55,10 +59,16 @@ pub(super) struct Passage<'p> {
     pub lane: usize,
 }
 
+/// Halvings of a step's path where its enclosure shows a feature. Positions of bodies that move together are far apart
+/// in an enclosure of both, and near one another on the path.
+const HALVINGS: u32 = 6;
+
 /// Memory of enclosures.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FeatureWork {
-    symbols: [Vec<Interval>; 3],
+    path: Path,
+    /// Over the whole step, at its beginning, at its end, and over a part.
+    symbols: [Vec<Interval>; 4],
     values: Vec<Interval>,
 }
 
@@ -82,7 +92,7 @@ impl Features {
         let mut work = Vec::new();
         let functions: Vec<Function> = candidates
             .into_iter()
-            .filter_map(|of| {
+            .filter_map(|Candidate { of, conditions }| {
                 let ranges = Ranges::new(&graph, &symbols, &[of]);
                 let range = match graph.node(of) {
                     // A table goes on along a line.
@@ -93,7 +103,11 @@ impl Features {
                     _ => ranges.enclose(&everywhere, &mut work).next().unwrap_or(Interval::ENTIRE),
                 };
                 let whole = range.upper() - range.lower();
-                (whole.is_finite() && whole > CONSTANT * range.magnitude()).then_some(Function { ranges, whole })
+                (whole.is_finite() && whole > CONSTANT * range.magnitude()).then(|| Function {
+                    ranges,
+                    whole,
+                    conditions: Ranges::new(&graph, &symbols, &conditions),
+                })
             })
             .collect();
         let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
@@ -102,8 +116,9 @@ impl Features {
 
     /// Whether a function changes by more than this share of its whole range on the way.
     pub fn change(&self, passage: Passage, share: f64, work: &mut FeatureWork) -> bool {
-        self.take(passage, work);
-        let FeatureWork { symbols: [between, ..], values } = work;
+        let FeatureWork { path, symbols: [between, ..], values } = work;
+        path.take(passage, &self.layout);
+        path.between([0.0, 1.0], between);
         self.functions.iter().any(|function| {
             let range = function.over(between, values);
             range.upper() - range.lower() > share * function.whole
@@ -112,103 +127,84 @@ impl Features {
 
     /// Whether the ends of a step hide what functions do on the way.
     pub fn are_hidden(&self, passage: Passage, work: &mut FeatureWork) -> bool {
-        self.take(passage, work);
-        let FeatureWork { symbols: [between, begin, end], values } = work;
+        let FeatureWork { path, symbols: [between, begin, end, part], values } = work;
+        path.take(passage, &self.layout);
+        path.between([0.0, 1.0], between);
+        path.between([0.0, 0.0], begin);
+        path.between([1.0, 1.0], end);
         let mut edges = 0;
         self.functions.iter().any(|function| {
-            let range = function.over(between, values);
-            if range.upper() - range.lower() <= BEYOND * function.whole {
+            if function.is_narrow(function.over(between, values)) {
                 return false;
             }
-            edges += usize::from(range.upper() - range.lower() > EDGE * function.whole);
-            let (first, last) = (function.over(begin, values), function.over(end, values));
-            let beyond =
-                (first.lower().min(last.lower()) - range.lower()).max(range.upper() - first.upper().max(last.upper()));
-            beyond > BEYOND * function.whole || edges > 1
+            let used = |symbols: &[Interval], values: &mut _| {
+                function.is_used(symbols, values).then(|| function.over(symbols, values))
+            };
+            let ends = hull(used(begin, values), used(end, values));
+            let range = function.along(path, [0.0, 1.0], HALVINGS, part, values);
+            let Some(range) = range else { return false };
+            edges += usize::from(function.is_edge(range));
+            function.is_beyond(range, ends) || edges > 1
         })
     }
+}
 
-    /// Intervals of time, parameters and positions between the ends of a step, and at both.
-    fn take(&self, passage: Passage, work: &mut FeatureWork) {
-        let Passage { end, h, parameters, states: [before, after], width, lane } = passage;
-        let n = self.layout.q.len();
-        let line = |state: &[f64], line: usize| state[line * width + lane];
-        let times = [Interval::new(end - h, end), Interval::point(end - h), Interval::point(end)];
-        for (symbols, time) in work.symbols.iter_mut().zip(times) {
-            symbols.clear();
-            symbols.push(time);
-            symbols.extend(parameters.iter().copied().map(Interval::point));
-        }
-        let [between, begin, ending] = &mut work.symbols;
-        for coordinate in 0..n {
-            let (a, b) = (line(before, coordinate), line(after, coordinate));
-            // The cubic through both ends lies between these.
-            let control = [line(before, n + coordinate), -line(after, n + coordinate)].map(|rate| h / 3.0 * rate);
-            let (low, high) = (a.min(a + control[0]), a.max(a + control[0]));
-            let (low, high) = (low.min(b).min(b + control[1]), high.max(b).max(b + control[1]));
-            between.push(Interval::new(low, high));
-            begin.push(Interval::point(a));
-            ending.push(Interval::point(b));
-        }
-    }
+/// The least interval that holds both; `None` holds nothing.
+fn hull(a: Option<Interval>, b: Option<Interval>) -> Option<Interval> {
+    let both = |a: Interval, b: Interval| Interval::new(a.lower().min(b.lower()), a.upper().max(b.upper()));
+    a.into_iter().chain(b).reduce(both)
 }
 
 impl Function {
+    /// Whether each condition may be positive somewhere between: a contact's normal does nothing where nothing touches.
+    fn is_used(&self, symbols: &[Interval], values: &mut Vec<Interval>) -> bool {
+        // Written so that NaN is used.
+        self.conditions.enclose(symbols, values).all(|condition| !(condition.upper() <= 0.0))
+    }
+
     fn over(&self, symbols: &[Interval], values: &mut Vec<Interval>) -> Interval {
         self.ranges.enclose(symbols, values).next().unwrap_or(Interval::ENTIRE)
     }
-}
 
-/// On what an expression depends, and how many operations it has at most.
-#[derive(Clone, Copy, Default)]
-struct Known {
-    on_positions: bool,
-    on_rates: bool,
-    operations: usize,
-}
-
-/// Functions of the positions that may be bounded: waves, bells, steps, tables and quotients.
-fn candidates(system: &System, graph: &mut Graph) -> Vec<Expr> {
-    let positions: FxHashSet<Expr> = system.q.iter().copied().collect();
-    let rates: FxHashSet<Expr> = system.v.iter().chain(&system.w).chain(&system.lambda).copied().collect();
-    let mut known: FxHashMap<Expr, Known> = FxHashMap::default();
-    let mut found = Vec::new();
-    for expr in graph.reachable(&system.force) {
-        let node = graph.node(expr);
-        let mut of = Known { on_positions: positions.contains(&expr), on_rates: rates.contains(&expr), operations: 1 };
-        for child in node.children() {
-            of.on_positions |= known[&child].on_positions;
-            of.on_rates |= known[&child].on_rates;
-            of.operations = of.operations.saturating_add(known[&child].operations);
+    /// Range over those pieces of a part of a path on which it is used; `None` where it is on none.
+    fn along(
+        &self,
+        path: &Path,
+        part: [f64; 2],
+        halvings: u32,
+        symbols: &mut Vec<Interval>,
+        values: &mut Vec<Interval>,
+    ) -> Option<Interval> {
+        path.between(part, symbols);
+        if !self.is_used(symbols, values) {
+            return None;
         }
-        known.insert(expr, of);
-        if !of.on_positions || of.on_rates || of.operations > MOST_OPERATIONS {
-            continue;
+        let range = self.over(symbols, values);
+        if halvings == 0 || self.is_narrow(range) {
+            return Some(range);
         }
-        match node {
-            // Turning bodies make waves that are as long as a turn.
-            Node::Unary(Unary::Sin | Unary::Cos, a) if is_sum(graph, a) => {}
-            Node::Unary(Unary::Sin | Unary::Cos | Unary::Exp | Unary::Tanh | Unary::Atan | Unary::Spline(..), _)
-            | Node::Binary(Binary::Pow, ..) => found.push(expr),
-            Node::Binary(Binary::Div, _, divisor) if known[&divisor].on_positions => {
-                let one = graph.constant(1.0);
-                found.push(graph.div(one, divisor));
-            }
-            _ => {}
-        }
+        let middle = 0.5 * (part[0] + part[1]);
+        let mut half = |part| self.along(path, part, halvings - 1, symbols, values);
+        hull(half([part[0], middle]), half([middle, part[1]]))
     }
-    found.sort_unstable();
-    found.dedup();
-    found
-}
 
-/// Whether an expression is a sum of symbols and numbers.
-fn is_sum(graph: &Graph, expr: Expr) -> bool {
-    match graph.node(expr) {
-        Node::Constant(_) | Node::Symbol(_) => true,
-        Node::Unary(Unary::Neg, a) => is_sum(graph, a),
-        Node::Binary(Binary::Add | Binary::Sub, a, b) => is_sum(graph, a) && is_sum(graph, b),
-        _ => false,
+    /// Whether nothing can be hidden in a range.
+    fn is_narrow(&self, range: Interval) -> bool {
+        range.upper() - range.lower() <= BEYOND * self.whole
+    }
+
+    /// Whether values on the way lie far beyond those at the ends; of no ends, far from one another.
+    fn is_beyond(&self, range: Interval, ends: Option<Interval>) -> bool {
+        let beyond = match ends {
+            Some(ends) => (ends.lower() - range.lower()).max(range.upper() - ends.upper()),
+            None => range.upper() - range.lower(),
+        };
+        beyond > BEYOND * self.whole
+    }
+
+    /// Whether values on the way make a step from one side of the whole range to the other.
+    fn is_edge(&self, range: Interval) -> bool {
+        range.upper() - range.lower() > EDGE * self.whole
     }
 }
 
