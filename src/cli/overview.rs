@@ -124,14 +124,14 @@ pub(super) fn unreliable(summary: &Summary) -> Option<String> {
     let others: String =
         bands[1..].iter().map(|(time, band)| format!(", of `{band}` from {} s", rounded(*time))).collect();
     let more = if total > MOST { format!(", and {} more", total - MOST) } else { String::new() };
-    let help = "raise the order, shorten the step, or set `bounds: { tolerance: … }`";
-    // None of these helps there.
-    let unmet = |time: f64| time <= *from;
-    let help = if summary.unmet_switch.is_some_and(unmet) {
+    let is_cause = |time: f64| time <= *from;
+    let help = if summary.unmet_switch.is_some_and(is_cause) {
         "some values meet a contact, a stop or a kink that no sample meets: narrow the intervals until all values meet it or none does, \
          or divide them where that changes (`--set`)"
+    } else if summary.passed_force.is_some_and(is_cause) {
+        "fixed steps pass over what a force does in time or space: shorten the step, or let `simulation: { tolerance: … }` choose it"
     } else {
-        help
+        "raise the order, shorten the step, or set `bounds: { tolerance: … }`"
     };
     Some(format!("bounds of `{first}` are unreliable from {} s{others}{more}: {help}", rounded(*from)))
 }
@@ -326,6 +326,7 @@ mod tests {
             damped_mode: None,
             events: Vec::new(),
             unmet_switch: None,
+            passed_force: None,
             too_deep: None,
             beyond_tolerance: None,
             integration: None,

@@ -143,3 +143,16 @@ fn a_common_velocity_hides_nothing_and_flags_nothing() {
         assert!((ends.0 - ends.1).abs() < 1e-9, "row {row}: {ends:?}");
     }
 }
+
+/// The speeds reach the brake after 0.25 s to 0.29 s.
+#[test]
+fn the_summary_says_from_when_on_fixed_steps_pass_over_a_force() {
+    let passed = |stepping: &str| {
+        let text = thrown("", "-2e4*exp(-((sledge.x - 0.83)/1e-4)^2)", stepping);
+        let result = Model::from_yaml_str("thrown", &text).unwrap().study().run().unwrap();
+        result.summary().passed_force
+    };
+    let from = passed("step: 2e-3");
+    assert!(from.is_some_and(|from| (0.15..0.3).contains(&from)), "{from:?}");
+    assert_eq!(passed("tolerance: 1e-4"), None);
+}

@@ -194,6 +194,7 @@ mod tests {
             damped_mode: None,
             events: Vec::new(),
             unmet_switch: None,
+            passed_force: None,
             too_deep: None,
             beyond_tolerance: None,
             integration: None,

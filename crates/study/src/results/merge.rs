@@ -61,6 +61,7 @@ impl Summary {
             whole.singular_configurations.extend(other.singular_configurations);
             whole.damped_mode = whole.damped_mode.or(other.damped_mode);
             whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
+            whole.passed_force = whole.passed_force.into_iter().chain(other.passed_force).reduce(f64::min);
             whole.too_deep = TooDeep::first(whole.too_deep.iter().chain(&other.too_deep));
             whole.beyond_tolerance = whole.beyond_tolerance.into_iter().chain(other.beyond_tolerance).reduce(f64::max);
             whole.add_methods(&other.methods);

@@ -46,6 +46,9 @@ pub struct Summary {
     /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unmet_switch: Option<f64>,
+    /// From when on fixed steps pass over what a force does in time or in space, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub passed_force: Option<f64>,
     /// The first surfaces that a contact does not hold apart any more, in any sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub too_deep: Option<TooDeep>,

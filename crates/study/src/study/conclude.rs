@@ -8,6 +8,7 @@ use super::outcome::{Outcome, Ran, Results};
 use super::single::Study;
 use crate::assemble::ConstraintId;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
+use crate::model::Stepping;
 use crate::numerics::Sample;
 use crate::results::{
     Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
@@ -153,7 +154,10 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
     let mobility = &study.simulator.mobility;
     let names = |constraints: &[ConstraintId]| system.constraint_names(constraints);
     let damped_mode = damped_mode(&results, bounds);
-    let unmet_switch = results.unmet_switch_from().map(|row| results.schedule.time(row.saturating_sub(1)));
+    let before = |row: usize| results.schedule.time(row.saturating_sub(1));
+    let unmet_switch = results.unmet_switch_from().map(before);
+    let is_fixed = matches!(study.description.simulation.stepping, Stepping::Fixed(_));
+    let passed_force = results.passed_from().filter(|_| is_fixed && results.schedule.segments().is_none()).map(before);
     let singular =
         results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
     Summary {
@@ -171,6 +175,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         damped_mode,
         events: study.events_of_parts(&results.schedule),
         unmet_switch,
+        passed_force,
         too_deep: results.too_deep(),
         beyond_tolerance: results.beyond_tolerance(),
         integration: results.schedule.integration.name(),

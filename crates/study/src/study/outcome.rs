@@ -102,10 +102,15 @@ impl Results {
         TooDeep::first(self.simulated().filter_map(|simulated| simulated.too_deep.as_ref()))
     }
 
+    /// The first row before which the steps of a sample do not resolve a force, or exceed the tolerance.
+    pub fn passed_from(&self) -> Option<usize> {
+        let beyond = self.simulated().filter_map(|simulated| simulated.beyond_tolerance_from);
+        beyond.chain(self.unresolved_from).min()
+    }
+
     /// The first row that cannot be relied on, whatever a method says of it.
     pub fn unreliable_from(&self) -> Option<usize> {
-        let beyond = self.simulated().filter_map(|simulated| simulated.beyond_tolerance_from);
-        self.unresolved_from.into_iter().chain(self.unmet_switch_from()).chain(beyond).min()
+        self.unmet_switch_from().into_iter().chain(self.passed_from()).min()
     }
 }
 
