@@ -158,8 +158,7 @@ fn hull(a: Option<Interval>, b: Option<Interval>) -> Option<Interval> {
 impl Function {
     /// Whether each condition may be positive somewhere between: a contact's normal does nothing where nothing touches.
     fn is_used(&self, symbols: &[Interval], values: &mut Vec<Interval>) -> bool {
-        // Written so that NaN is used.
-        self.conditions.enclose(symbols, values).all(|condition| !(condition.upper() <= 0.0))
+        self.conditions.enclose(symbols, values).all(|condition| condition.upper() > 0.0)
     }
 
     fn over(&self, symbols: &[Interval], values: &mut Vec<Interval>) -> Interval {
