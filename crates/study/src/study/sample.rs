@@ -1,11 +1,15 @@
 //! Outputs over time at chosen samples, in lockstep, a chunk of samples after the other, so that memory does not grow
 //! with their number.
 
+use super::bounding::simulation_error;
+use super::problem::Study;
+use super::stepping::{
+    balance, controlling_samples, divided, explicit_within, integration, may_be_explicit, refused, schedule_within,
+};
 use std::ops::Range;
 
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
 use super::prepared::{Prepared, choices, prepare};
-use super::single::{Study, simulation_error};
 use super::{Options, RunError, reduced};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::{Description, Stepping};
@@ -79,7 +83,7 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
             Ok(study)
         });
         let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
-        let steps = studies.iter().map(Study::steps_of_samples).collect::<Result<Vec<_>, _>>();
+        let steps = studies.iter().map(steps_of_samples).collect::<Result<Vec<_>, _>>();
         let steps = steps.map_err(RunError::from)?;
         let rows = steps.iter().map(|(schedule, _)| schedule.rows).max().unwrap_or(0);
         let times = steps.iter().find(|(schedule, _)| schedule.rows == rows);
@@ -257,36 +261,34 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
     subsystem.parameters.iter().map(|&number| sample[number]).collect()
 }
 
-impl Study<'_> {
-    /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a
-    /// tolerance those that a run would try first.
-    fn steps_of_samples(&self) -> Result<(Schedule, Option<Controller>), SimulationError> {
-        let simulation = &self.description.simulation;
-        let (schedule, controller) = match simulation.stepping {
-            Stepping::Fixed(step) => {
-                let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
-                (schedule.taken(self.integration()), None)
-            }
-            Stepping::Tolerance(tolerance) => self.steps_within(tolerance)?,
-        };
-        if self.request.tolerance.is_some() && self.domain.dimension() > 0 {
-            let progress = Progress::new(usize::MAX, self.progress);
-            let (Divided { schedule, .. }, controller, _) = self.balance(&schedule, controller, &progress)?;
-            return Ok((schedule, controller));
+/// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a
+/// tolerance those that a run would try first.
+fn steps_of_samples(study: &Study) -> Result<(Schedule, Option<Controller>), SimulationError> {
+    let simulation = &study.description.simulation;
+    let (schedule, controller) = match simulation.stepping {
+        Stepping::Fixed(step) => {
+            let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
+            (schedule.taken(integration(study)), None)
         }
-        Ok((self.divided(schedule).schedule, controller))
+        Stepping::Tolerance(tolerance) => steps_within(study, tolerance)?,
+    };
+    if study.request.tolerance.is_some() && study.domain.dimension() > 0 {
+        let progress = Progress::new(usize::MAX, study.progress);
+        let (Divided { schedule, .. }, controller, _) = balance(study, &schedule, controller, &progress)?;
+        return Ok((schedule, controller));
     }
+    Ok((divided(study, schedule).schedule, controller))
+}
 
-    /// Steps within a tolerance at the controlling samples, by the explicit method where that is chosen.
-    fn steps_within(&self, tolerance: f64) -> Result<(Schedule, Option<Controller>), SimulationError> {
-        let samples = self.controlling_samples();
-        if self.may_be_explicit() && self.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
-            match self.explicit_within(tolerance, &samples)? {
-                Ok(schedule) => return Ok((schedule, None)),
-                Err(obstacle) => self.refused(obstacle)?,
-            }
+/// Steps within a tolerance at the controlling samples, by the explicit method where that is chosen.
+fn steps_within(study: &Study, tolerance: f64) -> Result<(Schedule, Option<Controller>), SimulationError> {
+    let samples = controlling_samples(study);
+    if may_be_explicit(study) && study.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
+        match explicit_within(study, tolerance, &samples)? {
+            Ok(schedule) => return Ok((schedule, None)),
+            Err(obstacle) => refused(study, obstacle)?,
         }
-        let (controlled, controller) = self.schedule_within(tolerance, &samples)?;
-        Ok((controlled.schedule, Some(controller)))
     }
+    let (controlled, controller) = schedule_within(study, tolerance, &samples)?;
+    Ok((controlled.schedule, Some(controller)))
 }

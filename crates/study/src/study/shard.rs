@@ -2,7 +2,7 @@
 
 use super::ensemble::{Progress, simulate_part};
 use super::prepared::{Prepared, choices, prepare};
-use super::single::Study;
+use super::problem::Study;
 use super::{Options, RunError, reduced};
 use crate::model::Description;
 use crate::simulate::SimulationError;

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use symdiff::jet::JetSpace;
 
+use super::visits::visit_jets;
 use super::{Motions, effort, stopped_at};
 use crate::methods::{Effort, JET_WORK, Simulated};
 use crate::simulate::{
@@ -85,41 +86,39 @@ impl<'s> SampleJet<'s> {
 /// Rows of a block.
 const BLOCK: usize = 64;
 
-impl Motions<'_> {
-    /// As [`Ensemble::jets`](crate::methods::Ensemble::jets).
-    ///
-    /// # Errors
-    /// Where the middle of the box cannot be assembled.
-    pub(super) fn jet_about_middle(
-        &self,
-        space: &JetSpace,
-        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
-    ) -> Result<Simulated, SimulationError> {
-        let parameters = 0..self.domain.dimension();
-        let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
-        let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
-        if self.simulator.system.analysis.visits() {
-            return self.visit_jets(space, &center.into(), &half_widths, reduce);
-        }
-        let about = JetBox { center: &center, half_width: &half_widths };
-        let jet = SampleJet::start(self.simulator, space, about, self.schedule, self.tolerance.is_some())?;
-        let mut jet = jet.heeding(self.interruption);
-        let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
-        while next < self.schedule.rows && stop.is_none() {
-            let rows = next..(next + BLOCK).min(self.schedule.rows);
-            stop = jet.advance(self.schedule, rows.clone(), &mut values);
-            if jet.is_cut() {
-                break;
-            }
-            reduce(rows.clone(), &values);
-            self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
-            next = rows.end;
-        }
-        if next == self.schedule.rows || stop.is_some() {
-            self.over.fetch_add(1, Ordering::Relaxed);
-        }
-        let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
-        let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
-        Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
+/// As [`Ensemble::jets`](crate::methods::Ensemble::jets).
+///
+/// # Errors
+/// Where the middle of the box cannot be assembled.
+pub fn jet_about_middle(
+    motions: &Motions,
+    space: &JetSpace,
+    reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+) -> Result<Simulated, SimulationError> {
+    let parameters = 0..motions.domain.dimension();
+    let center: Vec<f64> = parameters.clone().map(|parameter| motions.domain.midpoint(parameter)).collect();
+    let half_widths: Vec<f64> = parameters.map(|parameter| motions.domain.half_width(parameter)).collect();
+    if motions.simulator.system.analysis.visits() {
+        return visit_jets(motions, space, &center.into(), &half_widths, reduce);
     }
+    let about = JetBox { center: &center, half_width: &half_widths };
+    let jet = SampleJet::start(motions.simulator, space, about, motions.schedule, motions.tolerance.is_some())?;
+    let mut jet = jet.heeding(motions.interruption);
+    let (mut values, mut stop, mut next) = (Vec::new(), None, 0);
+    while next < motions.schedule.rows && stop.is_none() {
+        let rows = next..(next + BLOCK).min(motions.schedule.rows);
+        stop = jet.advance(motions.schedule, rows.clone(), &mut values);
+        if jet.is_cut() {
+            break;
+        }
+        reduce(rows.clone(), &values);
+        motions.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
+        next = rows.end;
+    }
+    if next == motions.schedule.rows || stop.is_some() {
+        motions.over.fetch_add(1, Ordering::Relaxed);
+    }
+    let missing = motions.schedule.rows - stop.map_or(next, |stop| stop.row);
+    let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
+    Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
 }

@@ -8,6 +8,7 @@ mod nominal;
 mod progress;
 mod stored;
 mod told;
+mod visits;
 
 use std::ops::Range as Rows;
 use std::sync::OnceLock;
@@ -17,7 +18,7 @@ use symdiff::Expr;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::effort::instructions_of_step;
+use super::price::instructions_of_step;
 use super::reduced::{Store, steps_of};
 use crate::compile::{self, has_kink, jumps};
 use crate::grammar::quantity::Dimension;
@@ -29,6 +30,7 @@ use crate::simulate::{
     SimulationError, Simulator, Steps, Stop, choose_independent,
 };
 
+pub(super) use nominal::nominal;
 pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
 use told::effort;
@@ -49,20 +51,20 @@ const NUMBER_AT_REST: f64 = 1e-12;
 
 /// A mechanism under one schedule.
 pub(super) struct Motions<'a> {
-    pub(super) simulator: &'a Simulator,
-    pub(super) domain: &'a ParameterBox,
-    pub(super) schedule: &'a Schedule,
+    simulator: &'a Simulator,
+    domain: &'a ParameterBox,
+    schedule: &'a Schedule,
     /// Of the steps' local errors, where they are controlled.
-    pub(super) tolerance: Option<Controller>,
-    pub(super) progress: &'a Progress<'a>,
-    pub(super) interruption: Interruption<'a>,
+    tolerance: Option<Controller>,
+    progress: &'a Progress<'a>,
+    interruption: Interruption<'a>,
     /// Where outputs are reduced to one number: keeps what samples are reduced to.
     store: Option<&'a Store>,
     channels: &'a [Channel],
     /// Notes all simulated values.
     ledger: Option<&'a Ledger>,
     /// Simulations that are over: at the end, or where they stopped.
-    pub(super) over: AtomicUsize,
+    over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
     /// Which outputs' formulas jump, found when it is asked: every row asks.
@@ -159,7 +161,7 @@ impl<'a> Motions<'a> {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, SimulationError> {
         if self.simulator.system.analysis.visits() {
-            return self.visit(samples, sampling, reduce);
+            return visits::visit(self, samples, sampling, reduce);
         }
         let mut run = self.start(samples)?;
         Ok(self.advance(&mut run, samples, sampling, reduce))
@@ -219,7 +221,7 @@ impl<'a> Motions<'a> {
         Simulated {
             effort: effort(run.counters()),
             beyond_tolerance_from: run.beyond_tolerance_from(),
-            too_deep: run.too_deep().map(|found| self.too_deep(found)),
+            too_deep: run.too_deep().map(|found| told::too_deep(self, found)),
             worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
@@ -315,15 +317,15 @@ impl Ensemble for Motions<'_> {
     }
 
     fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
-        Ok(self.dense(samples)?)
+        Ok(dense::dense(self, samples)?)
     }
 
     fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
-        Ok(self.cut(samples)?)
+        Ok(cut::cut(self, samples)?)
     }
 
     fn segment_jets(&self, space: &JetSpace, xi: &[f64]) -> Result<Option<(usize, SegmentMotions)>, EnsembleError> {
-        Ok(self.cut_jet(space, xi)?)
+        Ok(cut::cut_jet(self, space, xi)?)
     }
 
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
@@ -334,7 +336,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
-        Ok(self.jet_about_middle(space, reduce)?)
+        Ok(jet::jet_about_middle(self, space, reduce)?)
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {

@@ -8,7 +8,7 @@ use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan
 use crate::numerics::{Sample, ScanBounds, ScanGrid};
 use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
-use crate::study::effort::INSTRUCTION_SECONDS;
+use crate::study::price::INSTRUCTION_SECONDS;
 
 /// Values of a part are about so many bytes, in samples between [`FEWEST`] and [`MOST`], a whole number of the widest
 /// tiles.

@@ -4,16 +4,14 @@ use super::Motions;
 use crate::methods::{self, Effort, StopCause};
 use crate::simulate::{Counters, Stop, TooDeep};
 
-impl Motions<'_> {
-    pub(super) fn too_deep(&self, found: TooDeep) -> methods::TooDeep {
-        let mut contacts = self.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
-        let contact = contacts.nth(found.contact).map(|effect| effect.name.clone()).unwrap_or_default();
-        let TooDeep { time, depth, deepest, .. } = found;
-        methods::TooDeep { contact, time, depth, deepest }
-    }
+pub fn too_deep(motions: &Motions, found: TooDeep) -> methods::TooDeep {
+    let mut contacts = motions.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
+    let contact = contacts.nth(found.contact).map(|effect| effect.name.clone()).unwrap_or_default();
+    let TooDeep { time, depth, deepest, .. } = found;
+    methods::TooDeep { contact, time, depth, deepest }
 }
 
-pub(super) fn effort(counters: Counters) -> Effort {
+pub fn effort(counters: Counters) -> Effort {
     Effort { iterations: counters.iterations, rank_revealing: counters.rank_revealing }
 }
 

@@ -7,13 +7,18 @@
 //! branch. A start in a singular configuration, a motion that passes one, and redundant constraints are left to
 //! absolute coordinates.
 
+mod comparison;
+mod loop_cuts;
+
 use crate::assemble::{self, BuildError, FormulationInfo, System};
 use crate::model::{Description, Formulation, Stepping};
 use crate::numerics::Sample;
 use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularWatch, Stepper};
 
-use super::comparison::{instructions, starts_alike};
-use super::{RunError, first_step, loop_cuts, scheme};
+use super::{RunError, first_step, scheme};
+use comparison::starts_alike;
+
+pub use comparison::instructions;
 
 /// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the plane
 /// and in space. Long planar chains are as short in absolute coordinates; in space they never are, but deep loops
@@ -55,7 +60,7 @@ const FEW_BODIES: usize = 50;
 ///
 /// # Errors
 /// Where the mechanism cannot be built or assembled, or takes too many operations in both formulations.
-pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError> {
+pub fn compiled(description: &Description) -> Result<Simulator, RunError> {
     let within = |system: System, operations: usize| {
         Simulator::within(system, scheme(description), first_step(description), Some(operations))
     };
@@ -258,7 +263,7 @@ fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
 ///
 /// # Errors
 /// As for [`compiled`].
-pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError> {
+pub fn assembled(description: &Description) -> Result<Assembled, RunError> {
     let within = |system: System, operations: usize| {
         Assembled::within(system, scheme(description), first_step(description), Some(operations))
     };
@@ -338,7 +343,7 @@ fn other_way<T>(
 }
 
 /// A copy of the description with the formulation that was chosen for it, and the cut of its loops.
-pub(super) fn as_chosen(description: &Description, chosen: &Simulator) -> Description {
+pub fn as_chosen(description: &Description, chosen: &Simulator) -> Description {
     let mut description = description.clone();
     let joint = chosen.system.formulation.joint;
     description.simulation.formulation = if joint { Formulation::Joint } else { Formulation::Absolute };

@@ -1,9 +1,9 @@
 //! Cost of each effect: a model is compiled without it, and the difference is counted.
 
+use crate::study::formulation::{as_chosen, compiled};
+use crate::study::{RunError, prepare_whole};
 use rayon::prelude::*;
 
-use super::formulation::{as_chosen, compiled};
-use super::{RunError, prepare_whole};
 use crate::compile::Program;
 use crate::model::{Description, EffectKind, load_str};
 use crate::results::{EffectCost, StepInstructions};
@@ -54,7 +54,7 @@ fn example(effect: Option<(&str, &str)>) -> Description {
 
 /// Cost added by each effect of a model, in file order. `None` where others need it (they use its sensors, or
 /// only it holds something), and for models with too many effects for their size.
-pub(super) fn effect_costs(description: &Description, simulator: &Simulator) -> Vec<Option<EffectCost>> {
+pub fn effect_costs(description: &Description, simulator: &Simulator) -> Vec<Option<EffectCost>> {
     let all = step_instructions(&simulator.program, true);
     let instructions = (all.step + all.factor + all.iteration).unsigned_abs() as usize;
     let effects = 0..description.effects.len();

@@ -7,7 +7,7 @@ use crate::simulate::Simulator;
 const ALIKE: f64 = 1e-6;
 
 /// Whether both have the same degrees of freedom and the same outputs at the start.
-pub(super) fn starts_alike(one: &Simulator, other: &Simulator) -> bool {
+pub fn starts_alike(one: &Simulator, other: &Simulator) -> bool {
     let [first, second] = [one, other].map(Simulator::outputs_at_start);
     // NaN is like nothing.
     let alike = |(a, b): (f64, f64)| (a - b).abs() <= ALIKE * a.abs().max(b.abs()).max(1.0);
@@ -17,6 +17,6 @@ pub(super) fn starts_alike(one: &Simulator, other: &Simulator) -> bool {
 }
 
 /// Instructions of a step with one correction.
-pub(super) fn instructions(simulator: &Simulator) -> usize {
+pub fn instructions(simulator: &Simulator) -> usize {
     simulator.program.instructions()
 }

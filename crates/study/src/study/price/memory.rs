@@ -1,8 +1,9 @@
 //! How much memory a run's results take at least, and whether it is there: what would end in the middle is refused
 //! before it begins.
 
-use super::single::Study;
+use super::work::held_out;
 use crate::methods::Sensitivity;
+use crate::study::problem::Study;
 
 /// Of a number, of a range, and of the sensitivities of an output in a row, of which each has three lists of its own,
 /// bytes.
@@ -27,26 +28,24 @@ pub struct Memory {
 
 impl Memory {
     /// Memory needed and free, if the studies of a run need more than is free; `None` also where the latter is unknown.
-    pub(super) fn lacking(studies: &[Study]) -> Option<Self> {
+    pub(in crate::study) fn lacking(studies: &[Study]) -> Option<Self> {
         let free = free()?;
-        let needed = studies.iter().map(Study::least_bytes).fold(0, u64::saturating_add);
-        let largest = studies.iter().max_by_key(|study| study.least_bytes())?;
+        let needed = studies.iter().map(least_bytes).fold(0, u64::saturating_add);
+        let largest = studies.iter().max_by_key(|study| least_bytes(study))?;
         let (outputs, rows) = (largest.simulator.system.outputs.len(), largest.rows());
         (needed > free).then_some(Self { outputs, rows, needed, free })
     }
 }
 
-impl Study<'_> {
-    /// Least bytes of the results stored for every output in every row: samples that measure errors, bands and
-    /// sensitivities.
-    fn least_bytes(&self) -> u64 {
-        let (k, methods) = (self.domain.dimension(), self.request.methods().len());
-        let found = RANGE + 2 * NUMBER + SENSITIVITIES;
-        let of_method = found + 3 * LIST.max(k * NUMBER) + (3 + 3 * k) * NUMBER;
-        let of_output = self.held_out() * NUMBER + found + NUMBER + methods * of_method;
-        let of_row = (self.simulator.system.outputs.len() as u64).saturating_mul(of_output as u64);
-        of_row.saturating_mul(self.rows() as u64)
-    }
+/// Least bytes of the results stored for every output in every row: samples that measure errors, bands and
+/// sensitivities.
+fn least_bytes(study: &Study) -> u64 {
+    let (k, methods) = (study.domain.dimension(), study.request.methods().len());
+    let found = RANGE + 2 * NUMBER + SENSITIVITIES;
+    let of_method = found + 3 * LIST.max(k * NUMBER) + (3 + 3 * k) * NUMBER;
+    let of_output = held_out(study) * NUMBER + found + NUMBER + methods * of_method;
+    let of_row = (study.simulator.system.outputs.len() as u64).saturating_mul(of_output as u64);
+    of_row.saturating_mul(study.rows() as u64)
 }
 
 fn gigabytes(bytes: &u64) -> String {

@@ -1,16 +1,19 @@
 //! From what methods found under one schedule to bounds and a summary.
 
+use super::analysis::analysis_summary;
+use super::keeping::kept;
+use super::results::{Ran, Results};
+use crate::study::bounding::{bands, contributions};
+use crate::study::internal::{InternalError, caught};
+use crate::study::problem::Study;
+use crate::study::stepping::events_of_parts;
 use symdiff::math;
 
-use super::bands::bands;
-use super::internal::{InternalError, caught};
-use super::outcome::{Outcome, Ran, Results};
-use super::single::Study;
 use crate::assemble::ConstraintId;
-use crate::methods::{Method, Sensitivity, Stop, StopCause};
+use crate::methods::{Stop, StopCause};
 use crate::numerics::Sample;
 use crate::results::{
-    Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
+    Bounds, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
     SingularSummary, Summary, Witness,
 };
 use crate::simulate::{EnsembleRun, ExcitedMode, Observed, OpenConstraint, Schedule, SimulationError};
@@ -25,78 +28,54 @@ const WORTH_TELLING: f64 = 1e-3;
 /// A step resolves a mode that turns by this angle, rad, in it.
 const RESOLVING: f64 = 0.1;
 
-impl Study<'_> {
-    /// Bounds up to the last row of which something is known, and the summary.
-    pub(super) fn conclude(&self, mut results: Results, note: Option<String>) -> Ran {
-        let study = self;
-        let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
-        // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
-        let rows = results.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
-        let outputs = study.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
-            name: output.name.clone(),
-            unit: output.unit.clone(),
-            display: None,
-            nominal: results.nominal.result.bands[place][..rows].iter().map(|range| range.lower).collect(),
-            bands: bands(study, &results, place, rows),
-        });
-        let contributions = contributions(study, &results, rows);
-        let bounds = Bounds {
-            contributions,
-            times: (0..rows).map(|row| results.schedule.time(row)).collect(),
-            outputs: outputs.collect(),
-            covered: Vec::new(),
-            analysis: study.simulator.system.analysis,
-            responses: Vec::new(),
-            witnesses: witnesses(&results, rows),
-        };
-        let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
-        let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());
-        let stopped = stop.map(|(stop, sample)| {
-            caught("a message", || failure(study, &results.schedule, &stop, &sample))
-                .unwrap_or_else(|error| error.to_string())
-        });
-        let internal = results.internal.iter().map(InternalError::to_string);
-        let failures: Vec<String> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
-        let failure = (!failures.is_empty()).then(|| failures.join("; "));
-        let whole = results.whole().min(rows);
-        let kept = study.kept(&mut results, whole);
-        let summary = summary(study, results, &bounds, failure);
-        Ran { bounds, summary, whole, kept }
-    }
+/// Bounds up to the last row of which something is known, and the summary.
+pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ran {
+    let study = study;
+    let stop = results.bounded.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
+    // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
+    let rows = results.bounded.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
+    let outputs = study.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
+        name: output.name.clone(),
+        unit: output.unit.clone(),
+        display: None,
+        nominal: results.bounded.nominal.result.bands[place][..rows].iter().map(|range| range.lower).collect(),
+        bands: bands(study, &results.bounded, place, rows),
+    });
+    let contributions = contributions(study, &results.bounded, rows);
+    let bounds = Bounds {
+        contributions,
+        times: (0..rows).map(|row| results.bounded.schedule.time(row)).collect(),
+        outputs: outputs.collect(),
+        covered: Vec::new(),
+        analysis: study.simulator.system.analysis,
+        responses: Vec::new(),
+        witnesses: witnesses(&results, rows),
+    };
+    let notes = || results.bounded.outcomes().find_map(|outcome| outcome.result.note.clone());
+    let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());
+    let stopped = stop.map(|(stop, sample)| {
+        caught("a message", || failure(study, &results.bounded.schedule, &stop, &sample))
+            .unwrap_or_else(|error| error.to_string())
+    });
+    let internal = results.internal.iter().map(InternalError::to_string);
+    let failures: Vec<String> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
+    let failure = (!failures.is_empty()).then(|| failures.join("; "));
+    let whole = results.bounded.whole().min(rows);
+    let kept = kept(study, &mut results, whole);
+    let summary = summary(study, results, &bounds, failure);
+    Ran { bounds, summary, whole, kept }
 }
 
 /// The samples at which outputs are least and largest, row by row, of those that were searched for.
 fn witnesses(results: &Results, rows: usize) -> Vec<Witness> {
     let Some((_, attained)) = &results.attained else { return Vec::new() };
-    let outputs = results.nominal.result.bands.len();
+    let outputs = results.bounded.nominal.result.bands.len();
     let of_end = |row: usize, output: usize, is_upper: bool| {
         let (value, sample) = attained.ends(row, output)[usize::from(is_upper)]?;
         Some(Witness { row, output, is_upper, value, parameters: sample.to_vec() })
     };
     let all = (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output)));
     all.flat_map(|(row, output)| [false, true].map(|is_upper| of_end(row, output, is_upper))).flatten().collect()
-}
-
-/// Every parameter's contribution to every output's spread, from a method that knows it.
-pub(super) fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contribution>> {
-    let known = |(_, outcome): &&(Method, Outcome)| outcome.result.sensitivities.iter().flatten().any(Option::is_some);
-    let Some((_, outcome)) = results.methods.iter().find(known) else { return Vec::new() };
-    let of_parameter = |rows_of_output: &[Option<Sensitivity>], place: usize| {
-        let over_time = |pick: fn(&Sensitivity) -> &Vec<f64>| {
-            let at = |row: &Option<Sensitivity>| row.as_ref().map_or(f64::NAN, |sensitivity| pick(sensitivity)[place]);
-            rows_of_output[..rows].iter().map(at).collect()
-        };
-        Contribution {
-            parameter: study.simulator.system.parameters[place].name.clone(),
-            main: over_time(|sensitivity| &sensitivity.main),
-            total: over_time(|sensitivity| &sensitivity.total),
-            width_without: over_time(|sensitivity| &sensitivity.width_without),
-        }
-    };
-    let parameters = 0..study.domain.dimension();
-    let of_output =
-        |rows: &Vec<Option<Sensitivity>>| parameters.clone().map(|place| of_parameter(rows, place)).collect();
-    outcome.result.sensitivities.iter().map(of_output).collect()
 }
 
 /// What happened where a sample stopped, for people.
@@ -134,13 +113,13 @@ fn no_number(study: &Study, schedule: &Schedule, row: usize, sample: &Sample) ->
 
 /// The mode whose damping by the steps moves an output most.
 fn damped_mode(results: &Results, bounds: &Bounds) -> Option<DampedMode> {
-    let (validation, _) = results.validation.as_ref()?;
+    let (validation, _) = results.bounded.validation.as_ref()?;
     let end = bounds.times.last().copied()?;
     let moved = |mode: &ExcitedMode| {
         let share = |output: usize| mode.lost(output, end) / validation.spans[output];
         (0..bounds.outputs.len()).map(share).filter(|share| share.is_finite()).fold(0.0, f64::max)
     };
-    let worst = results.damped.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
+    let worst = results.bounded.doubts.damped.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
     (moved(worst) > WORTH_TELLING).then(|| {
         let step = RESOLVING / worst.frequency;
         let digit = 10.0_f64.powi(math::log10(step).floor() as i32);
@@ -153,7 +132,8 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
     let mobility = &study.simulator.mobility;
     let names = |constraints: &[ConstraintId]| system.constraint_names(constraints);
     let damped_mode = damped_mode(&results, bounds);
-    let unmet_switch = results.unmet_switch_from().map(|row| results.schedule.time(row.saturating_sub(1)));
+    let unmet_switch =
+        results.bounded.unmet_switch_from().map(|row| results.bounded.schedule.time(row.saturating_sub(1)));
     let singular =
         results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
     Summary {
@@ -169,14 +149,14 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         damped_mode,
-        events: study.events_of_parts(&results.schedule),
+        events: events_of_parts(study, &results.bounded.schedule),
         unmet_switch,
-        too_deep: results.too_deep(),
-        beyond_tolerance: results.beyond_tolerance(),
-        integration: results.schedule.integration.name(),
+        too_deep: results.bounded.too_deep(),
+        beyond_tolerance: results.bounded.beyond_tolerance(),
+        integration: results.bounded.schedule.integration.name(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
-        analysis: study.analysis_summary(),
+        analysis: analysis_summary(study),
         parameters: system
             .parameters
             .iter()
@@ -190,15 +170,15 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             })
             .collect(),
         assemblies: Vec::new(),
-        methods: std::iter::once(results.nominal.summary)
-            .chain(results.validation.map(|(_, summary)| summary))
-            .chain(results.switches.map(|(_, summary)| summary))
+        methods: std::iter::once(results.bounded.nominal.summary)
+            .chain(results.bounded.validation.map(|(_, summary)| summary))
+            .chain(results.bounded.doubts.switches.map(|(_, summary)| summary))
             .chain(results.attained.map(|(outcome, _)| outcome.summary))
-            .chain(results.methods.into_iter().map(|(_, outcome)| MethodSummary {
+            .chain(results.bounded.methods.into_iter().map(|(_, outcome)| MethodSummary {
                 expanded_outputs: outcome.result.expanded.iter().map(|&k| system.outputs[k].name.clone()).collect(),
                 ..outcome.summary
             }))
-            .chain(results.halved.into_iter().map(|(method, outcome)| MethodSummary {
+            .chain(results.bounded.halved.into_iter().map(|(method, outcome)| MethodSummary {
                 method: format!("{} with halved steps", method.name()),
                 ..outcome.summary
             }))

@@ -1,30 +1,28 @@
 //! What analyses other than a motion add to a run's results.
 
-use super::single::Study;
 use crate::model::{Analysis, Description};
 use crate::results::{AnalysisSummary, Band, Bounds, OutputBounds, ResponsePoint, Summary, ValueSummary};
+use crate::study::problem::Study;
 
-impl Study<'_> {
-    /// Analysis and its result for the nominal equilibrium; none for a motion from a given start.
-    pub(super) fn analysis_summary(&self) -> Option<AnalysisSummary> {
-        let system = &self.simulator.system;
-        let mut summary = AnalysisSummary { kind: system.analysis.name().to_owned(), ..AnalysisSummary::default() };
-        let Some(equilibrium) = &self.simulator.equilibrium else {
-            return (system.analysis != Analysis::Motion).then_some(summary);
-        };
-        if system.has_states() {
-            return (system.analysis != Analysis::Motion).then_some(summary);
-        }
-        let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
-        let found = equilibrium.stability(&self.simulator.nominal, &parameters);
-        summary.stability = Some(found.smallest);
-        summary.indifferent = found.indifferent.into_iter().map(|coordinate| system[coordinate].name.clone()).collect();
-        Some(summary)
+/// Analysis and its result for the nominal equilibrium; none for a motion from a given start.
+pub fn analysis_summary(study: &Study) -> Option<AnalysisSummary> {
+    let system = &study.simulator.system;
+    let mut summary = AnalysisSummary { kind: system.analysis.name().to_owned(), ..AnalysisSummary::default() };
+    let Some(equilibrium) = &study.simulator.equilibrium else {
+        return (system.analysis != Analysis::Motion).then_some(summary);
+    };
+    if system.has_states() {
+        return (system.analysis != Analysis::Motion).then_some(summary);
     }
+    let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
+    let found = equilibrium.stability(&study.simulator.nominal, &parameters);
+    summary.stability = Some(found.smallest);
+    summary.indifferent = found.indifferent.into_iter().map(|coordinate| system[coordinate].name.clone()).collect();
+    Some(summary)
 }
 
 /// Takes the frequency responses out of the outputs, and notes what an analysis of one configuration found.
-pub(super) fn arrange(description: &Description, bounds: &mut Bounds, summary: &mut Summary) {
+pub fn arrange(description: &Description, bounds: &mut Bounds, summary: &mut Summary) {
     let frequencies = || {
         let of = |response: &crate::model::ResponseRequest| {
             let name = response.name.clone();

@@ -1,10 +1,10 @@
 //! The time that a run takes unasked, and its end where the estimate was too low.
 
+use super::{MOST_SECONDS, Price, in_words};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use super::price::{MOST_SECONDS, Price, in_words};
 use crate::methods::Budget;
 
 /// So many times the estimate are taken before somebody is asked.
@@ -28,7 +28,7 @@ pub struct Allowance {
 
 impl Allowance {
     /// From now on.
-    pub(super) fn begin() -> Self {
+    pub(in crate::study) fn begin() -> Self {
         Self {
             begun: Instant::now(),
             expected: AtomicU64::new(0),
@@ -38,14 +38,14 @@ impl Allowance {
     }
 
     /// Adds the estimate of another round, of which the model allows so much.
-    pub(super) fn expect(&self, price: &Price, budget: &Budget) {
+    pub(in crate::study) fn expect(&self, price: &Price, budget: &Budget) {
         let is_allowed = budget.simulations > Budget::default().simulations;
         let seconds = if is_allowed { FOR_EVER } else { price.at_most() + budget.seconds.unwrap_or(0.0) };
         self.expected.fetch_add((1e3 * seconds) as u64, Ordering::Relaxed);
     }
 
     /// Whether the run is to end.
-    pub(super) fn is_spent(&self) -> bool {
+    pub(in crate::study) fn is_spent(&self) -> bool {
         self.is_spent_after(self.begun.elapsed())
     }
 
@@ -63,7 +63,7 @@ impl Allowance {
     }
 
     /// Why it ended, if it did.
-    pub(super) fn ended(&self) -> Option<String> {
+    pub(in crate::study) fn ended(&self) -> Option<String> {
         let estimate = self.estimate.get()?;
         let limit = TIMES as f64 * estimate.max(MOST_SECONDS);
         Some(format!(

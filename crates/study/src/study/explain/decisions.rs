@@ -1,11 +1,10 @@
 //! Omitted or less frequent computations: the saving of each decision is counted by compiling without it.
 
+use crate::study::formulation::{as_chosen, compiled, instructions};
+use crate::study::prepared::{Prepared, prepare};
+use crate::study::stepping::decision;
 use symdiff::{Formula, Input, lower};
 
-use super::comparison::instructions;
-use super::explicit;
-use super::formulation::{as_chosen, compiled};
-use super::prepared::{Prepared, prepare};
 use crate::compile::Tapes;
 use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};
@@ -18,12 +17,12 @@ const COUNTED: usize = 30_000;
 const NAMED: usize = 8;
 
 /// Names of the uncertain parameters.
-pub(super) fn uncertain(description: &Description) -> Vec<String> {
+pub fn uncertain(description: &Description) -> Vec<String> {
     description.uncertain().map(|(_, parameter)| parameter.name.clone()).collect()
 }
 
 /// All decisions about a model.
-pub(super) fn decisions(description: &Description, reduction: &Reduction, prepared: &[Prepared]) -> Vec<Decision> {
+pub fn decisions(description: &Description, reduction: &Reduction, prepared: &[Prepared]) -> Vec<Decision> {
     let step: usize = prepared.iter().map(|one| instructions(&one.simulator)).sum();
     let affordable = step <= COUNTED;
     let default = Choices::default();
@@ -51,7 +50,7 @@ pub(super) fn decisions(description: &Description, reduction: &Reduction, prepar
     }
     found.extend(subsystems(description, prepared));
     found.extend(constants(prepared));
-    found.extend(prepared.iter().filter_map(|one| explicit::decision(&one.subsystem.description, &one.simulator)));
+    found.extend(prepared.iter().filter_map(|one| decision(&one.subsystem.description, &one.simulator)));
     if affordable {
         found.extend(numbers(prepared, step));
         found.extend(unasked(prepared));

@@ -18,7 +18,7 @@ const BUDGET: usize = 20_000;
 /// behind joints of several axes have coordinates of their own. `compile` makes one of a description that says its cut,
 /// and gives up where it takes many times the operations of the best so far. Redundant constraints and a singular start
 /// depend on the cut, and are left with the first.
-pub(super) fn shortest(
+pub fn shortest(
     description: &Description,
     first: Simulator,
     with_roots: bool,

@@ -4,12 +4,12 @@
 //! mechanism, from which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded
 //! coordinates.
 
+use crate::study::ensemble::closure::MotionClosure;
+use crate::study::reduced::{KeptReduced, Margins, MarginsOfPart, ReducedValues};
 use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::ensemble::closure::MotionClosure;
-use super::reduced::{KeptReduced, Margins, MarginsOfPart, ReducedValues};
 use crate::methods::{self, KeptSurrogate};
 use crate::numerics::{BandError, SparseBasis};
 use crate::reduce::Subsystem;
@@ -20,7 +20,7 @@ const CHUNK: usize = 1024;
 
 /// A subsystem's surrogate.
 #[derive(Clone, Debug)]
-pub(super) struct KeptPart {
+pub struct KeptPart {
     pub simulator: Simulator,
     pub surrogate: KeptSurrogate,
     /// Errors of the values, by output.
@@ -80,7 +80,7 @@ impl Placed {
 
 impl Kept {
     /// Of all subsystems of a model of so many outputs.
-    pub(super) fn of_parts(parts: Vec<(KeptPart, &Subsystem)>, outputs: usize) -> Self {
+    pub(in crate::study) fn of_parts(parts: Vec<(KeptPart, &Subsystem)>, outputs: usize) -> Self {
         let mut places = vec![(0, 0); outputs];
         for (number, (_, subsystem)) in parts.iter().enumerate() {
             subsystem.outputs.iter().enumerate().for_each(|(place, &output)| places[output] = (number, place));

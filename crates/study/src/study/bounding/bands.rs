@@ -1,24 +1,24 @@
 //! Bands of an output, with their errors, and what says that they are wrong: values that the run has simulated, and one
 //! another.
 
-use super::outcome::{Outcome, Results};
-use super::single::Study;
+use super::{Bounded, Outcome};
 use crate::methods::Method;
 use crate::numerics::{BandError, Range, carries, time_error, time_error_certified};
 use crate::results::Band;
+use crate::study::problem::Study;
 
 /// An output's band by every method, with its error. All that was simulated lies within.
-pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
-    let Some((validation, _)) = &results.validation else { return Vec::new() };
-    let corrections = validation.corrections(output, rows, results.switched_from());
-    let simulated: Vec<Range> = (0..rows).map(|row| results.seen.range(row, output)).collect();
+pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Vec<Band> {
+    let Some((validation, _)) = &bounded.validation else { return Vec::new() };
+    let corrections = validation.corrections(output, rows, bounded.switched_from());
+    let simulated: Vec<Range> = (0..rows).map(|row| bounded.seen.range(row, output)).collect();
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let found = &outcome.result.bands[output][..rows];
         let is_sampled = method.about().is_sampled;
         // A proven band needs no samples. (It may miss them by the rounding of the steps' equations.)
         let widened = |(range, simulated): (&Range, &Range)| if is_sampled { range.with(*simulated) } else { *range };
         let ranges: Vec<Range> = found.iter().zip(&simulated).map(widened).collect();
-        let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
+        let halved = bounded.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
         let by_halving = |row: usize| {
             if let Some(halved) = halved {
                 return time_error_certified(found[row], halved[row]);
@@ -36,7 +36,7 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
         };
         // What halved steps have damped away too is added.
         let damped = |row: usize| -> f64 {
-            results.damped.iter().map(|mode| mode.lost(output, results.schedule.time(row))).sum()
+            bounded.doubts.damped.iter().map(|mode| mode.lost(output, bounded.schedule.time(row))).sum()
         };
         let time: Vec<f64> = (0..rows).map(|row| corrections[row].of(by_halving(row)) + damped(row)).collect();
         let with = |surrogate: &[f64]| {
@@ -46,7 +46,7 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
         let mut error = with(surrogate);
         let held: Vec<Range> = match is_sampled {
             true => simulated.clone(),
-            false => results.nominal_within(&study.domain, output)[..rows].to_vec(),
+            false => bounded.nominal_within(&study.domain, output)[..rows].to_vec(),
         };
         let contradicted = error.contradicted(found, &held);
         if contradicted.contains(&true) {
@@ -55,7 +55,7 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
             error = with(&raised);
             (0..rows).filter(|&row| contradicted[row]).for_each(|row| error.distrust(row..row + 1));
         }
-        if let Some(row) = results.unreliable_from() {
+        if let Some(row) = bounded.unreliable_from() {
             error.distrust(row..rows);
         }
         Band {
@@ -65,7 +65,7 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
             error,
         }
     };
-    let mut bands: Vec<Band> = results.methods.iter().enumerate().map(band).collect();
+    let mut bands: Vec<Band> = bounded.methods.iter().enumerate().map(band).collect();
     flag_exclusions(&mut bands);
     bands
 }

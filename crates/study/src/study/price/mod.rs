@@ -1,9 +1,20 @@
-//! What a run costs, before it is spent.
+//! What a run costs, before it is spent: `work` counts simulations, `effort` what each takes, `memory` what the results
+//! take, and `allowance` ends a run that takes much longer than was estimated.
 
-use super::effort::{INSTRUCTION_SECONDS, instructions_of_step};
-use super::single::Study;
+mod allowance;
+mod effort;
+mod memory;
+mod work;
+
+use super::problem::Study;
 use crate::model::Stepping;
 use crate::simulate::Schedule;
+use work::{decided_simulations, planned_simulations, planned_values};
+
+pub use allowance::Allowance;
+pub use effort::{INSTRUCTION_SECONDS, instructions_of_step};
+pub use memory::Memory;
+pub use work::{stored_bytes, total_work};
 
 /// Most simulations that run unasked.
 const MOST_SIMULATIONS: f64 = 20_000.0;
@@ -33,11 +44,11 @@ pub struct Price {
 
 impl Price {
     /// What the methods' own numbers of samples come to; where a tolerance decides, the budget does.
-    pub(super) fn of(studies: &[Study]) -> Self {
+    pub(in crate::study) fn of(studies: &[Study]) -> Self {
         let threads = rayon::current_num_threads();
         let (mut simulations, mut seconds, mut at_most) = (0.0, 0.0, 0.0);
         for study in studies {
-            let of_study = study.planned_simulations();
+            let of_study = planned_simulations(study);
             let simulation = &study.description.simulation;
             let steps = match simulation.stepping {
                 Stepping::Fixed(step) => {
@@ -50,9 +61,9 @@ impl Price {
             let of_step = instructions_of_step(&study.simulator);
             simulations += of_study;
             let of_sample = steps * of_step * INSTRUCTION_SECONDS;
-            let planned = (of_study * of_sample + study.planned_values() * VALUE_SECONDS) / threads as f64;
+            let planned = (of_study * of_sample + planned_values(study) * VALUE_SECONDS) / threads as f64;
             seconds += planned;
-            at_most += planned + study.decided_simulations() * of_sample / threads as f64;
+            at_most += planned + decided_simulations(study) * of_sample / threads as f64;
         }
         Self { simulations, seconds, at_most, threads }
     }
@@ -76,7 +87,7 @@ impl Price {
 }
 
 /// A time with two digits or more, in the unit that people would give it in.
-pub(super) fn in_words(&seconds: &f64) -> String {
+fn in_words(&seconds: &f64) -> String {
     const UNITS: [(f64, &str); 5] = [(1e-3, "ms"), (1.0, "s"), (60.0, "min"), (3600.0, "h"), (86_400.0, "days")];
     if seconds < 1e-3 {
         return "1 ms".to_owned();

@@ -5,7 +5,7 @@ use symdiff::math;
 use crate::simulate::{Integration, Schedule};
 
 /// Share of the tolerance that the steps may take; the surrogate has the rest.
-pub(super) const SHARE: f64 = 0.5;
+pub const SHARE: f64 = 0.5;
 
 /// The target share, so that the result is within the tolerance with some room.
 const AIM: f64 = 0.4;
@@ -33,7 +33,7 @@ const GAIN: f64 = 8.0;
 /// Divides or joins a schedule's steps until their error is within its share of the tolerance. The scheme is of second
 /// order, so that the error goes as the step's square; of higher order where steps are extrapolated, which is tried
 /// where it would take fewer.
-pub(super) struct StepSearch {
+pub struct StepSearch {
     base: Schedule,
     /// Steps between rows, where they are of equal length; then they can be joined too.
     per_row: Option<usize>,

@@ -1,14 +1,21 @@
 //! `mbint explain`: what a model is compiled to.
 
-use super::decisions::{decisions, uncertain};
-use super::effect_costs::effect_costs;
+mod decisions;
+mod effect_costs;
+
 use super::prepared::{Prepared, prepare};
 use super::{RunError, reduced};
 use crate::compile::{Program, Tapes};
 use crate::model::Description;
 use crate::reduce::Choices;
-use crate::results::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
+use crate::results::{
+    EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix, explanation_of_subsystems,
+};
 use crate::simulate::Simulator;
+
+use decisions::{decisions, uncertain};
+use effect_costs::effect_costs;
+pub use effect_costs::language_costs;
 
 /// Most joints that are listed.
 const MOST_NAMED: usize = 8;
@@ -27,7 +34,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
         }
         explanation
     };
-    let mut explanation = Explanation::of_subsystems(prepared.iter().map(of_subsystem).collect());
+    let mut explanation = explanation_of_subsystems(prepared.iter().map(of_subsystem).collect());
     let place = |name: &String| description.outputs.iter().position(|output| output.name == *name);
     explanation.outputs.retain(|name| place(name).is_some());
     explanation.outputs.sort_by_key(place);

@@ -1,0 +1,146 @@
+//! Steps from a tolerance: the error of every output, relative to how far it moves.
+
+use super::validated::integration;
+use crate::study::bounding::simulation_error;
+use crate::study::ensemble::Progress;
+use crate::study::problem::Study;
+use symdiff::math;
+
+use crate::methods::{Ensemble, Observed, Sampling, Until};
+use crate::numerics::{Sample, corners};
+use crate::simulate::{Controller, Schedule, SimulationError, ToleranceSchedule, schedule_for_tolerance};
+
+/// Corners of the box that join the nominal sample as controlling samples of the step size.
+const CONTROLLING_CORNERS: usize = 16;
+
+/// At second order a value is off by this times what halving the steps changes.
+const RICHARDSON: f64 = 4.0 / 3.0;
+
+/// The share of the tolerance that shorter steps aim at.
+const AIM: f64 = 0.6;
+
+/// Schedules that are tried.
+const ROUNDS: usize = 4;
+
+/// Most that shorter steps may grow in number: so many times, and up to so many (times coordinates) in any case.
+const MOST_GROWTH: f64 = 6.0;
+const FEW_STEPS: f64 = 400_000.0;
+
+/// An output that moves less than this, relative to the largest value of its dimension, is constant.
+const CONSTANT: f64 = 1e-9;
+
+/// So is one that moves less than this, relative to the largest value of all: rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// An output whose range falls below this share of itself with halved steps is constant too.
+const STEADY: f64 = 0.5;
+
+/// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors
+/// that are allowed for it. How far an error made early is carried is the problem's: the first schedule shows it.
+pub fn schedule_within(
+    study: &Study,
+    tolerance: f64,
+    samples: &[Sample],
+) -> Result<(ToleranceSchedule, Controller), SimulationError> {
+    let times = (study.description.simulation.duration, study.description.simulation.output_step);
+    let integration = integration(study);
+    // Plain steps for an error of e are as long as the root of e, extrapolated ones as long as a higher root.
+    let of_plain = |error: f64| match integration.order() {
+        2 => error,
+        order => math::pow(error, 2.0 / order as f64),
+    };
+    let mut controller = Controller { tolerance: of_plain(tolerance), duration: times.0 };
+    let schedule = |controller: Controller| -> Result<ToleranceSchedule, SimulationError> {
+        let controlled =
+            schedule_for_tolerance(&study.simulator, samples, times, controller.tolerance, study.interruption)?;
+        Ok(ToleranceSchedule { schedule: controlled.schedule.taken(integration), ..controlled })
+    };
+    let mut controlled = schedule(controller)?;
+    let steps = |controlled: &ToleranceSchedule| controlled.schedule.steps_before(controlled.schedule.rows - 1) as f64;
+    let most = (MOST_GROWTH * steps(&controlled)).max(FEW_STEPS / study.simulator.system.q.len() as f64);
+    for _ in 1..ROUNDS {
+        if controlled.failure.is_some() || study.interruption.is_asked() {
+            break;
+        }
+        let share = steps_error(study, &controlled.schedule, Some(controller), samples)? / tolerance;
+        // Steps go with the root of the tolerance.
+        let room = (most / steps(&controlled).max(1.0)).powi(2);
+        let factor = of_plain(share / AIM).min(room);
+        if share <= 1.0 || factor < 1.5 {
+            break;
+        }
+        let finer = Controller { tolerance: controller.tolerance / factor, ..controller };
+        let next = schedule(finer)?;
+        if next.failure.is_some() {
+            break;
+        }
+        (controlled, controller) = (next, finer);
+    }
+    Ok((controlled, controller))
+}
+
+/// The largest error of an output at the controlling samples, relative to how far it moves, by halving the steps.
+pub fn steps_error(
+    study: &Study,
+    schedule: &Schedule,
+    controller: Option<Controller>,
+    samples: &[Sample],
+) -> Result<f64, SimulationError> {
+    let progress = Progress::new(usize::MAX, study.progress);
+    let halved = schedule.refined(2);
+    let values = |schedule, controller| {
+        let motions = study.motions(schedule, controller, &progress);
+        let mut values: Vec<f64> = Vec::new();
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: false };
+        motions
+            .simulate(samples, sampling, &mut |_, block| values.extend_from_slice(block))
+            .map_err(simulation_error)?;
+        Ok(values)
+    };
+    let (direct, halved) =
+        (values(schedule, controller)?, values(&halved, controller.map(|controller| controller.for_parts(2)))?);
+    let outputs = &study.simulator.system.outputs;
+    let lines = |values: &[f64]| -> Vec<Vec<f64>> {
+        let line = |output: usize| values.chunks_exact(samples.len()).skip(output).step_by(outputs.len()).flatten();
+        (0..outputs.len()).map(|output| line(output).copied().collect()).collect()
+    };
+    let (direct, halved) = (lines(&direct), lines(&halved));
+    let sizes: Vec<f64> = direct.iter().map(|values| largest(values.iter().copied())).collect();
+    let most = sizes.iter().copied().fold(0.0, f64::max);
+    let share = |output: usize| {
+        let same = sizes.iter().zip(outputs).filter(|(_, other)| other.dimension == outputs[output].dimension);
+        let size = same.map(|(size, _)| *size).fold(0.0, f64::max);
+        let error = RICHARDSON * largest(direct[output].iter().zip(&halved[output]).map(|(a, b)| a - b));
+        let [moves, moves_halved] = [&direct, &halved].map(|values| width(&values[output]));
+        if moves <= (CONSTANT * size).max(ROUNDING * most) {
+            return 0.0;
+        }
+        // What moves by the steps' errors alone, as an energy does, moves less with halved steps.
+        error / if moves_halved < STEADY * moves { size } else { moves }
+    };
+    Ok((0..outputs.len()).map(share).fold(0.0, f64::max))
+}
+
+/// The nominal sample and corners of the box.
+pub fn controlling_samples(study: &Study) -> Vec<Sample> {
+    let mut samples = vec![study.domain.nominal.clone()];
+    for corner in corners(study.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| study.domain.sample(xi)) {
+        if !samples.contains(&corner) {
+            samples.push(corner);
+        }
+    }
+    samples
+}
+
+/// Largest absolute value; NaN, of samples that stopped, is passed over.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
+/// From the smallest to the largest value.
+fn width(values: &[f64]) -> f64 {
+    let (lower, upper) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), &value| (lower.min(value), upper.max(value)));
+    upper - lower
+}
