@@ -39,7 +39,7 @@ impl Case {
             "two levels" => scheme.taken(Integration::Extrapolated { levels: 2 }),
             _ => Schedule::passing((duration, duration / 10.0), ends, Vec::new()).taken(Integration::Explicit),
         };
-        let system = assemble::build(&description).expect("shipped models are built");
+        let system = assemble::build(&assemble::Questions::of(&description)).expect("shipped models are built");
         let simulator = Simulator::new(system, Scheme::Hht { alpha: -0.1 }, schedule.first_step());
         let simulator = simulator.expect("shipped models are assembled");
         let sample = |number: usize| -> Sample {

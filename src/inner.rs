@@ -2,7 +2,7 @@
 //! version.
 
 pub mod assemble {
-    pub use crate::assemble::{build, in_absolute_coordinates, in_joint_coordinates};
+    pub use crate::assemble::{Questions, build, in_absolute_coordinates, in_joint_coordinates};
 }
 
 pub mod cli {
@@ -37,6 +37,10 @@ pub mod model {
 
 pub mod numerics {
     pub use crate::numerics::{RangeKind, Sample};
+}
+
+pub mod reduce {
+    pub use crate::reduce::Reduction;
 }
 
 pub mod results {

@@ -26,7 +26,7 @@ const SCHEMES: [Scheme; 5] = [
 ];
 
 fn compiled(description: &Description, scheme: Scheme, h: f64) -> Simulator {
-    Simulator::new(assemble::build(description).unwrap(), scheme, h).unwrap()
+    Simulator::new(assemble::build(&assemble::Questions::of(description)).unwrap(), scheme, h).unwrap()
 }
 
 fn nominal_sample(simulator: &Simulator) -> Sample {

@@ -59,7 +59,7 @@ impl<'g> Constraints<'g> {
             let info = ConstraintInfo { name: format!("{owner}.norm"), joint: owner, unit: ResidualUnit::Number };
             constraints.positions.add(info, normalised(p));
         }
-        let with_teeth = reactions_are_asked(description);
+        let with_teeth = reactions_are_asked(m.questions);
         for (index, joint) in m.joints.iter().enumerate() {
             let kept = if m.tree.contains(index) {
                 Vec::new()

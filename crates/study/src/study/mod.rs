@@ -42,7 +42,7 @@ mod stepping;
 mod structure;
 mod subsystems;
 
-use crate::assemble::BuildError;
+use crate::assemble::{BuildError, Questions};
 use crate::compile::Scheme;
 use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
@@ -200,7 +200,7 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
 /// # Errors
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
-    formulation::compiled(description)
+    formulation::compiled(&Questions::of(description))
 }
 
 /// The model's scheme.

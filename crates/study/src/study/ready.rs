@@ -129,6 +129,6 @@ pub fn ready(description: &Description) -> Result<Ready, RunError> {
 /// # Errors
 /// Where they cannot be built.
 pub fn built(description: &Description) -> Result<(), RunError> {
-    assemble::build(description)?;
+    assemble::build(&assemble::Questions::of(description))?;
     Ok(())
 }

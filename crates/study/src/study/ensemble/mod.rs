@@ -26,15 +26,15 @@ use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, O
 use crate::methods::{Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
-    Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
-    SimulationError, Simulator, Steps, Stop, choose_independent,
+    Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, SampleRun, Schedule, SimulationError,
+    Simulator, Steps, Stop, choose_independent,
 };
 
 pub(super) use nominal::nominal;
 pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
-use told::effort;
 pub(super) use told::stopped_at;
+use told::{effort, observed};
 
 /// Values (rows × lines × samples) that one block holds.
 const BLOCK: usize = 1 << 20;
@@ -185,10 +185,7 @@ impl<'a> Motions<'a> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Simulated {
-        let observed = match sampling.observed {
-            methods::Observed::Outputs => Observed::Outputs,
-            methods::Observed::Motion => Observed::Motion,
-        };
+        let observed = observed(sampling.observed);
         let until = sampling.until;
         let rows_a_block = Self::rows_a_block(observed.count(self.simulator), samples.len());
         let mut values = Vec::new();

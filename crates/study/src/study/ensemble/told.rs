@@ -1,8 +1,8 @@
-//! Findings of a run, as methods take them.
+//! Findings of a run, as methods take them, and what methods observe, as a run takes it.
 
 use super::Motions;
 use crate::methods::{self, Effort, StopCause};
-use crate::simulate::{Counters, Stop, TooDeep};
+use crate::simulate::{Counters, Observed, Stop, TooDeep};
 
 pub fn too_deep(motions: &Motions, found: TooDeep) -> methods::TooDeep {
     let mut contacts = motions.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
@@ -22,4 +22,11 @@ pub(in crate::study) fn stopped_at(stop: &Stop) -> methods::Stop {
         None => StopCause::NotConverged { equation: stop.equation },
     };
     methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }
+}
+
+pub fn observed(by_method: methods::Observed) -> Observed {
+    match by_method {
+        methods::Observed::Outputs => Observed::Outputs,
+        methods::Observed::Motion => Observed::Motion,
+    }
 }

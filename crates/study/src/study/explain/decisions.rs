@@ -1,10 +1,11 @@
 //! Omitted or less frequent computations: the saving of each decision is counted by compiling without it.
 
 use crate::study::formulation::{as_chosen, compiled, instructions};
-use crate::study::prepared::{Prepared, prepare};
+use crate::study::prepared::{Prepared, prepare, questions};
 use crate::study::stepping::decision;
 use symdiff::{Formula, Input, lower};
 
+use crate::assemble::Questions;
 use crate::compile::Tapes;
 use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};
@@ -185,7 +186,8 @@ fn constants(prepared: &[Prepared]) -> Vec<Decision> {
 fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
     let (mut other, mut count) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(&one.subsystem.description, &one.simulator);
+        let chosen = as_chosen(&questions(&one.subsystem), &one.simulator);
+        let mut description = chosen.description.clone();
         for parameter in &mut description.parameters {
             let ParameterValue::Formula(formula) = &parameter.value else { continue };
             if let Some(value) = formula.as_number() {
@@ -193,7 +195,7 @@ fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
                 count += 1;
             }
         }
-        other += instructions(&compiled(&description).ok()?);
+        other += instructions(&compiled(&Questions { description: &description, ..chosen }).ok()?);
     }
     (count > 0).then(|| Decision {
         what: format!(
@@ -209,12 +211,14 @@ fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
 fn unasked(prepared: &[Prepared]) -> Option<Decision> {
     let (mut other, mut own) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(&one.subsystem.description, &one.simulator);
+        let chosen = as_chosen(&questions(&one.subsystem), &one.simulator);
+        let description = chosen.description;
         let reactions = description
             .joints
             .iter()
-            .filter(|joint| joint.kind.between().is_some() && !joint.merged)
-            .flat_map(|joint| [format!("{}.force", joint.name), format!("{}.torque", joint.name)]);
+            .enumerate()
+            .filter(|(index, joint)| joint.kind.between().is_some() && !chosen.is_merged(*index))
+            .flat_map(|(_, joint)| [format!("{}.force", joint.name), format!("{}.torque", joint.name)]);
         let measures = description.effects.iter().flat_map(|effect| {
             effect.kind.measures().into_iter().map(|(measure, _)| format!("{}.{}", effect.name, measure.name()))
         });
@@ -224,9 +228,8 @@ fn unasked(prepared: &[Prepared]) -> Option<Decision> {
             let formula = Formula::parse(text).ok()?;
             Some(Output { name: text.clone(), formula, unit: String::new(), dimension: None, of_results: false })
         });
-        let outputs: Vec<Output> = outputs.collect();
-        description.outputs.extend(outputs);
-        other += compiled(&description).ok()?.program.observe().len();
+        let outputs = chosen.outputs.iter().cloned().chain(outputs).collect();
+        other += compiled(&Questions { outputs, ..chosen.clone() }).ok()?.program.observe().len();
         own += one.simulator.program.observe().len();
     }
     Some(Decision {

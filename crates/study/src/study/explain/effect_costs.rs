@@ -4,8 +4,9 @@ use crate::study::formulation::{as_chosen, compiled};
 use crate::study::{RunError, prepare_whole};
 use rayon::prelude::*;
 
+use crate::assemble::Questions;
 use crate::compile::Program;
-use crate::model::{Description, EffectKind, load_str};
+use crate::model::{Description, EffectKind, Output, load_str};
 use crate::results::{EffectCost, StepInstructions};
 use crate::simulate::Simulator;
 
@@ -54,7 +55,8 @@ fn example(effect: Option<(&str, &str)>) -> Description {
 
 /// Cost added by each effect of a model, in file order. `None` where others need it (they use its sensors, or
 /// only it holds something), and for models with too many effects for their size.
-pub fn effect_costs(description: &Description, simulator: &Simulator) -> Vec<Option<EffectCost>> {
+pub fn effect_costs(questions: &Questions, simulator: &Simulator) -> Vec<Option<EffectCost>> {
+    let description = questions.description;
     let all = step_instructions(&simulator.program, true);
     let instructions = (all.step + all.factor + all.iteration).unsigned_abs() as usize;
     let effects = 0..description.effects.len();
@@ -62,13 +64,12 @@ pub fn effect_costs(description: &Description, simulator: &Simulator) -> Vec<Opt
         return vec![None; effects.len()];
     }
     let cost = |effect: usize| {
-        let mut rest = as_chosen(description, simulator);
+        let mut rest = description.clone();
         rest.effects.remove(effect);
-        let known = |rest: &Description, name: &str| rest.symbol(name).is_some();
-        let outputs = std::mem::take(&mut rest.outputs);
-        rest.outputs =
-            outputs.into_iter().filter(|output| output.formula.names().all(|(name, _)| known(&rest, name))).collect();
-        Some(difference(simulator, &compiled(&rest).ok()?))
+        let is_known = |output: &&Output| output.formula.names().all(|(name, _)| rest.symbol(name).is_some());
+        let outputs = questions.outputs.iter().filter(is_known).cloned().collect();
+        let of_rest = Questions { description: &rest, outputs, ..as_chosen(questions, simulator) };
+        Some(difference(simulator, &compiled(&of_rest).ok()?))
     };
     effects.into_par_iter().map(cost).collect()
 }
@@ -135,7 +136,7 @@ mod tests {
             assert_eq!(counts(&without), counts(&bare), "{keyword}");
             let with_it = prepare_whole(&with).unwrap();
             assert_ne!(counts(&with_it), counts(&bare), "{keyword}");
-            assert_eq!(effect_costs(&with, &with_it), [Some(difference(&with_it, &bare))], "{keyword}");
+            assert_eq!(effect_costs(&Questions::of(&with), &with_it), [Some(difference(&with_it, &bare))], "{keyword}");
         }
     }
 }

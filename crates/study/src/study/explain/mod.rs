@@ -3,7 +3,7 @@
 mod decisions;
 mod effect_costs;
 
-use super::prepared::{Prepared, prepare};
+use super::prepared::{Prepared, prepare, questions};
 use super::{RunError, reduced};
 use crate::compile::{Program, Tapes};
 use crate::model::Description;
@@ -29,7 +29,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     let (reduction, prepared) = prepare(&model, Choices::default())?;
     let of_subsystem = |Prepared { subsystem, simulator }: &Prepared| {
         let mut explanation = of_simulator(&description.name, &subsystem.description, simulator);
-        for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&subsystem.description, simulator)) {
+        for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&questions(subsystem), simulator)) {
             effect.adds = adds;
         }
         explanation

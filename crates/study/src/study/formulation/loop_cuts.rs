@@ -7,22 +7,21 @@
 use std::collections::BTreeSet;
 
 use super::comparison::{instructions, starts_alike};
-use crate::assemble;
-use crate::model::Description;
+use crate::assemble::{self, Questions};
 use crate::simulate::Simulator;
 
 /// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
 const BUDGET: usize = 20_000;
 
 /// The first, or one with another cut and a shorter step that starts alike; `with_roots`, also one in which bodies
-/// behind joints of several axes have coordinates of their own. `compile` makes one of a description that says its cut,
+/// behind joints of several axes have coordinates of their own. `compile` makes one of questions that give the cut,
 /// and gives up where it takes many times the operations of the best so far. Redundant constraints and a singular start
 /// depend on the cut, and are left with the first.
 pub fn shortest(
-    description: &Description,
+    questions: &Questions,
     first: Simulator,
     with_roots: bool,
-    compile: impl Fn(&Description, &Simulator) -> Option<Simulator>,
+    compile: impl Fn(&Questions, &Simulator) -> Option<Simulator>,
 ) -> Simulator {
     let is_regular = |simulator: &Simulator| {
         simulator.mobility.redundant.is_empty() && simulator.mobility.singular_at_start.is_empty()
@@ -33,20 +32,18 @@ pub fn shortest(
     let mut best = first;
     let mut tried = BTreeSet::from([best.system.formulation.cut.clone()]);
     let mut spent = 0;
-    let mut exchanged = description.clone();
     'exchanges: loop {
         let least = instructions(&best);
-        exchanged.cut_at(&best.system.formulation.cut);
-        let roots = if with_roots { assemble::cuts_of_several_axes(&exchanged) } else { Vec::new() };
-        for cut in assemble::other_cuts(&exchanged).into_iter().chain(roots) {
+        let current = questions.cut_at(best.system.formulation.cut.clone());
+        let roots = if with_roots { assemble::cuts_of_several_axes(&current) } else { Vec::new() };
+        for cut in assemble::other_cuts(&current).into_iter().chain(roots) {
             if spent + least > BUDGET {
                 return best;
             }
-            exchanged.cut_at(&cut);
-            if !tried.insert(cut) {
+            if !tried.insert(cut.clone()) {
                 continue;
             }
-            let other = compile(&exchanged, &best);
+            let other = compile(&questions.cut_at(cut), &best);
             spent += other.as_ref().map_or(least, instructions);
             let shorter = |other: &Simulator| instructions(other) < least && is_regular(other);
             if let Some(other) = other.filter(|other| shorter(other) && starts_alike(&best, other)) {

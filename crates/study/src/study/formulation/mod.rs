@@ -10,8 +10,8 @@
 mod comparison;
 mod loop_cuts;
 
-use crate::assemble::{self, BuildError, FormulationInfo, System};
-use crate::model::{Description, Formulation, Stepping};
+use crate::assemble::{self, BuildError, FormulationInfo, Questions, System};
+use crate::model::{Formulation, Stepping};
 use crate::numerics::Sample;
 use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularWatch, Stepper};
 
@@ -60,35 +60,33 @@ const FEW_BODIES: usize = 50;
 ///
 /// # Errors
 /// Where the mechanism cannot be built or assembled, or takes too many operations in both formulations.
-pub fn compiled(description: &Description) -> Result<Simulator, RunError> {
+pub fn compiled(questions: &Questions) -> Result<Simulator, RunError> {
     let within = |system: System, operations: usize| {
-        Simulator::within(system, scheme(description), first_step(description), Some(operations))
+        Simulator::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
     };
     let compile = |system: System| within(system, MOST);
-    if description.simulation.formulation != Formulation::Auto {
-        let first = within_budget(description, MOST, &|system| Ok(compile(system)?))?;
-        let is_open = description.joints.iter().all(|joint| !joint.cut);
+    if questions.formulation != Formulation::Auto {
+        let first = within_budget(questions, MOST, &|system| Ok(compile(system)?))?;
+        let is_open = questions.is_cut_open();
         if !is_open || !first.system.formulation.joint {
             return Ok(first);
         }
         let why = first.system.formulation.why.clone();
-        let mut shortest = loop_cuts::shortest(description, first, false, |other, best| {
+        let mut shortest = loop_cuts::shortest(questions, first, false, |other, best| {
             within(assemble::build(other).ok()?, enough(best)).ok()
         });
         shortest.system.formulation.why = why;
         return Ok(shortest);
     }
-    let absolute = assemble::in_absolute_coordinates(description)?;
-    if assemble::closes_loops(description) {
-        return of_loops(description, absolute);
+    let absolute = assemble::in_absolute_coordinates(questions)?;
+    if assemble::closes_loops(questions) {
+        return of_loops(questions, absolute);
     }
-    let joint = match assemble::in_joint_coordinates(description, Some(deepest(description)), None)? {
+    let joint = match assemble::in_joint_coordinates(questions, Some(deepest(questions)), None)? {
         Ok(joint) => joint,
         Err(why) => {
             return match compile(because(absolute, why)) {
-                Err(SimulationError::TooLong) => {
-                    other_way(description, Formulation::Joint, &|joint| Ok(compile(joint)?))
-                }
+                Err(SimulationError::TooLong) => other_way(questions, Formulation::Joint, &|joint| Ok(compile(joint)?)),
                 compiled => Ok(compiled?),
             };
         }
@@ -110,14 +108,14 @@ pub fn compiled(description: &Description) -> Result<Simulator, RunError> {
             return Ok(joint);
         }
     };
-    if !assemble::has_joints_of_several_axes(description) {
+    if !assemble::has_joints_of_several_axes(questions.description) {
         return Ok(shorter(absolute, joint));
     }
     // What the start says of bodies behind such joints are conditions.
     if !starts_alike(&absolute, &joint) {
         return Ok(kept(absolute, "outputs start elsewhere in joint coordinates".to_owned()));
     }
-    let joint = loop_cuts::shortest(description, joint, true, |other, best| {
+    let joint = loop_cuts::shortest(questions, joint, true, |other, best| {
         let system = assemble::in_joint_coordinates(other, None, None).ok()?.ok()?;
         within(system, enough(best)).ok()
     });
@@ -131,16 +129,16 @@ fn kept(mut absolute: Simulator, why: String) -> Simulator {
 }
 
 /// Compiles a model in which joints close loops in the shorter formulation.
-fn of_loops(description: &Description, absolute: System) -> Result<Simulator, RunError> {
+fn of_loops(questions: &Questions, absolute: System) -> Result<Simulator, RunError> {
     let within = |system: System, operations: usize| {
-        Simulator::within(system, scheme(description), first_step(description), Some(operations))
+        Simulator::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
     };
     let absolute = match within(absolute, MOST) {
         Err(SimulationError::TooLong) => {
-            return other_way(description, Formulation::Joint, &|joint| Ok(within(joint, MOST)?));
+            return other_way(questions, Formulation::Joint, &|joint| Ok(within(joint, MOST)?));
         }
         Err(singular) => {
-            return regular_in_joint_coordinates(description, &|joint| within(joint, MOST)).ok_or(singular.into());
+            return regular_in_joint_coordinates(questions, &|joint| within(joint, MOST)).ok_or(singular.into());
         }
         Ok(absolute) => absolute,
     };
@@ -153,7 +151,7 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         return keep(absolute, "constraints are redundant".to_owned());
     }
     let start = &absolute.nominal[absolute.start.layout.q.clone()];
-    let joint = match assemble::in_joint_coordinates(description, Some(deepest(description)), Some(start))? {
+    let joint = match assemble::in_joint_coordinates(questions, Some(deepest(questions)), Some(start))? {
         Ok(joint) => joint,
         Err(why) => return keep(absolute, why),
     };
@@ -163,14 +161,14 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
             // of many loops it takes longer than all else, of few the cuts do.
             let singular = "the nominal motion passes singular configurations";
             let is_first_shorter = is_shorter(&joint, &absolute);
-            if is_first_shorter && passes_singular(description, &absolute) {
+            if is_first_shorter && passes_singular(questions, &absolute) {
                 return keep(absolute, singular.to_owned());
             }
-            let joint = loop_cuts::shortest(description, joint, true, |other, best| {
+            let joint = loop_cuts::shortest(questions, joint, true, |other, best| {
                 let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
                 within(system, enough(best)).ok()
             });
-            if !is_first_shorter && is_shorter(&joint, &absolute) && passes_singular(description, &absolute) {
+            if !is_first_shorter && is_shorter(&joint, &absolute) && passes_singular(questions, &absolute) {
                 return keep(absolute, singular.to_owned());
             }
             Ok(shorter(absolute, joint))
@@ -187,17 +185,17 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
 /// Loops in joint coordinates, where absolute ones have no start: bodies without mass, as between the axes of an MJCF's
 /// body, are singular there where constraints are redundant.
 fn regular_in_joint_coordinates<T>(
-    description: &Description,
+    questions: &Questions,
     of_system: &dyn Fn(System) -> Result<T, SimulationError>,
 ) -> Option<T> {
-    let joint = assemble::in_joint_coordinates(description, Some(deepest(description)), None).ok()?.ok()?;
+    let joint = assemble::in_joint_coordinates(questions, Some(deepest(questions)), None).ok()?.ok()?;
     of_system(because(joint, "absolute coordinates are singular at the start".to_owned())).ok()
 }
 
 /// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates
 /// amplify rounding more the shorter the steps are.
-fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
-    let simulation = &description.simulation;
+fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
+    let simulation = &questions.description.simulation;
     if simulator.system.analysis.is_without_steps() {
         return false;
     }
@@ -225,9 +223,9 @@ fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
 }
 
 /// Joints from the root beyond which joint coordinates are not tried.
-fn deepest(description: &Description) -> usize {
-    let deepest = if assemble::closes_loops(description) { DEEPEST_OF_LOOPS } else { DEEPEST };
-    deepest[usize::from(description.space.spatial)]
+fn deepest(questions: &Questions) -> usize {
+    let deepest = if assemble::closes_loops(questions) { DEEPEST_OF_LOOPS } else { DEEPEST };
+    deepest[usize::from(questions.description.space.spatial)]
 }
 
 /// Operations after which the other formulation is given up.
@@ -263,21 +261,21 @@ fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
 ///
 /// # Errors
 /// As for [`compiled`].
-pub fn assembled(description: &Description) -> Result<Assembled, RunError> {
+pub fn assembled(questions: &Questions) -> Result<Assembled, RunError> {
     let within = |system: System, operations: usize| {
-        Assembled::within(system, scheme(description), first_step(description), Some(operations))
+        Assembled::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
     };
     let of_system = |system: System| {
         let operations = if system.formulation.joint { MOST_TO_CHECK } else { MOST };
         Ok(within(system, operations)?)
     };
-    if description.simulation.formulation != Formulation::Auto {
-        return within_budget(description, MOST_TO_CHECK, &of_system);
+    if questions.formulation != Formulation::Auto {
+        return within_budget(questions, MOST_TO_CHECK, &of_system);
     }
-    if description.bodies.len() <= FEW_BODIES {
+    if questions.description.bodies.len() <= FEW_BODIES {
         let Simulator {
             system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, derived, ..
-        } = compiled(description)?;
+        } = compiled(questions)?;
         return Ok(Assembled {
             system,
             start,
@@ -290,37 +288,37 @@ pub fn assembled(description: &Description) -> Result<Assembled, RunError> {
             derived,
         });
     }
-    if assemble::closes_loops(description) {
-        let absolute = assemble::in_absolute_coordinates(description)?;
+    if assemble::closes_loops(questions) {
+        let absolute = assemble::in_absolute_coordinates(questions)?;
         return within(absolute, MOST).or_else(|singular| {
-            regular_in_joint_coordinates(description, &|joint| within(joint, MOST_TO_CHECK)).ok_or(singular.into())
+            regular_in_joint_coordinates(questions, &|joint| within(joint, MOST_TO_CHECK)).ok_or(singular.into())
         });
     }
-    let why = match assemble::in_joint_coordinates(description, Some(deepest(description)), None)? {
+    let why = match assemble::in_joint_coordinates(questions, Some(deepest(questions)), None)? {
         Ok(joint) => match of_system(joint) {
             Err(RunError::Simulation(SimulationError::TooLong)) => "joint coordinates take too long".to_owned(),
             assembled => return assembled,
         },
         Err(why) => why,
     };
-    of_system(because(assemble::in_absolute_coordinates(description)?, why))
+    of_system(because(assemble::in_absolute_coordinates(questions)?, why))
 }
 
 /// What a model asks for; where that takes too many operations, the other formulation. Where joint coordinates take
 /// more than `most`, they are not tried.
 fn within_budget<T>(
-    description: &Description,
+    questions: &Questions,
     most: usize,
     of_system: &dyn Fn(System) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
-    let asked = description.simulation.formulation;
-    if asked == Formulation::Joint && assemble::joint_elimination(description) > most / ELIMINATIONS {
-        return other_way(description, Formulation::Absolute, of_system);
+    let asked = questions.formulation;
+    if asked == Formulation::Joint && assemble::joint_elimination(questions) > most / ELIMINATIONS {
+        return other_way(questions, Formulation::Absolute, of_system);
     }
-    match of_system(assemble::build(description)?) {
+    match of_system(assemble::build(questions)?) {
         Err(RunError::Simulation(SimulationError::TooLong)) => {
             let other = if asked == Formulation::Joint { Formulation::Absolute } else { Formulation::Joint };
-            other_way(description, other, of_system)
+            other_way(questions, other, of_system)
         }
         found => found,
     }
@@ -328,13 +326,11 @@ fn within_budget<T>(
 
 /// A formulation in place of one that takes too many operations.
 fn other_way<T>(
-    description: &Description,
+    questions: &Questions,
     formulation: Formulation,
     of_system: &dyn Fn(System) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
-    let mut description = description.clone();
-    description.simulation.formulation = formulation;
-    let system = match assemble::build(&description) {
+    let system = match assemble::build(&Questions { formulation, ..questions.clone() }) {
         Err(BuildError::NoJointCoordinates { .. }) => return Err(SimulationError::TooLong.into()),
         built => built?,
     };
@@ -342,13 +338,11 @@ fn other_way<T>(
     of_system(because(system, format!("{other} coordinates take too many instructions")))
 }
 
-/// A copy of the description with the formulation that was chosen for it, and the cut of its loops.
-pub fn as_chosen(description: &Description, chosen: &Simulator) -> Description {
-    let mut description = description.clone();
-    let joint = chosen.system.formulation.joint;
-    description.simulation.formulation = if joint { Formulation::Joint } else { Formulation::Absolute };
-    description.cut_at(&chosen.system.formulation.cut);
-    description
+/// The same questions in the formulation that was chosen for them, with its cut of the loops.
+pub fn as_chosen<'d>(questions: &Questions<'d>, chosen: &Simulator) -> Questions<'d> {
+    let FormulationInfo { joint, cut, .. } = &chosen.system.formulation;
+    let formulation = if *joint { Formulation::Joint } else { Formulation::Absolute };
+    Questions { formulation, ..questions.cut_at(cut.clone()) }
 }
 
 fn because(mut system: System, why: String) -> System {

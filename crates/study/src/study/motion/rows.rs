@@ -1,9 +1,12 @@
 //! Rows of a simulation of which other things are asked than the model's outputs.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::super::drawing::asked::{Asked, Values};
 use super::super::{RunError, formulation};
+use crate::assemble::Questions;
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
@@ -51,8 +54,8 @@ impl<'a> Rows<'a> {
     ) -> Result<Self, RunError> {
         // Responses are between outputs that are not asked here.
         let modes = ModesRequest { responses: Vec::new(), ..description.modes };
-        let whole = Description { outputs: asked.0, modes, ..description.clone() };
-        let simulator = formulation::compiled(&whole)?;
+        let questions = Questions { outputs: asked.0.into(), modes: Cow::Owned(modes), ..Questions::of(description) };
+        let simulator = formulation::compiled(&questions)?;
         let parameters = &simulator.system.parameters;
         let domain = ParameterBox {
             nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),

@@ -1,7 +1,8 @@
 //! Bounds of reduced outputs, by the methods that bound outputs.
 
 use super::Found;
-use super::ensemble::{ReducedEnsemble, Store, steps_of};
+use super::ensemble::{ReducedEnsemble, Store};
+use super::evaluated::Evaluated;
 use super::keeping::kept_reduced;
 use super::plan::Plan;
 use super::verdicts::verdicts;
@@ -22,17 +23,6 @@ use crate::study::stepping::divided;
 
 /// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
 const MUCH: f64 = 4.0;
-
-/// Bounded of the methods for each value, with the parts common to all.
-pub struct Values<'a> {
-    pub results: &'a Bounded,
-    /// Whether something makes all bounds unreliable.
-    pub unreliable: bool,
-    /// Simulated samples with their values.
-    pub samples: Vec<(Sample, Vec<f64>)>,
-    /// Samples that reached the end.
-    whole: usize,
-}
 
 /// Plans the reductions during the motions, by the nominal one.
 ///
@@ -102,7 +92,7 @@ pub fn reduced(
     let kept = kept_reduced(study, &mut results, &store.plan.values, rows.unreliable_from().is_some());
     let unreliable = rows.unreliable_from().is_some();
     results.note(&direct);
-    let values = simulated_values(study, &results, unreliable, store);
+    let values = Evaluated::new(study, &results, unreliable, store);
     (study.stage)("requirements");
     let requirements = match verdicts(study, &values, rows, [&direct, &with_halved]) {
         Err(SimulationError::Interrupted) => Found::nothing(study.description).requirements,
@@ -110,7 +100,7 @@ pub fn reduced(
     };
     // The search for a sample that fails has simulated some more.
     results.note(&direct);
-    let values = simulated_values(study, &results, unreliable, store);
+    let values = Evaluated::new(study, &results, unreliable, store);
     let reduced = study.description.reduced.iter().enumerate();
     let contributions = contributions(study, &results, 1);
     let reduced = reduced.map(|place| summary_of(study, place, &values, &contributions)).collect();
@@ -198,23 +188,10 @@ fn nominal_values(study: &Study, ensemble: &dyn Ensemble) -> Result<MethodResult
     Ok(bands.finish(0, Simulated::default()))
 }
 
-/// The results, with the samples of the box that reached the end so far.
-fn simulated_values<'r>(study: &Study, results: &'r Bounded, unreliable: bool, store: &Store) -> Values<'r> {
-    let whole = |(sample, channels): (Sample, Vec<f64>)| {
-        let is_whole = study.domain.contains(&sample) && channels.iter().all(|value| value.is_finite());
-        let mut values = Vec::new();
-        store.plan.values.evaluate(&channels, &sample, &mut values);
-        is_whole.then_some((sample, values))
-    };
-    let all = store.samples(steps_of(&results.schedule));
-    let samples: Vec<_> = all.into_iter().filter_map(whole).collect();
-    Values { results, unreliable, whole: samples.len(), samples }
-}
-
 fn summary_of(
     study: &Study,
     (place, reduced): (usize, &ReducedOutput),
-    values: &Values,
+    values: &Evaluated,
     contributions: &[Vec<Contribution>],
 ) -> ReducedSummary {
     let band = |band: Band| ReducedBand {
@@ -242,14 +219,14 @@ fn summary_of(
     let greatest = known().max_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
     let absent = values.samples.iter().find(|(_, values)| values[place].is_nan());
     let absent = absent.map(|(sample, _)| sample.to_vec());
-    let occurs = Occurrence { samples: known().count(), of: values.whole, absent };
+    let occurs = Occurrence { samples: known().count(), of: values.samples.len(), absent };
     ReducedSummary {
         name: reduced.name.clone(),
         of: reduced.text.clone(),
         unit: reduced.unit.clone(),
         display: study.description.display.get(&reduced.name).cloned(),
-        nominal: values.results.nominal.result.bands[place][0].lower,
-        bands: bands(study, values.results, place, 1).into_iter().map(band).collect(),
+        nominal: values.bounded.nominal.result.bands[place][0].lower,
+        bands: bands(study, values.bounded, place, 1).into_iter().map(band).collect(),
         contributions,
         worst: least.zip(greatest).map(|(least, greatest)| [least, greatest]),
         occurs: (occurs.samples < occurs.of).then_some(occurs),

@@ -9,6 +9,7 @@ mod answers;
 mod bound;
 mod by_rows;
 mod ensemble;
+mod evaluated;
 mod expand;
 mod found;
 mod keeping;

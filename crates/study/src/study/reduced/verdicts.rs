@@ -1,8 +1,8 @@
 //! Whether requirements are fulfilled.
 
-use super::bound::Values;
 use super::by_rows::by_rows;
 use super::ensemble::ReducedEnsemble;
+use super::evaluated::Evaluated;
 use crate::grammar::display_unit::ShownUnit;
 use crate::methods::Method;
 use crate::model::Requirement;
@@ -51,7 +51,7 @@ fn smaller(a: f64, b: f64) -> f64 {
 /// Where a sample cannot be assembled, and at an interruption.
 pub fn verdicts(
     study: &Study,
-    values: &Values,
+    values: &Evaluated,
     rows: &Bounded,
     ensembles: [&ReducedEnsemble; 2],
 ) -> Result<Vec<RequirementSummary>, SimulationError> {
@@ -66,7 +66,7 @@ pub fn verdicts(
 fn verdict(
     study: &Study,
     (number, own): (usize, &Requirement),
-    values: &Values,
+    values: &Evaluated,
     rows: &Bounded,
     ensembles: [&ReducedEnsemble; 2],
 ) -> Result<RequirementSummary, SimulationError> {
@@ -125,8 +125,8 @@ fn verdict(
 
 /// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be
 /// believed.
-fn part(study: &Study, values: &Values, place: usize) -> Part {
-    let bands = bands(study, values.results, place, 1);
+fn part(study: &Study, values: &Evaluated, place: usize) -> Part {
+    let bands = bands(study, values.bounded, place, 1);
     let is_resolved = |band: &Band| !band.error.unresolved[0];
     let is_known = |band: &Band| band.error.decisive(0).is_some();
     let band = bands.iter().find(|band| is_resolved(band)).or(foremost(&bands, is_known));
@@ -146,7 +146,7 @@ fn part(study: &Study, values: &Values, place: usize) -> Part {
 fn nearest(
     study: &Study,
     (number, own): (usize, &Requirement),
-    values: &Values,
+    values: &Evaluated,
     holds: bool,
     [direct, halved]: [&ReducedEnsemble; 2],
 ) -> Result<Option<NearestCase>, SimulationError> {
