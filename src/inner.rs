@@ -52,8 +52,9 @@ pub mod results {
 
 pub mod simulate {
     pub use crate::simulate::{
-        EnsembleRun, ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetRun, NoGradient,
-        Observed, SampleRun, Schedule, SimulationError, Simulator, Stepper, Wanted, gradients, schedule_for_tolerance,
+        EnsembleRun, ExplicitJets, ExtrapolatedJets, Gradient, Integration, Integrator, Interruption, JetBox,
+        JetIntegrator, JetRun, NoGradient, Observed, Schedule, SimulationError, Simulator, Stepper, Steps, Wanted,
+        gradients, integrator, schedule_for_tolerance,
     };
 }
 

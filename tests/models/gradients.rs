@@ -8,8 +8,8 @@ use mbint::inner::compile::Scheme;
 use mbint::inner::model::{Description, Formulation, Stepping};
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
-    ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetRun, NoGradient, Schedule,
-    Simulator, Wanted, gradients,
+    ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetIntegrator, JetRun, NoGradient,
+    Schedule, Simulator, Wanted, gradients,
 };
 use symdiff::jet::JetSpace;
 

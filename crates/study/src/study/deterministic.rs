@@ -9,18 +9,15 @@ use super::ensemble::{Progress, nominal};
 use super::problem::Study;
 use super::reduced::{Found, reduced};
 use super::stepping::{
-    OF_STEPS, StepSearch, damped_modes, divided, explicit_steps, may_be_explicit, may_extrapolate, refused,
+    OF_STEPS, StepPlan, StepSearch, damped_modes, divided, explicit_steps, may_be_explicit, may_extrapolate, refused,
 };
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
 use crate::numerics::{Ledger, Range};
-use crate::simulate::{Controller, Divided, Schedule, SimulationError};
+use crate::simulate::{Divided, Schedule, SimulationError};
 
 /// Every sampled method's bounds are the nominal motion.
-pub(super) fn deterministic(
-    study: &Study,
-    schedule: &Schedule,
-    tolerance: Option<Controller>,
-) -> Result<Results, SimulationError> {
+pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, SimulationError> {
+    let StepPlan { schedule, controller } = plan;
     let progress = Progress::new(3 * schedule.rows, study.progress);
     let explicit = match study.request.tolerance.filter(|_| may_be_explicit(study) && !schedule.passes_rows()) {
         None => None,
@@ -35,13 +32,14 @@ pub(super) fn deterministic(
     (study.stage)("nominal motion");
     loop {
         let Divided { schedule, unresolved_from } = divided(study, steps.schedule());
-        let (halved, odd) = (schedule.refined(2), schedule.at_odds());
-        let motions = study.motions(&schedule, tolerance, &progress);
-        let (nominal, singular) = timed(&schedule, "nominal", || nominal(&motions))?;
-        let damped = damped_modes(study, &schedule);
+        let plan = StepPlan { schedule, controller: *controller };
+        let schedule = &plan.schedule;
+        let motions = study.motions(plan.steps(), &progress);
+        let (nominal, singular) = timed(schedule, "nominal", || nominal(&motions))?;
+        let damped = damped_modes(study, schedule);
         let seen = Ledger::new(schedule.rows, study.simulator.program.outputs.len());
         let doubts = Doubts { unresolved_from, switches: None, damped };
-        let bounded = Bounded::new(schedule.clone(), nominal, seen, doubts);
+        let bounded = Bounded::new(plan.clone(), nominal, seen, doubts);
         let (internal, found) = (Vec::new(), Found::default());
         let mut results = Results { bounded, singular, attained: None, internal, found };
         if study.request.is_empty() {
@@ -50,10 +48,10 @@ pub(super) fn deterministic(
         note_nominal(study, &results.bounded.nominal.result, &results.bounded.seen);
         let begun = Instant::now();
         let nominal = &results.bounded.nominal.result;
-        let finer_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
-        let [finer, at_odds] = [&halved, &odd].map(|schedule| study.motions(schedule, finer_tolerance, &progress));
-        let ratio = schedule.ratio_to(&odd);
-        let ensembles = Ensembles { direct: &motions, halved: &finer, odd: &at_odds, ratio };
+        let finer = [plan.halved(), plan.at_odds()];
+        let [halved, odd] = finer.each_ref().map(|plan| study.motions(plan.steps(), &progress));
+        let ratio = schedule.ratio_to(&finer[1].schedule);
+        let ensembles = Ensembles { direct: &motions, halved: &halved, odd: &odd, ratio };
         let validation =
             Validation::of_nominal(ensembles, (&nominal.bands, nominal.reached)).map_err(simulation_error)?;
         if let Some(allowed) = study.request.tolerance
@@ -62,18 +60,18 @@ pub(super) fn deterministic(
             continue;
         }
         let stop = results.bounded.nominal.result.simulated.stop.as_ref().map(|(stop, _)| stop);
-        let summary = validation_summary(&schedule, &validation, stop, begun);
+        let summary = validation_summary(schedule, &validation, stop, begun);
         for (method, _) in study.request.methods() {
             if method.about().is_sampled {
-                results.bounded.methods.push((method, same(&schedule, &results.bounded.nominal.result, method)?));
+                results.bounded.methods.push((method, same(schedule, &results.bounded.nominal.result, method)?));
             } else {
                 let of_method = |wanted| wanted == method;
-                let found = bound(study, &motions, &schedule, &validation, &mut results.internal, of_method)?;
+                let found = bound(study, &motions, schedule, &validation, &mut results.internal, of_method)?;
                 results.bounded.methods.extend(found);
             }
         }
         results.bounded.validation = Some((validation, summary));
-        results.found = reduced(study, &results.bounded, tolerance, &progress)?;
+        results.found = reduced(study, &results.bounded, &progress)?;
         return Ok(results);
     }
 }

@@ -72,7 +72,7 @@ fn of_trajectories(trajectories: &Trajectories, description: &Description) -> Re
     };
     let mut outputs: Vec<OutputGradients> = trajectories.outputs.iter().map(empty).collect();
     for (number, (study, subsystem)) in trajectories.studies.iter().zip(trajectories.subsystems).enumerate() {
-        let schedule = &trajectories.steps[number].0;
+        let schedule = &trajectories.steps[number].schedule;
         let center: Sample = study.simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let columns = trajectories.columns[number].iter().enumerate();
         let shown: Vec<(usize, usize)> = columns.filter_map(|(line, column)| Some((line, (*column)?))).collect();

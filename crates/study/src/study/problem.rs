@@ -8,7 +8,7 @@ use super::{Options, RunError};
 use crate::methods::{BoundsRequest, Problem, can_compose};
 use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::ParameterBox;
-use crate::simulate::{Controller, Interruption, Schedule, Simulator, TimeFunctions};
+use crate::simulate::{Interruption, Schedule, Simulator, Steps, TimeFunctions};
 
 /// A compiled subsystem, and its questions.
 pub(super) struct Study<'a> {
@@ -96,14 +96,9 @@ impl<'a> Study<'a> {
         Schedule::rows_of(self.description.simulation.duration, self.description.simulation.output_step)
     }
 
-    /// The motions under a schedule.
-    pub(super) fn motions<'s>(
-        &'s self,
-        schedule: &'s Schedule,
-        tolerance: Option<Controller>,
-        progress: &'s Progress<'s>,
-    ) -> Motions<'s> {
-        let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interruption);
+    /// The motions with these steps.
+    pub(super) fn motions<'s>(&'s self, steps: Steps<'s>, progress: &'s Progress<'s>) -> Motions<'s> {
+        let motions = Motions::new(&self.simulator, &self.domain, steps, progress, self.interruption);
         motions.keeping(self.store.get()).stored(self.stored)
     }
 }

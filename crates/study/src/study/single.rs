@@ -11,13 +11,13 @@ use super::price::total_work;
 use super::problem::Study;
 use super::reduced::{Found, plan_reduction, reduced};
 use super::stepping::{
-    balance, controlling_samples, damped_modes, divided, explicit_samples, explicit_within, integration,
-    may_be_explicit, refused, schedule_within, segmented, switches, validation,
+    Balanced, StepPlan, balance, controlling_samples, damped_modes, divided, explicit_samples, integration, planned,
+    segmented, switches, validation,
 };
 use crate::methods::{Method, Observed, Validation};
 use crate::model::Stepping;
 use crate::numerics::{Ledger, Sample};
-use crate::simulate::{Controller, Divided, Schedule, SimulationError, Steps, schedule_for_tolerance};
+use crate::simulate::{Divided, Schedule, SimulationError, schedule_for_tolerance};
 
 /// Progress of a box's validation samples.
 pub(super) struct Tried {
@@ -32,90 +32,71 @@ pub(super) struct Tried {
 /// Runs every method.
 pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
     if let Some(schedule) = segmented(study)? {
-        return Ok(conclude(study, methods(study, &schedule, None)?, None));
+        return Ok(conclude(study, methods(study, StepPlan::fixed(schedule))?, None));
     }
-    let simulation = &study.description.simulation;
-    match simulation.stepping {
-        Stepping::Fixed(step) => {
-            let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
-            let results = methods(study, &schedule.taken(integration(study)), None)?;
-            Ok(conclude(study, results, None))
-        }
-        Stepping::Tolerance(tolerance) => Ok(run_controlled(study, tolerance)?),
+    if matches!(study.description.simulation.stepping, Stepping::Tolerance(_)) {
+        (study.stage)("choosing the steps");
     }
-}
-
-/// The schedule of the controlling samples serves all; a sample that needs shorter steps in between takes its own.
-fn run_controlled(study: &Study, tolerance: f64) -> Result<Ran, SimulationError> {
-    (study.stage)("choosing the steps");
-    let samples = controlling_samples(study);
-    if may_be_explicit(study) && study.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
-        match explicit_within(study, tolerance, &explicit_samples(study))? {
-            Ok(schedule) => return Ok(conclude(study, methods(study, &schedule, None)?, None)),
-            Err(obstacle) => refused(study, obstacle)?,
-        }
-    }
-    let (controlled, controller) = schedule_within(study, tolerance, &samples)?;
-    let failure = controlled.failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
-    let results = methods(study, &controlled.schedule, Some(controller))?;
-    Ok(conclude(study, results, failure))
+    let (plan, failure) = planned(study, explicit_samples)?;
+    let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
+    Ok(conclude(study, methods(study, plan)?, failure))
 }
 
 /// The nominal motion, the validation samples, then every method asked for. With a tolerance for the bounds, the
-/// validation samples decide how the schedule's steps are divided or joined.
-fn methods(study: &Study, schedule: &Schedule, mut tolerance: Option<Controller>) -> Result<Results, SimulationError> {
-    plan_reduction(study, schedule, tolerance)?;
+/// validation samples decide how the plan's steps are divided or joined.
+fn methods(study: &Study, plan: StepPlan) -> Result<Results, SimulationError> {
+    plan_reduction(study, &plan)?;
     if study.domain.dimension() == 0 {
-        return deterministic(study, schedule, tolerance);
+        return deterministic(study, &plan);
     }
-    let progress = Progress::new(total_work(study, schedule), study.progress);
+    let progress = Progress::new(total_work(study, &plan.schedule), study.progress);
     let mut internal = Vec::new();
-    let (Divided { schedule, unresolved_from }, validation) = if study.request.is_empty() {
-        (divided(study, schedule.clone()), None)
-    } else {
-        match caught("the validation samples", || balance(study, schedule, tolerance, &progress)) {
-            Ok(balanced) => {
-                let (schedule, divided, validation) = balanced?;
-                tolerance = divided;
-                (schedule, Some(validation))
-            }
+    let balanced = match study.request.is_empty() {
+        true => None,
+        false => match caught("the validation samples", || balance(study, &plan, &progress)) {
+            Ok(balanced) => Some(balanced?),
             Err(error) => {
                 internal.push(error);
-                (divided(study, schedule.clone()), None)
+                None
             }
+        },
+    };
+    let (plan, unresolved_from, validation) = match balanced {
+        Some(Balanced { plan, unresolved_from, validation }) => (plan, unresolved_from, Some(validation)),
+        None => {
+            let Divided { schedule, unresolved_from } = divided(study, plan.schedule);
+            (StepPlan { schedule, ..plan }, unresolved_from, None)
         }
     };
+    let schedule = &plan.schedule;
     let switches = match &validation {
-        Some((validation, _)) => {
-            switches(study, Steps { schedule: &schedule, controller: tolerance }, validation, &mut internal)?
-        }
+        Some((validation, _)) => switches(study, plan.steps(), validation, &mut internal)?,
         None => None,
     };
     let seen = Ledger::new(schedule.rows, study.simulator.program.outputs.len());
-    let motions = study.motions(&schedule, tolerance, &progress).noting(&seen);
+    let motions = study.motions(plan.steps(), &progress).noting(&seen);
     (study.stage)("nominal motion");
-    let (nominal, singular) = timed(&schedule, "nominal", || nominal(&motions))?;
+    let (nominal, singular) = timed(schedule, "nominal", || nominal(&motions))?;
     note_nominal(study, &nominal.result, &seen);
     let (mut methods, mut halved, mut attained) = (Vec::new(), Vec::new(), None);
     if let Some((validation, _)) = &validation {
         validation.note(&seen);
-        methods = bound(study, &motions, &schedule, validation, &mut internal, |_| true)?;
-        attained = attained::attained(study, &motions, &schedule)?;
+        methods = bound(study, &motions, schedule, validation, &mut internal, |_| true)?;
+        attained = attained::attained(study, &motions, schedule)?;
         if study.certify_time && !study.interruption.is_asked() {
-            let schedule = schedule.refined(2);
-            let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
-            let motions = study.motions(&schedule, halved_tolerance, &progress);
+            let finer = plan.halved();
+            let motions = study.motions(finer.steps(), &progress);
             let sampled = |method: Method| method.about().is_sampled;
-            halved = bound(study, &motions, &schedule, validation, &mut internal, sampled)?;
+            halved = bound(study, &motions, &finer.schedule, validation, &mut internal, sampled)?;
         }
     }
     drop(motions);
-    let damped = damped_modes(study, &schedule);
+    let damped = damped_modes(study, schedule);
     let doubts = Doubts { unresolved_from, switches, damped };
-    let bounded = Bounded { validation, methods, halved, ..Bounded::new(schedule, nominal, seen, doubts) };
+    let bounded = Bounded { validation, methods, halved, ..Bounded::new(plan, nominal, seen, doubts) };
     let found = match study.interruption.is_asked() {
         true => Found::default(),
-        false => match reduced(study, &bounded, tolerance, &progress) {
+        false => match reduced(study, &bounded, &progress) {
             Err(SimulationError::Interrupted) => Found::nothing(study.description),
             found => found?,
         },
@@ -128,7 +109,7 @@ pub(super) fn lost(study: &Study, error: Option<InternalError>) -> Result<Ran, S
     let simulation = &study.description.simulation;
     let schedule = Schedule::fixed(simulation.duration, simulation.output_step, simulation.output_step);
     let nominal = unknown(study, &schedule, "nominal")?;
-    let bounded = Bounded::new(schedule, nominal, Ledger::default(), Doubts::default());
+    let bounded = Bounded::new(StepPlan::fixed(schedule), nominal, Ledger::default(), Doubts::default());
     let internal = error.into_iter().collect();
     let found = Found::nothing(study.description);
     let results = Results { bounded, singular: Vec::new(), attained: None, internal, found };
@@ -141,12 +122,12 @@ pub(super) fn try_samples(study: &Study) -> Result<Tried, RunError> {
     match simulation.stepping {
         Stepping::Fixed(step) => {
             let fixed = Schedule::fixed(duration, step, output_step).taken(integration(study));
-            let Divided { schedule, .. } = divided(study, fixed);
+            let plan = StepPlan::fixed(divided(study, fixed).schedule);
             let progress = Progress::new(usize::MAX, study.progress);
-            let validation = validation(study, &schedule, None, Observed::Outputs, &progress)?;
+            let validation = validation(study, &plan, Observed::Outputs, &progress)?;
             let Validation { points, simulated, .. } = validation;
             Ok(Tried {
-                reached: simulated.stop.as_ref().map_or(schedule.rows, |(stop, _)| stop.row),
+                reached: simulated.stop.as_ref().map_or(plan.schedule.rows, |(stop, _)| stop.row),
                 any: simulated.stopped.len() < points.len(),
                 stopped: simulated.stopped.iter().map(|&sample| points[sample].clone()).collect(),
             })

@@ -16,7 +16,9 @@ use crate::results::{
     Bounds, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
     SingularSummary, Summary, Witness,
 };
-use crate::simulate::{EnsembleRun, ExcitedMode, Observed, OpenConstraint, Schedule, SimulationError};
+use crate::simulate::{
+    EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps,
+};
 
 /// Said of results that the user did not wait for.
 const INTERRUPTED: &str =
@@ -44,7 +46,7 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ra
     let contributions = contributions(study, &results.bounded, rows);
     let bounds = Bounds {
         contributions,
-        times: (0..rows).map(|row| results.bounded.schedule.time(row)).collect(),
+        times: (0..rows).map(|row| results.bounded.plan.schedule.time(row)).collect(),
         outputs: outputs.collect(),
         covered: Vec::new(),
         analysis: study.simulator.system.analysis,
@@ -54,7 +56,7 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ra
     let notes = || results.bounded.outcomes().find_map(|outcome| outcome.result.note.clone());
     let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());
     let stopped = stop.map(|(stop, sample)| {
-        caught("a message", || failure(study, &results.bounded.schedule, &stop, &sample))
+        caught("a message", || failure(study, &results.bounded.plan.schedule, &stop, &sample))
             .unwrap_or_else(|error| error.to_string())
     });
     let internal = results.internal.iter().map(InternalError::to_string);
@@ -107,7 +109,7 @@ fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> 
 /// The term that is no finite number where a sample stops, if there is one: the sample runs once more, alone.
 fn no_number(study: &Study, schedule: &Schedule, row: usize, sample: &Sample) -> Option<String> {
     let mut run = EnsembleRun::start(&study.simulator, std::slice::from_ref(sample), schedule.first_step()).ok()?;
-    let stops = run.advance(schedule, 0..row + 1, None, Observed::Outputs, &mut Vec::new());
+    let stops = run.advance(Steps { schedule, controller: None }, 0..row + 1, Observed::Outputs, &mut Vec::new());
     run.not_finite(stops.first()?)
 }
 
@@ -133,7 +135,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
     let names = |constraints: &[ConstraintId]| system.constraint_names(constraints);
     let damped_mode = damped_mode(&results, bounds);
     let unmet_switch =
-        results.bounded.unmet_switch_from().map(|row| results.bounded.schedule.time(row.saturating_sub(1)));
+        results.bounded.unmet_switch_from().map(|row| results.bounded.plan.schedule.time(row.saturating_sub(1)));
     let singular =
         results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
     Summary {
@@ -149,11 +151,11 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         damped_mode,
-        events: events_of_parts(study, &results.bounded.schedule),
+        events: events_of_parts(study, &results.bounded.plan.schedule),
         unmet_switch,
         too_deep: results.bounded.too_deep(),
         beyond_tolerance: results.bounded.beyond_tolerance(),
-        integration: results.bounded.schedule.integration.name(),
+        integration: results.bounded.plan.schedule.integration.name(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
         analysis: analysis_summary(study),

@@ -29,7 +29,7 @@ pub fn kept(study: &Study, results: &mut Results, rows: usize) -> Option<KeptPar
     if !study.request.keep {
         return None;
     }
-    let times: Vec<f64> = (0..rows).map(|row| results.bounded.schedule.time(row)).collect();
+    let times: Vec<f64> = (0..rows).map(|row| results.bounded.plan.schedule.time(row)).collect();
     let (_, outcome) = results.bounded.methods.iter_mut().find(|(method, _)| *method == METHOD)?;
     let surrogate = match outcome.result.kept.take() {
         Some(kept) => kept,

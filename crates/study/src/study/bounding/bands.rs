@@ -36,7 +36,7 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
         };
         // What halved steps have damped away too is added.
         let damped = |row: usize| -> f64 {
-            bounded.doubts.damped.iter().map(|mode| mode.lost(output, bounded.schedule.time(row))).sum()
+            bounded.doubts.damped.iter().map(|mode| mode.lost(output, bounded.plan.schedule.time(row))).sum()
         };
         let time: Vec<f64> = (0..rows).map(|row| corrections[row].of(by_halving(row)) + damped(row)).collect();
         let with = |surrogate: &[f64]| {

@@ -11,6 +11,7 @@ mod ends;
 use super::ensemble::Motions;
 use super::internal::{InternalError, caught};
 use super::problem::Study;
+use super::stepping::StepPlan;
 use crate::methods::{
     BandBuilder, BoundingMethod, Ensemble, EnsembleError, Interrupted, Method, MethodResult, Simulated, Stop, TooDeep,
     Validation,
@@ -32,9 +33,9 @@ pub struct Outcome {
 /// Contacts and kinks in the equations, with their line in the summary.
 pub type Switches = (SwitchSearch, MethodSummary);
 
-/// Methods and their bands under one schedule.
+/// Methods and their bands under one plan of steps.
 pub struct Bounded {
-    pub schedule: Schedule,
+    pub plan: StepPlan,
     /// The nominal motion, or its reduced outputs, as bands without width.
     pub nominal: Outcome,
     /// All that was simulated under the schedule, the nominal motion too where it lies in the box.
@@ -60,8 +61,8 @@ pub struct Doubts {
 
 impl Bounded {
     /// The nominal motion, before any method is asked.
-    pub fn new(schedule: Schedule, nominal: Outcome, seen: Ledger, doubts: Doubts) -> Self {
-        Self { schedule, nominal, seen, validation: None, methods: Vec::new(), halved: Vec::new(), doubts }
+    pub fn new(plan: StepPlan, nominal: Outcome, seen: Ledger, doubts: Doubts) -> Self {
+        Self { plan, nominal, seen, validation: None, methods: Vec::new(), halved: Vec::new(), doubts }
     }
 
     /// The nominal motion and every method.
@@ -92,7 +93,7 @@ impl Bounded {
     pub fn whole(&self) -> usize {
         let nominal = self.nominal.result.simulated.stop.as_ref().map(|(stop, _)| stop);
         let stops = self.stops().filter(|(stop, _)| !stop.is_of_jet() && nominal != Some(stop));
-        stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
+        stops.map(|(stop, _)| stop.row).min().unwrap_or(self.plan.schedule.rows)
     }
 
     /// What came of the samples of every method, and of the validation samples.

@@ -3,7 +3,7 @@
 use super::Motions;
 use crate::methods::DenseMotions;
 use crate::numerics::Sample;
-use crate::simulate::{Observed, SampleRun, Schedule, SimulationError};
+use crate::simulate::{Observed, Schedule, SimulationError, Steps, integrator};
 
 /// Times for each step at which a motion is dense.
 const DENSE: usize = 8;
@@ -23,13 +23,14 @@ pub fn dense(motions: &Motions, samples: &[Sample]) -> Result<Option<DenseMotion
     let (end, ends) = (motions.schedule.end(), motions.schedule.ends());
     let dense = Schedule::passing((end, end / (DENSE * ends.len()) as f64), ends, Vec::new())
         .taken(motions.schedule.integration);
-    let mut run = SampleRun::start(motions.simulator, samples, &dense)?.heeding(motions.interruption);
+    let mut run = integrator(motions.simulator, samples, &dense)?;
+    run.heed(motions.interruption);
     let lines = 2 * motions.simulator.system.q.len() * samples.len();
     let stride = Observed::Motion.count(motions.simulator) * samples.len();
     let (mut motions, mut block) = (Vec::with_capacity(dense.rows * lines), Vec::new());
     for first in (0..dense.rows).step_by(AT_ONCE) {
         let rows = first..(first + AT_ONCE).min(dense.rows);
-        run.advance(&dense, rows, None, Observed::Motion, &mut block);
+        run.advance(Steps { schedule: &dense, controller: None }, rows, Observed::Motion, &mut block);
         if run.is_cut() {
             return Ok(None);
         }

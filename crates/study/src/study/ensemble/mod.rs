@@ -26,8 +26,8 @@ use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, O
 use crate::methods::{Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
-    Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, SampleRun, Schedule, SimulationError,
-    Simulator, Steps, Stop, choose_independent,
+    Certifier, Channel, Controller, Enclosure, EnclosureError, Integrator, Interruption, Schedule, SimulationError,
+    Simulator, Steps, Stop, choose_independent, integrator,
 };
 
 pub(super) use nominal::nominal;
@@ -78,11 +78,11 @@ impl<'a> Motions<'a> {
     pub fn new(
         simulator: &'a Simulator,
         domain: &'a ParameterBox,
-        schedule: &'a Schedule,
-        tolerance: Option<Controller>,
+        steps: Steps<'a>,
         progress: &'a Progress<'a>,
         interruption: Interruption<'a>,
     ) -> Self {
+        let Steps { schedule, controller: tolerance } = steps;
         let over = AtomicUsize::new(0);
         let (certifier, jumps) = (OnceLock::new(), OnceLock::new());
         let (store, stored, channels, ledger) = (None, None, &[][..], None);
@@ -164,13 +164,15 @@ impl<'a> Motions<'a> {
             return visits::visit(self, samples, sampling, reduce);
         }
         let mut run = self.start(samples)?;
-        Ok(self.advance(&mut run, samples, sampling, reduce))
+        Ok(self.advance(run.as_mut(), samples, sampling, reduce))
     }
 
     /// Samples at their start.
-    fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
-        let run = SampleRun::start(self.simulator, samples, self.schedule)?;
-        Ok(run.reducing(self.channels).heeding(self.interruption))
+    fn start(&self, samples: &[Sample]) -> Result<Box<dyn Integrator<'a> + 'a>, SimulationError> {
+        let mut run = integrator(self.simulator, samples, self.schedule)?;
+        run.reduce(self.channels);
+        run.heed(self.interruption);
+        Ok(run)
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -180,7 +182,7 @@ impl<'a> Motions<'a> {
 
     fn advance(
         &self,
-        run: &mut SampleRun,
+        run: &mut dyn Integrator,
         samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
@@ -195,7 +197,7 @@ impl<'a> Motions<'a> {
         let goes_on = |stop: &Option<Stop>| stop.is_none() || until == Until::End;
         while next < self.schedule.rows && goes_on(&stop) && !self.is_interrupted() {
             let rows = next..(next + rows_a_block).min(self.schedule.rows);
-            let stops = run.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
+            let stops = run.advance(self.steps(), rows.clone(), observed, &mut values);
             if run.is_cut() {
                 break;
             }

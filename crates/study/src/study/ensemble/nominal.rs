@@ -25,9 +25,10 @@ pub fn nominal(motions: &Motions) -> Result<(MethodResult, Vec<SingularPass>), S
         return Ok((bands.finish(1, simulated), singular));
     }
     let sample = std::slice::from_ref(&motions.domain.nominal);
-    let mut run = motions.start(sample)?.watching();
+    let mut run = motions.start(sample)?;
+    run.watch();
     let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, whole: false };
-    let simulated = motions.advance(&mut run, sample, sampling, &mut |rows, values| {
+    let simulated = motions.advance(run.as_mut(), sample, sampling, &mut |rows, values| {
         for (row, values) in rows.zip(values.chunks_exact(outputs)) {
             for (output, &value) in values.iter().enumerate() {
                 bands.set(row, output, Range { lower: value, upper: value }, 0.0);

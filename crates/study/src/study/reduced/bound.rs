@@ -15,11 +15,11 @@ use crate::numerics::{Ledger, Range, Sample};
 use crate::results::{
     Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
 };
-use crate::simulate::{Controller, Divided, Schedule, SimulationError};
+use crate::simulate::{Schedule, SimulationError};
 use crate::study::bounding::{Bounded, Doubts, Outcome, bands, contributions, simulation_error, timed};
 use crate::study::ensemble::Progress;
 use crate::study::problem::{Study, problem};
-use crate::study::stepping::divided;
+use crate::study::stepping::{StepPlan, divided};
 
 /// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
 const MUCH: f64 = 4.0;
@@ -28,19 +28,15 @@ const MUCH: f64 = 4.0;
 ///
 /// # Errors
 /// Where that cannot be assembled.
-pub fn plan_reduction(
-    study: &Study,
-    schedule: &Schedule,
-    tolerance: Option<Controller>,
-) -> Result<(), SimulationError> {
+pub fn plan_reduction(study: &Study, plan: &StepPlan) -> Result<(), SimulationError> {
     let description = study.description;
     if (description.reduced.is_empty() && description.requirements.is_empty()) || study.store.get().is_some() {
         return Ok(());
     }
     (study.stage)("nominal motion");
-    let Divided { schedule, .. } = divided(study, schedule.clone());
+    let plan = StepPlan { schedule: divided(study, plan.schedule.clone()).schedule, ..*plan };
     let progress = Progress::new(usize::MAX, study.progress);
-    let motions = study.motions(&schedule, tolerance, &progress);
+    let motions = study.motions(plan.steps(), &progress);
     // A deviation from the nominal motion is rounding in the nominal motion: opposite corners show its course.
     let corner = |xi: f64| study.domain.sample(&vec![xi; study.domain.dimension()]);
     let mut samples = vec![study.domain.nominal.clone()];
@@ -51,7 +47,7 @@ pub fn plan_reduction(
     let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
     motions.simulate(&samples, sampling, &mut |_, rows| values.extend_from_slice(rows)).map_err(simulation_error)?;
     let stride = outputs * samples.len();
-    let times: Vec<f64> = (0..values.len() / stride).map(|row| schedule.time(row)).collect();
+    let times: Vec<f64> = (0..values.len() / stride).map(|row| plan.schedule.time(row)).collect();
     let of = |output: usize, sample: usize| -> Vec<f64> {
         values.iter().skip(output * samples.len() + sample).step_by(stride).copied().collect()
     };
@@ -70,25 +66,20 @@ pub fn plan_reduction(
 ///
 /// # Errors
 /// Where a sample cannot be assembled.
-pub fn reduced(
-    study: &Study,
-    rows: &Bounded,
-    tolerance: Option<Controller>,
-    progress: &Progress,
-) -> Result<Found, SimulationError> {
+pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Found, SimulationError> {
     let Some(store) = study.store.get() else { return Ok(Found::default()) };
     let begun = std::time::Instant::now();
     (study.stage)("reduced outputs");
-    let schedule = &rows.schedule;
-    let (halved, odd) = (schedule.refined(2), schedule.at_odds());
-    let finer = tolerance.map(|tolerance| tolerance.for_parts(2));
-    let motions = study.motions(schedule, tolerance, progress).noting(&rows.seen);
-    let [motions_halved, motions_odd] = [&halved, &odd].map(|schedule| study.motions(schedule, finer, progress));
+    let (plan, schedule) = (&rows.plan, &rows.plan.schedule);
+    let finer = [plan.halved(), plan.at_odds()];
+    let motions = study.motions(plan.steps(), progress).noting(&rows.seen);
+    let [motions_halved, motions_odd] = finer.each_ref().map(|plan| study.motions(plan.steps(), progress));
+    let [halved, odd] = finer.each_ref().map(|plan| &plan.schedule);
     let direct = ReducedEnsemble::new(&motions, store, schedule);
-    let with_halved = ReducedEnsemble::new(&motions_halved, store, &halved);
-    let with_odd = ReducedEnsemble::new(&motions_odd, store, &odd);
-    let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(&odd) };
-    let mut results = bounds_of(study, ensembles, schedule, &halved)?;
+    let with_halved = ReducedEnsemble::new(&motions_halved, store, halved);
+    let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
+    let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(odd) };
+    let mut results = bounds_of(study, ensembles, plan, halved)?;
     let kept = kept_reduced(study, &mut results, &store.plan.values, rows.unreliable_from().is_some());
     let unreliable = rows.unreliable_from().is_some();
     results.note(&direct);
@@ -119,14 +110,14 @@ pub fn reduced(
 fn bounds_of(
     study: &Study,
     ensembles: Ensembles,
-    schedule: &Schedule,
+    plan: &StepPlan,
     halved: &Schedule,
 ) -> Result<Bounded, SimulationError> {
-    let ensemble = ensembles.direct;
+    let (ensemble, schedule) = (ensembles.direct, &plan.schedule);
     let nominal = nominal_values(study, ensemble)?;
     let (nominal, ()) = timed(schedule, "nominal", || Ok((nominal, ())))?;
     let seen = Ledger::new(1, ensemble.outputs());
-    let mut results = Bounded::new(schedule.clone(), nominal, seen, Doubts::default());
+    let mut results = Bounded::new(plan.clone(), nominal, seen, Doubts::default());
     let mut request = study.request.clone();
     if request.is_empty() {
         return Ok(results);

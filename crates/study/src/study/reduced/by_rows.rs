@@ -17,7 +17,7 @@ const SAFETY: f64 = 2.0;
 /// margin of `simulated` contradicts them.
 pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64) -> Option<Part> {
     let (from, to) = own.times.filter(|(from, to)| from < to)?;
-    let schedule = &rows.schedule;
+    let schedule = &rows.plan.schedule;
     let span: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
     // The span begins and ends where there are rows, and a dip takes three.
     let [first, .., last] = *span.as_slice() else { return None };

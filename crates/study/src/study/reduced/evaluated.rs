@@ -23,7 +23,7 @@ impl<'a> Evaluated<'a> {
             store.plan.values.evaluate(&channels, &sample, &mut values);
             is_whole.then_some((sample, values))
         };
-        let all = store.samples(steps_of(&bounded.schedule));
+        let all = store.samples(steps_of(&bounded.plan.schedule));
         Self { bounded, unreliable, samples: all.into_iter().filter_map(whole).collect() }
     }
 }

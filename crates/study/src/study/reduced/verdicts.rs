@@ -229,7 +229,7 @@ fn is_certified(own: &Requirement, rows: &Bounded) -> bool {
     let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else {
         return false;
     };
-    let schedule = &rows.schedule;
+    let schedule = &rows.plan.schedule;
     let counts: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
     let seen = schedule.steps_per_row() == Some(1) || (from == to && !counts.is_empty());
     let holds = |place: &usize| counts.iter().all(|&row| outcome.result.bands[*place][row].lower >= 0.0);

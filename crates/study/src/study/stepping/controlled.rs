@@ -1,5 +1,6 @@
 //! Steps from a tolerance: the error of every output, relative to how far it moves.
 
+use super::plan::StepPlan;
 use super::validated::integration;
 use crate::study::bounding::simulation_error;
 use crate::study::ensemble::Progress;
@@ -8,7 +9,7 @@ use symdiff::math;
 
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::numerics::{Sample, corners};
-use crate::simulate::{Controller, Schedule, SimulationError, ToleranceSchedule, schedule_for_tolerance};
+use crate::simulate::{Controller, SimulationError, ToleranceSchedule, schedule_for_tolerance};
 
 /// Corners of the box that join the nominal sample as controlling samples of the step size.
 const CONTROLLING_CORNERS: usize = 16;
@@ -36,12 +37,12 @@ const ROUNDING: f64 = 1e-13;
 const STEADY: f64 = 0.5;
 
 /// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors
-/// that are allowed for it. How far an error made early is carried is the problem's: the first schedule shows it.
+/// that are allowed for it; also what ended it before the last row, if anything did. How far an error made early is carried is the problem's: the first schedule shows it.
 pub fn schedule_within(
     study: &Study,
     tolerance: f64,
     samples: &[Sample],
-) -> Result<(ToleranceSchedule, Controller), SimulationError> {
+) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
     let times = (study.description.simulation.duration, study.description.simulation.output_step);
     let integration = integration(study);
     // Plain steps for an error of e are as long as the root of e, extrapolated ones as long as a higher root.
@@ -62,7 +63,8 @@ pub fn schedule_within(
         if controlled.failure.is_some() || study.interruption.is_asked() {
             break;
         }
-        let share = steps_error(study, &controlled.schedule, Some(controller), samples)? / tolerance;
+        let plan = StepPlan { schedule: controlled.schedule.clone(), controller: Some(controller) };
+        let share = steps_error(study, &plan, samples)? / tolerance;
         // Steps go with the root of the tolerance.
         let room = (most / steps(&controlled).max(1.0)).powi(2);
         let factor = of_plain(share / AIM).min(room);
@@ -76,20 +78,14 @@ pub fn schedule_within(
         }
         (controlled, controller) = (next, finer);
     }
-    Ok((controlled, controller))
+    Ok((StepPlan { schedule: controlled.schedule, controller: Some(controller) }, controlled.failure))
 }
 
 /// The largest error of an output at the controlling samples, relative to how far it moves, by halving the steps.
-pub fn steps_error(
-    study: &Study,
-    schedule: &Schedule,
-    controller: Option<Controller>,
-    samples: &[Sample],
-) -> Result<f64, SimulationError> {
+pub fn steps_error(study: &Study, plan: &StepPlan, samples: &[Sample]) -> Result<f64, SimulationError> {
     let progress = Progress::new(usize::MAX, study.progress);
-    let halved = schedule.refined(2);
-    let values = |schedule, controller| {
-        let motions = study.motions(schedule, controller, &progress);
+    let values = |plan: &StepPlan| {
+        let motions = study.motions(plan.steps(), &progress);
         let mut values: Vec<f64> = Vec::new();
         let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: false };
         motions
@@ -97,8 +93,7 @@ pub fn steps_error(
             .map_err(simulation_error)?;
         Ok(values)
     };
-    let (direct, halved) =
-        (values(schedule, controller)?, values(&halved, controller.map(|controller| controller.for_parts(2)))?);
+    let (direct, halved) = (values(plan)?, values(&plan.halved())?);
     let outputs = &study.simulator.system.outputs;
     let lines = |values: &[f64]| -> Vec<Vec<f64>> {
         let line = |output: usize| values.chunks_exact(samples.len()).skip(output).step_by(outputs.len()).flatten();

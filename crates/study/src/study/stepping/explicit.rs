@@ -7,6 +7,7 @@ use crate::study::ensemble::Progress;
 use crate::study::problem::Study;
 use std::time::Instant;
 
+use super::plan::StepPlan;
 use super::search::SHARE;
 use crate::methods::{Observed, Validation};
 use crate::model::{Description, SchemeChoice, Stepping};
@@ -117,17 +118,18 @@ pub fn balance_explicit(
         };
         let asked = study.description.simulation.scheme == SchemeChoice::Explicit;
         if round == 0 && !asked && plain_work(&study.simulator, base) < explicit_work(&study.simulator, &schedule) {
-            let validation = validation(study, base, None, observed, progress)?;
+            let validation = validation(study, &StepPlan::fixed(base.clone()), observed, progress)?;
             if validation.worst_share(allowed, base.rows) <= SHARE {
                 return Ok(Err(Obstacle::Costlier));
             }
         }
-        let validation = validation(study, &schedule, None, observed, progress)?;
-        let share = validation.worst_share(allowed, schedule.rows);
+        let plan = StepPlan::fixed(schedule);
+        let validation = validation(study, &plan, observed, progress)?;
+        let share = validation.worst_share(allowed, plan.schedule.rows);
         if share <= SHARE {
             let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
-            let summary = validation_summary(&schedule, &validation, stop, begun);
-            return Ok(Ok((schedule, (validation, summary))));
+            let summary = validation_summary(&plan.schedule, &validation, stop, begun);
+            return Ok(Ok((plan.schedule, (validation, summary))));
         }
         if share.is_nan() || study.interruption.is_asked() {
             break;
@@ -152,7 +154,7 @@ pub fn explicit_within(
             Ok(schedule) => schedule,
             Err(obstacle) => return Ok(Err(obstacle.into())),
         };
-        let share = steps_error(study, &schedule, None, samples)? / tolerance;
+        let share = steps_error(study, &StepPlan::fixed(schedule.clone()), samples)? / tolerance;
         if share <= 1.0 {
             return Ok(Ok(schedule));
         }

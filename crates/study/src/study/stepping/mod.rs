@@ -1,4 +1,5 @@
-//! The steps of a subsystem's samples.
+//! The steps of a subsystem's samples: a `plan` that all of them share, the `first` of which is tried
+//! before its errors are known.
 //!
 //! `validated` has the model's own steps and the samples that measure their error, `controlled` those from a tolerance
 //! of the steps, `explicit` those of the explicit method, `balance` those from a tolerance of the bounds (`search`), and
@@ -8,14 +9,18 @@ mod balance;
 mod controlled;
 mod events;
 mod explicit;
+mod first;
+mod plan;
 mod search;
 mod switches;
 mod validated;
 
-pub use balance::balance;
-pub use controlled::{controlling_samples, schedule_within};
+pub use balance::{Balanced, balance};
+pub use controlled::controlling_samples;
 pub use events::{events_of_parts, segmented};
-pub use explicit::{OF_STEPS, decision, explicit_samples, explicit_steps, explicit_within, may_be_explicit, refused};
+pub use explicit::{OF_STEPS, decision, explicit_samples, explicit_steps, may_be_explicit, refused};
+pub use first::planned;
+pub use plan::StepPlan;
 pub use search::StepSearch;
 pub use switches::switches;
 pub use validated::{damped_modes, divided, integration, may_extrapolate, validation};

@@ -1,8 +1,9 @@
 //! Schedules that resolve as much as they can, and the samples that measure the error of their steps.
 
+use super::plan::StepPlan;
 use crate::methods::{Ensembles, Observed, Validation, ends_of_combinations};
 use crate::model::{SchemeChoice, Simulation, Stepping};
-use crate::simulate::{Controller, Divided, ExcitedMode, Integration, Schedule, SimulationError, excited_modes};
+use crate::simulate::{Divided, ExcitedMode, Integration, Schedule, SimulationError, excited_modes};
 use crate::study::bounding::simulation_error;
 use crate::study::ensemble::Progress;
 use crate::study::problem::Study;
@@ -53,19 +54,18 @@ pub fn damped_modes(study: &Study, schedule: &Schedule) -> Vec<ExcitedMode> {
     }
 }
 
-/// The validation samples under a schedule and finer ones.
+/// The validation samples under a plan and finer ones.
 pub fn validation(
     study: &Study,
-    schedule: &Schedule,
-    tolerance: Option<Controller>,
+    plan: &StepPlan,
     observed: Observed,
     progress: &Progress,
 ) -> Result<Validation, SimulationError> {
-    let (halved, odd) = (schedule.refined(2), schedule.at_odds());
-    let direct = study.motions(schedule, tolerance, progress);
-    let finer_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
-    let [halved, finer] = [&halved, &odd].map(|schedule| study.motions(schedule, finer_tolerance, progress));
-    let ensembles = Ensembles { direct: &direct, halved: &halved, odd: &finer, ratio: schedule.ratio_to(&odd) };
+    let plans = [plan.halved(), plan.at_odds()];
+    let direct = study.motions(plan.steps(), progress);
+    let [halved, odd] = plans.each_ref().map(|plan| study.motions(plan.steps(), progress));
+    let ratio = plan.schedule.ratio_to(&plans[1].schedule);
+    let ensembles = Ensembles { direct: &direct, halved: &halved, odd: &odd, ratio };
     let ends = ends_of_combinations(ensembles.direct);
     Validation::run(ensembles, observed, study.request.degree(), ends).map_err(simulation_error)
 }
