@@ -16,12 +16,10 @@ use super::questions::Questions;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, Overlap, System};
 use super::tree::Tree;
+use crate::assemble::tuning::TUNING;
 use crate::grammar::Sensor;
 use crate::model::{Analysis, Description, Formulation, Joint};
 use crate::multibody::BuildError;
-
-/// Links of trees from which M is left out: it has an entry for every pair of them.
-const LONG: usize = 48;
 
 /// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description and its questions, in the formulation that these ask for;
 /// `auto` is in absolute coordinates here.
@@ -296,7 +294,7 @@ impl<'g> Balance<'g> {
             m.kinetic_energy_of_flexible = m.energy_of_beams()? + m.energy_of_superelements()?;
         }
         let mut massive = depend_on(&inertia, &m.w);
-        let is_long = links.len() >= LONG && massive.iter().all(|&massive| massive);
+        let is_long = links.len() >= TUNING.links_without_mass_matrix && massive.iter().all(|&massive| massive);
         if mass.is_empty() && !is_long {
             mass = mass_matrix(&inertia, &m.w);
             massive.fill(false);

@@ -7,16 +7,14 @@
 
 use super::questions::Questions;
 use super::tree::Tree;
+use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Mobilizer;
-
-/// Of more bodies only the cut of the shallowest trees is looked at.
-const MOST_BODIES: usize = 50;
 
 /// The cuts that differ from the given one in one exchange, each with all joints that are constraints; first
 /// those that promise the fewest operations; none of large mechanisms.
 pub fn other_cuts(questions: &Questions) -> Vec<Vec<usize>> {
     let description = questions.description;
-    if description.bodies.len() > MOST_BODIES {
+    if description.bodies.len() > TUNING.bodies_with_cuts {
         return Vec::new();
     }
     let tree = Tree::spanning(questions, |_| true);
@@ -52,7 +50,7 @@ pub fn other_cuts(questions: &Questions) -> Vec<Vec<usize>> {
 /// The cuts that take further joints of several axes: all spherical ones, and all; none of large mechanisms.
 pub fn cuts_of_several_axes(questions: &Questions) -> Vec<Vec<usize>> {
     let description = questions.description;
-    if description.bodies.len() > MOST_BODIES {
+    if description.bodies.len() > TUNING.bodies_with_cuts {
         return Vec::new();
     }
     let tree = Tree::spanning(questions, |_| true);

@@ -58,6 +58,7 @@ mod teeth;
 pub(crate) mod tests;
 mod thrust;
 mod tree;
+pub mod tuning;
 
 pub use crate::multibody::{BuildError, ConditionId, ConstraintId, CoordinateId, EquationId, OutputId};
 pub use build::{

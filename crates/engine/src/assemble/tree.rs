@@ -8,12 +8,10 @@
 use std::collections::VecDeque;
 
 use super::questions::Questions;
+use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::PointRef;
 use crate::model::{Description, StartValue};
-
-/// Multiplications that a link takes where links are eliminated one by one, about.
-const OF_LINK: usize = 1000;
 
 /// The joint between a child and its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,7 +195,7 @@ impl Tree {
         let of_joints: Vec<usize> = self.order.iter().copied().filter(|&body| !self.merged[body]).collect();
         let depths = self.depths();
         let whole = of_joints.iter().map(|&body| depths[body] * (depths[body] + 1) / 2).fold(0, usize::saturating_add);
-        whole.min(OF_LINK * of_joints.len())
+        whole.min(TUNING.link_multiplications * of_joints.len())
     }
 
     /// Whether a joint is an inboard joint.

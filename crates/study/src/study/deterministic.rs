@@ -8,8 +8,9 @@ use super::bounding::{Bounded, Doubts, Outcome, bound, note_nominal, simulation_
 use super::ensemble::{Progress, nominal};
 use super::problem::Study;
 use super::reduced::{Found, reduced};
+use super::stepping::tuning::TUNING;
 use super::stepping::{
-    OF_STEPS, StepPlan, StepSearch, damped_modes, divided, explicit_steps, may_be_explicit, may_extrapolate, refused,
+    StepPlan, StepSearch, damped_modes, divided, explicit_steps, may_be_explicit, may_extrapolate, refused,
 };
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
 use crate::numerics::{Ledger, Range};
@@ -22,8 +23,12 @@ pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, S
     let explicit = match study.request.tolerance.filter(|_| may_be_explicit(study) && !schedule.passes_rows()) {
         None => None,
         Some(allowed) => {
-            let found =
-                explicit_steps(study, std::slice::from_ref(&study.domain.nominal), schedule, OF_STEPS * allowed)?;
+            let found = explicit_steps(
+                study,
+                std::slice::from_ref(&study.domain.nominal),
+                schedule,
+                TUNING.explicit_share * allowed,
+            )?;
             found.or_else(|obstacle| refused(study, obstacle.into()).map(|()| schedule.clone())).map(Some)?
         }
     };

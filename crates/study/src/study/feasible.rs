@@ -5,10 +5,11 @@
 //! held-out samples of a piece fail. Each piece whose samples do not is bounded as if it were the whole; a row's bounds
 //! are those of the pieces that reached it together, and what share of the box these are is said with them.
 
+use std::fmt;
+
 use super::answers::Ran;
 use super::problem::Study;
 use super::single::{self, Tried, try_samples};
-use std::fmt;
 
 use super::RunError;
 use crate::numerics::{ParameterBox, Range, spread, validation};

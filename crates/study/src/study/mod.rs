@@ -41,6 +41,7 @@ mod statistics;
 mod stepping;
 mod structure;
 mod subsystems;
+mod tuning;
 
 use crate::assemble::{BuildError, Questions};
 use crate::compile::Scheme;
@@ -68,6 +69,7 @@ pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
 pub use structure::structure;
 pub use subsystems::uncertain;
+pub use tuning::tuning;
 
 /// How to run.
 pub struct Options<'a> {

@@ -1,10 +1,11 @@
 //! Outputs over time at chosen samples, in lockstep, a chunk of samples after the other, so that memory does not grow
 //! with their number.
 
+use std::ops::Range;
+
 use super::bounding::simulation_error;
 use super::problem::Study;
 use super::stepping::{StepPlan, balance, controlling_samples, divided, planned};
-use std::ops::Range;
 
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
 use super::prepared::{Prepared, choices, prepare};

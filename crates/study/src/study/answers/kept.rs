@@ -4,9 +4,10 @@
 //! mechanism, from which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded
 //! coordinates.
 
+use std::borrow::Cow;
+
 use crate::study::ensemble::closure::MotionClosure;
 use crate::study::reduced::{KeptReduced, Margins, MarginsOfPart, ReducedValues};
-use std::borrow::Cow;
 
 use rayon::prelude::*;
 

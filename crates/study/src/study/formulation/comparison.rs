@@ -1,16 +1,13 @@
 //! By what two formulations of a mechanism, or two cuts of its loops, are compared.
 
 use crate::simulate::Simulator;
-
-/// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike: what
-/// closures leave.
-const ALIKE: f64 = 1e-6;
+use crate::study::formulation::tuning::TUNING;
 
 /// Whether both have the same degrees of freedom and the same outputs at the start.
 pub fn starts_alike(one: &Simulator, other: &Simulator) -> bool {
     let [first, second] = [one, other].map(Simulator::outputs_at_start);
     // NaN is like nothing.
-    let alike = |(a, b): (f64, f64)| (a - b).abs() <= ALIKE * a.abs().max(b.abs()).max(1.0);
+    let alike = |(a, b): (f64, f64)| (a - b).abs() <= TUNING.alike * a.abs().max(b.abs()).max(1.0);
     one.mobility.degrees_of_freedom == other.mobility.degrees_of_freedom
         && first.len() == second.len()
         && first.into_iter().zip(second).all(alike)

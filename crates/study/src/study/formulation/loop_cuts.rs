@@ -9,9 +9,7 @@ use std::collections::BTreeSet;
 use super::comparison::{instructions, starts_alike};
 use crate::assemble::{self, Questions};
 use crate::simulate::Simulator;
-
-/// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
-const BUDGET: usize = 20_000;
+use crate::study::formulation::tuning::TUNING;
 
 /// The first, or one with another cut and a shorter step that starts alike; `with_roots`, also one in which bodies
 /// behind joints of several axes have coordinates of their own. `compile` makes one of questions that give the cut,
@@ -37,7 +35,7 @@ pub fn shortest(
         let current = questions.cut_at(best.system.formulation.cut.clone());
         let roots = if with_roots { assemble::cuts_of_several_axes(&current) } else { Vec::new() };
         for cut in assemble::other_cuts(&current).into_iter().chain(roots) {
-            if spent + least > BUDGET {
+            if spent + least > TUNING.cut_instructions {
                 return best;
             }
             if !tried.insert(cut.clone()) {

@@ -9,51 +9,18 @@
 
 mod comparison;
 mod loop_cuts;
+pub mod tuning;
 
 use crate::assemble::{self, BuildError, FormulationInfo, Questions, System};
 use crate::model::{Formulation, Stepping};
 use crate::numerics::Sample;
 use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularWatch, Stepper};
+use crate::study::formulation::tuning::TUNING;
 
 use super::{RunError, first_step, scheme};
 use comparison::starts_alike;
 
 pub use comparison::instructions;
-
-/// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the plane
-/// and in space. Long planar chains are as short in absolute coordinates; in space they never are, but deep loops
-/// couple all that is between their ends.
-const DEEPEST: [usize; 2] = [25, usize::MAX];
-const DEEPEST_OF_LOOPS: [usize; 2] = [25, 50];
-
-/// Absolute coordinates are given up where the start's three eliminations, or the step's one, take so many times the
-/// operations that a step takes in joint coordinates, and more than no one has to wait for.
-const GIVEN_UP: usize = 10;
-
-/// Steps in a spherical joint's Euler parameters err more than those in a body's own, whose inertia is about its centre
-/// of mass and not about the joint: of the same length those of a heavy top by 8 times. With order two that is three
-/// times as many steps.
-const LONGER_STEPS: usize = 3;
-
-/// Operations that are compiled in a moment.
-const SOON: usize = 100_000;
-
-/// Most operations of the start's eliminations, or of the step's: in about a minute, and in 1 GB.
-const MOST: usize = 8_000_000;
-
-/// The same in joint coordinates where only the start is wanted: in a second or two.
-const MOST_TO_CHECK: usize = 1_000_000;
-
-/// Steps in which the nominal motion is looked at for singular configurations: s, where a tolerance chooses them, and
-/// how many at most.
-const LONGEST_LOOK: f64 = 1e-3;
-const MOST_LOOKS: f64 = 10_000.0;
-
-/// Eliminations of the start.
-const ELIMINATIONS: usize = 3;
-
-/// Most bodies for which a whole model is compiled to be checked; larger models are only assembled.
-const FEW_BODIES: usize = 50;
 
 /// Builds and compiles a model in the formulation that it asks for, or in the shorter one. A formulation that takes too
 /// many operations is given up for the other.
@@ -64,9 +31,9 @@ pub fn compiled(questions: &Questions) -> Result<Simulator, RunError> {
     let within = |system: System, operations: usize| {
         Simulator::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
     };
-    let compile = |system: System| within(system, MOST);
+    let compile = |system: System| within(system, TUNING.operations);
     if questions.formulation != Formulation::Auto {
-        let first = within_budget(questions, MOST, &|system| Ok(compile(system)?))?;
+        let first = within_budget(questions, TUNING.operations, &|system| Ok(compile(system)?))?;
         let is_open = questions.is_cut_open();
         if !is_open || !first.system.formulation.joint {
             return Ok(first);
@@ -133,12 +100,13 @@ fn of_loops(questions: &Questions, absolute: System) -> Result<Simulator, RunErr
     let within = |system: System, operations: usize| {
         Simulator::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
     };
-    let absolute = match within(absolute, MOST) {
+    let absolute = match within(absolute, TUNING.operations) {
         Err(SimulationError::TooLong) => {
-            return other_way(questions, Formulation::Joint, &|joint| Ok(within(joint, MOST)?));
+            return other_way(questions, Formulation::Joint, &|joint| Ok(within(joint, TUNING.operations)?));
         }
         Err(singular) => {
-            return regular_in_joint_coordinates(questions, &|joint| within(joint, MOST)).ok_or(singular.into());
+            return regular_in_joint_coordinates(questions, &|joint| within(joint, TUNING.operations))
+                .ok_or(singular.into());
         }
         Ok(absolute) => absolute,
     };
@@ -201,9 +169,9 @@ fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
     }
     let step = match simulation.stepping {
         Stepping::Fixed(step) => step,
-        Stepping::Tolerance(_) => LONGEST_LOOK.min(simulation.output_step),
+        Stepping::Tolerance(_) => TUNING.longest_look.min(simulation.output_step),
     };
-    let step = step.max(simulation.duration / MOST_LOOKS);
+    let step = step.max(simulation.duration / TUNING.looks);
     let steps = (simulation.output_step / step).round().max(1.0);
     let schedule = Schedule::fixed(simulation.duration, simulation.output_step / steps, simulation.output_step);
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
@@ -224,20 +192,20 @@ fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
 
 /// Joints from the root beyond which joint coordinates are not tried.
 fn deepest(questions: &Questions) -> usize {
-    let deepest = if assemble::closes_loops(questions) { DEEPEST_OF_LOOPS } else { DEEPEST };
+    let deepest = if assemble::closes_loops(questions) { TUNING.deepest_of_loops } else { TUNING.deepest };
     deepest[usize::from(questions.description.space.spatial)]
 }
 
 /// Operations after which the other formulation is given up.
 fn enough(simulator: &Simulator) -> usize {
-    (GIVEN_UP * instructions(simulator)).clamp(SOON, MOST)
+    (TUNING.given_up * instructions(simulator)).clamp(TUNING.soon, TUNING.operations)
 }
 
-/// Whether joint coordinates take fewer instructions, those in a joint's Euler parameters counted [`LONGER_STEPS`]
+/// Whether joint coordinates take fewer instructions, those in a joint's Euler parameters counted `longer_steps`
 /// times.
 fn is_shorter(joint: &Simulator, absolute: &Simulator) -> bool {
     let has_parameters = joint.system.links.iter().any(|link| link.normalisation.is_some());
-    let weight = if has_parameters { LONGER_STEPS } else { 1 };
+    let weight = if has_parameters { TUNING.longer_steps } else { 1 };
     instructions(joint) < instructions(absolute) && weight * instructions(joint) <= instructions(absolute)
 }
 
@@ -266,13 +234,13 @@ pub fn assembled(questions: &Questions) -> Result<Assembled, RunError> {
         Assembled::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
     };
     let of_system = |system: System| {
-        let operations = if system.formulation.joint { MOST_TO_CHECK } else { MOST };
+        let operations = if system.formulation.joint { TUNING.operations_of_check } else { TUNING.operations };
         Ok(within(system, operations)?)
     };
     if questions.formulation != Formulation::Auto {
-        return within_budget(questions, MOST_TO_CHECK, &of_system);
+        return within_budget(questions, TUNING.operations_of_check, &of_system);
     }
-    if questions.description.bodies.len() <= FEW_BODIES {
+    if questions.description.bodies.len() <= TUNING.few_bodies {
         let Simulator {
             system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, derived, ..
         } = compiled(questions)?;
@@ -290,8 +258,9 @@ pub fn assembled(questions: &Questions) -> Result<Assembled, RunError> {
     }
     if assemble::closes_loops(questions) {
         let absolute = assemble::in_absolute_coordinates(questions)?;
-        return within(absolute, MOST).or_else(|singular| {
-            regular_in_joint_coordinates(questions, &|joint| within(joint, MOST_TO_CHECK)).ok_or(singular.into())
+        return within(absolute, TUNING.operations).or_else(|singular| {
+            regular_in_joint_coordinates(questions, &|joint| within(joint, TUNING.operations_of_check))
+                .ok_or(singular.into())
         });
     }
     let why = match assemble::in_joint_coordinates(questions, Some(deepest(questions)), None)? {
@@ -312,7 +281,7 @@ fn within_budget<T>(
     of_system: &dyn Fn(System) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
     let asked = questions.formulation;
-    if asked == Formulation::Joint && assemble::joint_elimination(questions) > most / ELIMINATIONS {
+    if asked == Formulation::Joint && assemble::joint_elimination(questions) > most / TUNING.eliminations {
         return other_way(questions, Formulation::Absolute, of_system);
     }
     match of_system(assemble::build(questions)?) {

@@ -1,14 +1,13 @@
 //! The time that a run takes unasked, and its end where the estimate was too low.
 
-use super::{MOST_SECONDS, Price, in_words};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::methods::Budget;
+use super::{Price, in_words};
+use crate::study::price::tuning::TUNING;
 
-/// So many times the estimate are taken before somebody is asked.
-const TIMES: u32 = 3;
+use crate::methods::Budget;
 
 /// Seconds that nothing takes.
 const FOR_EVER: f64 = 1e9;
@@ -54,7 +53,7 @@ impl Allowance {
             return true;
         }
         let expected = Duration::from_millis(self.expected.load(Ordering::Relaxed));
-        let is_spent = elapsed > TIMES * expected.max(Duration::from_secs_f64(MOST_SECONDS));
+        let is_spent = elapsed > TUNING.times * expected.max(Duration::from_secs_f64(TUNING.seconds));
         if is_spent {
             self.estimate.get_or_init(|| expected.as_secs_f64());
             self.spent.store(true, Ordering::Relaxed);
@@ -65,7 +64,7 @@ impl Allowance {
     /// Why it ended, if it did.
     pub(in crate::study) fn ended(&self) -> Option<String> {
         let estimate = self.estimate.get()?;
-        let limit = TIMES as f64 * estimate.max(MOST_SECONDS);
+        let limit = TUNING.times as f64 * estimate.max(TUNING.seconds);
         Some(format!(
             "ended after {}: {} were estimated; what is finished is kept; allow it to take longer with --yes",
             in_words(&limit),

@@ -4,27 +4,19 @@
 mod allowance;
 mod effort;
 mod memory;
+pub mod tuning;
 mod work;
 
 use super::problem::Study;
 use crate::model::Stepping;
 use crate::simulate::Schedule;
+use crate::study::price::tuning::TUNING;
 use work::{decided_simulations, planned_simulations, planned_values};
 
 pub use allowance::Allowance;
-pub use effort::{INSTRUCTION_SECONDS, instructions_of_step};
+pub use effort::instructions_of_step;
 pub use memory::Memory;
 pub use work::{stored_bytes, total_work};
-
-/// Most simulations that run unasked.
-const MOST_SIMULATIONS: f64 = 20_000.0;
-
-/// Most time that is spent unasked, s.
-pub(super) const MOST_SECONDS: f64 = 60.0;
-
-/// Time in which a value of a surrogate is fitted and bounded, s: from 0.6 to 6 µs were measured with 625 to 4913
-/// samples of three to seven parameters.
-const VALUE_SECONDS: f64 = 5e-7;
 
 /// What a run is expected to take.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -60,8 +52,8 @@ impl Price {
             };
             let of_step = instructions_of_step(&study.simulator);
             simulations += of_study;
-            let of_sample = steps * of_step * INSTRUCTION_SECONDS;
-            let planned = (of_study * of_sample + planned_values(study) * VALUE_SECONDS) / threads as f64;
+            let of_sample = steps * of_step * TUNING.instruction_seconds;
+            let planned = (of_study * of_sample + planned_values(study) * TUNING.value_seconds) / threads as f64;
             seconds += planned;
             at_most += planned + decided_simulations(study) * of_sample / threads as f64;
         }
@@ -81,7 +73,7 @@ impl Price {
 
     /// Whether it is to be asked for, where a model allows so many simulations.
     pub fn is_costly(&self, allowed: usize) -> bool {
-        let much = self.simulations > MOST_SIMULATIONS || self.seconds > MOST_SECONDS;
+        let much = self.simulations > TUNING.simulations || self.seconds > TUNING.seconds;
         much && self.simulations > allowed as f64
     }
 }

@@ -4,7 +4,7 @@
 //! motion, with a kink over the box wherever it changes its place in time. Over the box first, it is the least of the
 //! lower bounds in the rows, which know no such kink; only what lies between rows is estimated.
 
-use super::verdicts::Part;
+use super::part::Part;
 use crate::model::Requirement;
 use crate::results::Band;
 use crate::study::bounding::{Bounded, bands};

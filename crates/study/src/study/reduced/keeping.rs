@@ -1,8 +1,9 @@
 //! What a study keeps of the bounds of reduced outputs and margins.
 
+use std::sync::Arc;
+
 use crate::study::bounding::Bounded;
 use crate::study::problem::Study;
-use std::sync::Arc;
 
 use super::kept::KeptReduced;
 use super::values::Values;

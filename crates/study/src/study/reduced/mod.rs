@@ -15,6 +15,7 @@ mod found;
 mod keeping;
 mod kept;
 mod margins;
+mod part;
 mod plan;
 mod refine;
 mod values;

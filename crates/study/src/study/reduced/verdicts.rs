@@ -3,6 +3,7 @@
 use super::by_rows::by_rows;
 use super::ensemble::ReducedEnsemble;
 use super::evaluated::Evaluated;
+use super::part::Part;
 use crate::grammar::display_unit::ShownUnit;
 use crate::methods::Method;
 use crate::model::Requirement;
@@ -21,24 +22,6 @@ const ROUNDING: f64 = 1e-12;
 /// Rounds of the search for a sample that fails, where bounds say that there may be one, and its first distance (of ξ).
 const ROUNDS: usize = 6;
 const REACH: f64 = 0.5;
-
-/// Bounds of a part of a margin. What decides is the margin beside its error, however little or much it moves.
-pub struct Part {
-    pub(super) lower: f64,
-    pub(super) error: f64,
-    pub(super) surrogate: f64,
-    pub(super) time: f64,
-    /// Whether the error is to be believed.
-    pub(super) is_known: bool,
-    pub(super) method: &'static str,
-}
-
-impl Part {
-    /// What the margin may be with the error.
-    pub fn reached(&self) -> f64 {
-        self.lower - self.error
-    }
-}
 
 /// NaN is passed on.
 fn smaller(a: f64, b: f64) -> f64 {

@@ -5,36 +5,12 @@ use super::validated::integration;
 use crate::study::bounding::simulation_error;
 use crate::study::ensemble::Progress;
 use crate::study::problem::Study;
+use crate::study::stepping::tuning::TUNING;
 use symdiff::math;
 
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::numerics::{Sample, corners};
 use crate::simulate::{Controller, SimulationError, ToleranceSchedule, schedule_for_tolerance};
-
-/// Corners of the box that join the nominal sample as controlling samples of the step size.
-const CONTROLLING_CORNERS: usize = 16;
-
-/// At second order a value is off by this times what halving the steps changes.
-const RICHARDSON: f64 = 4.0 / 3.0;
-
-/// The share of the tolerance that shorter steps aim at.
-const AIM: f64 = 0.6;
-
-/// Schedules that are tried.
-const ROUNDS: usize = 4;
-
-/// Most that shorter steps may grow in number: so many times, and up to so many (times coordinates) in any case.
-const MOST_GROWTH: f64 = 6.0;
-const FEW_STEPS: f64 = 400_000.0;
-
-/// An output that moves less than this, relative to the largest value of its dimension, is constant.
-const CONSTANT: f64 = 1e-9;
-
-/// So is one that moves less than this, relative to the largest value of all: rounding.
-const ROUNDING: f64 = 1e-13;
-
-/// An output whose range falls below this share of itself with halved steps is constant too.
-const STEADY: f64 = 0.5;
 
 /// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors
 /// that are allowed for it; also what ended it before the last row, if anything did. How far an error made early is carried is the problem's: the first schedule shows it.
@@ -58,8 +34,9 @@ pub fn schedule_within(
     };
     let mut controlled = schedule(controller)?;
     let steps = |controlled: &ToleranceSchedule| controlled.schedule.steps_before(controlled.schedule.rows - 1) as f64;
-    let most = (MOST_GROWTH * steps(&controlled)).max(FEW_STEPS / study.simulator.system.q.len() as f64);
-    for _ in 1..ROUNDS {
+    let most = (TUNING.controlled_growth * steps(&controlled))
+        .max(TUNING.controlled_steps / study.simulator.system.q.len() as f64);
+    for _ in 1..TUNING.controlled_rounds {
         if controlled.failure.is_some() || study.interruption.is_asked() {
             break;
         }
@@ -67,7 +44,7 @@ pub fn schedule_within(
         let share = steps_error(study, &plan, samples)? / tolerance;
         // Steps go with the root of the tolerance.
         let room = (most / steps(&controlled).max(1.0)).powi(2);
-        let factor = of_plain(share / AIM).min(room);
+        let factor = of_plain(share / TUNING.controlled_aim).min(room);
         if share <= 1.0 || factor < 1.5 {
             break;
         }
@@ -105,13 +82,13 @@ pub fn steps_error(study: &Study, plan: &StepPlan, samples: &[Sample]) -> Result
     let share = |output: usize| {
         let same = sizes.iter().zip(outputs).filter(|(_, other)| other.dimension == outputs[output].dimension);
         let size = same.map(|(size, _)| *size).fold(0.0, f64::max);
-        let error = RICHARDSON * largest(direct[output].iter().zip(&halved[output]).map(|(a, b)| a - b));
+        let error = TUNING.richardson * largest(direct[output].iter().zip(&halved[output]).map(|(a, b)| a - b));
         let [moves, moves_halved] = [&direct, &halved].map(|values| width(&values[output]));
-        if moves <= (CONSTANT * size).max(ROUNDING * most) {
+        if moves <= (TUNING.constant * size).max(TUNING.rounding * most) {
             return 0.0;
         }
         // What moves by the steps' errors alone, as an energy does, moves less with halved steps.
-        error / if moves_halved < STEADY * moves { size } else { moves }
+        error / if moves_halved < TUNING.steady * moves { size } else { moves }
     };
     Ok((0..outputs.len()).map(share).fold(0.0, f64::max))
 }
@@ -119,7 +96,8 @@ pub fn steps_error(study: &Study, plan: &StepPlan, samples: &[Sample]) -> Result
 /// The nominal sample and corners of the box.
 pub fn controlling_samples(study: &Study) -> Vec<Sample> {
     let mut samples = vec![study.domain.nominal.clone()];
-    for corner in corners(study.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| study.domain.sample(xi)) {
+    for corner in corners(study.domain.dimension(), TUNING.controlling_corners).iter().map(|xi| study.domain.sample(xi))
+    {
         if !samples.contains(&corner) {
             samples.push(corner);
         }

@@ -9,15 +9,7 @@ use crate::results::{EventSummary, MethodSummary};
 use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, segments_of};
 use crate::study::bounding::Switches;
 use crate::study::problem::{Study, problem};
-
-/// A step may err by this share of how far the motion has gone: steps of order 8 that are so accurate cost little.
-const OF_STEPS: f64 = 1e-10;
-
-/// The same as a share of a tolerance that is given.
-const OF_TOLERANCE: f64 = 1e-5;
-
-/// Samples spread over the box for each parameter, of which each has to meet the same events.
-const SPREAD: usize = 24;
+use crate::study::stepping::tuning::TUNING;
 
 /// Steps between the events that all samples meet, if there are any and all that is asked for follows from motions
 /// that are cut there.
@@ -32,8 +24,8 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
         Stepping::Tolerance(tolerance) => Some(tolerance),
         Stepping::Fixed(_) => None,
     };
-    let asked = of_steps.into_iter().chain(study.request.tolerance).map(|tolerance| OF_TOLERANCE * tolerance);
-    let tolerance = asked.fold(OF_STEPS, f64::min);
+    let asked = of_steps.into_iter().chain(study.request.tolerance).map(|tolerance| TUNING.event_share * tolerance);
+    let tolerance = asked.fold(TUNING.event_error, f64::min);
     let segments = segments_of(&study.simulator, &study.domain, &event_samples(study), times.0, tolerance)?;
     // A number that is accumulated over a motion is one of the whole of it.
     let accumulates = !study.description.reduced.is_empty() || !study.description.requirements.is_empty();
@@ -74,7 +66,7 @@ pub fn events_of_parts(study: &Study, schedule: &Schedule) -> Vec<EventSummary> 
 fn event_samples(study: &Study) -> Vec<Sample> {
     let mut samples = controlling_samples(study);
     let k = study.domain.dimension();
-    samples.extend(study.domain.samples(&spread(k, SPREAD * k)));
+    samples.extend(study.domain.samples(&spread(k, TUNING.event_samples * k)));
     samples
 }
 

@@ -1,41 +1,20 @@
 //! Whether the explicit method is taken, and with which steps.
 
+use std::time::Instant;
+
 use super::controlled::{controlling_samples, steps_error};
 use super::validated::{may_extrapolate, validation};
 use crate::study::bounding::validation_summary;
 use crate::study::ensemble::Progress;
 use crate::study::problem::Study;
-use std::time::Instant;
+use crate::study::stepping::tuning::TUNING;
 
 use super::plan::StepPlan;
-use super::search::SHARE;
 use crate::methods::{Observed, Validation};
 use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::{Sample, spread};
 use crate::results::{Decision, MethodSummary};
 use crate::simulate::{ExplicitObstacle, Interruption, Schedule, SimulationError, Simulator, explicit_schedule};
-
-/// A step may err by this share of what the run may be off by, until it is known how errors grow.
-pub const OF_STEPS: f64 = 0.01;
-
-/// Schedules that are tried, the target, and the most that a trial sharpens the tolerance.
-const ROUNDS: usize = 6;
-const AIM: f64 = 0.1;
-const SHARPEST: f64 = 1e-4;
-
-/// Samples that decide on the steps.
-const CONTROLLING: usize = 32;
-
-/// Most steps where the method is asked for, and where it is one of several: those that the schedule has, and a few.
-const MOST_STEPS: usize = 1_000_000;
-const FEW_STEPS: usize = 500;
-
-/// Steps of the scheme that the method is compared with where the model names none, s.
-const TYPICAL_STEP: f64 = 1e-3;
-
-/// Stages of a step, and corrections that move its end onto the constraints.
-const STAGES: usize = 12;
-const CLOSURES: usize = 3;
 
 /// A schedule with its validation samples, or why the method is not taken.
 type Tried = Result<(Schedule, (Validation, MethodSummary)), Obstacle>;
@@ -82,7 +61,7 @@ pub fn refused(study: &Study, obstacle: Obstacle) -> Result<(), SimulationError>
 pub fn explicit_samples(study: &Study) -> Vec<Sample> {
     let mut samples = controlling_samples(study);
     let k = study.domain.dimension();
-    let between = if k == 0 { 0 } else { CONTROLLING.saturating_sub(samples.len()) };
+    let between = if k == 0 { 0 } else { TUNING.explicit_samples.saturating_sub(samples.len()) };
     samples.extend(study.domain.samples(&spread(k, between)));
     samples
 }
@@ -96,7 +75,11 @@ pub fn explicit_steps(
 ) -> Result<Result<Schedule, ExplicitObstacle>, SimulationError> {
     let times = (study.description.simulation.duration, study.description.simulation.output_step);
     let asked = study.description.simulation.scheme == SchemeChoice::Explicit;
-    let most = if asked { MOST_STEPS } else { FEW_STEPS + base.steps_before(base.rows - 1) };
+    let most = if asked {
+        TUNING.explicit_most_steps
+    } else {
+        TUNING.explicit_further_steps + base.steps_before(base.rows - 1)
+    };
     explicit_schedule(&study.simulator, samples, times, tolerance, most, study.interruption)
 }
 
@@ -109,8 +92,8 @@ pub fn balance_explicit(
     progress: &Progress,
 ) -> Result<Tried, SimulationError> {
     let samples = explicit_samples(study);
-    let mut tolerance = OF_STEPS * allowed;
-    for round in 0..ROUNDS {
+    let mut tolerance = TUNING.explicit_share * allowed;
+    for round in 0..TUNING.explicit_rounds {
         let begun = Instant::now();
         let schedule = match explicit_steps(study, &samples, base, tolerance)? {
             Ok(schedule) => schedule,
@@ -119,14 +102,14 @@ pub fn balance_explicit(
         let asked = study.description.simulation.scheme == SchemeChoice::Explicit;
         if round == 0 && !asked && plain_work(&study.simulator, base) < explicit_work(&study.simulator, &schedule) {
             let validation = validation(study, &StepPlan::fixed(base.clone()), observed, progress)?;
-            if validation.worst_share(allowed, base.rows) <= SHARE {
+            if validation.worst_share(allowed, base.rows) <= TUNING.share {
                 return Ok(Err(Obstacle::Costlier));
             }
         }
         let plan = StepPlan::fixed(schedule);
         let validation = validation(study, &plan, observed, progress)?;
         let share = validation.worst_share(allowed, plan.schedule.rows);
-        if share <= SHARE {
+        if share <= TUNING.share {
             let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
             let summary = validation_summary(&plan.schedule, &validation, stop, begun);
             return Ok(Ok((plan.schedule, (validation, summary))));
@@ -134,7 +117,7 @@ pub fn balance_explicit(
         if share.is_nan() || study.interruption.is_asked() {
             break;
         }
-        tolerance *= (AIM / share).max(SHARPEST);
+        tolerance *= (TUNING.explicit_aim / share).max(TUNING.explicit_sharpest);
     }
     Ok(Err(Obstacle::Inaccurate))
 }
@@ -146,10 +129,10 @@ pub fn explicit_within(
     samples: &[Sample],
 ) -> Result<Result<Schedule, Obstacle>, SimulationError> {
     let simulation = &study.description.simulation;
-    let step = TYPICAL_STEP.min(simulation.output_step);
+    let step = TUNING.typical_step.min(simulation.output_step);
     let base = Schedule::fixed(simulation.duration, step, simulation.output_step);
-    let mut of_steps = OF_STEPS * tolerance;
-    for _ in 0..ROUNDS {
+    let mut of_steps = TUNING.explicit_share * tolerance;
+    for _ in 0..TUNING.explicit_rounds {
         let schedule = match explicit_steps(study, samples, &base, of_steps)? {
             Ok(schedule) => schedule,
             Err(obstacle) => return Ok(Err(obstacle.into())),
@@ -161,7 +144,7 @@ pub fn explicit_within(
         if share.is_nan() || study.interruption.is_asked() {
             break;
         }
-        of_steps *= (AIM / share).max(SHARPEST);
+        of_steps *= (TUNING.explicit_aim / share).max(TUNING.explicit_sharpest);
     }
     Ok(Err(Obstacle::Inaccurate))
 }
@@ -178,7 +161,8 @@ fn explicit_work(simulator: &Simulator, schedule: &Schedule) -> usize {
     let start = &simulator.start;
     let closure =
         if simulator.system.lambda.is_empty() { 0 } else { start.position().len() + start.projection().len() };
-    (STAGES * start.acceleration().len() + CLOSURES * closure) * schedule.steps_before(schedule.rows - 1)
+    (TUNING.explicit_stages * start.acceleration().len() + TUNING.explicit_closures * closure)
+        * schedule.steps_before(schedule.rows - 1)
 }
 
 /// By what a subsystem is integrated under a tolerance, and why; nothing where none is given, or the model says it.
@@ -203,22 +187,34 @@ pub fn decision(description: &Description, simulator: &Simulator) -> Option<Deci
     }
     let step = match simulation.stepping {
         Stepping::Fixed(step) => step,
-        Stepping::Tolerance(_) => TYPICAL_STEP.min(simulation.output_step),
+        Stepping::Tolerance(_) => TUNING.typical_step.min(simulation.output_step),
     };
     let base = Schedule::fixed(simulation.duration, step, simulation.output_step);
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-    let (times, most) = ((simulation.duration, simulation.output_step), FEW_STEPS + base.steps_before(base.rows - 1));
-    Some(match explicit_schedule(simulator, &[nominal], times, OF_STEPS * tolerance, most, Interruption::default()) {
-        Ok(Ok(schedule)) => {
-            let steps = schedule.steps_before(schedule.rows - 1);
-            let (explicit, plain) = (explicit_work(simulator, &schedule), plain_work(simulator, &base));
-            let why = format!(
-                "not stiff: about {steps} steps and {explicit} instructions for the nominal sample, where HHT-I3 with steps of {step} s \
+    let (times, most) = (
+        (simulation.duration, simulation.output_step),
+        TUNING.explicit_further_steps + base.steps_before(base.rows - 1),
+    );
+    Some(
+        match explicit_schedule(
+            simulator,
+            &[nominal],
+            times,
+            TUNING.explicit_share * tolerance,
+            most,
+            Interruption::default(),
+        ) {
+            Ok(Ok(schedule)) => {
+                let steps = schedule.steps_before(schedule.rows - 1);
+                let (explicit, plain) = (explicit_work(simulator, &schedule), plain_work(simulator, &base));
+                let why = format!(
+                    "not stiff: about {steps} steps and {explicit} instructions for the nominal sample, where HHT-I3 with steps of {step} s \
                  takes {plain}"
-            );
-            Decision { what: "integrated by the explicit method of order 8".to_owned(), why, saves: None }
-        }
-        Ok(Err(obstacle)) => by_scheme(format!("not by the explicit method: {obstacle}")),
-        Err(error) => by_scheme(error.to_string()),
-    })
+                );
+                Decision { what: "integrated by the explicit method of order 8".to_owned(), why, saves: None }
+            }
+            Ok(Err(obstacle)) => by_scheme(format!("not by the explicit method: {obstacle}")),
+            Err(error) => by_scheme(error.to_string()),
+        },
+    )
 }

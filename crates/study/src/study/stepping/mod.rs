@@ -13,12 +13,13 @@ mod first;
 mod plan;
 mod search;
 mod switches;
+pub mod tuning;
 mod validated;
 
 pub use balance::{Balanced, balance};
 pub use controlled::controlling_samples;
 pub use events::{events_of_parts, segmented};
-pub use explicit::{OF_STEPS, decision, explicit_samples, explicit_steps, may_be_explicit, refused};
+pub use explicit::{decision, explicit_samples, explicit_steps, may_be_explicit, refused};
 pub use first::planned;
 pub use plan::StepPlan;
 pub use search::StepSearch;

@@ -3,32 +3,11 @@
 use symdiff::math;
 
 use crate::simulate::{Integration, Schedule};
+use crate::study::stepping::tuning::TUNING;
 
-/// Share of the tolerance that the steps may take; the surrogate has the rest.
-pub const SHARE: f64 = 0.5;
-
-/// The target share, so that the result is within the tolerance with some room.
-const AIM: f64 = 0.4;
-
-/// Steps are joined where they take less than this share.
-const LITTLE: f64 = 0.1;
-
-/// Most parts that a schedule's steps are divided into; beyond, it is left at what can be had.
-const MOST_PARTS: usize = 32;
-
-/// Schedules tried at most.
-const MOST_TRIALS: usize = 10;
-
-/// Steps that would have to be divided into more parts are extrapolated instead: three levels take 7 steps for each.
-const WORTH_LEVELS: f64 = 3.0;
-
-/// The levels that are tried first, and those that are taken where steps under them would still have to be divided into
-/// more parts than [`WORTH_FOURTH`]: a fourth level takes twice the steps.
+/// Levels that are tried first; a fourth is added where steps under them would still have to be divided into more parts
+/// than `worth_fourth`.
 const LEVELS: usize = 3;
-const WORTH_FOURTH: f64 = 2.0;
-
-/// Extrapolation that divides the error by less than this gains nothing: the motion is not smooth enough, or too stiff.
-const GAIN: f64 = 8.0;
 
 /// Divides or joins a schedule's steps until their error is within its share of the tolerance. The scheme is of second
 /// order, so that the error goes as the step's square; of higher order where steps are extrapolated, which is tried
@@ -83,16 +62,16 @@ impl StepSearch {
         if self.choose_levels(error) {
             return true;
         }
-        let most = MOST_PARTS * self.per_row.unwrap_or(1);
+        let most = TUNING.parts * self.per_row.unwrap_or(1);
         let wanted = (self.count as f64 * self.parts_for(error)).ceil().clamp(1.0, most as f64) as usize;
         let next = match error {
             error if error.is_nan() => (4 * self.count).min(most),
-            error if error > SHARE => wanted.max(self.count + 1).min(most),
+            error if error > TUNING.share => wanted.max(self.count + 1).min(most),
             // Once steps were too long, those that are not are taken.
-            error if error < LITTLE && self.tried.iter().all(|&(_, error)| error <= SHARE) => wanted,
+            error if error < TUNING.little && self.tried.iter().all(|&(_, error)| error <= TUNING.share) => wanted,
             _ => self.count,
         };
-        let other = next != self.count && self.tried.len() < MOST_TRIALS;
+        let other = next != self.count && self.tried.len() < TUNING.trials;
         self.count = if other { next } else { self.count };
         other
     }
@@ -100,8 +79,8 @@ impl StepSearch {
     /// Parts that would bring an error down, or up, to the target.
     fn parts_for(&self, error: f64) -> f64 {
         match self.integration.order() {
-            2 => (error / AIM).sqrt(),
-            order => math::pow(error / AIM, 1.0 / order as f64),
+            2 => (error / TUNING.aim).sqrt(),
+            order => math::pow(error / TUNING.aim, 1.0 / order as f64),
         }
     }
 
@@ -112,20 +91,20 @@ impl StepSearch {
         }
         let parts = self.parts_for(error);
         // NaN gains nothing either.
-        let gains = GAIN * error < self.plain || error <= SHARE;
+        let gains = TUNING.gain * error < self.plain || error <= TUNING.share;
         match self.integration {
-            Integration::Plain if error > SHARE && parts > WORTH_LEVELS => {
+            Integration::Plain if error > TUNING.share && parts > TUNING.worth_levels => {
                 self.plain = error;
                 self.integration = Integration::of_levels(LEVELS);
             }
             Integration::Extrapolated { .. } if !gains => {
                 self.may_extrapolate = false;
                 self.integration = Integration::Plain;
-                let most = MOST_PARTS * self.per_row.unwrap_or(1);
+                let most = TUNING.parts * self.per_row.unwrap_or(1);
                 let wanted = self.count as f64 * self.parts_for(self.plain);
                 self.count = wanted.ceil().clamp(1.0, most as f64) as usize;
             }
-            Integration::Extrapolated { levels: LEVELS } if error > SHARE && parts > WORTH_FOURTH => {
+            Integration::Extrapolated { levels: LEVELS } if error > TUNING.share && parts > TUNING.worth_fourth => {
                 self.integration = Integration::of_levels(LEVELS + 1);
             }
             _ => return false,
@@ -152,10 +131,10 @@ mod tests {
         for per_row in [1, 10, 40] {
             let count = found(per_row, 100.0);
             let error = 100.0 / (count as f64).powi(2);
-            assert!((0.5 * AIM..=SHARE).contains(&error), "{per_row}: {count}");
+            assert!((0.5 * TUNING.aim..=TUNING.share).contains(&error), "{per_row}: {count}");
         }
         assert_eq!(found(10, 1e-9), 1);
-        assert_eq!(found(1, 1e9), MOST_PARTS);
+        assert_eq!(found(1, 1e9), TUNING.parts);
     }
 
     /// Levels are chosen where they take fewer steps, and left where they gain nothing.
@@ -188,6 +167,6 @@ mod tests {
         while search.adjust(f64::NAN) {
             tried += 1;
         }
-        assert!(search.count == MOST_PARTS && tried < 10);
+        assert!(search.count == TUNING.parts && tried < 10);
     }
 }

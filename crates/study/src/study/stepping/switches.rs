@@ -1,10 +1,11 @@
 //! The search for contacts and kinks in the equations that no sample meets, as a part of a study.
 
+use std::time::Instant;
+
 use super::events::event_search;
 use crate::study::bounding::Switches;
 use crate::study::internal::{InternalError, caught};
 use crate::study::problem::Study;
-use std::time::Instant;
 
 use crate::methods::Validation;
 use crate::results::MethodSummary;
