@@ -9,7 +9,9 @@ use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
 use mbint::inner::model::load_str;
 use mbint::inner::numerics::Sample;
-use mbint::inner::simulate::{Integration, Interruption, Observed, SampleRun, Schedule, Simulator, Wanted, gradients};
+use mbint::inner::simulate::{
+    Integration, Interruption, Observed, Schedule, Simulator, Steps, Wanted, gradients, integrator,
+};
 
 const SAMPLES: usize = 64;
 const STEPS: usize = 200;
@@ -39,7 +41,7 @@ impl Case {
             "two levels" => scheme.taken(Integration::Extrapolated { levels: 2 }),
             _ => Schedule::passing((duration, duration / 10.0), ends, Vec::new()).taken(Integration::Explicit),
         };
-        let system = assemble::build(&description).expect("shipped models are built");
+        let system = assemble::build(&assemble::Questions::of(&description)).expect("shipped models are built");
         let simulator = Simulator::new(system, Scheme::Hht { alpha: -0.1 }, schedule.first_step());
         let simulator = simulator.expect("shipped models are assembled");
         let sample = |number: usize| -> Sample {
@@ -52,8 +54,9 @@ impl Case {
 
     fn simulate(&self, bencher: Bencher) {
         bencher.counter(ItemsCount::new(SAMPLES)).bench_local(|| {
-            let mut run = SampleRun::start(&self.simulator, &self.samples, &self.schedule).expect("samples assemble");
-            run.advance(&self.schedule, 0..self.schedule.rows, None, Observed::Outputs, &mut Vec::new());
+            let mut run = integrator(&self.simulator, &self.samples, &self.schedule).expect("samples assemble");
+            let steps = Steps { schedule: &self.schedule, controller: None };
+            run.advance(steps, 0..self.schedule.rows, Observed::Outputs, &mut Vec::new());
         });
     }
 

@@ -2,7 +2,7 @@
 //! version.
 
 pub mod assemble {
-    pub use crate::assemble::{build, in_absolute_coordinates, in_joint_coordinates};
+    pub use crate::assemble::{Questions, build, in_absolute_coordinates, in_joint_coordinates};
 }
 
 pub mod cli {
@@ -39,6 +39,10 @@ pub mod numerics {
     pub use crate::numerics::{RangeKind, Sample};
 }
 
+pub mod reduce {
+    pub use crate::reduce::Reduction;
+}
+
 pub mod results {
     pub use crate::results::{
         Allocation, Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics, ReducedBand,
@@ -48,8 +52,9 @@ pub mod results {
 
 pub mod simulate {
     pub use crate::simulate::{
-        EnsembleRun, ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetRun, NoGradient,
-        Observed, SampleRun, Schedule, SimulationError, Simulator, Stepper, Wanted, gradients, schedule_for_tolerance,
+        EnsembleRun, ExplicitJets, ExtrapolatedJets, Gradient, Integration, Integrator, Interruption, JetBox,
+        JetIntegrator, JetRun, NoGradient, Observed, Schedule, SimulationError, Simulator, Stepper, Steps, Wanted,
+        gradients, integrator, schedule_for_tolerance,
     };
 }
 

@@ -11,7 +11,9 @@ use std::time::Instant;
 
 use mbint::inner::numerics::Sample;
 use mbint::inner::results::Method;
-use mbint::inner::simulate::{EnsembleRun, JetBox, JetRun, Observed, Schedule, Simulator};
+use mbint::inner::simulate::{
+    EnsembleRun, Integrator, JetBox, JetIntegrator, JetRun, Observed, Schedule, Simulator, Steps,
+};
 use mbint::inner::study;
 use models::STEP;
 use serde_json::{Value, json};
@@ -72,7 +74,8 @@ fn run(simulator: &Simulator, count: usize, schedule: &Schedule) -> Vec<f64> {
     let mut ensemble =
         EnsembleRun::start(simulator, &samples(simulator, count), STEP).expect("all samples can be assembled");
     let mut values = Vec::new();
-    let stops = ensemble.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
+    let stops =
+        ensemble.advance(Steps { schedule, controller: None }, 0..schedule.rows, Observed::Outputs, &mut values);
     assert!(stops.is_empty(), "all samples reach the end");
     values
 }

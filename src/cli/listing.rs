@@ -8,7 +8,7 @@ use super::table::{Align, Table};
 use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
-use crate::model::tuning;
+use crate::study::tuning;
 use crate::syntax::tuning::Constant;
 
 /// A list of the language.

@@ -48,7 +48,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{ColorChoice, CommandFactory, FromArgMatches};
+use clap::{CommandFactory, FromArgMatches};
 
 use self::args::{Cli, Color, Command};
 use self::console::Console;
@@ -179,24 +179,6 @@ fn color(arguments: &[OsString]) -> Color {
         color = clap::ValueEnum::from_str(value, false).unwrap_or(Color::Auto);
     }
     color
-}
-
-impl Color {
-    fn clap(self) -> ColorChoice {
-        match self {
-            Self::Auto => ColorChoice::Auto,
-            Self::Always => ColorChoice::Always,
-            Self::Never => ColorChoice::Never,
-        }
-    }
-
-    fn stream(self) -> anstream::ColorChoice {
-        match self {
-            Self::Auto => anstream::ColorChoice::Auto,
-            Self::Always => anstream::ColorChoice::Always,
-            Self::Never => anstream::ColorChoice::Never,
-        }
-    }
 }
 
 #[cfg(test)]

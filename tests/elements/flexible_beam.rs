@@ -148,7 +148,7 @@ outputs: {{ x: rod.end.x }}
 simulation: {{ duration: 1, step: 0.1 }}
 "
     ));
-    let system = assemble::build(&description).unwrap();
+    let system = assemble::build(&assemble::Questions::of(&description)).unwrap();
     let mut g = system.graph.clone();
     let slopes = g.jacobian(&system.force, &system.q);
     let value = |symbol| {
@@ -416,7 +416,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
 fn a_beam_has_absolute_coordinates() {
     let run = "duration: 1, formulation: joint";
     let description = cantilever(1, 1.0, 1e4, 0.0, "{ gravity: { acceleration: [0, -9.81] } }", run);
-    let failure = assemble::build(&description).unwrap_err().to_string();
+    let failure = assemble::build(&assemble::Questions::of(&description)).unwrap_err().to_string();
     assert!(failure.contains("beam `rod` bends"), "{failure}");
 }
 

@@ -314,7 +314,7 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
         (skew, "rack: { pinion: ja, rack: jb, radius: 0.1, pressure_angle: 20 deg }", "slide across"),
     ] {
         let description = model::load_str("test", &text(joints, gear), &[]).unwrap();
-        let wrong = mbint::inner::assemble::build(&description).unwrap_err().to_string();
+        let wrong = mbint::inner::assemble::build(&mbint::inner::assemble::Questions::of(&description)).unwrap_err().to_string();
         assert!(wrong.contains("mesh") && wrong.contains(why), "{gear}: {wrong}");
     }
 }

@@ -80,7 +80,7 @@ simulation: {{ duration: 0.1, step: 1e-3, output_step: 0.02, formulation: joint 
 
 /// The same equations, eliminated link by link and as a whole.
 fn both(description: &Description) -> [Simulator; 2] {
-    let of_links = assemble::in_joint_coordinates(description, None, None).unwrap().unwrap();
+    let of_links = assemble::in_joint_coordinates(&assemble::Questions::of(description), None, None).unwrap().unwrap();
     assert!(!of_links.links.is_empty());
     let mut whole = of_links.clone();
     whole.links.clear();

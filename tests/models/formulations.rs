@@ -15,7 +15,7 @@ fn within(mut description: Description, formulation: Formulation) -> Description
 }
 
 fn has_both(description: &Description) -> bool {
-    assemble::in_joint_coordinates(description, None, None).unwrap().is_ok()
+    assemble::in_joint_coordinates(&assemble::Questions::of(description), None, None).unwrap().is_ok()
 }
 
 /// Every output's course.
@@ -141,7 +141,7 @@ fn agree(description: &Description, h: f64, later: f64) {
         has_both(description),
         "{}: {:?}",
         description.name,
-        assemble::in_joint_coordinates(description, None, None).unwrap().err()
+        assemble::in_joint_coordinates(&assemble::Questions::of(description), None, None).unwrap().err()
     );
     for (name, at_start, apart) in differences(description, h) {
         println!("{} {name}: {at_start:.1e} {apart:.1e}", description.name);
@@ -243,7 +243,7 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: absol
 /// What takes too long is given up; what does not is compiled as ever.
 #[test]
 fn a_program_is_given_up_beyond_its_limit_and_not_before() {
-    let system = assemble::in_absolute_coordinates(&read(&tree(false))).unwrap();
+    let system = assemble::in_absolute_coordinates(&assemble::Questions::of(&read(&tree(false)))).unwrap();
     let within = |limit| Simulator::within(system.clone(), Scheme::Hht { alpha: -0.1 }, 1e-3, limit);
     assert_eq!(within(Some(1000)).map(|_| ()), Err(SimulationError::TooLong));
     let [free, limited] = [None, Some(1_000_000)].map(|limit| within(limit).unwrap());

@@ -8,8 +8,8 @@ use mbint::inner::compile::Scheme;
 use mbint::inner::model::{Description, Formulation, Stepping};
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
-    ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetRun, NoGradient, Schedule,
-    Simulator, Wanted, gradients,
+    ExplicitJets, ExtrapolatedJets, Gradient, Integration, Interruption, JetBox, JetIntegrator, JetRun, NoGradient,
+    Schedule, Simulator, Wanted, gradients,
 };
 use symdiff::jet::JetSpace;
 
@@ -149,8 +149,12 @@ fn gradients_are_jets_of_first_order() {
         for description in load_all(&path) {
             for formulation in [Formulation::Absolute, Formulation::Joint] {
                 let system = match formulation {
-                    Formulation::Absolute => assemble::in_absolute_coordinates(&description).ok(),
-                    _ => assemble::in_joint_coordinates(&description, None, None).ok().and_then(Result::ok),
+                    Formulation::Absolute => {
+                        assemble::in_absolute_coordinates(&assemble::Questions::of(&description)).ok()
+                    }
+                    _ => assemble::in_joint_coordinates(&assemble::Questions::of(&description), None, None)
+                        .ok()
+                        .and_then(Result::ok),
                 };
                 let Some(system) = system else { continue };
                 if system.parameters.is_empty() || system.outputs.is_empty() {

@@ -1,7 +1,9 @@
 //! Which joint of a loop is cut: by it a step becomes as short as is found, and the motion does not change.
 
-use mbint::inner::assemble;
+use mbint::inner::assemble::{self, Questions};
+use mbint::inner::compile::Scheme;
 use mbint::inner::model::{Description, Formulation};
+use mbint::inner::reduce::Reduction;
 use mbint::inner::results::Method;
 use mbint::inner::simulate::Simulator;
 use mbint::inner::study;
@@ -9,6 +11,9 @@ use mbint::inner::study;
 use crate::common::{
     Vary, band, curve, distance, largest, load, model, model_files, nominal, output, read, richardson, run,
 };
+
+/// Step for which programs are compiled, s; their length does not depend on it.
+const STEP: f64 = 1e-3;
 
 fn within(mut description: Description, formulation: Formulation) -> Description {
     description.simulation.formulation = formulation;
@@ -29,11 +34,12 @@ fn no_cut_is_longer_than_that_of_the_shallowest_trees() {
     let mut shorter = Vec::new();
     for path in model_files() {
         let description = within(load(&path), Formulation::Joint);
-        let shallow = assemble::in_joint_coordinates(&description, None, None).unwrap();
+        let whole = Reduction::joined(&description);
+        let questions = Questions { merged: whole.merged.clone().into(), ..Questions::of(&whole.description) };
+        let shallow = assemble::in_joint_coordinates(&questions, None, None).unwrap();
         let Some(shallow) = shallow.ok().filter(|system| !system.formulation.cut.is_empty()) else { continue };
-        let mut shallowest = description.clone();
-        shallowest.cut_at(&shallow.formulation.cut);
-        let shallow = study::prepare(&shallowest).unwrap();
+        let scheme = Scheme::Hht { alpha: description.simulation.alpha };
+        let shallow = Simulator::new(shallow, scheme, STEP).unwrap();
         let chosen = study::prepare(&description).unwrap();
         let [before, after] = [&shallow, &chosen].map(instructions);
         println!("{}: {before} instructions, then {after}, cut at {:?}", description.name, cut(&description, &chosen));

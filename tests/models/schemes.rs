@@ -5,7 +5,8 @@ use mbint::inner::compile::Scheme;
 use mbint::inner::model::Description;
 use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{
-    EnsembleRun, Interruption, JetBox, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance,
+    EnsembleRun, Integrator, Interruption, JetBox, JetIntegrator, JetRun, Observed, Schedule, Simulator, Stepper,
+    Steps, schedule_for_tolerance,
 };
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
@@ -26,7 +27,7 @@ const SCHEMES: [Scheme; 5] = [
 ];
 
 fn compiled(description: &Description, scheme: Scheme, h: f64) -> Simulator {
-    Simulator::new(assemble::build(description).unwrap(), scheme, h).unwrap()
+    Simulator::new(assemble::build(&assemble::Questions::of(description)).unwrap(), scheme, h).unwrap()
 }
 
 fn nominal_sample(simulator: &Simulator) -> Sample {
@@ -37,7 +38,8 @@ fn nominal_sample(simulator: &Simulator) -> Sample {
 fn courses(simulator: &Simulator, schedule: &Schedule, sample: Sample) -> Vec<Vec<f64>> {
     let mut ensemble = EnsembleRun::start(simulator, &[sample], schedule.first_step()).unwrap();
     let mut values = Vec::new();
-    let stops = ensemble.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
+    let stops =
+        ensemble.advance(Steps { schedule, controller: None }, 0..schedule.rows, Observed::Outputs, &mut values);
     assert_eq!(stops, []);
     let outputs = simulator.program.outputs.len();
     (0..outputs).map(|output| values.iter().skip(output).step_by(outputs).copied().collect()).collect()

@@ -6,7 +6,7 @@
 
 // Rooms of the crates below keep their names here.
 use mbint_engine::{assemble, compile, reduce, simulate};
-use mbint_language::grammar;
+use mbint_language::{grammar, syntax};
 use mbint_methods::methods;
 use mbint_model::{elements, model};
 use mbint_numerics::numerics;

@@ -12,18 +12,17 @@ use super::constraints::Constraints;
 use super::cuts::{cuts_of_several_axes, other_cuts};
 use super::links::links_of;
 use super::mechanism::Mechanism;
+use super::questions::Questions;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, Overlap, System};
 use super::tree::Tree;
+use crate::assemble::tuning::TUNING;
 use crate::grammar::Sensor;
 use crate::model::{Analysis, Description, Formulation, Joint};
 use crate::multibody::BuildError;
 
-/// Links of trees from which M is left out: it has an entry for every pair of them.
-const LONG: usize = 48;
-
-/// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description, in the formulation that it asks for; `auto` is in absolute
-/// coordinates here.
+/// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description and its questions, in the formulation that these ask for;
+/// `auto` is in absolute coordinates here.
 ///
 /// Parameters that are certain are folded in; only intervals become symbols. Constraints that hold whatever moves (both
 /// sides prescribed) are left out. The work is linear in the number of bodies, joints and effects.
@@ -31,12 +30,12 @@ const LONG: usize = 48;
 /// # Errors
 /// A constraint that nothing can fulfil, joint coordinates that are asked for where they are not possible, and (for
 /// descriptions that were not checked) a name out of place.
-pub fn build(description: &Description) -> Result<System, BuildError> {
-    match description.simulation.formulation {
+pub fn build(questions: &Questions) -> Result<System, BuildError> {
+    match questions.formulation {
         Formulation::Joint => {
-            in_joint_coordinates(description, None, None)?.map_err(|why| BuildError::NoJointCoordinates { why })
+            in_joint_coordinates(questions, None, None)?.map_err(|why| BuildError::NoJointCoordinates { why })
         }
-        Formulation::Absolute | Formulation::Auto => in_absolute_coordinates(description),
+        Formulation::Absolute | Formulation::Auto => in_absolute_coordinates(questions),
     }
 }
 
@@ -44,34 +43,32 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
 ///
 /// # Errors
 /// As for [`build`].
-pub fn in_absolute_coordinates(description: &Description) -> Result<System, BuildError> {
+pub fn in_absolute_coordinates(questions: &Questions) -> Result<System, BuildError> {
     let builder = Builder::new();
-    let system = equations(Mechanism::new(&builder, description, false)?, description)?;
+    let system = equations(Mechanism::new(&builder, questions, false)?)?;
     Ok(system(builder.finish()))
 }
 
 /// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With
 /// `deepest`, not where a body is more joints than that from its root on average. Loops are closed from where absolute
 /// coordinates begin to look, or from an assembled start in absolute coordinates (their values) where it is known.
-/// Where the tree cannot be used and the description leaves its cut open, the first that can and differs in one joint,
+/// Where the tree cannot be used and the questions leave its cut open, the first that can and differs in one joint,
 /// or in those of several axes, takes its place: a reaction that a force depends on is known where its joint closes a
 /// loop.
 ///
 /// # Errors
 /// As for [`build`].
 pub fn in_joint_coordinates(
-    description: &Description,
+    questions: &Questions,
     deepest: Option<usize>,
     assembled: Option<&[f64]>,
 ) -> Result<Result<System, String>, BuildError> {
-    let refused = match in_this_tree(description, deepest, assembled)? {
-        Err(why) if description.joints.iter().all(|joint| !joint.cut) => why,
+    let refused = match in_this_tree(questions, deepest, assembled)? {
+        Err(why) if questions.is_cut_open() => why,
         built => return Ok(built),
     };
-    let mut exchanged = description.clone();
-    for cut in other_cuts(description).into_iter().chain(cuts_of_several_axes(description)) {
-        exchanged.cut_at(&cut);
-        if let Ok(system) = in_this_tree(&exchanged, deepest, assembled)? {
+    for cut in other_cuts(questions).into_iter().chain(cuts_of_several_axes(questions)) {
+        if let Ok(system) = in_this_tree(&questions.cut_at(cut), deepest, assembled)? {
             return Ok(Ok(system));
         }
     }
@@ -79,24 +76,24 @@ pub fn in_joint_coordinates(
 }
 
 fn in_this_tree(
-    description: &Description,
+    questions: &Questions,
     deepest: Option<usize>,
     assembled: Option<&[f64]>,
 ) -> Result<Result<System, String>, BuildError> {
     let builder = Builder::new();
-    let mut mechanism = Mechanism::new(&builder, description, true)?;
+    let mut mechanism = Mechanism::new(&builder, questions, true)?;
     let too_deep = deepest.and_then(|deepest| mechanism.tree.too_deep(deepest));
-    if let Some(why) = too_deep.or_else(|| mechanism.obstacle(description, deepest.is_some())) {
+    if let Some(why) = too_deep.or_else(|| mechanism.obstacle(questions.description, deepest.is_some())) {
         return Ok(Err(why));
     }
-    mechanism.guess_children(description, assembled)?;
-    let system = equations(mechanism, description)?;
+    mechanism.guess_children(assembled)?;
+    let system = equations(mechanism)?;
     Ok(Ok(system(builder.finish())))
 }
 
 /// Whether joints close loops, in joint coordinates.
-pub fn closes_loops(description: &Description) -> bool {
-    Tree::spanning(description, |_| true).closes_loops(description)
+pub fn closes_loops(questions: &Questions) -> bool {
+    Tree::spanning(questions, |_| true).closes_loops(questions.description)
 }
 
 /// Whether joint coordinates have ones that formulas have no names for.
@@ -106,19 +103,21 @@ pub fn has_joints_of_several_axes(description: &Description) -> bool {
 }
 
 /// Least number of multiplications that an elimination takes in joint coordinates, before anything is written down.
-pub fn joint_elimination(description: &Description) -> usize {
-    Tree::spanning(description, |_| true).elimination()
+pub fn joint_elimination(questions: &Questions) -> usize {
+    Tree::spanning(questions, |_| true).elimination()
 }
 
 /// M w = Q − Φ_qᵀ λ and Φ = 0 of a mechanism, once its graph is finished.
-fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(Graph) -> System + use<>, BuildError> {
+fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, BuildError> {
+    let questions = m.questions;
+    let description = questions.description;
     let length = m.characteristic_length(description)?;
     let mut left_out = Vec::new();
     let mut constraints = Constraints::of(&mut m, description, length, &mut left_out)?;
     let (mut applied, effects) = apply_effects(&mut m, description, &mut left_out)?;
     let sampled = m.sampled_states(description, std::mem::take(&mut applied.sampled));
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
-    let outputs = m.outputs(description)?;
+    let outputs = m.outputs()?;
     let mut start = m.start(description)?;
     if description.analysis != Analysis::Kinematics {
         constraints.add_balances(&m, &balance.massive, &balance.force, &start)?;
@@ -137,8 +136,8 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let joint = !m.tree.is_absolute();
     let cut = if joint { m.tree.closing(description) } else { Vec::new() };
     let formulation = FormulationInfo { joint, why: "the model asks for them".to_owned(), cut };
-    let (analysis, modes) = (description.analysis, description.modes.clone());
-    let is_derived = description.outputs.iter().any(|output| output.of_results);
+    let (analysis, modes) = (description.analysis, questions.modes.clone().into_owned());
+    let is_derived = questions.outputs.iter().any(|output| output.of_results);
     let declared_parameters = if is_derived { description.parameters.clone() } else { Vec::new() };
     let mass_of_bodies = m.total_mass();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
@@ -295,7 +294,7 @@ impl<'g> Balance<'g> {
             m.kinetic_energy_of_flexible = m.energy_of_beams()? + m.energy_of_superelements()?;
         }
         let mut massive = depend_on(&inertia, &m.w);
-        let is_long = links.len() >= LONG && massive.iter().all(|&massive| massive);
+        let is_long = links.len() >= TUNING.links_without_mass_matrix && massive.iter().all(|&massive| massive);
         if mass.is_empty() && !is_long {
             mass = mass_matrix(&inertia, &m.w);
             massive.fill(false);

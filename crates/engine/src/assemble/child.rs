@@ -15,6 +15,7 @@ use symdiff::Scalar;
 
 use super::mechanism::Mechanism;
 use super::tree::InboardJoint;
+use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::JointCoordinate;
 use crate::multibody::{
@@ -22,14 +23,13 @@ use crate::multibody::{
     RotationCoordinates, Vector, rotation,
 };
 
-/// Entries of a rotation nearer than this to 0 or ±1 are so but for rounding.
-const ROUNDING: f64 = 1e-15;
-
 /// The matrix of a rotation that does not change. A quarter turn has zeros and ones, which cost nothing.
 pub(super) fn constant_matrix(p: Quaternion<'_>) -> Matrix<'_> {
     let rows = p.matrix().rows().map(|row| {
         row.map(|entry| match entry.as_constant() {
-            Some(value) if (value - value.round()).abs() < ROUNDING => entry.builder().number(value.round()),
+            Some(value) if (value - value.round()).abs() < TUNING.rotation_rounding => {
+                entry.builder().number(value.round())
+            }
             _ => entry,
         })
     });

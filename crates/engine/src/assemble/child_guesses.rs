@@ -11,7 +11,7 @@ use symdiff::{Builder, Scalar};
 use super::at_guess::AtGuess;
 use super::mechanism::{Mechanism, RelativeCoordinate};
 use crate::grammar::{JointCoordinate, OnJoint};
-use crate::model::{Description, StartValue};
+use crate::model::StartValue;
 use crate::multibody::BuildError;
 
 impl Mechanism<'_, '_> {
@@ -20,7 +20,8 @@ impl Mechanism<'_, '_> {
     ///
     /// # Errors
     /// A formula with a name that cannot stand in it.
-    pub fn guess_children(&mut self, description: &Description, assembled: Option<&[f64]>) -> Result<(), BuildError> {
+    pub fn guess_children(&mut self, assembled: Option<&[f64]>) -> Result<(), BuildError> {
+        let description = self.questions.description;
         let mut named = description.guess.iter().filter_map(|value| match value {
             StartValue::Coordinate { body, .. } | StartValue::Orientation { body, .. } => Some(*body),
             _ => None,
@@ -30,7 +31,7 @@ impl Mechanism<'_, '_> {
             return Ok(());
         }
         let builder = Builder::new();
-        let absolute = Mechanism::new(&builder, description, false)?;
+        let absolute = Mechanism::new(&builder, self.questions, false)?;
         let guess = absolute.start(description)?.guess;
         let mut at_guess = AtGuess::of(&absolute, &builder.graph(), &guess);
         if let Some(assembled) = assembled {

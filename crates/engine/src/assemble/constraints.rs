@@ -6,14 +6,11 @@ use super::mechanism::Mechanism;
 use super::reaction::Reaction;
 use super::system::{ConstraintInfo, LeftOut, ResidualUnit};
 use super::teeth::reactions_are_asked;
+use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Row;
 use crate::grammar::JointCoordinate;
 use crate::model::Description;
 use crate::multibody::{Body, BuildError, EULER, Quaternion, RotationCoordinates};
-
-/// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
-/// only.
-const CLOSED: f64 = 1e-9;
 
 /// Constraints of a kind, with their multipliers.
 #[derive(Default)]
@@ -59,7 +56,7 @@ impl<'g> Constraints<'g> {
             let info = ConstraintInfo { name: format!("{owner}.norm"), joint: owner, unit: ResidualUnit::Number };
             constraints.positions.add(info, normalised(p));
         }
-        let with_teeth = reactions_are_asked(description);
+        let with_teeth = reactions_are_asked(m.questions);
         for (index, joint) in m.joints.iter().enumerate() {
             let kept = if m.tree.contains(index) {
                 Vec::new()
@@ -165,7 +162,7 @@ fn is_effective(m: &Mechanism, length: f64, info: &ConstraintInfo, row: Row) -> 
     for (at, values) in samples {
         let residual = values[0];
         // NaN is not closed.
-        let closed = residual.abs() <= CLOSED * length.min(1.0);
+        let closed = residual.abs() <= TUNING.closed * length.min(1.0);
         if !closed {
             let (joint, constraint) = (info.joint.clone(), info.name.clone());
             return Err(BuildError::Contradiction { joint, constraint, residual, at });

@@ -7,22 +7,25 @@ use symdiff::{Builder, Formula};
 use super::coordinates;
 use super::mechanism::{Mechanism, Owner, dof};
 use super::names::Names;
+use super::questions::Questions;
 use super::superelement::superelements;
 use super::system::UncertainParameter;
 use super::tree::Tree;
 use crate::elements::joints::Mobilizer;
-use crate::model::{self, Description, Parameter, ParameterValue};
+use crate::model::{self, Parameter, ParameterValue};
 use crate::multibody::{
     Body, BuildError, Context, DEGREES_OF_FREEDOM, EULER, Matrix, Quaternion, RotationCoordinates, Vector,
 };
 
 impl<'g, 'd> Mechanism<'g, 'd> {
-    /// The symbols and bodies of a description; with `by_joints`, as many bodies as can be are children, without
+    /// The symbols and bodies of a description with its questions; with `by_joints`, as many bodies as can be are children, without
     /// coordinates of their own.
-    pub fn new(g: &'g Builder, description: &'d Description, by_joints: bool) -> Result<Self, BuildError> {
+    pub fn new(g: &'g Builder, questions: &'d Questions<'d>, by_joints: bool) -> Result<Self, BuildError> {
+        let description = questions.description;
         let time = g.variable("t");
         let mut mechanism = Self {
             g,
+            questions,
             names: Names::of(description),
             is_spatial: description.space.spatial,
             joints: &description.joints,
@@ -39,7 +42,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             coordinates: Vec::new(),
             coordinate_names: Vec::new(),
             bodies: Vec::new(),
-            tree: Tree::absolute(description),
+            tree: Tree::absolute(questions),
             joint_coordinates: BTreeMap::new(),
             normalisations: BTreeMap::new(),
             body_guesses: BTreeMap::new(),
@@ -57,7 +60,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             mechanism.add_parameter(parameter)?;
         }
         if by_joints {
-            mechanism.tree = Tree::spanning(description, |mobilizer| mechanism.is_time_independent(mobilizer));
+            mechanism.tree = Tree::spanning(questions, |mobilizer| mechanism.is_time_independent(mobilizer));
         }
         for (index, body) in description.bodies.iter().enumerate() {
             let body = mechanism.body(index, body)?;
@@ -69,7 +72,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             }
         }
         mechanism.merge();
-        for (joint, coordinate) in coordinates::called_for(description) {
+        for (joint, coordinate) in coordinates::called_for(questions) {
             if !mechanism.joint_coordinates.contains_key(&(joint, coordinate)) {
                 mechanism.add_joint_coordinate(joint, coordinate);
             }

@@ -18,12 +18,14 @@ use std::collections::BTreeSet;
 use symdiff::{Formula, Scalar};
 
 use super::mechanism::Mechanism;
+use super::questions::Questions;
 use crate::grammar::JointCoordinate;
 use crate::model::{Description, StartValue, Symbol};
 use crate::multibody::{ANGLE, BuildError, Context};
 
 /// The coordinates of joints that are coordinates of their own.
-pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate)> {
+pub fn called_for(questions: &Questions) -> BTreeSet<(usize, JointCoordinate)> {
+    let description = questions.description;
     let mut found = BTreeSet::new();
     for value in description.initial.iter().chain(&description.guess) {
         if let StartValue::Joint { joint, coordinate, .. } = value {
@@ -41,7 +43,7 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
     for effect in &description.effects {
         effect.kind.coordinates().into_iter().for_each(|on| add(on.joint, on.coordinate));
     }
-    for formula in formulas(description) {
+    for formula in formulas(questions) {
         for (name, _) in formula.names() {
             if let Some(Symbol::JointCoordinate { joint, coordinate, .. }) = description.symbol(name) {
                 add(joint, coordinate);
@@ -52,9 +54,9 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
 }
 
 /// Formulas that may speak of the motion.
-fn formulas(description: &Description) -> Vec<&Formula> {
-    let outputs = description.outputs.iter().map(|output| &output.formula);
-    formulas_of_motion(description).into_iter().chain(outputs).collect()
+fn formulas<'q>(questions: &'q Questions) -> Vec<&'q Formula> {
+    let outputs = questions.outputs.iter().map(|output| &output.formula);
+    formulas_of_motion(questions.description).into_iter().chain(outputs).collect()
 }
 
 /// Formulas of constraints and effects.

@@ -5,32 +5,29 @@
 //! becomes an inboard joint, and another of its loop closes it. Joints of several axes can be constraints where they
 //! close no loop, too: the bodies behind them have coordinates of their own then.
 
+use super::questions::Questions;
 use super::tree::Tree;
+use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Mobilizer;
-use crate::model::Description;
 
-/// Of more bodies only the cut of the shallowest trees is looked at.
-const MOST_BODIES: usize = 50;
-
-/// The cuts that differ from a description's own in one exchange, each with all joints that are constraints; first
+/// The cuts that differ from the given one in one exchange, each with all joints that are constraints; first
 /// those that promise the fewest operations; none of large mechanisms.
-pub fn other_cuts(description: &Description) -> Vec<Vec<usize>> {
-    if description.bodies.len() > MOST_BODIES {
+pub fn other_cuts(questions: &Questions) -> Vec<Vec<usize>> {
+    let description = questions.description;
+    if description.bodies.len() > TUNING.bodies_with_cuts {
         return Vec::new();
     }
-    let tree = Tree::spanning(description, |_| true);
+    let tree = Tree::spanning(questions, |_| true);
     let cut = tree.closing(description);
     let mut cuts = Vec::new();
-    let mut exchanged = description.clone();
     let mut add = |mut other: Vec<usize>| {
         other.sort_unstable();
-        exchanged.cut_at(&other);
-        cuts.push((effort(&exchanged), other));
+        cuts.push((effort(&questions.cut_at(other.clone())), other));
     };
     for &closing in &cut {
         let kind = &description.joints[closing].kind;
         let (Some([first, second]), Some(_)) = (kind.between(), kind.mobilizer()) else { continue };
-        if description.joints[closing].merged {
+        if questions.is_merged(closing) {
             continue;
         }
         let bodies = [first.body, second.body];
@@ -51,11 +48,12 @@ pub fn other_cuts(description: &Description) -> Vec<Vec<usize>> {
 }
 
 /// The cuts that take further joints of several axes: all spherical ones, and all; none of large mechanisms.
-pub fn cuts_of_several_axes(description: &Description) -> Vec<Vec<usize>> {
-    if description.bodies.len() > MOST_BODIES {
+pub fn cuts_of_several_axes(questions: &Questions) -> Vec<Vec<usize>> {
+    let description = questions.description;
+    if description.bodies.len() > TUNING.bodies_with_cuts {
         return Vec::new();
     }
-    let tree = Tree::spanning(description, |_| true);
+    let tree = Tree::spanning(questions, |_| true);
     let cut = tree.closing(description);
     let with = |of: fn(&Mobilizer) -> bool| {
         let joints = description.joints.iter().enumerate().filter(|(joint, _)| tree.contains(*joint));
@@ -74,8 +72,9 @@ pub fn cuts_of_several_axes(description: &Description) -> Vec<Vec<usize>> {
 
 /// About how many operations a cut takes: those of the elimination of M, and of each closure with the joints of its
 /// loop.
-fn effort(description: &Description) -> usize {
-    let tree = Tree::spanning(description, |_| true);
+fn effort(questions: &Questions) -> usize {
+    let description = questions.description;
+    let tree = Tree::spanning(questions, |_| true);
     let lengths = tree.closing(description).into_iter().filter_map(|joint| {
         let [first, second] = description.joints[joint].kind.between()?;
         Some(tree.joints_between([first.body, second.body]).len())

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use symdiff::{Formula, Scalar};
 
 use super::mechanism::Mechanism;
+use super::questions::Questions;
 use crate::elements::joints::{Placement, Separation};
 use crate::grammar::{JointCoordinate, ReactionComponent, Reference, Symbol, TimeOrder};
 use crate::model::{Description, StartValue};
@@ -24,7 +25,7 @@ impl Mechanism<'_, '_> {
                 lengths.extend(&body.position[..3]);
             }
         }
-        for (body, point) in used_points(description) {
+        for (body, point) in used_points(self.questions) {
             lengths.extend(self.bodies[body].points[point].components());
         }
         for joint in self.joints {
@@ -70,7 +71,8 @@ fn length_at_start(value: &StartValue) -> Option<&Formula> {
 
 /// Points that a joint, an effect or a formula refers to: body and point. What nothing refers to says nothing of the
 /// model's size.
-fn used_points(description: &Description) -> BTreeSet<(usize, usize)> {
+fn used_points(questions: &Questions) -> BTreeSet<(usize, usize)> {
+    let description = questions.description;
     let mut used = BTreeSet::new();
     let joints = description.joints.iter().map(|joint| (joint.kind.clone(), joint.kind.formulas()));
     for (mut kind, formulas) in joints {
@@ -82,7 +84,7 @@ fn used_points(description: &Description) -> BTreeSet<(usize, usize)> {
         add_references(&mut used, kind.references());
         add_names(&mut used, description, formulas);
     }
-    add_names(&mut used, description, description.outputs.iter().map(|output| &output.formula));
+    add_names(&mut used, description, questions.outputs.iter().map(|output| &output.formula));
     used
 }
 

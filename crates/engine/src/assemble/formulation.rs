@@ -91,7 +91,7 @@ impl Mechanism<'_, '_> {
                     || !kind.equation().into_iter().flatten().all(of_joints))
         };
         let coupling = d.joints.iter().find(|joint| acts_on_bodies(&joint.kind))?;
-        let joint = reaction(d.outputs.iter().map(|output| &output.formula).collect())?;
+        let joint = reaction(self.questions.outputs.iter().map(|output| &output.formula).collect())?;
         Some(format!(
             "an output is the reaction of joint `{joint}`, which has no multiplier in joint coordinates, and what `{}` adds to it is not known",
             coupling.name

@@ -3,6 +3,7 @@
 use symdiff::{Builder, Formula, Interval, Ranges};
 
 use super::mechanism::Mechanism;
+use super::questions::Questions;
 use crate::grammar::Coordinate;
 use crate::model::{Body, Description, Symbol};
 use crate::multibody::{BuildError, Context};
@@ -23,13 +24,14 @@ pub struct Inventory {
 }
 
 impl Inventory {
-    /// Of a description.
+    /// Of a description with its questions.
     ///
     /// # Errors
     /// For descriptions that were not checked, a name out of place.
-    pub fn of(description: &Description) -> Result<Self, BuildError> {
+    pub fn of(questions: &Questions) -> Result<Self, BuildError> {
+        let description = questions.description;
         let builder = Builder::new();
-        let m = Mechanism::new(&builder, description, false)?;
+        let m = Mechanism::new(&builder, questions, false)?;
         let mut inventory = Self { joints: 0, constraints: 0, held: 0, drives: 0, mass: m.mass_range()? };
         for (index, joint) in description.joints.iter().enumerate() {
             let mut rows = m.rows(index)?;

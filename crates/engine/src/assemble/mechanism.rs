@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use symdiff::{Builder, Expr, Scalar};
 
 use super::names::Names;
+use super::questions::Questions;
 use super::reaction::Reaction;
 use super::superelement::Superelement;
 use super::system::UncertainParameter;
@@ -91,6 +92,8 @@ impl Owner {
 pub struct Mechanism<'g, 'd> {
     /// The graph that expressions are added to.
     pub g: &'g Builder,
+    /// The description with its questions.
+    pub questions: &'d Questions<'d>,
     /// What names in formulas stand for.
     pub names: Names<'d>,
     /// Whether it leaves the plane.

@@ -17,14 +17,12 @@ use symdiff::Scalar;
 use super::child::{RelativeRotation, constant_matrix};
 use super::mechanism::{Mechanism, Owner, RelativeCoordinate};
 use super::tree::InboardJoint;
+use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::JointCoordinate;
 use crate::multibody::{
     AxisMotion, BuildError, Context, DegreeOfFreedom, Matrix, Quaternion, RelativeMotion, Vector, rotation,
 };
-
-/// Below this part of its length across the other, an axis counts as parallel to it.
-const PARALLEL: f64 = 1e-6;
 
 /// Places in q, axes in F₁ and in F₂, of rotations of F₂ against F₁.
 type Rotations<'g> = Vec<(usize, [Vector<'g>; 2])>;
@@ -155,7 +153,7 @@ impl<'g> Mechanism<'g, '_> {
         }
         let across = second - along * first;
         let [size] = self.nominal([across.norm()]);
-        let wanted = if size > PARALLEL { across.unit() } else { self.normals(first)[0] };
+        let wanted = if size > TUNING.parallel { across.unit() } else { self.normals(first)[0] };
         let [x, y, z] = second.cross(wanted).components();
         Quaternion::from([1.0 + second.dot(wanted), x, y, z]).normalised()
     }

@@ -41,6 +41,7 @@ mod nearest;
 mod number_formulas;
 mod placement;
 mod pose;
+mod questions;
 mod reaction;
 mod recursion;
 mod start;
@@ -57,6 +58,7 @@ mod teeth;
 pub(crate) mod tests;
 mod thrust;
 mod tree;
+pub mod tuning;
 
 pub use crate::multibody::{BuildError, ConditionId, ConstraintId, CoordinateId, EquationId, OutputId};
 pub use build::{
@@ -65,6 +67,7 @@ pub use build::{
 pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inventory::Inventory;
 pub use number_formulas::NumberFormulas;
+pub use questions::Questions;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,
     SampledState, StartCondition, System, UncertainParameter,

@@ -28,7 +28,7 @@ impl<'g> Mechanism<'g, '_> {
         start: &Start,
     ) -> Result<Vec<Distance>, BuildError> {
         let tree =
-            Tree::spanning(description, |mobilizer| mobilizer.has_one_axis() && self.is_time_independent(mobilizer));
+            Tree::spanning(self.questions, |mobilizer| mobilizer.has_one_axis() && self.is_time_independent(mobilizer));
         let mut distances = Vec::new();
         let mut add = |owner: Owner, name: String, value: Scalar<'g>, place: Option<usize>| {
             let is_open = |kept: &[Option<_>]| place.is_none_or(|place| kept[place].is_none());

@@ -5,7 +5,7 @@ use symdiff::{Formula, Scalar};
 use super::mechanism::{Mechanism, dof};
 use super::system::OutputInfo;
 use crate::grammar::{EnergyKind, OnJoint, PointRef, ReactionComponent, Sensor, Symbol, TimeOrder};
-use crate::model::{Description, Output, Rotation};
+use crate::model::{Output, Rotation};
 use crate::multibody::{BuildError, Context, OwnFunction, Quaternion, Vector, rotation};
 
 impl<'g> Mechanism<'g, '_> {
@@ -174,9 +174,9 @@ impl<'g> Mechanism<'g, '_> {
         axis.unwrap_or_else(|| Vector::zero(self.g))
     }
 
-    /// All outputs of a description.
-    pub fn outputs(&self, description: &Description) -> Result<Vec<OutputInfo>, BuildError> {
-        let outputs = description.outputs.iter();
+    /// All outputs that are asked for.
+    pub fn outputs(&self) -> Result<Vec<OutputInfo>, BuildError> {
+        let outputs = self.questions.outputs.iter();
         outputs
             .map(|output| {
                 let Output { name, formula, unit, dimension, of_results } = output.clone();

@@ -5,13 +5,14 @@
 
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
+use super::questions::Questions;
 use crate::grammar::Symbol;
-use crate::model::Description;
 use crate::multibody::BuildError;
 
 /// Whether an output or an effect depends on the reaction of a joint.
-pub fn reactions_are_asked(description: &Description) -> bool {
-    let outputs = description.outputs.iter().map(|output| &output.formula);
+pub fn reactions_are_asked(questions: &Questions) -> bool {
+    let description = questions.description;
+    let outputs = questions.outputs.iter().map(|output| &output.formula);
     let effects = description.effects.iter();
     let of_effects = effects.clone().flat_map(|effect| effect.kind.formulas());
     let mut names = outputs.chain(of_effects).flat_map(|formula| formula.names());

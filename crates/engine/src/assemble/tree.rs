@@ -7,12 +7,11 @@
 
 use std::collections::VecDeque;
 
+use super::questions::Questions;
+use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::PointRef;
 use crate::model::{Description, StartValue};
-
-/// Multiplications that a link takes where links are eliminated one by one, about.
-const OF_LINK: usize = 1000;
 
 /// The joint between a child and its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,12 +41,13 @@ pub struct Tree {
 
 impl Tree {
     /// Every body has coordinates of its own, but those that are merged.
-    pub fn absolute(description: &Description) -> Self {
-        Self::spanning(description, |_| false)
+    pub fn absolute(questions: &Questions) -> Self {
+        Self::spanning(questions, |_| false)
     }
 
     /// As many children as can be, near the roots first. `is_time_independent` says it of the formulas of a mobilizer.
-    pub fn spanning(description: &Description, mut is_time_independent: impl FnMut(&Mobilizer) -> bool) -> Self {
+    pub fn spanning(questions: &Questions, mut is_time_independent: impl FnMut(&Mobilizer) -> bool) -> Self {
+        let description = questions.description;
         let bodies = &description.bodies;
         let mut tree = Self {
             inboard: vec![None; bodies.len()],
@@ -56,11 +56,13 @@ impl Tree {
             merged: vec![false; bodies.len()],
         };
         let (mut joints, mut welds) = (vec![Vec::new(); bodies.len()], vec![Vec::new(); bodies.len()]);
+        let mut is_cut = vec![false; description.joints.len()];
+        questions.cut.iter().for_each(|&joint| is_cut[joint] = true);
         for (index, joint) in description.joints.iter().enumerate() {
             let Some([first, second]) = joint.kind.between() else { continue };
             let list = match joint.kind.mobilizer() {
-                Some(_) if joint.merged => &mut welds,
-                Some(mobilizer) if !joint.cut && is_time_independent(&mobilizer) => &mut joints,
+                Some(_) if questions.is_merged(index) => &mut welds,
+                Some(mobilizer) if !is_cut[index] && is_time_independent(&mobilizer) => &mut joints,
                 _ => continue,
             };
             list[first.body].push(InboardJoint { joint: index, parent: first, child: second, reversed: false });
@@ -193,7 +195,7 @@ impl Tree {
         let of_joints: Vec<usize> = self.order.iter().copied().filter(|&body| !self.merged[body]).collect();
         let depths = self.depths();
         let whole = of_joints.iter().map(|&body| depths[body] * (depths[body] + 1) / 2).fold(0, usize::saturating_add);
-        whole.min(OF_LINK * of_joints.len())
+        whole.min(TUNING.link_multiplications * of_joints.len())
     }
 
     /// Whether a joint is an inboard joint.

@@ -13,21 +13,7 @@ use super::newton_matrix::ITERATION;
 use super::program::{Mode, Watched, WatchedPivot};
 use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use crate::assemble::ConstraintId;
-
-/// Largest growth factor of freely chosen pivots; above it only pivots that cannot vanish are allowed.
-const MOST_GROWTH: f64 = 1e4;
-
-/// A pivot may fall this far below its size at the pivot samples: the corrections then still have some six digits,
-/// which is all that Newton's iteration needs of them.
-const PIVOT_LOSS: f64 = 1e-10;
-
-/// Regularisation of a redundant constraint's multiplier, relative to the size of its row. The other constraints imply
-/// this one, so its multiplier stays near the zero from which every step starts it.
-const REDUNDANT_WEIGHT: f64 = 1.0;
-
-/// Largest share of the first version's operations in the iteration at which a second version is worthwhile; tiles
-/// whose lanes need both versions compute both.
-const WORTHWHILE: f64 = 0.8;
+use crate::compile::tuning::TUNING;
 
 /// How pivots are chosen.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +65,7 @@ impl PivotChoice<'_> {
         };
         let only_symmetric = self.spatial || !self.first.is_empty();
         let factors = match plan(graph, if only_symmetric { self.symmetric } else { Pivoting::Any }) {
-            Ok(factors) if factors.growth <= MOST_GROWTH || only_symmetric => Ok(factors),
+            Ok(factors) if factors.growth <= TUNING.growth || only_symmetric => Ok(factors),
             // In a long chain, freely chosen pivots amplify errors from body to body.
             free => plan(graph, self.symmetric).or(free),
         }?;
@@ -99,7 +85,7 @@ impl PivotChoice<'_> {
         let (mut regular, mut numbers) = (matrix.clone(), numbers.to_vec());
         for &constraint in self.redundant {
             let row = self.n + constraint.number();
-            let weight = REDUNDANT_WEIGHT / (equilibration[row] * equilibration[row]);
+            let weight = TUNING.redundant_weight / (equilibration[row] * equilibration[row]);
             let place = matrix.rows[..row].iter().map(Vec::len).sum::<usize>() + regular.rows[row].len();
             let offset = regular.nonzeros() - matrix.nonzeros();
             let value = graph.constant(-weight);
@@ -184,7 +170,7 @@ pub(super) fn is_worthwhile(graph: &Graph, inputs: &[Input], active: &Version, i
         // A solution takes an operation for each value, whether it changes or not.
         (changing + values.len()) as f64
     });
-    inactive <= WORTHWHILE * active
+    inactive <= TUNING.second_version * active
 }
 
 /// Replaces factors that the iteration can change by symbols for their values at the factorisation.
@@ -249,8 +235,10 @@ impl<'g> Freezer<'g> {
             if let Some(&(_, register)) = self.symbol_of.get(&pivot.inverse) {
                 let smallest = pivot.magnitude.into_iter().fold(f64::INFINITY, f64::min)
                     / (equilibration[pivot.row] * equilibration[pivot.column]);
-                watched
-                    .push(WatchedPivot { register: register as usize, largest_inverse: 1.0 / (PIVOT_LOSS * smallest) });
+                watched.push(WatchedPivot {
+                    register: register as usize,
+                    largest_inverse: 1.0 / (TUNING.pivot_loss * smallest),
+                });
             }
         }
         watched

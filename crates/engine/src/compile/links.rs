@@ -19,12 +19,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Expr, Graph, Node, SparseMatrix};
 
 use crate::assemble::System;
-
-/// Coordinates that M couples with each, on average, from which it is looked at whether links are shorter.
-const COUPLED: usize = 6;
-
-/// The same from which nothing else is looked at: the whole matrix takes the third power.
-const CLOSELY_COUPLED: usize = 20;
+use crate::compile::tuning::TUNING;
 
 /// Whether the equations are eliminated link by link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,10 +35,10 @@ pub(super) enum Elimination {
 /// Which eliminations are worth a look.
 pub(super) fn elimination(system: &System, has_redundant: bool) -> Elimination {
     let n = system.q.len();
-    let is_sparse = !system.is_mass_left_out() && system.mass.len() < COUPLED * n;
+    let is_sparse = !system.is_mass_left_out() && system.mass.len() < TUNING.coupled * n;
     if system.links.is_empty() || has_redundant || system.massive.contains(&false) || is_sparse {
         Elimination::Whole
-    } else if system.is_mass_left_out() || system.mass.len() >= CLOSELY_COUPLED * n {
+    } else if system.is_mass_left_out() || system.mass.len() >= TUNING.closely_coupled * n {
         Elimination::Links
     } else {
         Elimination::Shorter

@@ -35,6 +35,7 @@ mod start_program;
 mod step;
 mod switches;
 mod tapes;
+pub mod tuning;
 
 pub use combinations::{Combination, combinations};
 pub use equation_tapes::{EquationsProgram, compile_equations};

@@ -12,9 +12,7 @@ use symdiff::{Expr, Graph};
 
 use super::equations::time_derivative;
 use crate::assemble::{Distance, System};
-
-/// η: share of D in the metric.
-const PROXIMITY: f64 = 1e-6;
+use crate::compile::tuning::TUNING;
 
 /// What given values and constraints leave open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,7 +66,7 @@ impl LeastSquares {
     /// `values` are the distances, or their rates: the derivatives of both, by q and by v, are those of the distances
     /// by q.
     fn of(system: &System, graph: &mut Graph, distances: &[&Distance], values: &[Expr]) -> Self {
-        let mut metric = diagonal(system, graph, PROXIMITY);
+        let mut metric = diagonal(system, graph, TUNING.proximity);
         let mut gradient = vec![graph.constant(0.0); system.q.len()];
         let positions: Vec<Expr> = distances.iter().map(|distance| distance.value).collect();
         let slopes = graph.jacobian(&positions, &system.q);

@@ -41,15 +41,7 @@ use super::start_equations::{ClosureOf, Equations, constraint_sizes, given_value
 use super::start_factors::Factorised;
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, SAMPLING, SampledValue, StartProgram, VELOCITY};
 use crate::assemble::{ConstraintId, System};
-
-/// ε relative to a constraint's own size in the matrix's metric.
-const REGULARISATION: f64 = 1e-12;
-
-/// The same for constraints known to be redundant: the others imply them, and their multipliers stay near zero.
-const RELAXATION: f64 = 1e6;
-
-/// Coordinates beyond which fill decides how long a start takes to compile.
-const MANY: usize = 100;
+use crate::compile::tuning::TUNING;
 
 /// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);
@@ -294,7 +286,8 @@ impl Builder<'_> {
         for (constraint, size) in sizes.into_iter().enumerate() {
             let relaxed = constraint < constraints && self.redundant.contains(&ConstraintId::new(constraint));
             if pairs.iter().all(|&(_, paired)| paired != constraint) {
-                let value = self.graph.constant(-size * if relaxed { RELAXATION } else { REGULARISATION });
+                let value =
+                    self.graph.constant(-size * if relaxed { TUNING.relaxation } else { TUNING.regularisation });
                 matrix.add(&mut self.graph, n + constraint, n + constraint, value);
             }
             scale[n + constraint] = size.sqrt().recip();
@@ -306,7 +299,7 @@ impl Builder<'_> {
         let pairs: Vec<(usize, usize)> = pairs.iter().map(|&(row, constraint)| (row, n + constraint)).collect();
         // Where the metric couples coordinates along a chain, all of them before the first constraint would couple
         // every pair of constraints. Few may be.
-        let late = if is_coupled && n > MANY { n + m } else { n };
+        let late = if is_coupled && n > TUNING.start_coordinates { n + m } else { n };
         let known = self.factorised.iter().position(|known| known.is_of(&matrix, &pairs, late));
         let known = match known {
             Some(known) => known,

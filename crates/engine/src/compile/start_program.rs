@@ -7,6 +7,7 @@ use super::nearest::OpenStart;
 use super::start_equations::Residual;
 use super::tapes::Tapes;
 use crate::assemble::{SampledState, System};
+use crate::compile::tuning::TUNING;
 
 /// Tapes for the start of a tile of samples; states and corrections are in the registers of [`Layout`].
 #[derive(Clone, Debug)]
@@ -39,9 +40,6 @@ pub struct SampledValue {
     pub period: f64,
 }
 
-/// Instants are met to this share of the time between them: times of steps are rounded.
-const ROUNDING: f64 = 1e-9;
-
 impl SampledValue {
     /// Those of a system, whose new values are in these registers.
     pub(super) fn all(system: &System, layout: &Layout, registers: Vec<usize>) -> Vec<Self> {
@@ -57,13 +55,13 @@ impl SampledValue {
     /// Whether a time, s, is one of its instants.
     pub fn is_due(&self, time: f64) -> bool {
         let periods = time / self.period;
-        (periods - periods.round()).abs() <= ROUNDING
+        (periods - periods.round()).abs() <= TUNING.instant_rounding
     }
 
     /// Its first instant after a time and before another.
     pub fn due_between(&self, from: f64, to: f64) -> Option<f64> {
-        let number = (from / self.period + ROUNDING).floor() + 1.0;
-        (number < to / self.period - ROUNDING).then_some(number * self.period)
+        let number = (from / self.period + TUNING.instant_rounding).floor() + 1.0;
+        (number < to / self.period - TUNING.instant_rounding).then_some(number * self.period)
     }
 }
 

@@ -122,8 +122,8 @@ pub struct Couplings {
 }
 
 impl Couplings {
-    /// Of a description whose welds are marked.
-    pub fn of(description: &Description) -> Self {
+    /// Of a description; `merged`: by joint, whether its bodies move as one.
+    pub fn of(description: &Description, merged: &[bool]) -> Self {
         let joint =
             |Joint { kind, .. }: &Joint| Dependencies::by_part(description, kind.formulas(), kind.clone().references());
         let joints: Vec<Dependencies> = description.joints.iter().map(joint).collect();
@@ -136,7 +136,7 @@ impl Couplings {
         let on_every_body = |effect: usize| description.effects[effect].kind.scope() == Scope::EveryBody;
         let fields: Vec<bool> =
             effects.iter().enumerate().map(|(effect, named)| on_every_body(effect) && named.parts.is_empty()).collect();
-        let grounded = grounded(description);
+        let grounded = grounded(description, merged);
         let mut joins_ground = vec![false; joints.len()];
         grounded.iter().flatten().for_each(|&joint| joins_ground[joint] = true);
         let parts = description.bodies.len() + joints.len() + effects.len();
@@ -206,10 +206,10 @@ impl Couplings {
 }
 
 /// For each body that is merged with the ground, the joint towards the ground.
-fn grounded(description: &Description) -> Vec<Option<usize>> {
+fn grounded(description: &Description, merged: &[bool]) -> Vec<Option<usize>> {
     let mut welds = vec![Vec::new(); description.bodies.len()];
-    for (index, joint) in description.joints.iter().enumerate() {
-        if let (true, Some([a, b])) = (joint.merged, joint.kind.between()) {
+    for (index, (joint, &merged)) in description.joints.iter().zip(merged).enumerate() {
+        if let (true, Some([a, b])) = (merged, joint.kind.between()) {
             welds[a.body].push((index, b.body));
             welds[b.body].push((index, a.body));
         }

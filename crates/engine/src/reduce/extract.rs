@@ -1,5 +1,6 @@
 //! Extraction of a subsystem as a model of its own.
 
+use super::Subsystem;
 use super::couplings::{Couplings, Dependencies, Part};
 use crate::grammar::TimeOrder;
 use crate::model::{Description, ParameterValue, PointRef, Reference, Standing, StartValue};
@@ -68,16 +69,17 @@ fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
 }
 
 /// The model of the parts in `set`, of which this is asked. Every other part is left out, and so are parameters that
-/// no kept part refers to. Also returns the numbers of the remaining uncertain parameters among all.
+/// no kept part refers to. `merged`: by joint, whether its bodies move as one.
 pub fn extract(
     description: &Description,
+    merged: &[bool],
     couplings: &mut Couplings,
     set: Option<usize>,
-    asked: &Asked,
-) -> (Description, Vec<usize>) {
+    asked: Asked,
+) -> Subsystem {
     let mut part = description.clone();
     asked.ask(&mut part);
-    let kept = Kept::of(description, couplings, set, (asked, &required(&part)));
+    let kept = Kept::of(description, couplings, set, (&asked, &required(&part)));
     let (bodies, joints) = (places(&kept.bodies), places(&kept.joints));
     let points: Vec<Vec<Option<usize>>> = kept.points.iter().map(|points| places(points)).collect();
     let moved = |place: PointRef| {
@@ -117,7 +119,10 @@ pub fn extract(
     let left: Vec<usize> =
         numbered.filter(|&(_, (index, _))| kept.parameters[index]).map(|(number, _)| number).collect();
     narrow(&mut part, &left);
-    (part, left)
+    let mut merged = merged.to_vec();
+    retain(&mut merged, &kept.joints);
+    let Asked { outputs, reduced, requirements } = asked;
+    Subsystem { description: part, merged, outputs, reduced, requirements, parameters: left }
 }
 
 /// Restricts the requested orders, nodes and points to these uncertain parameters.

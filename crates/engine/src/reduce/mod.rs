@@ -47,6 +47,8 @@ impl Default for Choices {
 pub struct Subsystem {
     /// A model of its own, with the name of the whole model.
     pub description: Description,
+    /// By joint, whether its bodies move as one, so that there is no reaction between them.
+    pub merged: Vec<bool>,
     /// Numbers of its outputs in the whole model.
     pub outputs: Vec<usize>,
     /// Numbers of its reduced outputs in the whole model.
@@ -71,15 +73,16 @@ pub struct Reduction {
 impl Reduction {
     /// Of a model.
     pub fn of(description: &Description, choices: Choices) -> Self {
-        let mut whole = description.clone();
-        let welds = if choices.merge { welds::merge(&mut whole) } else { Vec::new() };
-        let mut couplings = Couplings::of(&whole);
+        let welds = if choices.merge { welds::welds(description) } else { Vec::new() };
+        let mut merged = vec![false; description.joints.len()];
+        welds.iter().for_each(|weld| merged[weld.joint] = weld.obstacle.is_none());
+        let mut couplings = Couplings::of(description, &merged);
         let movable = couplings.movable();
         if choices.merge && !movable.iter().any(is_body) {
             // A model needs a coordinate.
             return Self::of(description, Choices { merge: false, ..choices });
         }
-        let questions = questions(&whole);
+        let questions = questions(description);
         let sets = sets_of_outputs(&mut couplings, &movable, &questions, choices);
         let mut subsystems: Vec<(Option<usize>, Asked)> = Vec::new();
         for (output, set) in sets.into_iter().enumerate() {
@@ -103,23 +106,22 @@ impl Reduction {
         }
         let kept: HashSet<usize> = subsystems.iter().filter_map(|(set, _)| *set).collect();
         let left_out: Vec<Part> = movable.into_iter().filter(|&part| !kept.contains(&couplings.set(part))).collect();
-        let subsystems = subsystems.into_iter().map(|(set, asked)| {
-            let (description, parameters) = extract::extract(&whole, &mut couplings, set, &asked);
-            let Asked { outputs, reduced, requirements } = asked;
-            Subsystem { description, outputs, reduced, requirements, parameters }
-        });
+        let subsystems = subsystems
+            .into_iter()
+            .map(|(set, asked)| extract::extract(description, &merged, &mut couplings, set, asked));
         let subsystems = subsystems.collect();
         let name = |part: &Part| match *part {
-            Part::Body(body) => format!("body {}", whole.bodies[body].name),
-            Part::Joint(joint) => format!("joint {}", whole.joints[joint].name),
-            Part::Effect(effect) => format!("effect {}", whole.effects[effect].name),
+            Part::Body(body) => format!("body {}", description.bodies[body].name),
+            Part::Joint(joint) => format!("joint {}", description.joints[joint].name),
+            Part::Effect(effect) => format!("effect {}", description.effects[effect].name),
         };
-        let moves = |part: &&Part| !matches!(part, Part::Body(body) if whole.bodies[*body].is_ground_of_instance());
+        let moves =
+            |part: &&Part| !matches!(part, Part::Body(body) if description.bodies[*body].is_ground_of_instance());
         let simulated = |joint: &Weld| !left_out.contains(&Part::Joint(joint.joint));
         let welds = welds.into_iter().filter(simulated);
         Self {
             left_out: left_out.iter().filter(moves).map(name).collect(),
-            welds: welds.map(|weld| (whole.joints[weld.joint].name.clone(), weld.obstacle)).collect(),
+            welds: welds.map(|weld| (description.joints[weld.joint].name.clone(), weld.obstacle)).collect(),
             subsystems,
         }
     }

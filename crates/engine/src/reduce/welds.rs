@@ -18,8 +18,8 @@ pub struct Weld {
     pub obstacle: Option<String>,
 }
 
-/// Marks the fixed joints whose bodies are merged.
-pub fn merge(description: &mut Description) -> Vec<Weld> {
+/// The fixed joints, of which those without an obstacle merge their bodies.
+pub fn welds(description: &Description) -> Vec<Weld> {
     let observed = observed(description);
     let restricted = restricted(description);
     let nodes = nodes(description);
@@ -52,9 +52,6 @@ pub fn merge(description: &mut Description) -> Vec<Weld> {
         welds.push(Weld { joint, obstacle });
     }
     keep_guesses(description, &mut sets, &mut welds);
-    for weld in &welds {
-        description.joints[weld.joint].merged = weld.obstacle.is_none();
-    }
     welds
 }
 

@@ -6,7 +6,8 @@
 //! - `time_functions`: functions of the time in the equations, and the steps that resolve them;
 //! - `control`: the step schedule that all samples share, fixed or from a tolerance;
 //! - `ensemble`: many samples, or one jet in the parameters, over a schedule;
-//! - `explicit`: the same by an explicit method of order 8, and `sample_run`: whichever a schedule asks for;
+//! - `explicit`: the same by an explicit method of order 8, `integrator`: what all ways to integrate can do, and
+//!   `integrators`: which one a schedule asks for;
 //! - `interruption`: the question whether to end before the last row;
 //! - `sampling`: states that change at instants, at which steps end;
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
@@ -32,12 +33,13 @@ mod explicit;
 mod fast_states;
 mod features;
 mod further;
+mod integrator;
+mod integrators;
 mod interruption;
 mod modal;
 mod modes;
 mod motion_values;
 mod residual_text;
-mod sample_run;
 mod sampling;
 mod simulator;
 mod start;
@@ -56,10 +58,11 @@ pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetBox,
 pub use error::SimulationError;
 pub use events::{Boundary, SegmentRun, segment_jets, segments_of};
 pub use explicit::{ExplicitJets, ExplicitObstacle, explicit_schedule};
+pub use integrator::{Integrator, JetIntegrator};
+pub use integrators::{integrator, jet_integrator};
 pub use interruption::Interruption;
 pub use modal::is_one_number;
 pub use modes::{ExcitedMode, excited_modes};
-pub use sample_run::SampleRun;
 pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;

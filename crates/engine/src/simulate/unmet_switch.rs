@@ -13,6 +13,7 @@ use symdiff::Tile;
 use super::control::Steps;
 use super::ensemble::{EnsembleRun, Observed};
 use super::error::SimulationError;
+use super::integrator::Integrator;
 use super::interruption::Interruption;
 use super::simulator::Simulator;
 use super::step::Counters;
@@ -205,8 +206,8 @@ impl Observing<'_> {
         mut look: impl FnMut(usize, &[f64], &[Depths]),
     ) -> Result<Observations, SimulationError> {
         let samples = self.domain.samples(xi);
-        let mut run =
-            EnsembleRun::start(self.simulator, &samples, self.steps.schedule.first_step())?.heeding(self.interruption);
+        let mut run = EnsembleRun::start(self.simulator, &samples, self.steps.schedule.first_step())?;
+        run.heed(self.interruption);
         let (lines, switches) = (2 * self.simulator.program.scale.len(), self.program.switches.len());
         let stride = (lines + 2 * switches) * samples.len();
         let mut sizes = vec![0.0_f64; switches];
@@ -214,8 +215,7 @@ impl Observing<'_> {
         let mut switched_from = None;
         for first in (0..self.steps.schedule.rows).step_by(BLOCK) {
             let rows = first..(first + BLOCK).min(self.steps.schedule.rows);
-            let stops =
-                run.advance(self.steps.schedule, rows.clone(), self.steps.controller, Observed::Switches, &mut values);
+            let stops = run.advance(self.steps, rows.clone(), Observed::Switches, &mut values);
             if run.is_cut() {
                 break;
             }

@@ -155,17 +155,12 @@ pub struct Joint {
     pub name: String,
     /// Constrained bodies.
     pub kind: JointKind,
-    /// Whether both bodies move as one, so that there is no reaction between them; of a weld, and set by `reduce`.
-    pub merged: bool,
-    /// Whether it closes a loop in joint coordinates, though a body could move with it; set where the cut of loops is
-    /// chosen.
-    pub cut: bool,
 }
 
 impl Joint {
-    /// A joint whose bodies move as two.
+    /// A joint of a kind.
     pub fn new(name: String, kind: JointKind) -> Self {
-        Self { name, kind, merged: false, cut: false }
+        Self { name, kind }
     }
 }
 
@@ -194,13 +189,6 @@ pub struct Output {
 }
 
 impl Description {
-    /// Lets these joints close loops in joint coordinates, and no others that could be inboard joints.
-    pub fn cut_at(&mut self, joints: &[usize]) {
-        for (index, joint) in self.joints.iter_mut().enumerate() {
-            joint.cut = joints.contains(&index);
-        }
-    }
-
     /// Nothing yet, in the plane, for a second.
     pub fn empty(name: String) -> Self {
         Self {

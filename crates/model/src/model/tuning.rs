@@ -59,20 +59,3 @@ pub fn tuning() -> Vec<Constant> {
     ]
     .concat()
 }
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn every_constant_has_a_name_of_its_own_a_reason_and_an_effect() {
-        let constants = tuning();
-        let names: BTreeSet<_> = constants.iter().map(|constant| (constant.room, constant.name)).collect();
-        assert!(names.len() == constants.len() && constants.len() > 50);
-        for constant in constants {
-            assert!(constant.why.ends_with('.') && !constant.moves.is_empty() && !constant.value.is_empty());
-        }
-    }
-}

@@ -107,3 +107,45 @@ pub struct Band {
     /// How far the bounds may be from the truth, at each time.
     pub error: BandError,
 }
+
+impl OutputBounds {
+    /// The same over so many rows, unknown where these have none.
+    #[must_use]
+    pub fn padded(&self, rows: usize) -> Self {
+        let band = |band: &Band| Band {
+            method: band.method,
+            lower: padded(&band.lower, rows, f64::NAN),
+            upper: padded(&band.upper, rows, f64::NAN),
+            error: BandError {
+                total: padded(&band.error.total, rows, f64::NAN),
+                unresolved: padded(&band.error.unresolved, rows, true),
+                coarse: padded(&band.error.coarse, rows, false),
+                ..band.error.clone()
+            },
+        };
+        Self {
+            nominal: padded(&self.nominal, rows, f64::NAN),
+            bands: self.bands.iter().map(band).collect(),
+            ..self.clone()
+        }
+    }
+}
+
+impl Contribution {
+    /// The same over so many rows, unknown where these have none.
+    #[must_use]
+    pub fn padded(&self, rows: usize) -> Self {
+        Self {
+            parameter: self.parameter.clone(),
+            main: padded(&self.main, rows, f64::NAN),
+            total: padded(&self.total, rows, f64::NAN),
+            width_without: padded(&self.width_without, rows, f64::NAN),
+        }
+    }
+}
+
+fn padded<T: Clone>(values: &[T], rows: usize, with: T) -> Vec<T> {
+    let mut values = values.to_vec();
+    values.resize(rows, with);
+    values
+}

@@ -1,78 +1,74 @@
 //! How results of parts become those of a whole, field by field: of a model's subsystems, and of pieces of its box.
 
 use super::summary::MethodSummary;
-use super::{Band, Bounds, Contribution, EffectCost, Explanation, InstructionCounts, LeftOut, OutputBounds, Summary};
+use super::{Band, Bounds, EffectCost, Explanation, InstructionCounts, LeftOut, OutputBounds, Summary};
 use crate::methods::TooDeep;
 use crate::numerics::{BandError, EMPTY, Range, largest, union};
 
 /// The formulation of subsystems that differ in it.
 const BOTH: &str = "absolute and joint";
 
-impl MethodSummary {
-    /// Adds what the same method took elsewhere.
-    pub fn add(&mut self, other: &Self) {
-        self.simulations += other.simulations;
-        self.steps = self.steps.max(other.steps);
-        self.newton_iterations += other.newton_iterations;
-        self.rank_revealing_solves += other.rank_revealing_solves;
-        self.boxes = self.boxes.zip(other.boxes).map(|(a, b)| a + b);
-        self.seconds = self.seconds.zip(other.seconds).map(|(a, b)| a + b);
-        if let (Some(known), Some(other)) = (&mut self.order, &other.order) {
-            known.iter_mut().zip(other).for_each(|(known, other)| *known = (*known).max(*other));
+/// Adds what the same method took elsewhere.
+fn add_method(method: &mut MethodSummary, other: &MethodSummary) {
+    method.simulations += other.simulations;
+    method.steps = method.steps.max(other.steps);
+    method.newton_iterations += other.newton_iterations;
+    method.rank_revealing_solves += other.rank_revealing_solves;
+    method.boxes = method.boxes.zip(other.boxes).map(|(a, b)| a + b);
+    method.seconds = method.seconds.zip(other.seconds).map(|(a, b)| a + b);
+    if let (Some(known), Some(other)) = (&mut method.order, &other.order) {
+        known.iter_mut().zip(other).for_each(|(known, other)| *known = (*known).max(*other));
+    }
+}
+
+/// Adds what the methods took in another part of the run.
+pub fn add_methods(summary: &mut Summary, others: &[MethodSummary]) {
+    for other in others {
+        match summary.methods.iter_mut().find(|known| known.method == other.method) {
+            Some(known) => add_method(known, other),
+            None => summary.methods.push(other.clone()),
         }
     }
 }
 
-impl Summary {
-    /// Adds what the methods took in another part of the run.
-    pub fn add_methods(&mut self, others: &[MethodSummary]) {
-        for other in others {
-            match self.methods.iter_mut().find(|known| known.method == other.method) {
-                Some(known) => known.add(other),
-                None => self.methods.push(other.clone()),
-            }
+/// Of a model that consists of these subsystems. What depends on the whole model's bounds (errors, contributions)
+/// and names (parameters) is that of the first.
+///
+/// # Panics
+/// Without any.
+#[must_use]
+pub fn summary_of_subsystems(subsystems: Vec<Summary>) -> Summary {
+    let mut failures: Vec<String> = Vec::new();
+    for failure in subsystems.iter().filter_map(|subsystem| subsystem.failure.as_ref()) {
+        if !failures.contains(failure) {
+            failures.push(failure.clone());
         }
     }
-
-    /// Of a model that consists of these subsystems. What depends on the whole model's bounds (errors, contributions)
-    /// and names (parameters) is that of the first.
-    ///
-    /// # Panics
-    /// Without any.
-    #[must_use]
-    pub fn of_subsystems(subsystems: Vec<Self>) -> Self {
-        let mut failures: Vec<String> = Vec::new();
-        for failure in subsystems.iter().filter_map(|subsystem| subsystem.failure.as_ref()) {
-            if !failures.contains(failure) {
-                failures.push(failure.clone());
-            }
+    let add = |mut whole: Summary, other: Summary| {
+        if whole.formulation != other.formulation {
+            whole.formulation = BOTH.to_owned();
         }
-        let add = |mut whole: Self, other: Self| {
-            if whole.formulation != other.formulation {
-                whole.formulation = BOTH.to_owned();
-            }
-            whole.coordinates += other.coordinates;
-            whole.constraints += other.constraints;
-            whole.degrees_of_freedom += other.degrees_of_freedom;
-            whole.redundant_constraints.extend(other.redundant_constraints);
-            whole.undetermined_outputs.extend(other.undetermined_outputs);
-            whole.singular_at_start.extend(other.singular_at_start);
-            whole.shared_start.extend(other.shared_start);
-            whole.singular_configurations.extend(other.singular_configurations);
-            whole.damped_mode = whole.damped_mode.or(other.damped_mode);
-            whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
-            whole.passed_force = whole.passed_force.into_iter().chain(other.passed_force).reduce(f64::min);
-            whole.too_deep = TooDeep::first(whole.too_deep.iter().chain(&other.too_deep));
-            whole.beyond_tolerance = whole.beyond_tolerance.into_iter().chain(other.beyond_tolerance).reduce(f64::max);
-            whole.add_methods(&other.methods);
-            whole
-        };
-        // A model has at least one: `reduce` sees to it.
-        let mut whole = subsystems.into_iter().reduce(add).expect("a model has a subsystem");
-        whole.singular_configurations.sort_by(|a, b| a.time.total_cmp(&b.time));
-        whole.failure = (!failures.is_empty()).then(|| failures.join("; "));
+        whole.coordinates += other.coordinates;
+        whole.constraints += other.constraints;
+        whole.degrees_of_freedom += other.degrees_of_freedom;
+        whole.redundant_constraints.extend(other.redundant_constraints);
+        whole.undetermined_outputs.extend(other.undetermined_outputs);
+        whole.singular_at_start.extend(other.singular_at_start);
+        whole.shared_start.extend(other.shared_start);
+        whole.singular_configurations.extend(other.singular_configurations);
+        whole.damped_mode = whole.damped_mode.or(other.damped_mode);
+        whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
+        whole.passed_force = whole.passed_force.into_iter().chain(other.passed_force).reduce(f64::min);
+        whole.too_deep = TooDeep::first(whole.too_deep.iter().chain(&other.too_deep));
+        whole.beyond_tolerance = whole.beyond_tolerance.into_iter().chain(other.beyond_tolerance).reduce(f64::max);
+        add_methods(&mut whole, &other.methods);
         whole
-    }
+    };
+    // A model has at least one: `reduce` sees to it.
+    let mut whole = subsystems.into_iter().reduce(add).expect("a model has a subsystem");
+    whole.singular_configurations.sort_by(|a, b| a.time.total_cmp(&b.time));
+    whole.failure = (!failures.is_empty()).then(|| failures.join("; "));
+    whole
 }
 
 /// Bounds of a piece of the box.
@@ -86,31 +82,29 @@ pub struct Piece<'b> {
     pub share: f64,
 }
 
-impl Bounds {
-    /// Bounds over all pieces that reached a row; which share of the box these are is in `covered`.
-    ///
-    /// # Panics
-    /// Without any piece.
-    #[must_use]
-    pub fn of_pieces(pieces: &[Piece]) -> Self {
-        let longest = pieces.iter().max_by_key(|piece| piece.rows).expect("some piece has been bounded");
-        let rows = longest.rows;
-        let reach = |row: usize| pieces.iter().filter(move |piece| row < piece.rows);
-        let output = |(output, first): (usize, &OutputBounds)| {
-            let band = |place: usize| of_band(pieces, output, place, rows);
-            let bands = (0..first.bands.len()).map(band).collect();
-            OutputBounds { nominal: first.nominal[..rows].to_vec(), bands, ..first.clone() }
-        };
-        Self {
-            times: longest.bounds.times[..rows].to_vec(),
-            outputs: longest.bounds.outputs.iter().enumerate().map(output).collect(),
-            contributions: if pieces.len() == 1 { longest.bounds.contributions.clone() } else { Vec::new() },
-            covered: (0..rows).map(|row| reach(row).map(|piece| piece.share).sum()).collect(),
-            analysis: longest.bounds.analysis,
-            responses: Vec::new(),
-            // Those of a piece are ends of the piece.
-            witnesses: Vec::new(),
-        }
+/// Bounds over all pieces that reached a row; which share of the box these are is in `covered`.
+///
+/// # Panics
+/// Without any piece.
+#[must_use]
+pub fn bounds_of_pieces(pieces: &[Piece]) -> Bounds {
+    let longest = pieces.iter().max_by_key(|piece| piece.rows).expect("some piece has been bounded");
+    let rows = longest.rows;
+    let reach = |row: usize| pieces.iter().filter(move |piece| row < piece.rows);
+    let output = |(output, first): (usize, &OutputBounds)| {
+        let band = |place: usize| of_band(pieces, output, place, rows);
+        let bands = (0..first.bands.len()).map(band).collect();
+        OutputBounds { nominal: first.nominal[..rows].to_vec(), bands, ..first.clone() }
+    };
+    Bounds {
+        times: longest.bounds.times[..rows].to_vec(),
+        outputs: longest.bounds.outputs.iter().enumerate().map(output).collect(),
+        contributions: if pieces.len() == 1 { longest.bounds.contributions.clone() } else { Vec::new() },
+        covered: (0..rows).map(|row| reach(row).map(|piece| piece.share).sum()).collect(),
+        analysis: longest.bounds.analysis,
+        responses: Vec::new(),
+        // Those of a piece are ends of the piece.
+        witnesses: Vec::new(),
     }
 }
 
@@ -143,128 +137,79 @@ fn of_band(pieces: &[Piece], output: usize, place: usize, rows: usize) -> Band {
     all
 }
 
-fn padded<T: Clone>(values: &[T], rows: usize, with: T) -> Vec<T> {
-    let mut values = values.to_vec();
-    values.resize(rows, with);
-    values
+/// Adds those of another program.
+fn add_instructions(counts: &mut InstructionCounts, other: &InstructionCounts) {
+    counts.sample += other.sample;
+    counts.step_size += other.step_size;
+    counts.step += other.step;
+    counts.factor += other.factor;
+    counts.first_correction += other.first_correction;
+    counts.correct += other.correct;
+    counts.advance += other.advance;
+    counts.observe += other.observe;
 }
 
-impl OutputBounds {
-    /// The same over so many rows, unknown where these have none.
-    #[must_use]
-    pub fn padded(&self, rows: usize) -> Self {
-        let band = |band: &Band| Band {
-            method: band.method,
-            lower: padded(&band.lower, rows, f64::NAN),
-            upper: padded(&band.upper, rows, f64::NAN),
-            error: BandError {
-                total: padded(&band.error.total, rows, f64::NAN),
-                unresolved: padded(&band.error.unresolved, rows, true),
-                coarse: padded(&band.error.coarse, rows, false),
-                ..band.error.clone()
-            },
-        };
-        Self {
-            nominal: padded(&self.nominal, rows, f64::NAN),
-            bands: self.bands.iter().map(band).collect(),
-            ..self.clone()
+/// In two programs.
+fn cost_of_both(one: EffectCost, other: EffectCost) -> EffectCost {
+    let inactive = |cost: &EffectCost| cost.inactive.unwrap_or(cost.active);
+    let conditional = one.inactive.is_some() || other.inactive.is_some();
+    EffectCost { active: one.active + other.active, inactive: conditional.then(|| inactive(&one) + inactive(&other)) }
+}
+
+/// Of a model that consists of these subsystems.
+///
+/// # Panics
+/// Without any.
+pub fn explanation_of_subsystems(subsystems: Vec<Explanation>) -> Explanation {
+    // A model has at least one: `reduce` sees to it.
+    subsystems.into_iter().reduce(explanation_of_both).expect("a model has a subsystem")
+}
+
+fn explanation_of_both(mut whole: Explanation, other: Explanation) -> Explanation {
+    for (line, more) in [(&mut whole.space, other.space), (&mut whole.formulation, other.formulation)] {
+        if line.split("; ").all(|known| known != more) {
+            *line += &format!("; {more}");
         }
     }
-}
-
-impl Contribution {
-    /// The same over so many rows, unknown where these have none.
-    #[must_use]
-    pub fn padded(&self, rows: usize) -> Self {
-        Self {
-            parameter: self.parameter.clone(),
-            main: padded(&self.main, rows, f64::NAN),
-            total: padded(&self.total, rows, f64::NAN),
-            width_without: padded(&self.width_without, rows, f64::NAN),
+    whole.coordinates.extend(other.coordinates);
+    whole.constraints.extend(other.constraints);
+    whole.degrees_of_freedom += other.degrees_of_freedom;
+    whole.redundant_constraints.extend(other.redundant_constraints);
+    whole.singular_at_start.extend(other.singular_at_start);
+    whole.shared_start.extend(other.shared_start);
+    whole.undetermined_outputs.extend(other.undetermined_outputs);
+    for parameter in other.parameters {
+        if !whole.parameters.contains(&parameter) {
+            whole.parameters.push(parameter);
         }
     }
-}
-
-impl InstructionCounts {
-    /// Adds those of another program.
-    fn add(&mut self, other: &Self) {
-        self.sample += other.sample;
-        self.step_size += other.step_size;
-        self.step += other.step;
-        self.factor += other.factor;
-        self.first_correction += other.first_correction;
-        self.correct += other.correct;
-        self.advance += other.advance;
-        self.observe += other.observe;
-    }
-}
-
-impl EffectCost {
-    /// In two programs.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        let inactive = |cost: &Self| cost.inactive.unwrap_or(cost.active);
-        let conditional = self.inactive.is_some() || other.inactive.is_some();
-        Self { active: self.active + other.active, inactive: conditional.then(|| inactive(&self) + inactive(&other)) }
-    }
-}
-
-impl Explanation {
-    /// Of a model that consists of these subsystems.
-    ///
-    /// # Panics
-    /// Without any.
-    pub fn of_subsystems(subsystems: Vec<Self>) -> Self {
-        // A model has at least one: `reduce` sees to it.
-        subsystems.into_iter().reduce(Self::and).expect("a model has a subsystem")
-    }
-
-    fn and(mut self, other: Self) -> Self {
-        for (line, more) in [(&mut self.space, other.space), (&mut self.formulation, other.formulation)] {
-            if line.split("; ").all(|known| known != more) {
-                *line += &format!("; {more}");
+    for effect in other.effects {
+        match whole.effects.iter_mut().find(|known| known.name == effect.name) {
+            // Gravity acts in every subsystem.
+            Some(known) => {
+                known.forces += effect.forces;
+                known.expressions += effect.expressions;
+                known.adds = known.adds.take().zip(effect.adds).map(|(ours, theirs)| cost_of_both(ours, theirs));
             }
+            None => whole.effects.push(effect),
         }
-        self.coordinates.extend(other.coordinates);
-        self.constraints.extend(other.constraints);
-        self.degrees_of_freedom += other.degrees_of_freedom;
-        self.redundant_constraints.extend(other.redundant_constraints);
-        self.singular_at_start.extend(other.singular_at_start);
-        self.shared_start.extend(other.shared_start);
-        self.undetermined_outputs.extend(other.undetermined_outputs);
-        for parameter in other.parameters {
-            if !self.parameters.contains(&parameter) {
-                self.parameters.push(parameter);
-            }
-        }
-        for effect in other.effects {
-            match self.effects.iter_mut().find(|known| known.name == effect.name) {
-                // Gravity acts in every subsystem.
-                Some(known) => {
-                    known.forces += effect.forces;
-                    known.expressions += effect.expressions;
-                    known.adds = known.adds.take().zip(effect.adds).map(|(ours, theirs)| ours.and(theirs));
-                }
-                None => self.effects.push(effect),
-            }
-        }
-        self.outputs.extend(other.outputs);
-        if self.inactive.is_some() || other.inactive.is_some() {
-            let inactive = self.inactive.get_or_insert_with(|| self.instructions.clone());
-            inactive.add(other.inactive.as_ref().unwrap_or(&other.instructions));
-        }
-        self.instructions.add(&other.instructions);
-        // The subsystems' matrices are blocks on one diagonal.
-        let (ours, theirs) = (&mut self.newton, other.newton);
-        let first = ours.size;
-        ours.pivots.extend(theirs.pivots.into_iter().map(|(row, column)| (first + row, first + column)));
-        ours.size += theirs.size;
-        ours.nonzeros += theirs.nonzeros;
-        ours.factor_nonzeros += theirs.factor_nonzeros;
-        ours.fill += theirs.fill;
-        let new = |item: &LeftOut| !self.left_out.contains(item);
-        let more: Vec<LeftOut> = other.left_out.into_iter().filter(new).collect();
-        self.left_out.extend(more);
-        self
     }
+    whole.outputs.extend(other.outputs);
+    if whole.inactive.is_some() || other.inactive.is_some() {
+        let inactive = whole.inactive.get_or_insert_with(|| whole.instructions.clone());
+        add_instructions(inactive, other.inactive.as_ref().unwrap_or(&other.instructions));
+    }
+    add_instructions(&mut whole.instructions, &other.instructions);
+    // The subsystems' matrices are blocks on one diagonal.
+    let (ours, theirs) = (&mut whole.newton, other.newton);
+    let first = ours.size;
+    ours.pivots.extend(theirs.pivots.into_iter().map(|(row, column)| (first + row, first + column)));
+    ours.size += theirs.size;
+    ours.nonzeros += theirs.nonzeros;
+    ours.factor_nonzeros += theirs.factor_nonzeros;
+    ours.fill += theirs.fill;
+    let new = |item: &LeftOut| !whole.left_out.contains(item);
+    let more: Vec<LeftOut> = other.left_out.into_iter().filter(new).collect();
+    whole.left_out.extend(more);
+    whole
 }

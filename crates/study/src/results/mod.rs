@@ -32,7 +32,7 @@ pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint, Dra
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use gradients::{GradientParameter, Gradients, OutputGradients};
-pub use merge::Piece;
+pub use merge::{Piece, add_methods, bounds_of_pieces, explanation_of_subsystems, summary_of_subsystems};
 pub use motion::{Motion, MotionPolynomials, MovingForce, MovingSample, Poses};
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};

@@ -8,9 +8,9 @@
 //! All of it is simulated, so that bands are widened to it, and rows are distrusted in which it lies beyond a band's
 //! error. Each sample serves all rows, whichever it was found for.
 
+use super::bounding::{Attained, Outcome, simulation_error, timed};
 use super::ensemble::Motions;
-use super::outcome::{Attained, Outcome};
-use super::single::{Study, simulation_error, timed};
+use super::problem::Study;
 use crate::methods::{Budget, Chebyshev, Degree, Ensemble, MethodResult, Observed, Sampling, Simulated, Until};
 use crate::numerics::Sample;
 use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
@@ -81,37 +81,35 @@ impl End {
     }
 }
 
-impl Study<'_> {
-    /// Searches the ends of all outputs over time; `None` where surrogates need no help, or motions have no gradients.
-    /// The simulations are noted by `motions`.
-    ///
-    /// # Errors
-    /// Where a sample cannot be simulated.
-    pub(super) fn attained(
-        &self,
-        motions: &Motions,
-        schedule: &Schedule,
-    ) -> Result<Option<(Outcome, Attained)>, SimulationError> {
-        let is_adaptive = matches!(&self.request.chebyshev, Some(Chebyshev { degree: Degree::Adaptive, .. }));
-        let has_motion = !self.simulator.system.analysis.visits() && schedule.segments().is_none();
-        // A smaller budget is left to the surrogate.
-        let is_afforded = self.request.budget.simulations >= Budget::default().simulations;
-        let is_wanted = is_adaptive && is_afforded && self.domain.dimension() >= MANY;
-        if !is_wanted || !has_motion || self.interruption.is_asked() {
-            return Ok(None);
-        }
-        (self.stage)("attained ends");
-        let found = timed(schedule, "attained", || {
-            let mut search = AttainedSearch::new(self, motions, schedule);
-            search.run()?;
-            let result = MethodResult { simulations: search.simulations, ..MethodResult::default() };
-            Ok((MethodResult { simulated: search.simulated, ..result }, search.attained))
-        });
-        match found {
-            // Shards, or nobody, simulate the rest.
-            Err(SimulationError::Deferred | SimulationError::Interrupted) => Ok(None),
-            found => found.map(Some),
-        }
+/// Searches the ends of all outputs over time; `None` where surrogates need no help, or motions have no gradients.
+/// The simulations are noted by `motions`.
+///
+/// # Errors
+/// Where a sample cannot be simulated.
+pub(super) fn attained(
+    study: &Study,
+    motions: &Motions,
+    schedule: &Schedule,
+) -> Result<Option<(Outcome, Attained)>, SimulationError> {
+    let is_adaptive = matches!(&study.request.chebyshev, Some(Chebyshev { degree: Degree::Adaptive, .. }));
+    let has_motion = !study.simulator.system.analysis.visits() && schedule.segments().is_none();
+    // A smaller budget is left to the surrogate.
+    let is_afforded = study.request.budget.simulations >= Budget::default().simulations;
+    let is_wanted = is_adaptive && is_afforded && study.domain.dimension() >= MANY;
+    if !is_wanted || !has_motion || study.interruption.is_asked() {
+        return Ok(None);
+    }
+    (study.stage)("attained ends");
+    let found = timed(schedule, "attained", || {
+        let mut search = AttainedSearch::new(study, motions, schedule);
+        search.run()?;
+        let result = MethodResult { simulations: search.simulations, ..MethodResult::default() };
+        Ok((MethodResult { simulated: search.simulated, ..result }, search.attained))
+    });
+    match found {
+        // Shards, or nobody, simulate the rest.
+        Err(SimulationError::Deferred | SimulationError::Interrupted) => Ok(None),
+        found => found.map(Some),
     }
 }
 

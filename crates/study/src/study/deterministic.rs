@@ -3,87 +3,81 @@
 
 use std::time::Instant;
 
-use super::ensemble::Progress;
-use super::explicit::OF_STEPS;
-use super::outcome::{Outcome, Results};
-use super::reduced::Found;
-use super::single::{Study, simulation_error, timed, validation_summary};
-use super::step_search::StepSearch;
+use super::answers::Results;
+use super::bounding::{Bounded, Doubts, Outcome, bound, note_nominal, simulation_error, timed, validation_summary};
+use super::ensemble::{Progress, nominal};
+use super::problem::Study;
+use super::reduced::{Found, reduced};
+use super::stepping::tuning::TUNING;
+use super::stepping::{
+    StepPlan, StepSearch, damped_modes, divided, explicit_steps, may_be_explicit, may_extrapolate, refused,
+};
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
 use crate::numerics::{Ledger, Range};
-use crate::simulate::{Controller, Divided, Schedule, SimulationError};
+use crate::simulate::{Divided, Schedule, SimulationError};
 
-impl Study<'_> {
-    /// Every sampled method's bounds are the nominal motion.
-    pub(super) fn deterministic(
-        &self,
-        schedule: &Schedule,
-        tolerance: Option<Controller>,
-    ) -> Result<Results, SimulationError> {
-        let progress = Progress::new(3 * schedule.rows, self.progress);
-        let explicit = match self.request.tolerance.filter(|_| self.may_be_explicit() && !schedule.passes_rows()) {
-            None => None,
-            Some(allowed) => {
-                let found =
-                    self.explicit_steps(std::slice::from_ref(&self.domain.nominal), schedule, OF_STEPS * allowed)?;
-                found.or_else(|obstacle| self.refused(obstacle.into()).map(|()| schedule.clone())).map(Some)?
-            }
-        };
-        let schedule = explicit.as_ref().unwrap_or(schedule);
-        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
-        (self.stage)("nominal motion");
-        loop {
-            let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
-            let (halved, odd) = (schedule.refined(2), schedule.at_odds());
-            let motions = self.motions(&schedule, tolerance, &progress);
-            let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
-            let mut results = Results {
-                schedule: schedule.clone(),
-                unresolved_from,
-                switches: None,
-                damped: self.damped_modes(&schedule),
-                nominal,
-                singular,
-                seen: Ledger::new(schedule.rows, self.simulator.program.outputs.len()),
-                validation: None,
-                methods: Vec::new(),
-                attained: None,
-                halved: Vec::new(),
-                internal: Vec::new(),
-                found: Found::default(),
-            };
-            if self.request.is_empty() {
-                return Ok(results);
-            }
-            self.note_nominal(&results.nominal.result, &results.seen);
-            let begun = Instant::now();
-            let nominal = &results.nominal.result;
-            let finer_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
-            let [finer, at_odds] = [&halved, &odd].map(|schedule| self.motions(schedule, finer_tolerance, &progress));
-            let ratio = schedule.ratio_to(&odd);
-            let ensembles = Ensembles { direct: &motions, halved: &finer, odd: &at_odds, ratio };
-            let validation =
-                Validation::of_nominal(ensembles, (&nominal.bands, nominal.reached)).map_err(simulation_error)?;
-            if let Some(allowed) = self.request.tolerance
-                && steps.adjust(validation.worst_share(allowed, schedule.rows))
-            {
-                continue;
-            }
-            let stop = results.nominal.result.simulated.stop.as_ref().map(|(stop, _)| stop);
-            let summary = validation_summary(&schedule, &validation, stop, begun);
-            for (method, _) in self.request.methods() {
-                if method.about().is_sampled {
-                    results.methods.push((method, same(&schedule, &results.nominal.result, method)?));
-                } else {
-                    let of_method = |wanted| wanted == method;
-                    let found = self.bound(&motions, &schedule, &validation, &mut results.internal, of_method)?;
-                    results.methods.extend(found);
-                }
-            }
-            results.validation = Some((validation, summary));
-            results.found = self.reduced(&results, tolerance, &progress)?;
+/// Every sampled method's bounds are the nominal motion.
+pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, SimulationError> {
+    let StepPlan { schedule, controller } = plan;
+    let progress = Progress::new(3 * schedule.rows, study.progress);
+    let explicit = match study.request.tolerance.filter(|_| may_be_explicit(study) && !schedule.passes_rows()) {
+        None => None,
+        Some(allowed) => {
+            let found = explicit_steps(
+                study,
+                std::slice::from_ref(&study.domain.nominal),
+                schedule,
+                TUNING.explicit_share * allowed,
+            )?;
+            found.or_else(|obstacle| refused(study, obstacle.into()).map(|()| schedule.clone())).map(Some)?
+        }
+    };
+    let schedule = explicit.as_ref().unwrap_or(schedule);
+    let mut steps = StepSearch::new(schedule, may_extrapolate(study));
+    (study.stage)("nominal motion");
+    loop {
+        let Divided { schedule, unresolved_from } = divided(study, steps.schedule());
+        let plan = StepPlan { schedule, controller: *controller };
+        let schedule = &plan.schedule;
+        let motions = study.motions(plan.steps(), &progress);
+        let (nominal, singular) = timed(schedule, "nominal", || nominal(&motions))?;
+        let damped = damped_modes(study, schedule);
+        let seen = Ledger::new(schedule.rows, study.simulator.program.outputs.len());
+        let doubts = Doubts { unresolved_from, switches: None, damped };
+        let bounded = Bounded::new(plan.clone(), nominal, seen, doubts);
+        let (internal, found) = (Vec::new(), Found::default());
+        let mut results = Results { bounded, singular, attained: None, internal, found };
+        if study.request.is_empty() {
             return Ok(results);
         }
+        note_nominal(study, &results.bounded.nominal.result, &results.bounded.seen);
+        let begun = Instant::now();
+        let nominal = &results.bounded.nominal.result;
+        let finer = [plan.halved(), plan.at_odds()];
+        let [halved, odd] = finer.each_ref().map(|plan| study.motions(plan.steps(), &progress));
+        let ratio = schedule.ratio_to(&finer[1].schedule);
+        let ensembles = Ensembles { direct: &motions, halved: &halved, odd: &odd, ratio };
+        let validation =
+            Validation::of_nominal(ensembles, (&nominal.bands, nominal.reached)).map_err(simulation_error)?;
+        if let Some(allowed) = study.request.tolerance
+            && steps.adjust(validation.worst_share(allowed, schedule.rows))
+        {
+            continue;
+        }
+        let stop = results.bounded.nominal.result.simulated.stop.as_ref().map(|(stop, _)| stop);
+        let summary = validation_summary(schedule, &validation, stop, begun);
+        for (method, _) in study.request.methods() {
+            if method.about().is_sampled {
+                results.bounded.methods.push((method, same(schedule, &results.bounded.nominal.result, method)?));
+            } else {
+                let of_method = |wanted| wanted == method;
+                let found = bound(study, &motions, schedule, &validation, &mut results.internal, of_method)?;
+                results.bounded.methods.extend(found);
+            }
+        }
+        results.bounded.validation = Some((validation, summary));
+        results.found = reduced(study, &results.bounded, &progress)?;
+        return Ok(results);
     }
 }
 

@@ -7,11 +7,13 @@
 
 use std::fmt;
 
+use super::answers::Ran;
+use super::problem::Study;
+use super::single::{self, Tried, try_samples};
+
 use super::RunError;
-use super::outcome::{Ran, Tried};
-use super::single::Study;
 use crate::numerics::{ParameterBox, Range, spread, validation};
-use crate::results::{self, Bounds, ErrorSummary, PieceSummary, Summary};
+use crate::results::{self, Bounds, ErrorSummary, PieceSummary, Summary, add_methods, bounds_of_pieces};
 use crate::simulate::SimulationError;
 
 /// Samples of the box that tell how much of it fails.
@@ -130,7 +132,7 @@ pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
             break;
         }
         let progress = |fraction: f64| (study.progress)((place as f64 + fraction) / pieces.len() as f64);
-        match study.over(&piece.domain, &progress).run() {
+        match single::run(&study.over(&piece.domain, &progress)) {
             Ok(found) if found.whole > 0 => ran.push((found, piece)),
             Ok(_) | Err(RunError::Simulation(SimulationError::Assembly { .. })) => (),
             Err(error) => return Err(error),
@@ -138,7 +140,7 @@ pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
     }
     match ran.is_empty() {
         // There is nothing to be told but what the whole box' own run tells.
-        true => study.run().map(|ran| (ran.bounds, ran.summary)).map_err(|error| explained(study, error)),
+        true => single::run(study).map(|ran| (ran.bounds, ran.summary)).map_err(|error| explained(study, error)),
         false => Ok(merged(study, &ran)),
     }
 }
@@ -193,7 +195,7 @@ fn trial(study: &Study) -> Result<Found, RunError> {
         let failing = points.into_iter().zip(can).filter(|(_, can)| !can).map(|(xi, _)| xi).collect();
         return Ok(Found::Partly { lost: 1.0, failing });
     }
-    let Tried { reached, stopped, any } = study.try_samples()?;
+    let Tried { reached, stopped, any } = try_samples(study)?;
     let rows = study.rows();
     Ok(match rows.saturating_sub(reached) {
         0 => Found::Whole,
@@ -208,7 +210,7 @@ fn merged(study: &Study, ran: &[(Ran, &Piece)]) -> (Bounds, Summary) {
         .iter()
         .map(|(ran, piece)| results::Piece { bounds: &ran.bounds, rows: ran.whole, share: piece.share })
         .collect();
-    let bounds = Bounds::of_pieces(&pieces);
+    let bounds = bounds_of_pieces(&pieces);
     let summary = summary(study, ran, &bounds);
     (bounds, summary)
 }
@@ -216,7 +218,7 @@ fn merged(study: &Study, ran: &[(Ran, &Piece)]) -> (Bounds, Summary) {
 /// What all pieces took.
 fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
     let mut summary = ran[0].0.summary.clone();
-    ran[1..].iter().for_each(|(ran, _)| summary.add_methods(&ran.summary.methods));
+    ran[1..].iter().for_each(|(ran, _)| add_methods(&mut summary, &ran.summary.methods));
     let piece = |(ran, piece): &(Ran, &Piece)| PieceSummary {
         lower: piece.domain.lower.clone(),
         upper: piece.domain.upper.clone(),

@@ -44,7 +44,7 @@ pub fn gradient(description: &Description, options: &Options) -> Result<Gradient
         return Err(GradientError::NoOutput);
     }
     let none = Chosen { count: 0, at: &|_| Vec::new() };
-    sample(description, options, none, |trajectories| trajectories.gradients(description))
+    sample(description, options, none, |trajectories| of_trajectories(trajectories, description))
 }
 
 /// A parameter as it is differentiated by.
@@ -59,41 +59,40 @@ fn described(description: &Description, parameter: &Parameter) -> Option<Gradien
     })
 }
 
-impl Trajectories<'_> {
-    fn gradients(&self, description: &Description) -> Result<Gradients, GradientError> {
-        let parameters: Vec<GradientParameter> =
-            description.uncertain().filter_map(|(_, parameter)| described(description, parameter)).collect();
-        let empty = |(name, unit): &(String, String)| OutputGradients {
-            name: name.clone(),
-            unit: unit.clone(),
-            display: description.display.get(name).cloned(),
-            values: vec![f64::NAN; self.times.len()],
-            by_parameters: vec![vec![0.0; parameters.len()]; self.times.len()],
-        };
-        let mut outputs: Vec<OutputGradients> = self.outputs.iter().map(empty).collect();
-        for (number, (study, subsystem)) in self.studies.iter().zip(self.subsystems).enumerate() {
-            let schedule = &self.steps[number].0;
-            let center: Sample = study.simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-            let columns = self.columns[number].iter().enumerate();
-            let shown: Vec<(usize, usize)> = columns.filter_map(|(line, column)| Some((line, (*column)?))).collect();
-            let wanted: Vec<Wanted> = (0..schedule.rows)
-                .flat_map(|row| shown.iter().map(move |&(output, _)| Wanted { sample: 0, row, output }))
-                .collect();
-            let found = gradients(&study.simulator, schedule, &[center], &wanted, study.interruption)?;
-            if let Some(time) = found.iter().filter_map(|gradient| gradient.lost).reduce(f64::min) {
-                return Err(GradientError::Lost { time });
-            }
-            let columns = shown.iter().map(|&(_, column)| column).cycle();
-            for ((wanted, found), column) in wanted.iter().zip(found).zip(columns) {
-                outputs[column].values[wanted.row] = found.value;
-                let by_parameters = &mut outputs[column].by_parameters[wanted.row];
-                for (&parameter, by) in subsystem.parameters.iter().zip(found.by_parameters) {
-                    by_parameters[parameter] = by;
-                }
+/// The derivatives at the nominal values, by output and row.
+fn of_trajectories(trajectories: &Trajectories, description: &Description) -> Result<Gradients, GradientError> {
+    let parameters: Vec<GradientParameter> =
+        description.uncertain().filter_map(|(_, parameter)| described(description, parameter)).collect();
+    let empty = |(name, unit): &(String, String)| OutputGradients {
+        name: name.clone(),
+        unit: unit.clone(),
+        display: description.display.get(name).cloned(),
+        values: vec![f64::NAN; trajectories.times.len()],
+        by_parameters: vec![vec![0.0; parameters.len()]; trajectories.times.len()],
+    };
+    let mut outputs: Vec<OutputGradients> = trajectories.outputs.iter().map(empty).collect();
+    for (number, (study, subsystem)) in trajectories.studies.iter().zip(trajectories.subsystems).enumerate() {
+        let schedule = &trajectories.steps[number].schedule;
+        let center: Sample = study.simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let columns = trajectories.columns[number].iter().enumerate();
+        let shown: Vec<(usize, usize)> = columns.filter_map(|(line, column)| Some((line, (*column)?))).collect();
+        let wanted: Vec<Wanted> = (0..schedule.rows)
+            .flat_map(|row| shown.iter().map(move |&(output, _)| Wanted { sample: 0, row, output }))
+            .collect();
+        let found = gradients(&study.simulator, schedule, &[center], &wanted, study.interruption)?;
+        if let Some(time) = found.iter().filter_map(|gradient| gradient.lost).reduce(f64::min) {
+            return Err(GradientError::Lost { time });
+        }
+        let columns = shown.iter().map(|&(_, column)| column).cycle();
+        for ((wanted, found), column) in wanted.iter().zip(found).zip(columns) {
+            outputs[column].values[wanted.row] = found.value;
+            let by_parameters = &mut outputs[column].by_parameters[wanted.row];
+            for (&parameter, by) in subsystem.parameters.iter().zip(found.by_parameters) {
+                by_parameters[parameter] = by;
             }
         }
-        Ok(Gradients { model: description.name.clone(), times: self.times.clone(), parameters, outputs })
     }
+    Ok(Gradients { model: description.name.clone(), times: trajectories.times.clone(), parameters, outputs })
 }
 
 impl GradientError {

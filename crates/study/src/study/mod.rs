@@ -1,60 +1,49 @@
 //! Runs what a model asks for, on all cores and in bounded memory.
 //!
-//! `subsystems` separates a model into parts that do not interact. A `single` study of each makes the step schedule and
-//! runs the requested methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block
-//! of output rows, so that memory does not grow with samples × steps; `deterministic` is the case without uncertain
-//! parameters. `conclude` makes bounds and a summary of what the methods found. `feasible` bounds the part of a box in
-//! which there is a motion, `formulation` chooses the coordinates, `cost` runs one model with many settings to find
-//! what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `drawing` and
-//! `motion` show the mechanism, `internal` keeps a panic to what panicked, `keeping` and `kept` keep surrogates for
-//! whoever evaluates them after the run, as `statistics` does, and `allocate`, which looks for tolerances.
+//! `subsystems` separates a model into parts that do not interact; each becomes a `problem`: compiled (`formulation`
+//! chooses the coordinates, `prepared` and `ready` go up to the start), with a box and methods. A `single` study of it
+//! chooses the steps (`stepping`) and has the requested methods bound (`bounding`) the [`Ensemble`] of its motions
+//! (`ensemble`), block by block of output rows, so that memory does not grow with samples × steps; `attained` searches
+//! ends along gradients, `reduced` bounds numbers of a motion and decides requirements, and `deterministic` is the case
+//! without uncertain parameters. `answers` makes bounds, a summary and kept surrogates of what was found. `feasible`
+//! bounds the part of a box in which there is a motion, `cost` runs one model with many settings to find the cost of
+//! accuracy, `explain` lists what a model is compiled to, and `price` estimates a run. `drawing` and `motion` show the
+//! mechanism, `internal` confines a panic, `statistics` evaluates kept surrogates, and `allocate` searches tolerances.
+//!
+//! A type has its methods in its own file; other files have functions that take it. So what a file uses is what it
+//! imports, and a test finds circles.
+//!
+//! [`Ensemble`]: crate::methods::Ensemble
 
 mod allocate;
-mod allowance;
-mod analysis;
-mod assemblies;
+mod answers;
 mod attained;
-mod bands;
-mod comparison;
-mod conclude;
-mod controlled;
+mod bounding;
 mod cost;
-mod decisions;
 mod deterministic;
 mod drawing;
-mod effect_costs;
-mod effort;
 mod ensemble;
-mod events;
 mod explain;
-mod explicit;
 mod feasible;
 mod formulation;
 mod gradient;
 mod internal;
-mod keeping;
-mod kept;
-mod loop_cuts;
-mod memory;
 mod motion;
-mod outcome;
 mod prepared;
 mod price;
+mod problem;
 mod ready;
 mod reduced;
 mod sample;
 mod shard;
 mod single;
 mod statistics;
-mod step_search;
-mod steps;
+mod stepping;
 mod structure;
 mod subsystems;
-mod switches;
-mod visits;
-mod work;
+mod tuning;
 
-use crate::assemble::BuildError;
+use crate::assemble::{BuildError, Questions};
 use crate::compile::Scheme;
 use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
@@ -66,24 +55,21 @@ use crate::store::PartStore;
 use prepared::Prepared;
 
 pub use allocate::{AllocateError, AllocateOptions, allocate};
-pub use allowance::Allowance;
-pub use assemblies::of as assemblies;
+pub use answers::{Evaluator, Kept, assemblies};
 pub use cost::{CostError, CostOptions, cost};
 pub use drawing::drawing;
-pub use effect_costs::language_costs;
-pub use explain::explain;
+pub use explain::{explain, language_costs};
 pub use feasible::Survey;
 pub use gradient::{GradientError, gradient};
 pub use internal::{InternalError, caught, record_panics};
-pub use kept::{Evaluator, Kept};
-pub use memory::Memory;
 pub use motion::{MotionOptions, motion};
-pub use price::Price;
+pub use price::{Allowance, Memory, Price};
 pub use ready::{COMPILING, Ready, built, ready};
 pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
 pub use structure::structure;
 pub use subsystems::uncertain;
+pub use tuning::tuning;
 
 /// How to run.
 pub struct Options<'a> {
@@ -216,7 +202,7 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
 /// # Errors
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
-    formulation::compiled(description)
+    formulation::compiled(&Questions::of(description))
 }
 
 /// The model's scheme.

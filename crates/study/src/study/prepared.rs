@@ -1,9 +1,12 @@
 //! A model's subsystems, reduced to the parts that are simulated, and compiled.
 
+use std::borrow::Cow;
+
 use symdiff::Formula;
 
-use super::{Options, RunError, formulation};
-use crate::assemble::{self, BuildError};
+use super::formulation::compiled;
+use super::{Options, RunError};
+use crate::assemble::{self, BuildError, Questions};
 use crate::model::{Analysis, Description, Formulation, ParameterValue};
 use crate::reduce::{Choices, Reduction, Subsystem, narrow, required};
 use crate::simulate::Simulator;
@@ -22,8 +25,15 @@ impl Prepared {
     ///
     /// # Errors
     /// Where it cannot be built or assembled.
-    pub fn new(mut subsystem: Subsystem) -> Result<Self, RunError> {
-        let simulator = formulation::compiled(&subsystem.description)?;
+    pub fn new(subsystem: Subsystem) -> Result<Self, RunError> {
+        let formulation = subsystem.description.simulation.formulation;
+        Self::within(formulation, subsystem)
+    }
+
+    /// The same in a formulation.
+    fn within(formulation: Formulation, mut subsystem: Subsystem) -> Result<Self, RunError> {
+        let compiled = |subsystem: &Subsystem| compiled(&Questions { formulation, ..questions(subsystem) });
+        let simulator = compiled(&subsystem)?;
         let required = required(&subsystem.description);
         let is_required: Vec<bool> = subsystem.description.uncertain().map(|(index, _)| required[index]).collect();
         let mut unused = simulator.system.unused_parameters();
@@ -41,9 +51,14 @@ impl Prepared {
         let left: Vec<usize> = (0..subsystem.parameters.len()).filter(|number| !unused.contains(number)).collect();
         narrow(&mut subsystem.description, &left);
         subsystem.parameters = left.into_iter().map(|number| subsystem.parameters[number]).collect();
-        let simulator = formulation::compiled(&subsystem.description)?;
+        let simulator = compiled(&subsystem)?;
         Ok(Self { subsystem, simulator })
     }
+}
+
+/// Questions to a subsystem's equations.
+pub(super) fn questions(subsystem: &Subsystem) -> Questions<'_> {
+    Questions { merged: Cow::Borrowed(&subsystem.merged), ..Questions::of(&subsystem.description) }
 }
 
 /// Reduces a model to its simulated part, and compiles that.
@@ -53,26 +68,21 @@ impl Prepared {
 pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
     let mut reduction = Reduction::of(description, choices);
     let subsystems = std::mem::take(&mut reduction.subsystems).into_iter();
-    let prepared = subsystems.map(|subsystem| as_far_as_joints_go(description, subsystem, Prepared::new));
+    let prepared = subsystems.map(|subsystem| as_far_as_joints_go(description, subsystem));
     let prepared = prepared.collect::<Result<Vec<_>, _>>()?;
     Ok((reduction, prepared))
 }
 
-/// Makes something of a subsystem. Joint coordinates that the model asks for may not exist in every one: then it has
-/// absolute ones.
-fn as_far_as_joints_go<T>(
-    description: &Description,
-    subsystem: Subsystem,
-    make: impl Fn(Subsystem) -> Result<T, RunError>,
-) -> Result<T, RunError> {
+/// Compiles a subsystem. Joint coordinates that the model asks for may not exist in every one: then it has absolute
+/// ones.
+fn as_far_as_joints_go(description: &Description, subsystem: Subsystem) -> Result<Prepared, RunError> {
     let by_joints = description.simulation.formulation == Formulation::Joint;
     let absolute = by_joints.then(|| subsystem.clone());
-    match (make(subsystem), absolute) {
-        (Err(RunError::Build(BuildError::NoJointCoordinates { .. })), Some(mut subsystem))
-            if assemble::build(description).is_ok() =>
+    match (Prepared::new(subsystem), absolute) {
+        (Err(RunError::Build(BuildError::NoJointCoordinates { .. })), Some(subsystem))
+            if assemble::build(&Questions::of(description)).is_ok() =>
         {
-            subsystem.description.simulation.formulation = Formulation::Absolute;
-            make(subsystem)
+            Prepared::within(Formulation::Absolute, subsystem)
         }
         (made, _) => made,
     }

@@ -1,10 +1,10 @@
 //! The one way up to the start: `check` accepts the models that a run begins to simulate.
 
+use super::answers::keep_surrogate;
 use super::ensemble::Stored;
-use super::memory::Memory;
 use super::prepared::{Prepared, choices, prepare, share_budget};
-use super::price::Price;
-use super::single::Study;
+use super::price::{Memory, Price};
+use super::problem::Study;
 use super::{Options, RunError, reduced};
 use crate::assemble;
 use crate::model::Description;
@@ -61,7 +61,7 @@ pub(super) fn studied<T>(
         study.stored =
             options.store.map(|store| Stored { store, subsystem: number, assembles_first: options.skip_infeasible });
         if keep {
-            study.keep_surrogate()?;
+            keep_surrogate(&mut study)?;
         }
         Ok(study)
     });
@@ -129,6 +129,6 @@ pub fn ready(description: &Description) -> Result<Ready, RunError> {
 /// # Errors
 /// Where they cannot be built.
 pub fn built(description: &Description) -> Result<(), RunError> {
-    assemble::build(description)?;
+    assemble::build(&assemble::Questions::of(description))?;
     Ok(())
 }

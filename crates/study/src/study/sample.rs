@@ -3,15 +3,18 @@
 
 use std::ops::Range;
 
+use super::bounding::simulation_error;
+use super::problem::Study;
+use super::stepping::{StepPlan, balance, controlling_samples, divided, planned};
+
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
 use super::prepared::{Prepared, choices, prepare};
-use super::single::{Study, simulation_error};
 use super::{Options, RunError, reduced};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
-use crate::model::{Description, Stepping};
+use crate::model::Description;
 use crate::numerics::Sample;
 use crate::reduce::Subsystem;
-use crate::simulate::{Controller, Divided, Schedule, SimulationError};
+use crate::simulate::SimulationError;
 
 /// Samples of the uncertain parameters, in the model's order, which are made when they are needed.
 #[derive(Clone, Copy)]
@@ -38,7 +41,7 @@ type Columns = Vec<Option<usize>>;
 pub struct Trajectories<'t> {
     pub(super) studies: &'t [Study<'t>],
     pub(super) subsystems: &'t [Subsystem],
-    pub(super) steps: &'t [(Schedule, Option<Controller>)],
+    pub(super) steps: &'t [StepPlan],
     progress: &'t Progress<'t>,
     chosen: Chosen<'t>,
     /// Of each subsystem.
@@ -79,16 +82,16 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
             Ok(study)
         });
         let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
-        let steps = studies.iter().map(Study::steps_of_samples).collect::<Result<Vec<_>, _>>();
+        let steps = studies.iter().map(steps_of_samples).collect::<Result<Vec<_>, _>>();
         let steps = steps.map_err(RunError::from)?;
-        let rows = steps.iter().map(|(schedule, _)| schedule.rows).max().unwrap_or(0);
-        let times = steps.iter().find(|(schedule, _)| schedule.rows == rows);
-        let times = times.map_or_else(Vec::new, |(schedule, _)| (0..rows).map(|row| schedule.time(row)).collect());
+        let rows = steps.iter().map(|plan| plan.schedule.rows).max().unwrap_or(0);
+        let times = steps.iter().find(|plan| plan.schedule.rows == rows);
+        let times = times.map_or_else(Vec::new, |plan| (0..rows).map(|row| plan.schedule.time(row)).collect());
         let (columns, outputs) = columns(description, &subsystems, &studies);
         if options.store.is_some() {
-            let bytes = |(study, (schedule, _)): (&Study, &(Schedule, _))| {
+            let bytes = |(study, plan): (&Study, &StepPlan)| {
                 let samples = if study.domain.dimension() == 0 { 1 } else { chosen.count };
-                (8 * study.simulator.system.outputs.len() * schedule.rows * samples) as u64
+                (8 * study.simulator.system.outputs.len() * plan.schedule.rows * samples) as u64
             };
             (options.disk)(studies.iter().zip(&steps).map(bytes).sum());
         }
@@ -140,8 +143,7 @@ impl Trajectories<'_> {
     /// Where samples cannot be simulated, are deferred to shards, or of `keep`.
     pub fn each<E: From<RunError>>(&self, mut keep: impl FnMut(&[f64]) -> Result<(), E>) -> Result<Option<Sampled>, E> {
         let steps = self.studies.iter().zip(self.steps);
-        let motions: Vec<Motions> =
-            steps.map(|(study, (schedule, tolerance))| study.motions(schedule, *tolerance, self.progress)).collect();
+        let motions: Vec<Motions> = steps.map(|(study, plan)| study.motions(plan.steps(), self.progress)).collect();
         let lines = self.columns.iter().map(Vec::len).sum();
         let size = samples_of_part(lines, self.times.len());
         let closed = self.closed(size);
@@ -257,36 +259,13 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
     subsystem.parameters.iter().map(|&number| sample[number]).collect()
 }
 
-impl Study<'_> {
-    /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a
-    /// tolerance those that a run would try first.
-    fn steps_of_samples(&self) -> Result<(Schedule, Option<Controller>), SimulationError> {
-        let simulation = &self.description.simulation;
-        let (schedule, controller) = match simulation.stepping {
-            Stepping::Fixed(step) => {
-                let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
-                (schedule.taken(self.integration()), None)
-            }
-            Stepping::Tolerance(tolerance) => self.steps_within(tolerance)?,
-        };
-        if self.request.tolerance.is_some() && self.domain.dimension() > 0 {
-            let progress = Progress::new(usize::MAX, self.progress);
-            let (Divided { schedule, .. }, controller, _) = self.balance(&schedule, controller, &progress)?;
-            return Ok((schedule, controller));
-        }
-        Ok((self.divided(schedule).schedule, controller))
+/// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a tolerance
+/// those that a run would try first.
+fn steps_of_samples(study: &Study) -> Result<StepPlan, SimulationError> {
+    let (plan, _) = planned(study, controlling_samples)?;
+    if study.request.tolerance.is_some() && study.domain.dimension() > 0 {
+        let progress = Progress::new(usize::MAX, study.progress);
+        return Ok(balance(study, &plan, &progress)?.plan);
     }
-
-    /// Steps within a tolerance at the controlling samples, by the explicit method where that is chosen.
-    fn steps_within(&self, tolerance: f64) -> Result<(Schedule, Option<Controller>), SimulationError> {
-        let samples = self.controlling_samples();
-        if self.may_be_explicit() && self.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
-            match self.explicit_within(tolerance, &samples)? {
-                Ok(schedule) => return Ok((schedule, None)),
-                Err(obstacle) => self.refused(obstacle)?,
-            }
-        }
-        let (controlled, controller) = self.schedule_within(tolerance, &samples)?;
-        Ok((controlled.schedule, Some(controller)))
-    }
+    Ok(StepPlan { schedule: divided(study, plan.schedule).schedule, ..plan })
 }

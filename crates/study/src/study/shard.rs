@@ -2,10 +2,10 @@
 
 use super::ensemble::{Progress, simulate_part};
 use super::prepared::{Prepared, choices, prepare};
-use super::single::Study;
+use super::problem::Study;
 use super::{Options, RunError, reduced};
 use crate::model::Description;
-use crate::simulate::SimulationError;
+use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartStore, StoreError};
 
 /// Simulates parts of a model's run that are not in the store yet, by the tasks that are there.
@@ -46,7 +46,9 @@ fn simulate(description: &Description, options: &Options, store: &PartStore, nam
         }
         let study = Study::new(description, simulator.clone(), options)?;
         let progress = Progress::new(task.samples.len() * task.schedule.rows, options.progress);
-        let motions = study.motions(&task.schedule, task.tolerance, &progress).reducing(&task.channels);
+        let motions = study
+            .motions(Steps { schedule: &task.schedule, controller: task.tolerance }, &progress)
+            .reducing(&task.channels);
         match simulate_part(&motions, store, name, &task) {
             Err(SimulationError::Interrupted) => return Ok(()),
             done => done?,

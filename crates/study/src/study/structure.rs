@@ -6,7 +6,8 @@ use symdiff::Formula;
 
 use super::RunError;
 use super::formulation::assembled;
-use crate::assemble::Inventory;
+use super::prepared::questions;
+use crate::assemble::{Inventory, Questions};
 use crate::elements::effects::Scope;
 use crate::grammar::{PointRef, Reference, TimeOrder};
 use crate::model::{Description, Effect, Output, StartValue};
@@ -21,15 +22,16 @@ use crate::simulate::Assembled;
 /// # Errors
 /// Where the mechanism cannot be built or assembled.
 pub fn structure(description: &Description) -> Result<(Assembled, Structure), RunError> {
-    match of_model(description) {
-        Err(RunError::Simulation(_)) => of_model(&Reduction::joined(description).description),
+    match of_model(&Questions::of(description)) {
+        Err(RunError::Simulation(_)) => of_model(&questions(&Reduction::joined(description))),
         found => found,
     }
 }
 
-fn of_model(description: &Description) -> Result<(Assembled, Structure), RunError> {
-    let inventory = Inventory::of(description)?;
-    let mut outputs = description.outputs.clone();
+fn of_model(questions: &Questions) -> Result<(Assembled, Structure), RunError> {
+    let description = questions.description;
+    let inventory = Inventory::of(questions)?;
+    let mut outputs = questions.outputs.to_vec();
     let own = outputs.len();
     let hidden =
         |formula| Output { name: String::new(), formula, unit: String::new(), dimension: None, of_results: false };
@@ -37,7 +39,7 @@ fn of_model(description: &Description) -> Result<(Assembled, Structure), RunErro
     let places = outputs.len();
     outputs.extend(gravities(description).into_iter().flatten().cloned().map(hidden));
     let end = outputs.len();
-    let mut assembled = assembled(&Description { outputs, ..description.clone() })?;
+    let mut assembled = assembled(&Questions { outputs: outputs.into(), ..questions.clone() })?;
     let nominal: Sample = assembled.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let size = extent(description.space.spatial, &assembled.outputs_at_start(own..places, &nominal));
     let gravity = sum(&assembled.outputs_at_start(places..end, &nominal));

@@ -4,20 +4,19 @@
 //! Each has its own steps too: a subsystem that needs short ones does not slow down the others. The feasible part of a
 //! box is a part of the whole box: where only that is to be bounded, there is one subsystem.
 
-use super::assemblies;
+use super::answers::{Kept, Ran, arrange, assemblies};
 use super::internal::caught;
-use super::kept::Kept;
-use super::outcome::Ran;
+use super::price::stored_bytes;
 use super::ready::{Studied, studied};
 use super::reduced::{Parameters, together};
-use super::single::Study;
-use super::{Options, RunError, analysis, feasible};
+use super::single;
+use super::{Options, RunError, feasible};
 use crate::model::{Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
 use crate::results::{
     Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
-    Witness,
+    Witness, summary_of_subsystems,
 };
 use crate::simulate::SimulationError;
 
@@ -41,7 +40,7 @@ fn run_all(
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     let count = studies.len();
     if options.store.is_some() {
-        (options.disk)(studies.iter().map(Study::stored_bytes).sum());
+        (options.disk)(studies.iter().map(stored_bytes).sum());
     }
     let (mut ran, mut kept) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let (mut lost, mut deferred) = (0, false);
@@ -52,7 +51,8 @@ fn run_all(
                 let (bounds, summary) = feasible::run(study)?;
                 return Ok((bounds, summary, None));
             }
-            let Ran { bounds, summary, kept, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
+            let Ran { bounds, summary, kept, .. } =
+                single::run(study).map_err(|error| feasible::explained(study, error))?;
             Ok((bounds, summary, kept))
         });
         let (bounds, summary, part) = match found {
@@ -62,7 +62,7 @@ fn run_all(
                 continue;
             }
             Ok(Err(RunError::Simulation(SimulationError::Interrupted))) => {
-                let Ran { bounds, summary, kept, .. } = study.lost(None)?;
+                let Ran { bounds, summary, kept, .. } = single::lost(study, None)?;
                 (bounds, summary, kept)
             }
             Ok(found) => found?,
@@ -72,7 +72,7 @@ fn run_all(
                 if lost == count {
                     return Err(error.into());
                 }
-                let Ran { bounds, summary, kept, .. } = study.lost(Some(error))?;
+                let Ran { bounds, summary, kept, .. } = single::lost(study, Some(error))?;
                 (bounds, summary, kept)
             }
         };
@@ -86,7 +86,7 @@ fn run_all(
     let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep);
     let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
     let (mut bounds, mut summary) = Whole::of(description, left_out.to_vec()).merge(ran);
-    analysis::arrange(description, &mut bounds, &mut summary);
+    arrange(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))
 }
 
@@ -233,14 +233,14 @@ impl<'a> Whole<'a> {
             together(parameters, ran.iter_mut().map(|done| (done.subsystem, &mut done.summary)));
         let subsystems: Vec<SubsystemSummary> =
             if ran.len() > 1 { ran.iter().map(|done| self.subsystem(done)).collect() } else { Vec::new() };
-        let mut summary = Summary::of_subsystems(ran.into_iter().map(|done| done.summary).collect());
+        let mut summary = summary_of_subsystems(ran.into_iter().map(|done| done.summary).collect());
         if !subsystems.is_empty() {
             summary.errors = ErrorSummary::of(bounds);
             summary.contributions = ContributionSummary::of(bounds);
         }
         (summary.reduced, summary.requirements) = (reduced, requirements);
         summary.parameters = self.parameters;
-        summary.assemblies = assemblies::of(self.description);
+        summary.assemblies = assemblies(self.description);
         summary.not_simulated = self.left_out;
         summary.subsystems = subsystems;
         summary

@@ -171,7 +171,7 @@ fn a_row_that_nothing_can_close_is_an_error() {
         m.body("cross", "1", "1", "x", &[]);
         m.hold('y', height);
         m.revolute("pin", "ground", "cross");
-        assemble::build(&m.0).unwrap_err().to_string()
+        assemble::build(&assemble::Questions::of(&m.0)).unwrap_err().to_string()
     };
     assert_eq!(build("0.25"), "joint `pin`: nothing in `pin.y` can move, yet it is -0.25 instead of 0");
     assert_eq!(
@@ -186,6 +186,6 @@ fn a_constraint_may_not_speak_of_velocities() {
     let mut m = Model::new();
     m.body("a", "1", "1", "x", &[]);
     m.joint("rolling", JointKind::Equation(Equation { left: formula("a.vx"), right: formula("1") }));
-    let error = assemble::build(&m.0).unwrap_err().to_string();
+    let error = assemble::build(&assemble::Questions::of(&m.0)).unwrap_err().to_string();
     assert_eq!(error, "`a.vx` cannot stand in a formula of parameters, t and positions");
 }

@@ -159,7 +159,7 @@ impl Model {
     }
 
     pub fn build(&self) -> System {
-        assemble::build(&self.0).unwrap()
+        assemble::build(&assemble::Questions::of(&self.0)).unwrap()
     }
 }
 

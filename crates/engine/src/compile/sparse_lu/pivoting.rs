@@ -7,28 +7,7 @@ use symdiff::{Expr, Graph, Stages};
 use super::PIVOT_SAMPLES;
 use super::active::{Active, Entry};
 use super::ordering::block_order;
-
-/// A pivot is at least this large against the largest entry of its column, at every pivot sample.
-const THRESHOLD: f64 = 0.1;
-
-/// The same for pivots of [`Pivoting::Symmetric`], which cannot vanish: their order matters more. The corrections lose
-/// up to as many digits, and have more than they need.
-const THRESHOLD_SYMMETRIC: f64 = 1e-3;
-
-/// Where no pivot passes the threshold, it is lowered down to this; below it the matrix counts as singular.
-const SINGULAR: f64 = 1e-11;
-
-/// The same for a quasi-definite matrix, which is never singular: its pivots may be as small as its regularisation.
-const SINGULAR_DIAGONAL: f64 = 1e-15;
-
-/// Number of sparsest columns and rows that are searched for a pivot first; the search widens by [`WIDER`].
-const SEARCHED: usize = 4;
-
-/// Factor by which the search widens where it finds no pivot.
-const WIDER: usize = 8;
-
-/// Rows beyond which a diagonal order is not searched for in all of them.
-const MANY: usize = 500;
+use crate::compile::tuning::TUNING;
 
 /// Which entries may be pivots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,15 +41,15 @@ pub enum Pivoting<'m> {
 impl Pivoting<'_> {
     fn smallest(self) -> f64 {
         match self {
-            Self::Any | Self::Symmetric { .. } => SINGULAR,
-            Self::Diagonal { .. } => SINGULAR_DIAGONAL,
+            Self::Any | Self::Symmetric { .. } => TUNING.singular,
+            Self::Diagonal { .. } => TUNING.singular_diagonal,
         }
     }
 
     fn threshold(self) -> f64 {
         match self {
-            Self::Any | Self::Diagonal { .. } => THRESHOLD,
-            Self::Symmetric { .. } => THRESHOLD_SYMMETRIC,
+            Self::Any | Self::Diagonal { .. } => TUNING.threshold,
+            Self::Symmetric { .. } => TUNING.threshold_symmetric,
         }
     }
 
@@ -152,7 +131,7 @@ impl<'m> PivotSearch<'m> {
         let mut diagonals: Vec<Diagonals> = Vec::new();
         let mut threshold = self.pivoting.threshold();
         while threshold > singular {
-            let mut searched = SEARCHED;
+            let mut searched = TUNING.searched;
             for widening in 0.. {
                 if is_diagonal && diagonals.len() == widening {
                     diagonals.push(self.diagonals(active, searched));
@@ -167,7 +146,7 @@ impl<'m> PivotSearch<'m> {
                 if searched >= active.sparsest_columns.len().min(widest) {
                     break;
                 }
-                searched *= WIDER;
+                searched *= TUNING.wider;
             }
             threshold *= 0.1;
         }
@@ -178,7 +157,7 @@ impl<'m> PivotSearch<'m> {
     /// that in large matrices none has to be waited for: searching all of them for each pivot would be quadratic.
     fn widest(&self, active: &Active) -> usize {
         match self.pivoting {
-            Pivoting::Diagonal { .. } if active.rows.len() > MANY => SEARCHED * WIDER,
+            Pivoting::Diagonal { .. } if active.rows.len() > TUNING.rows_searched => TUNING.searched * TUNING.wider,
             _ => usize::MAX,
         }
     }

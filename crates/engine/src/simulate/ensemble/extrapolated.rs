@@ -22,11 +22,14 @@ use super::row_closure::{JetClosure, RowClosure};
 use super::run::EnsembleRun;
 use super::tiling::put_lanes;
 use crate::numerics::Sample;
-use crate::simulate::control::{Controller, Schedule};
+use crate::simulate::control::{Schedule, Steps};
+use crate::simulate::diagnostics::{OpenConstraint, SingularPass, TooDeep};
 use crate::simulate::error::SimulationError;
+use crate::simulate::integrator::{Integrator, JetIntegrator};
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Counters;
 
 /// Samples whose rows are closed together.
 const WIDTH: usize = 32;
@@ -93,64 +96,41 @@ impl<'s> ExtrapolatedRun<'s> {
             motion: Vec::new(),
         })
     }
+}
 
-    /// The levels' own runs, that with the steps of the schedule first.
-    pub fn levels(&self) -> &[EnsembleRun<'s>] {
-        &self.levels
-    }
-
-    /// Also searches for singular configurations that the first sample passes with the steps of the schedule.
-    #[must_use]
-    pub fn watching(mut self) -> Self {
-        if !self.levels.is_empty() {
-            let first = self.levels.remove(0).watching();
-            self.levels.insert(0, first);
+impl<'s> Integrator<'s> for ExtrapolatedRun<'s> {
+    fn watch(&mut self) {
+        if let Some(first) = self.levels.first_mut() {
+            first.watch();
         }
-        self
     }
 
-    /// Also reduces outputs to one number each, on every level.
-    #[must_use]
-    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
-        self.levels = self.levels.into_iter().map(|level| level.reducing(channels)).collect();
-        self
+    fn reduce(&mut self, channels: &'s [Channel]) {
+        self.levels.iter_mut().for_each(|level| level.reduce(channels));
     }
 
-    /// As [`EnsembleRun::heeding`].
-    #[must_use]
-    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
-        self.levels = self.levels.into_iter().map(|level| level.heeding(interruption)).collect();
-        self
+    fn heed(&mut self, interruption: Interruption<'s>) {
+        self.levels.iter_mut().for_each(|level| level.heed(interruption));
     }
 
-    /// As [`EnsembleRun::is_cut`].
-    pub fn is_cut(&self) -> bool {
+    fn is_cut(&self) -> bool {
         self.levels.iter().any(EnsembleRun::is_cut)
     }
 
-    /// As [`EnsembleRun::reduced`]: what the levels' outputs are reduced to, combined as their motions are.
-    pub fn reduced(&mut self) -> Vec<f64> {
-        let of_levels: Vec<Vec<f64>> = self.levels.iter_mut().map(EnsembleRun::reduced).collect();
-        let mut values = Vec::new();
-        combined(&self.weights, &of_levels, &mut values);
-        values
-    }
-
-    /// As [`EnsembleRun::advance`].
-    pub fn advance(
+    fn advance(
         &mut self,
-        schedule: &Schedule,
+        steps: Steps<'_>,
         rows: std::ops::Range<usize>,
-        tolerance: Option<Controller>,
         observed: Observed,
         into: &mut Vec<f64>,
     ) -> Vec<Stop> {
         let mut stops: Vec<Stop> = Vec::new();
-        let schedule = &*schedule.ending_at(Instants::of(self.simulator));
+        let schedule = &*steps.schedule.ending_at(Instants::of(self.simulator));
         for (level, (run, values)) in self.levels.iter_mut().zip(&mut self.values).enumerate() {
             let parts = 1 << level;
-            let (schedule, tolerance) = (schedule.refined(parts), tolerance.map(|all| all.for_parts(parts)));
-            for stop in run.advance(&schedule, rows.clone(), tolerance, Observed::Coordinates, values) {
+            let controller = steps.controller.map(|all| all.for_parts(parts));
+            let of_level = Steps { schedule: &schedule.refined(parts), controller };
+            for stop in run.advance(of_level, rows.clone(), Observed::Coordinates, values) {
                 match stops.iter_mut().find(|known| known.sample == stop.sample) {
                     Some(known) if known.row <= stop.row => {}
                     Some(known) => *known = stop,
@@ -181,6 +161,45 @@ impl<'s> ExtrapolatedRun<'s> {
             put_lanes(values, width, first..(first + WIDTH).min(samples), into, samples);
         }
         stops
+    }
+
+    /// What the levels' outputs are reduced to, combined as their motions are.
+    fn reduced(&mut self) -> Vec<f64> {
+        let of_levels: Vec<Vec<f64>> = self.levels.iter_mut().map(EnsembleRun::reduced).collect();
+        let mut values = Vec::new();
+        combined(&self.weights, &of_levels, &mut values);
+        values
+    }
+
+    fn counters(&self) -> Counters {
+        let mut total = Counters::default();
+        self.levels.iter().for_each(|level| total += level.counters());
+        total
+    }
+
+    fn singular_passes(&self) -> Vec<SingularPass> {
+        self.levels.first().map(EnsembleRun::singular_passes).unwrap_or_default()
+    }
+
+    fn parted(&self) -> Option<SimulationError> {
+        self.levels.first().and_then(EnsembleRun::parted)
+    }
+
+    fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
+        self.levels.iter().find_map(|level| level.open_constraint(stop, schedule))
+    }
+
+    fn beyond_tolerance_from(&self) -> Option<usize> {
+        self.levels.iter().filter_map(EnsembleRun::beyond_tolerance_from).min()
+    }
+
+    fn too_deep(&self) -> Option<TooDeep> {
+        self.levels.first().and_then(EnsembleRun::too_deep)
+    }
+
+    fn largest_error_ratio(&self) -> Option<(usize, f64)> {
+        let ratios = self.levels.iter().filter_map(EnsembleRun::largest_error_ratio);
+        ratios.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 }
 
@@ -247,26 +266,18 @@ impl<'s> ExtrapolatedJets<'s> {
             motion: Vec::new(),
         })
     }
+}
 
-    /// The levels' own runs, that with the steps of the schedule first.
-    pub fn levels(&self) -> &[JetRun<'s>] {
-        &self.levels
+impl<'s> JetIntegrator<'s> for ExtrapolatedJets<'s> {
+    fn heed(&mut self, interruption: Interruption<'s>) {
+        self.levels.iter_mut().for_each(|level| level.heed(interruption));
     }
 
-    /// As [`JetRun::heeding`].
-    #[must_use]
-    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
-        self.levels = self.levels.into_iter().map(|level| level.heeding(interruption)).collect();
-        self
-    }
-
-    /// As [`JetRun::is_cut`].
-    pub fn is_cut(&self) -> bool {
+    fn is_cut(&self) -> bool {
         self.levels.iter().any(JetRun::is_cut)
     }
 
-    /// As [`JetRun::advance`].
-    pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+    fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         let mut stop: Option<Stop> = None;
         let schedule = &*schedule.ending_at(Instants::of(self.simulator));
         let mut reached = rows.end;
@@ -290,6 +301,12 @@ impl<'s> ExtrapolatedJets<'s> {
             self.closure.observe(into);
         }
         stop
+    }
+
+    fn counters(&self) -> Counters {
+        let mut total = Counters::default();
+        self.levels.iter().for_each(|level| total += level.counters());
+        total
     }
 }
 

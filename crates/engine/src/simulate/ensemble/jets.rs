@@ -13,6 +13,7 @@ use super::observed::Stop;
 use crate::compile::Tapes;
 use crate::simulate::control::Schedule;
 use crate::simulate::error::SimulationError;
+use crate::simulate::integrator::JetIntegrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
@@ -84,31 +85,7 @@ impl<'s> JetRun<'s> {
         self
     }
 
-    /// Ends where it is asked to.
-    #[must_use]
-    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
-        Self { interruption, ..self }
-    }
-
-    /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
-    pub fn is_cut(&self) -> bool {
-        self.is_cut
-    }
-
-    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
-    /// output, coefficient by coefficient. Returns where the run stopped, if it did.
-    pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
-        into.clear();
-        for row in rows {
-            if let Some(stop) = self.advance_to(schedule, row) {
-                return Some(stop);
-            }
-            self.observe(into);
-        }
-        None
-    }
-
-    /// The same, and records positions and velocities (2n).
+    /// As `advance`, and records positions and velocities (2n) in place of outputs.
     pub fn advance_motion(
         &mut self,
         schedule: &Schedule,
@@ -209,11 +186,6 @@ impl<'s> JetRun<'s> {
         }
     }
 
-    /// Newton iterations of the centre so far.
-    pub fn counters(&self) -> Counters {
-        self.center.counters()
-    }
-
     /// One step.
     ///
     /// # Errors
@@ -275,5 +247,31 @@ impl<'s> JetRun<'s> {
         self.memory.set_constant(layout.step, h);
         self.memory.run(program.step_size());
         self.step_size = h;
+    }
+}
+
+impl<'s> JetIntegrator<'s> for JetRun<'s> {
+    fn heed(&mut self, interruption: Interruption<'s>) {
+        self.interruption = interruption;
+    }
+
+    fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+        into.clear();
+        for row in rows {
+            if let Some(stop) = self.advance_to(schedule, row) {
+                return Some(stop);
+            }
+            self.observe(into);
+        }
+        None
+    }
+
+    /// Those of the centre.
+    fn counters(&self) -> Counters {
+        self.center.counters()
     }
 }

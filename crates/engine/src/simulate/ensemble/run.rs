@@ -10,12 +10,13 @@ use super::switch_extents::SwitchExtents;
 use super::tiling::{put_lanes, tiles};
 use crate::compile::Tapes;
 use crate::numerics::Sample;
-use crate::simulate::control::{Controller, Schedule};
+use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::diagnostics::{
     OpenConstraint, OverlapWatch, PartingWatch, SingularPass, SingularWatch, TooDeep, not_finite,
 };
 use crate::simulate::error::SimulationError;
 use crate::simulate::features::FeatureWatch;
+use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
@@ -109,71 +110,49 @@ impl<'s> EnsembleRun<'s> {
         Ok(Self { simulator, tiles, samples: samples.len() })
     }
 
-    /// Also searches for singular configurations that the first sample passes, and for constraints that open.
-    #[must_use]
-    pub fn watching(mut self) -> Self {
+    /// The term that is no finite number where a sample stopped. Known for the first sample of each tile that stops.
+    pub fn not_finite(&self, stop: &Stop) -> Option<String> {
+        let mut stopped = self.tiles.iter().filter_map(|tile| tile.stopped.as_ref());
+        let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
+        not_finite(&self.simulator.system, &self.simulator.program.layout, state, stop.time)
+    }
+}
+
+impl<'s> Integrator<'s> for EnsembleRun<'s> {
+    fn watch(&mut self) {
         if let Some(tile) = self.tiles.first_mut() {
             tile.watch = Some(SingularWatch::new(self.simulator, &tile.stepper));
             tile.parting = PartingWatch::new(self.simulator, &self.simulator.program.layout, tile.stepper.lane(0));
         }
-        self
     }
 
-    /// Also reduces outputs to one number each.
-    #[must_use]
-    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
+    fn reduce(&mut self, channels: &'s [Channel]) {
         if !channels.is_empty() {
             let outputs = self.simulator.program.outputs.len();
             for tile in &mut self.tiles {
                 tile.reduction = Some(Reduction::new(channels, outputs, tile.stepper.tile().width()));
             }
         }
-        self
     }
 
-    /// Ends where it is asked to.
-    #[must_use]
-    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
+    fn heed(&mut self, interruption: Interruption<'s>) {
         self.tiles.iter_mut().for_each(|tile| tile.interruption = interruption);
-        self
     }
 
-    /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
-    pub fn is_cut(&self) -> bool {
+    fn is_cut(&self) -> bool {
         self.tiles.iter().any(|tile| tile.is_cut)
     }
 
-    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
-    /// stopped.
-    pub fn reduced(&mut self) -> Vec<f64> {
-        let mut values = Vec::new();
-        for tile in &mut self.tiles {
-            let Some(reduction) = &mut tile.reduction else { continue };
-            let found = reduction.finish();
-            let width = tile.stepper.tile().width();
-            values.resize(found.len() / width * self.samples, f64::NAN);
-            put_lanes(&found, width, tile.first..tile.first + tile.count, &mut values, self.samples);
-        }
-        values
-    }
-
-    /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records the `observed`
-    /// values: row by row, value by value, sample by sample. With a tolerance, a sample that exceeds it takes shorter
-    /// steps. Returns the samples that stopped.
-    pub fn advance(
+    fn advance(
         &mut self,
-        schedule: &Schedule,
+        steps: Steps<'_>,
         rows: std::ops::Range<usize>,
-        tolerance: Option<Controller>,
         observed: Observed,
         into: &mut Vec<f64>,
     ) -> Vec<Stop> {
         let outputs = observed.count(self.simulator);
-        let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
-            .tiles
-            .par_iter_mut()
-            .map(|tile| tile.advance(schedule, rows.clone(), tolerance, observed, outputs))
-            .collect();
+        let parts: Vec<(Vec<f64>, Vec<Stop>)> =
+            self.tiles.par_iter_mut().map(|tile| tile.advance(steps, rows.clone(), observed, outputs)).collect();
         into.clear();
         into.resize(rows.len() * outputs * self.samples, 0.0);
         let mut stops = Vec::new();
@@ -185,26 +164,33 @@ impl<'s> EnsembleRun<'s> {
         stops
     }
 
-    /// Newton iterations and rank-revealing solves so far.
-    pub fn counters(&self) -> Counters {
+    fn reduced(&mut self) -> Vec<f64> {
+        let mut values = Vec::new();
+        for tile in &mut self.tiles {
+            let Some(reduction) = &mut tile.reduction else { continue };
+            let found = reduction.finish();
+            let width = tile.stepper.tile().width();
+            values.resize(found.len() / width * self.samples, f64::NAN);
+            put_lanes(&found, width, tile.first..tile.first + tile.count, &mut values, self.samples);
+        }
+        values
+    }
+
+    fn counters(&self) -> Counters {
         let mut total = Counters::default();
         self.tiles.iter().for_each(|tile| total += tile.stepper.counters());
         total
     }
 
-    /// Singular configurations that the first sample has passed, if they are searched for.
-    pub fn singular_passes(&self) -> Vec<SingularPass> {
+    fn singular_passes(&self) -> Vec<SingularPass> {
         self.tiles.iter().filter_map(|tile| tile.watch.as_ref()).flat_map(SingularWatch::passes).collect()
     }
 
-    /// The error of a redundant constraint that the first sample has left open, if they are searched for.
-    pub fn parted(&self) -> Option<SimulationError> {
+    fn parted(&self) -> Option<SimulationError> {
         self.tiles.iter().find_map(|tile| tile.parting.as_ref()?.error())
     }
 
-    /// The constraint that cannot be closed where a sample stopped: the mechanism locks there. Known for the first
-    /// sample of each tile that stops.
-    pub fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
+    fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
         let mut stopped = self.tiles.iter().filter_map(|tile| tile.stopped.as_ref());
         let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
         // A residual needs time to grow.
@@ -212,27 +198,16 @@ impl<'s> EnsembleRun<'s> {
         times.into_iter().find_map(|time| self.simulator.open_constraint(state, time))
     }
 
-    /// The term that is no finite number where a sample stopped. Known for the first sample of each tile that stops.
-    pub fn not_finite(&self, stop: &Stop) -> Option<String> {
-        let mut stopped = self.tiles.iter().filter_map(|tile| tile.stopped.as_ref());
-        let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
-        not_finite(&self.simulator.system, &self.simulator.program.layout, state, stop.time)
-    }
-
-    /// The first row before which a sample's local errors add up to more than the tolerance, or fixed steps pass over a
-    /// force.
-    pub fn beyond_tolerance_from(&self) -> Option<usize> {
+    fn beyond_tolerance_from(&self) -> Option<usize> {
         self.tiles.iter().filter_map(|tile| tile.beyond).min()
     }
 
-    /// The first surfaces that a contact does not hold apart any more.
-    pub fn too_deep(&self) -> Option<TooDeep> {
+    fn too_deep(&self) -> Option<TooDeep> {
         let found = self.tiles.iter().filter_map(|tile| tile.overlaps.as_ref()?.found());
         found.min_by(|a, b| a.time.total_cmp(&b.time))
     }
 
-    /// The sample with the largest sum of local errors over the tolerance, and that sum.
-    pub fn largest_error_ratio(&self) -> Option<(usize, f64)> {
+    fn largest_error_ratio(&self) -> Option<(usize, f64)> {
         let ratios = self.tiles.iter().flat_map(|tile| {
             let ratios = tile.lanes.as_ref().map_or(&[][..], |lanes| &lanes.error_ratios()[..tile.count]);
             ratios.iter().enumerate().map(|(lane, &ratio)| (tile.first + lane, ratio))
@@ -244,19 +219,19 @@ impl<'s> EnsembleRun<'s> {
 impl TileRun<'_> {
     fn advance(
         &mut self,
-        schedule: &Schedule,
+        steps: Steps<'_>,
         rows: std::ops::Range<usize>,
-        tolerance: Option<Controller>,
         observed: Observed,
         outputs: usize,
     ) -> (Vec<f64>, Vec<Stop>) {
+        let Steps { schedule, controller } = steps;
         let width = self.stepper.tile().width();
         if !std::mem::replace(&mut self.begun, true) {
-            self.accelerations = RowAccelerations::new(self.simulator, self.stepper.tile(), tolerance.is_some());
-            self.lanes = tolerance.map(|controller| {
+            self.accelerations = RowAccelerations::new(self.simulator, self.stepper.tile(), controller.is_some());
+            self.lanes = controller.map(|controller| {
                 LaneSteps::new(self.simulator, controller, &mut self.stepper).heeding(self.interruption)
             });
-            self.features = self.simulator.features().filter(|_| tolerance.is_none()).map(FeatureWatch::new);
+            self.features = self.simulator.features().filter(|_| controller.is_none()).map(FeatureWatch::new);
             let observes_switches = observed == Observed::Switches;
             self.switches = self
                 .simulator

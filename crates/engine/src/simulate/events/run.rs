@@ -10,9 +10,10 @@ use super::segments::{Boundary, Segments};
 use super::tile::{Lanes, SegmentTile};
 use crate::compile::SwitchProgram;
 use crate::numerics::{BoundaryMargins, CutMotions, Sample, SegmentMotions};
-use crate::simulate::control::Schedule;
+use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, stops_of_lost};
 use crate::simulate::error::SimulationError;
+use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::simulator::Simulator;
 
@@ -120,81 +121,6 @@ impl<'s> SegmentRun<'s> {
         Path::start(self.simulator, program, sample, (self.duration, self.segments.tolerance))
     }
 
-    /// As [`EnsembleRun::reducing`](crate::simulate::EnsembleRun::reducing); of samples that spell no word nothing is
-    /// reduced.
-    #[must_use]
-    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
-        let outputs = self.simulator.program.outputs.len();
-        let start = || Reduced { reduction: Reduction::new(channels, outputs, 1), time: f64::NEG_INFINITY };
-        for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
-            tile.reduced = tile.tile.samples.iter().map(|_| start()).collect();
-        }
-        self
-    }
-
-    /// As [`EnsembleRun::reduced`](crate::simulate::EnsembleRun::reduced).
-    pub fn reduced(&mut self) -> Vec<f64> {
-        let samples = self.samples.len();
-        let mut values = Vec::new();
-        for tile in &mut self.tiles {
-            let is_known = tile.tile.deviates.is_none();
-            for (sample, reduced) in tile.tile.samples.iter().zip(&mut tile.reduced) {
-                let found = reduced.reduction.finish();
-                values.resize(found.len() * samples, f64::NAN);
-                for (channel, value) in found.into_iter().enumerate().filter(|_| is_known) {
-                    values[channel * samples + sample] = value;
-                }
-            }
-        }
-        values
-    }
-
-    /// As [`EnsembleRun::heeding`](crate::simulate::EnsembleRun::heeding).
-    #[must_use]
-    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
-        Self { interruption, ..self }
-    }
-
-    /// As [`EnsembleRun::is_cut`](crate::simulate::EnsembleRun::is_cut).
-    pub fn is_cut(&self) -> bool {
-        self.is_cut
-    }
-
-    /// As [`EnsembleRun::advance`](crate::simulate::EnsembleRun::advance).
-    pub fn advance(
-        &mut self,
-        schedule: &Schedule,
-        rows: std::ops::Range<usize>,
-        observed: Observed,
-        into: &mut Vec<f64>,
-    ) -> Vec<Stop> {
-        let lines = observed.count(self.simulator);
-        let interruption = self.interruption;
-        let advance = |tile: &mut RowTile| tile.advance(schedule, rows.clone(), observed, lines, interruption);
-        let parts: Option<Vec<(Vec<f64>, Vec<Stop>)>> = self.tiles.par_iter_mut().map(advance).collect();
-        let Some(parts) = parts else {
-            self.is_cut = true;
-            return Vec::new();
-        };
-        into.clear();
-        let samples = self.samples.len();
-        into.resize(rows.len() * lines * samples, 0.0);
-        let mut stops = Vec::new();
-        for (RowTile { tile, .. }, (values, stopped)) in self.tiles.iter().zip(parts) {
-            for (line, of_tile) in values.chunks_exact(tile.width()).enumerate() {
-                tile.samples.iter().zip(of_tile).for_each(|(sample, value)| into[line * samples + sample] = *value);
-            }
-            stops.extend(stopped.into_iter().map(|stop| Stop { sample: tile.samples[stop.sample], ..stop }));
-        }
-        stops.sort_by_key(|stop| (stop.row, stop.sample));
-        stops
-    }
-
-    /// The first row behind an event that some sample meets and others do not.
-    pub fn deviates_from(&self) -> Option<usize> {
-        self.tiles.iter().filter_map(|tile| tile.deviates).min()
-    }
-
     /// The motions in their segments, to the end; `None` where an instant cannot be solved for.
     pub fn motions(mut self) -> Option<CutMotions> {
         let strays = |tile: &&RowTile| tile.tile.word.is_none();
@@ -228,6 +154,79 @@ impl<'s> SegmentRun<'s> {
         let mut values = vec![f64::NAN; self.samples.len()];
         all.iter().zip(found).for_each(|((sample, _), margin)| values[*sample] = margin);
         BoundaryMargins { met: boundary.met.clone(), missed: boundary.missed.clone(), values }
+    }
+}
+
+impl<'s> Integrator<'s> for SegmentRun<'s> {
+    /// Nothing is searched for between events.
+    fn watch(&mut self) {}
+
+    /// Of samples that spell no word nothing is reduced.
+    fn reduce(&mut self, channels: &'s [Channel]) {
+        let outputs = self.simulator.program.outputs.len();
+        let start = || Reduced { reduction: Reduction::new(channels, outputs, 1), time: f64::NEG_INFINITY };
+        for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
+            tile.reduced = tile.tile.samples.iter().map(|_| start()).collect();
+        }
+    }
+
+    fn heed(&mut self, interruption: Interruption<'s>) {
+        self.interruption = interruption;
+    }
+
+    fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    fn advance(
+        &mut self,
+        steps: Steps<'_>,
+        rows: std::ops::Range<usize>,
+        observed: Observed,
+        into: &mut Vec<f64>,
+    ) -> Vec<Stop> {
+        let schedule = steps.schedule;
+        let lines = observed.count(self.simulator);
+        let interruption = self.interruption;
+        let advance = |tile: &mut RowTile| tile.advance(schedule, rows.clone(), observed, lines, interruption);
+        let parts: Option<Vec<(Vec<f64>, Vec<Stop>)>> = self.tiles.par_iter_mut().map(advance).collect();
+        let Some(parts) = parts else {
+            self.is_cut = true;
+            return Vec::new();
+        };
+        into.clear();
+        let samples = self.samples.len();
+        into.resize(rows.len() * lines * samples, 0.0);
+        let mut stops = Vec::new();
+        for (RowTile { tile, .. }, (values, stopped)) in self.tiles.iter().zip(parts) {
+            for (line, of_tile) in values.chunks_exact(tile.width()).enumerate() {
+                tile.samples.iter().zip(of_tile).for_each(|(sample, value)| into[line * samples + sample] = *value);
+            }
+            stops.extend(stopped.into_iter().map(|stop| Stop { sample: tile.samples[stop.sample], ..stop }));
+        }
+        stops.sort_by_key(|stop| (stop.row, stop.sample));
+        stops
+    }
+
+    fn reduced(&mut self) -> Vec<f64> {
+        let samples = self.samples.len();
+        let mut values = Vec::new();
+        for tile in &mut self.tiles {
+            let is_known = tile.tile.deviates.is_none();
+            for (sample, reduced) in tile.tile.samples.iter().zip(&mut tile.reduced) {
+                let found = reduced.reduction.finish();
+                values.resize(found.len() * samples, f64::NAN);
+                for (channel, value) in found.into_iter().enumerate().filter(|_| is_known) {
+                    values[channel * samples + sample] = value;
+                }
+            }
+        }
+        values
+    }
+
+    /// The first row behind an event that some sample meets and others do not.
+    fn beyond_tolerance_from(&self) -> Option<usize> {
+        self.tiles.iter().filter_map(|tile| tile.deviates).min()
     }
 }
 

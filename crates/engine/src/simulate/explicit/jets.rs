@@ -8,6 +8,7 @@ use crate::assemble::EquationId;
 use crate::simulate::control::Schedule;
 use crate::simulate::ensemble::{JetBox, JetClosure, Stop};
 use crate::simulate::error::SimulationError;
+use crate::simulate::integrator::JetIntegrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
@@ -58,21 +59,18 @@ impl<'s> ExplicitJets<'s> {
             is_cut: false,
         })
     }
+}
 
-    /// As [`JetRun::heeding`](crate::simulate::JetRun::heeding).
-    #[must_use]
-    pub fn heeding(self, interruption: Interruption<'s>) -> Self {
-        Self { interruption, ..self }
+impl<'s> JetIntegrator<'s> for ExplicitJets<'s> {
+    fn heed(&mut self, interruption: Interruption<'s>) {
+        self.interruption = interruption;
     }
 
-    /// As [`JetRun::is_cut`](crate::simulate::JetRun::is_cut).
-    pub fn is_cut(&self) -> bool {
+    fn is_cut(&self) -> bool {
         self.is_cut
     }
 
-    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
-    /// output, coefficient by coefficient. Returns where the run stopped, if it did.
-    pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+    fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         into.clear();
         let ends = schedule.ending_at(Instants::of(self.simulator)).ends();
         let mut state = vec![0.0; self.run.state.len()];

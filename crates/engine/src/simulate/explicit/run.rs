@@ -5,10 +5,11 @@ use symdiff::WIDTHS;
 
 use super::runge_kutta::{Motion, RungeKutta};
 use crate::numerics::Sample;
-use crate::simulate::control::Schedule;
+use crate::simulate::control::{Schedule, Steps};
 use crate::simulate::diagnostics::PartingWatch;
 use crate::simulate::ensemble::{Channel, Observed, Reduction, RowClosure, Stop, put_lanes, stops_of_lost};
 use crate::simulate::error::SimulationError;
+use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
@@ -111,67 +112,42 @@ impl<'s> ExplicitRun<'s> {
         let tiles = tiles(simulator, samples, rayon::current_num_threads())?;
         Ok(Self { simulator, tiles, samples: samples.len() })
     }
+}
 
-    /// Also reduces outputs to one number each.
-    #[must_use]
-    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
-        let outputs = self.simulator.program.outputs.len();
-        for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
-            tile.reduction = Some(Reduction::new(channels, outputs, tile.alive.len()));
-        }
-        self
-    }
-
-    /// Also searches for constraints that the first sample leaves open, in its rows.
-    #[must_use]
-    pub fn watching(mut self) -> Self {
+impl<'s> Integrator<'s> for ExplicitRun<'s> {
+    /// Only constraints that open are searched for, in the rows.
+    fn watch(&mut self) {
         if let Some(tile) = self.tiles.first_mut() {
             let layout = tile.rows.layout();
             let state = (0..layout.registers()).map(|register| tile.rows.tile().lane(register)[0]).collect();
             tile.parting = PartingWatch::new(self.simulator, layout, state);
         }
-        self
     }
 
-    /// See [`EnsembleRun::parted`](crate::simulate::EnsembleRun::parted).
-    pub fn parted(&self) -> Option<SimulationError> {
-        self.tiles.iter().find_map(|tile| tile.parting.as_ref()?.error())
+    fn reduce(&mut self, channels: &'s [Channel]) {
+        let outputs = self.simulator.program.outputs.len();
+        for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
+            tile.reduction = Some(Reduction::new(channels, outputs, tile.alive.len()));
+        }
     }
 
-    /// As [`EnsembleRun::heeding`](crate::simulate::EnsembleRun::heeding).
-    #[must_use]
-    pub fn heeding(mut self, interruption: Interruption<'s>) -> Self {
+    fn heed(&mut self, interruption: Interruption<'s>) {
         self.tiles.iter_mut().for_each(|tile| tile.interruption = interruption);
-        self
     }
 
-    /// As [`EnsembleRun::is_cut`](crate::simulate::EnsembleRun::is_cut).
-    pub fn is_cut(&self) -> bool {
+    fn is_cut(&self) -> bool {
         self.tiles.iter().any(|tile| tile.is_cut)
     }
 
-    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
-    /// stopped.
-    pub fn reduced(&mut self) -> Vec<f64> {
-        let mut values = Vec::new();
-        for tile in &mut self.tiles {
-            let Some(reduction) = &mut tile.reduction else { continue };
-            let (found, width) = (reduction.finish(), tile.alive.len());
-            values.resize(found.len() / width * self.samples, f64::NAN);
-            put_lanes(&found, width, tile.first..tile.first + tile.count, &mut values, self.samples);
-        }
-        values
-    }
-
-    /// Advances to `rows`, which follow the rows of the last call, and records the `observed` values: row by row, value
-    /// by value, sample by sample. Returns the samples that stopped: whose state is no longer finite.
-    pub fn advance(
+    /// Samples stop whose state is no longer finite.
+    fn advance(
         &mut self,
-        schedule: &Schedule,
+        steps: Steps<'_>,
         rows: std::ops::Range<usize>,
         observed: Observed,
         into: &mut Vec<f64>,
     ) -> Vec<Stop> {
+        let schedule = steps.schedule;
         let lines = observed.count(self.simulator);
         let ends = schedule.ending_at(Instants::of(self.simulator)).ends();
         let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
@@ -187,6 +163,21 @@ impl<'s> ExplicitRun<'s> {
             stops.extend(stopped);
         }
         stops
+    }
+
+    fn reduced(&mut self) -> Vec<f64> {
+        let mut values = Vec::new();
+        for tile in &mut self.tiles {
+            let Some(reduction) = &mut tile.reduction else { continue };
+            let (found, width) = (reduction.finish(), tile.alive.len());
+            values.resize(found.len() / width * self.samples, f64::NAN);
+            put_lanes(&found, width, tile.first..tile.first + tile.count, &mut values, self.samples);
+        }
+        values
+    }
+
+    fn parted(&self) -> Option<SimulationError> {
+        self.tiles.iter().find_map(|tile| tile.parting.as_ref()?.error())
     }
 }
 

@@ -6,6 +6,7 @@ use crate::numerics::Sample;
 use crate::simulate::control::Steps;
 use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
+use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
 use crate::simulate::modal::{ALIKE, Place, Vibrations};
 use crate::simulate::simulator::Simulator;
@@ -127,15 +128,16 @@ impl Simulator {
         steps: Steps<'_>,
         interruption: Interruption<'_>,
     ) -> Result<States, SimulationError> {
-        let Steps { schedule, controller } = steps;
+        let schedule = steps.schedule;
         let start = self.state_at_start(sample)?;
         if schedule.rows == 1 {
             return Ok((vec![start], None));
         }
         let samples = std::slice::from_ref(sample);
-        let mut run = EnsembleRun::start(self, samples, schedule.first_step())?.heeding(interruption);
+        let mut run = EnsembleRun::start(self, samples, schedule.first_step())?;
+        run.heed(interruption);
         let mut motion = Vec::new();
-        let stops = run.advance(schedule, 0..schedule.rows, controller, Observed::Motion, &mut motion);
+        let stops = run.advance(steps, 0..schedule.rows, Observed::Motion, &mut motion);
         if run.is_cut() {
             return Err(SimulationError::Interrupted);
         }

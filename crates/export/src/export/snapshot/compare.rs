@@ -69,13 +69,13 @@ fn of_output(then: &Output, now: &Output, found: &mut Vec<Moved>) {
             Kind::Nominal => format!("{name}.nominal"),
             kind => format!("{name}.{}.{}", curve.method, kind.name()),
         };
-        match then.curve(&curve.method, curve.kind) {
+        match curve_of(then, &curve.method, curve.kind) {
             Some(_) => found.extend(of_curve(then, now, curve, &shared).map(|moved| Moved { what: what(), ..moved })),
             None => found.push(Moved::whole(what(), &now.unit, "–", "new")),
         }
     }
     for curve in &then.curves {
-        if now.curve(&curve.method, curve.kind).is_none() {
+        if curve_of(now, &curve.method, curve.kind).is_none() {
             let what = format!("{name}.{}.{}", curve.method, curve.kind.name());
             found.push(Moved::whole(what, &now.unit, "recorded", "gone"));
         }
@@ -93,14 +93,19 @@ fn ends(times: &[String]) -> String {
 
 /// The time at which a curve moved most, relative to the allowance; `None` if it did not. The field `what` stays empty.
 fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)]) -> Option<Moved> {
-    let earlier = then.curve(&curve.method, curve.kind)?;
+    let earlier = curve_of(then, &curve.method, curve.kind)?;
     let mut worst: Option<(f64, Moved)> = None;
     let mut count = 0;
     for &(row_then, row_now) in shared {
         let (before, after) = (&earlier.cells[row_then], &curve.cells[row_now]);
         let allowed = match curve.kind {
             Kind::Error => GROWN * value(before) + finest(then, row_then),
-            _ => then.error(curve, row_then) + now.error(curve, row_now) + rounding(before) + rounding(after),
+            _ => {
+                stated_error(then, curve, row_then)
+                    + stated_error(now, curve, row_now)
+                    + rounding(before)
+                    + rounding(after)
+            }
         };
         let distance = match curve.kind {
             Kind::Error => value(after),
@@ -125,20 +130,19 @@ fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)
     worst.map(|(_, moved)| Moved { times: Some((count, shared.len())), ..moved })
 }
 
-impl Output {
-    fn curve(&self, method: &str, kind: Kind) -> Option<&Curve> {
-        self.curves.iter().find(|curve| curve.method == method && curve.kind == kind)
-    }
+/// The curve of a method and kind.
+fn curve_of<'o>(output: &'o Output, method: &str, kind: Kind) -> Option<&'o Curve> {
+    output.curves.iter().find(|curve| curve.method == method && curve.kind == kind)
+}
 
-    /// The stated error of a bound in a row; of the nominal course, which has none, the smallest of a method. Where it
-    /// is not known, 0.
-    fn error(&self, curve: &Curve, row: usize) -> f64 {
-        let errors = self.curves.iter().filter(|other| other.kind == Kind::Error);
-        let errors = errors.filter(|other| curve.kind == Kind::Nominal || other.method == curve.method);
-        // Proven bounds have no error, which is nothing that the nominal course could keep.
-        let known = errors.map(|error| value(&error.cells[row])).filter(|error| *error > 0.0 && error.is_finite());
-        known.reduce(f64::min).unwrap_or(0.0)
-    }
+/// The stated error of a bound in a row; of the nominal course, which has none, the smallest of a method. Where it
+/// is not known, 0.
+fn stated_error(output: &Output, curve: &Curve, row: usize) -> f64 {
+    let errors = output.curves.iter().filter(|other| other.kind == Kind::Error);
+    let errors = errors.filter(|other| curve.kind == Kind::Nominal || other.method == curve.method);
+    // Proven bounds have no error, which is nothing that the nominal course could keep.
+    let known = errors.map(|error| value(&error.cells[row])).filter(|error| *error > 0.0 && error.is_finite());
+    known.reduce(f64::min).unwrap_or(0.0)
 }
 
 /// The last digit that is shown of an output's bounds in a row.

@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 
 use super::RunError;
 use super::formulation::assembled;
+use crate::assemble::Questions;
 use crate::elements::effects::Scope;
 use crate::elements::{Glyph, Surroundings};
 use crate::grammar::{Coordinate, PointRef, Reference};
@@ -73,13 +74,12 @@ pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Resul
     let first_length = asked.0.len();
     let pairs = pairs_of_points(description, &mut asked);
 
-    let whole = Description { outputs: asked.0, ..description.clone() };
-    let assembled = assembled(&whole)?;
+    let assembled = assembled(&Questions { outputs: asked.0.into(), ..Questions::of(description) })?;
     let nominal: Sample = assembled.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let values = Values(assembled.outputs_at_start(0..first_length, &nominal));
     let frames = bodies.iter().map(|body| values.frame(body)).collect();
     let solids = solids::solids(description, &asked_solids, &bodies, &values);
-    let mut scene = Scene { description: whole, bodies, frames, values, origins: BTreeSet::new() };
+    let mut scene = Scene { description, bodies, frames, values, origins: BTreeSet::new() };
     let lengths = scene.lengths(&assembled, first_length, &pairs);
     let gravity = scene.gravity(&directions);
     let elements = scene.elements(&directions);
@@ -120,8 +120,8 @@ fn guide(body: &Body) -> Option<[f64; 3]> {
 }
 
 /// The mechanism in numbers.
-struct Scene {
-    description: Description,
+struct Scene<'d> {
+    description: &'d Description,
     bodies: Vec<AskedBody>,
     frames: Vec<Frame>,
     values: Values,
@@ -150,7 +150,7 @@ fn drawn_element(
     }
 }
 
-impl Scene {
+impl Scene<'_> {
     /// The frame at a point, in the ground's.
     fn frame(&self, of: PointRef) -> Frame {
         let frame = self.frames[of.body];

@@ -12,35 +12,33 @@ use crate::simulate::{JetBox, SegmentRun, SimulationError, segment_jets};
 /// Values of motions that are held at once, at most.
 const MOST_VALUES: usize = 1 << 26;
 
-impl Motions<'_> {
-    /// As [`Ensemble::segments`].
-    ///
-    /// # Errors
-    /// Where a sample cannot be assembled.
-    pub(super) fn cut(&self, samples: &[Sample]) -> Result<Option<CutMotions>, SimulationError> {
-        let Some(segments) = self.schedule.segments() else { return Ok(None) };
-        if STEP_NODES * segments.count() * 2 * self.scales().len() * samples.len() > MOST_VALUES {
-            return Ok(None);
-        }
-        let run = SegmentRun::start(self.simulator, samples, segments, self.schedule.end())?;
-        self.progress.advance(samples.len() * self.schedule.rows);
-        self.over.fetch_add(samples.len(), Ordering::Relaxed);
-        Ok(run.motions())
+/// As [`Ensemble::segments`].
+///
+/// # Errors
+/// Where a sample cannot be assembled.
+pub fn cut(motions: &Motions, samples: &[Sample]) -> Result<Option<CutMotions>, SimulationError> {
+    let Some(segments) = motions.schedule.segments() else { return Ok(None) };
+    if STEP_NODES * segments.count() * 2 * motions.scales().len() * samples.len() > MOST_VALUES {
+        return Ok(None);
     }
+    let run = SegmentRun::start(motions.simulator, samples, segments, motions.schedule.end())?;
+    motions.progress.advance(samples.len() * motions.schedule.rows);
+    motions.over.fetch_add(samples.len(), Ordering::Relaxed);
+    Ok(run.motions())
+}
 
-    /// As [`Ensemble::segment_jets`].
-    ///
-    /// # Errors
-    /// Where the sample cannot be assembled.
-    pub(super) fn cut_jet(
-        &self,
-        space: &JetSpace,
-        xi: &[f64],
-    ) -> Result<Option<(usize, SegmentMotions)>, SimulationError> {
-        let Some(segments) = self.schedule.segments() else { return Ok(None) };
-        let center: Vec<f64> = self.domain.sample(xi).iter().copied().collect();
-        let half_width: Vec<f64> = (0..xi.len()).map(|parameter| self.domain.half_width(parameter)).collect();
-        let about = JetBox { center: &center, half_width: &half_width };
-        segment_jets(self.simulator, space, about, segments, self.schedule.end())
-    }
+/// As [`Ensemble::segment_jets`].
+///
+/// # Errors
+/// Where the sample cannot be assembled.
+pub fn cut_jet(
+    motions: &Motions,
+    space: &JetSpace,
+    xi: &[f64],
+) -> Result<Option<(usize, SegmentMotions)>, SimulationError> {
+    let Some(segments) = motions.schedule.segments() else { return Ok(None) };
+    let center: Vec<f64> = motions.domain.sample(xi).iter().copied().collect();
+    let half_width: Vec<f64> = (0..xi.len()).map(|parameter| motions.domain.half_width(parameter)).collect();
+    let about = JetBox { center: &center, half_width: &half_width };
+    segment_jets(motions.simulator, space, about, segments, motions.schedule.end())
 }

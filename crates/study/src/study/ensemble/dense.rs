@@ -3,7 +3,7 @@
 use super::Motions;
 use crate::methods::DenseMotions;
 use crate::numerics::Sample;
-use crate::simulate::{Observed, SampleRun, Schedule, SimulationError};
+use crate::simulate::{Observed, Schedule, SimulationError, Steps, integrator};
 
 /// Times for each step at which a motion is dense.
 const DENSE: usize = 8;
@@ -11,31 +11,30 @@ const DENSE: usize = 8;
 /// Times that are observed at once.
 const AT_ONCE: usize = 64;
 
-impl Motions<'_> {
-    /// As [`Ensemble::dense_motions`](crate::methods::Ensemble::dense_motions): of explicit steps, which tell what lies
-    /// inside them. None at an interruption.
-    ///
-    /// # Errors
-    /// Where a sample cannot be assembled.
-    pub(super) fn dense(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, SimulationError> {
-        if !self.schedule.passes_rows() || self.schedule.segments().is_some() {
+/// As [`Ensemble::dense_motions`](crate::methods::Ensemble::dense_motions): of explicit steps, which tell what lies
+/// inside them. None at an interruption.
+///
+/// # Errors
+/// Where a sample cannot be assembled.
+pub fn dense(motions: &Motions, samples: &[Sample]) -> Result<Option<DenseMotions>, SimulationError> {
+    if !motions.schedule.passes_rows() || motions.schedule.segments().is_some() {
+        return Ok(None);
+    }
+    let (end, ends) = (motions.schedule.end(), motions.schedule.ends());
+    let dense = Schedule::passing((end, end / (DENSE * ends.len()) as f64), ends, Vec::new())
+        .taken(motions.schedule.integration);
+    let mut run = integrator(motions.simulator, samples, &dense)?;
+    run.heed(motions.interruption);
+    let lines = 2 * motions.simulator.system.q.len() * samples.len();
+    let stride = Observed::Motion.count(motions.simulator) * samples.len();
+    let (mut motions, mut block) = (Vec::with_capacity(dense.rows * lines), Vec::new());
+    for first in (0..dense.rows).step_by(AT_ONCE) {
+        let rows = first..(first + AT_ONCE).min(dense.rows);
+        run.advance(Steps { schedule: &dense, controller: None }, rows, Observed::Motion, &mut block);
+        if run.is_cut() {
             return Ok(None);
         }
-        let (end, ends) = (self.schedule.end(), self.schedule.ends());
-        let dense = Schedule::passing((end, end / (DENSE * ends.len()) as f64), ends, Vec::new())
-            .taken(self.schedule.integration);
-        let mut run = SampleRun::start(self.simulator, samples, &dense)?.heeding(self.interruption);
-        let lines = 2 * self.simulator.system.q.len() * samples.len();
-        let stride = Observed::Motion.count(self.simulator) * samples.len();
-        let (mut motions, mut block) = (Vec::with_capacity(dense.rows * lines), Vec::new());
-        for first in (0..dense.rows).step_by(AT_ONCE) {
-            let rows = first..(first + AT_ONCE).min(dense.rows);
-            run.advance(&dense, rows, None, Observed::Motion, &mut block);
-            if run.is_cut() {
-                return Ok(None);
-            }
-            block.chunks_exact(stride).for_each(|row| motions.extend_from_slice(&row[..lines]));
-        }
-        Ok(Some(((0..dense.rows).map(|row| dense.time(row)).collect(), motions)))
+        block.chunks_exact(stride).for_each(|row| motions.extend_from_slice(&row[..lines]));
     }
+    Ok(Some(((0..dense.rows).map(|row| dense.time(row)).collect(), motions)))
 }

@@ -8,6 +8,7 @@ mod nominal;
 mod progress;
 mod stored;
 mod told;
+mod visits;
 
 use std::ops::Range as Rows;
 use std::sync::OnceLock;
@@ -17,7 +18,7 @@ use symdiff::Expr;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::effort::instructions_of_step;
+use super::price::instructions_of_step;
 use super::reduced::{Store, steps_of};
 use crate::compile::{self, has_kink, jumps};
 use crate::grammar::quantity::Dimension;
@@ -25,14 +26,15 @@ use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, O
 use crate::methods::{Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
-    Certifier, Channel, Controller, Enclosure, EnclosureError, Interruption, Observed, SampleRun, Schedule,
-    SimulationError, Simulator, Steps, Stop, choose_independent,
+    Certifier, Channel, Controller, Enclosure, EnclosureError, Integrator, Interruption, Schedule, SimulationError,
+    Simulator, Steps, Stop, choose_independent, integrator,
 };
 
+pub(super) use nominal::nominal;
 pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
-use told::effort;
 pub(super) use told::stopped_at;
+use told::{effort, observed};
 
 /// Values (rows × lines × samples) that one block holds.
 const BLOCK: usize = 1 << 20;
@@ -49,20 +51,20 @@ const NUMBER_AT_REST: f64 = 1e-12;
 
 /// A mechanism under one schedule.
 pub(super) struct Motions<'a> {
-    pub(super) simulator: &'a Simulator,
-    pub(super) domain: &'a ParameterBox,
-    pub(super) schedule: &'a Schedule,
+    simulator: &'a Simulator,
+    domain: &'a ParameterBox,
+    schedule: &'a Schedule,
     /// Of the steps' local errors, where they are controlled.
-    pub(super) tolerance: Option<Controller>,
-    pub(super) progress: &'a Progress<'a>,
-    pub(super) interruption: Interruption<'a>,
+    tolerance: Option<Controller>,
+    progress: &'a Progress<'a>,
+    interruption: Interruption<'a>,
     /// Where outputs are reduced to one number: keeps what samples are reduced to.
     store: Option<&'a Store>,
     channels: &'a [Channel],
     /// Notes all simulated values.
     ledger: Option<&'a Ledger>,
     /// Simulations that are over: at the end, or where they stopped.
-    pub(super) over: AtomicUsize,
+    over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
     /// Which outputs' formulas jump, found when it is asked: every row asks.
@@ -76,11 +78,11 @@ impl<'a> Motions<'a> {
     pub fn new(
         simulator: &'a Simulator,
         domain: &'a ParameterBox,
-        schedule: &'a Schedule,
-        tolerance: Option<Controller>,
+        steps: Steps<'a>,
         progress: &'a Progress<'a>,
         interruption: Interruption<'a>,
     ) -> Self {
+        let Steps { schedule, controller: tolerance } = steps;
         let over = AtomicUsize::new(0);
         let (certifier, jumps) = (OnceLock::new(), OnceLock::new());
         let (store, stored, channels, ledger) = (None, None, &[][..], None);
@@ -159,16 +161,18 @@ impl<'a> Motions<'a> {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, SimulationError> {
         if self.simulator.system.analysis.visits() {
-            return self.visit(samples, sampling, reduce);
+            return visits::visit(self, samples, sampling, reduce);
         }
         let mut run = self.start(samples)?;
-        Ok(self.advance(&mut run, samples, sampling, reduce))
+        Ok(self.advance(run.as_mut(), samples, sampling, reduce))
     }
 
     /// Samples at their start.
-    fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
-        let run = SampleRun::start(self.simulator, samples, self.schedule)?;
-        Ok(run.reducing(self.channels).heeding(self.interruption))
+    fn start(&self, samples: &[Sample]) -> Result<Box<dyn Integrator<'a> + 'a>, SimulationError> {
+        let mut run = integrator(self.simulator, samples, self.schedule)?;
+        run.reduce(self.channels);
+        run.heed(self.interruption);
+        Ok(run)
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -178,15 +182,12 @@ impl<'a> Motions<'a> {
 
     fn advance(
         &self,
-        run: &mut SampleRun,
+        run: &mut dyn Integrator,
         samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Simulated {
-        let observed = match sampling.observed {
-            methods::Observed::Outputs => Observed::Outputs,
-            methods::Observed::Motion => Observed::Motion,
-        };
+        let observed = observed(sampling.observed);
         let until = sampling.until;
         let rows_a_block = Self::rows_a_block(observed.count(self.simulator), samples.len());
         let mut values = Vec::new();
@@ -196,7 +197,7 @@ impl<'a> Motions<'a> {
         let goes_on = |stop: &Option<Stop>| stop.is_none() || until == Until::End;
         while next < self.schedule.rows && goes_on(&stop) && !self.is_interrupted() {
             let rows = next..(next + rows_a_block).min(self.schedule.rows);
-            let stops = run.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
+            let stops = run.advance(self.steps(), rows.clone(), observed, &mut values);
             if run.is_cut() {
                 break;
             }
@@ -219,7 +220,7 @@ impl<'a> Motions<'a> {
         Simulated {
             effort: effort(run.counters()),
             beyond_tolerance_from: run.beyond_tolerance_from(),
-            too_deep: run.too_deep().map(|found| self.too_deep(found)),
+            too_deep: run.too_deep().map(|found| told::too_deep(self, found)),
             worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
@@ -315,15 +316,15 @@ impl Ensemble for Motions<'_> {
     }
 
     fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
-        Ok(self.dense(samples)?)
+        Ok(dense::dense(self, samples)?)
     }
 
     fn segments(&self, samples: &[Sample]) -> Result<Option<CutMotions>, EnsembleError> {
-        Ok(self.cut(samples)?)
+        Ok(cut::cut(self, samples)?)
     }
 
     fn segment_jets(&self, space: &JetSpace, xi: &[f64]) -> Result<Option<(usize, SegmentMotions)>, EnsembleError> {
-        Ok(self.cut_jet(space, xi)?)
+        Ok(cut::cut_jet(self, space, xi)?)
     }
 
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
@@ -334,7 +335,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
-        Ok(self.jet_about_middle(space, reduce)?)
+        Ok(jet::jet_about_middle(self, space, reduce)?)
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {

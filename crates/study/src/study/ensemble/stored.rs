@@ -8,7 +8,7 @@ use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan
 use crate::numerics::{Sample, ScanBounds, ScanGrid};
 use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
-use crate::study::effort::INSTRUCTION_SECONDS;
+use crate::study::price::tuning::TUNING;
 
 /// Values of a part are about so many bytes, in samples between [`FEWEST`] and [`MOST`], a whole number of the widest
 /// tiles.
@@ -235,7 +235,7 @@ fn deliver(
 fn seconds_of(motions: &Motions, task: &Task) -> f64 {
     let schedule = motions.steps().schedule;
     let steps = (schedule.steps_before(schedule.rows.saturating_sub(1)) * schedule.integration.steps()) as f64;
-    task.samples.len() as f64 * steps * motions.instructions_of_step() * INSTRUCTION_SECONDS
+    task.samples.len() as f64 * steps * motions.instructions_of_step() * TUNING.instruction_seconds
 }
 
 /// Size of a task's part.

@@ -1,19 +1,17 @@
-//! Findings of a run, as methods take them.
+//! Findings of a run, as methods take them, and what methods observe, as a run takes it.
 
 use super::Motions;
 use crate::methods::{self, Effort, StopCause};
-use crate::simulate::{Counters, Stop, TooDeep};
+use crate::simulate::{Counters, Observed, Stop, TooDeep};
 
-impl Motions<'_> {
-    pub(super) fn too_deep(&self, found: TooDeep) -> methods::TooDeep {
-        let mut contacts = self.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
-        let contact = contacts.nth(found.contact).map(|effect| effect.name.clone()).unwrap_or_default();
-        let TooDeep { time, depth, deepest, .. } = found;
-        methods::TooDeep { contact, time, depth, deepest }
-    }
+pub fn too_deep(motions: &Motions, found: TooDeep) -> methods::TooDeep {
+    let mut contacts = motions.simulator.system.effects.iter().filter(|effect| effect.overlap.is_some());
+    let contact = contacts.nth(found.contact).map(|effect| effect.name.clone()).unwrap_or_default();
+    let TooDeep { time, depth, deepest, .. } = found;
+    methods::TooDeep { contact, time, depth, deepest }
 }
 
-pub(super) fn effort(counters: Counters) -> Effort {
+pub fn effort(counters: Counters) -> Effort {
     Effort { iterations: counters.iterations, rank_revealing: counters.rank_revealing }
 }
 
@@ -24,4 +22,11 @@ pub(in crate::study) fn stopped_at(stop: &Stop) -> methods::Stop {
         None => StopCause::NotConverged { equation: stop.equation },
     };
     methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }
+}
+
+pub fn observed(by_method: methods::Observed) -> Observed {
+    match by_method {
+        methods::Observed::Outputs => Observed::Outputs,
+        methods::Observed::Motion => Observed::Motion,
+    }
 }

@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn poses_come_through_the_same_tapes() {
         let description = four_bar();
-        let whole = crate::study::formulation::compiled(&description).unwrap().program;
+        let whole = crate::study::formulation::compiled(&crate::assemble::Questions::of(&description)).unwrap().program;
         let posed = Posed::compile(&description, Interruption::default()).unwrap().rows.simulator.program;
         let steps = |program: &crate::compile::Program| {
             [program.step_size(), program.step(), program.factor(), program.correct(), program.advance()]

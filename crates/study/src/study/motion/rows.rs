@@ -1,14 +1,18 @@
 //! Rows of a simulation of which other things are asked than the model's outputs.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::super::drawing::asked::{Asked, Values};
+use super::super::stepping::StepPlan;
 use super::super::{RunError, formulation};
+use crate::assemble::Questions;
 use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::{
-    Controller, EnsembleRun, Integration, Interruption, Observed, Schedule, SimulationError, Simulator, Steps,
-    TimeFunctions, schedule_for_tolerance,
+    Controller, EnsembleRun, Integration, Integrator, Interruption, Observed, Schedule, SimulationError, Simulator,
+    Steps, TimeFunctions, schedule_for_tolerance,
 };
 
 /// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
@@ -51,8 +55,8 @@ impl<'a> Rows<'a> {
     ) -> Result<Self, RunError> {
         // Responses are between outputs that are not asked here.
         let modes = ModesRequest { responses: Vec::new(), ..description.modes };
-        let whole = Description { outputs: asked.0, modes, ..description.clone() };
-        let simulator = formulation::compiled(&whole)?;
+        let questions = Questions { outputs: asked.0.into(), modes: Cow::Owned(modes), ..Questions::of(description) };
+        let simulator = formulation::compiled(&questions)?;
         let parameters = &simulator.system.parameters;
         let domain = ParameterBox {
             nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
@@ -94,16 +98,18 @@ impl<'a> Rows<'a> {
         mut keep: impl FnMut(usize, bool, Values),
     ) -> Result<Vec<f64>, RunError> {
         let Running { running, samples, numbers } = run;
-        let (schedule, controller) = self.schedule(description, samples)?;
+        let plan = self.plan(description, samples)?;
+        let schedule = &plan.schedule;
         let every = every(schedule.rows * numbers * samples.len());
         let mut times = Vec::new();
-        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?.heeding(self.interruption);
+        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?;
+        run.heed(self.interruption);
         let outputs = self.simulator.system.outputs.len();
         let mut values = Vec::new();
         let mut next = 0;
         while next < schedule.rows && stopped[0].is_none() {
             let block = next..(next + BLOCK).min(schedule.rows);
-            for stop in run.advance(&schedule, block.clone(), controller, Observed::Outputs, &mut values) {
+            for stop in run.advance(plan.steps(), block.clone(), Observed::Outputs, &mut values) {
                 stopped[running[stop.sample]].get_or_insert(stop.row.div_ceil(every));
             }
             if run.is_cut() {
@@ -167,11 +173,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The steps: the model's, or those that its tolerance asks for at the nominal sample and corners of the box.
-    fn schedule(
-        &self,
-        description: &Description,
-        samples: &[Sample],
-    ) -> Result<(Schedule, Option<Controller>), RunError> {
+    fn plan(&self, description: &Description, samples: &[Sample]) -> Result<StepPlan, RunError> {
         let simulation = &description.simulation;
         let (duration, output_step) = (simulation.duration, simulation.output_step);
         let (schedule, controller) = match simulation.stepping {
@@ -192,6 +194,7 @@ impl<'a> Rows<'a> {
             }
         };
         let functions = TimeFunctions::of(&self.simulator, duration);
-        Ok((functions.map_or_else(|| schedule.clone(), |functions| functions.divided(&schedule).schedule), controller))
+        let schedule = functions.map_or_else(|| schedule.clone(), |functions| functions.divided(&schedule).schedule);
+        Ok(StepPlan { schedule, controller })
     }
 }

@@ -1,11 +1,9 @@
 //! Reduced outputs and requirements of subsystems as those of the whole model.
 
-use super::Found;
 use crate::methods::Method;
-use crate::model::{Description, Requirement};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
-use crate::results::{ParameterSummary, ReducedContribution, ReducedSummary, RequirementSummary, Summary, Verdict};
+use crate::results::{ParameterSummary, ReducedContribution, ReducedSummary, RequirementSummary, Summary};
 
 /// The uncertain parameters of a whole model.
 #[derive(Clone, Copy)]
@@ -65,29 +63,5 @@ impl Parameters<'_> {
             width_without,
         };
         own.contributions.extend(others.map(nothing));
-    }
-}
-
-impl Found {
-    /// Result of a study that did not end: every requirement is undecided.
-    pub fn nothing(description: &Description) -> Self {
-        let undecided = |own: &Requirement| RequirementSummary {
-            name: own.name.clone(),
-            text: own.text.clone(),
-            unit: own.unit.clone(),
-            display: own.display.clone(),
-            verdict: Verdict::Undecided,
-            certified: false,
-            margin: f64::NAN,
-            percent: None,
-            error: f64::NAN,
-            surrogate: f64::NAN,
-            time: f64::NAN,
-            method: "nominal".to_owned(),
-            nearest: None,
-            decides: Some("a run that ends".to_owned()),
-            limits: Vec::new(),
-        };
-        Self { requirements: description.requirements.iter().map(undecided).collect(), ..Self::default() }
     }
 }

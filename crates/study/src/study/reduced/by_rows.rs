@@ -4,48 +4,45 @@
 //! motion, with a kink over the box wherever it changes its place in time. Over the box first, it is the least of the
 //! lower bounds in the rows, which know no such kink; only what lies between rows is estimated.
 
-use super::super::bands::bands;
-use super::super::outcome::Results;
-use super::super::single::Study;
-use super::verdicts::Part;
+use super::part::Part;
 use crate::model::Requirement;
 use crate::results::Band;
+use crate::study::bounding::{Bounded, bands};
+use crate::study::problem::Study;
 
 /// What the estimate of a dip between rows may be wrong by.
 const SAFETY: f64 = 2.0;
 
-impl Study<'_> {
-    /// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a
-    /// margin of `simulated` contradicts them.
-    pub(super) fn by_rows(&self, own: &Requirement, rows: &Results, simulated: f64) -> Option<Part> {
-        let (from, to) = own.times.filter(|(from, to)| from < to)?;
-        let schedule = &rows.schedule;
-        let span: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
-        // The span begins and ends where there are rows, and a dip takes three.
-        let [first, .., last] = *span.as_slice() else { return None };
-        let end = to.min(schedule.time(schedule.rows - 1));
-        let is_whole = schedule.time(first) == from && schedule.time(last) == end && span.len() > 2;
-        let of_slack = |&place: &usize| {
-            let bands = bands(self, rows, place, schedule.rows);
-            let is_resolved = |band: &&Band| span.iter().all(|&row| !band.error.unresolved[row]);
-            let is_known = |band: &&Band| span.iter().all(|&row| band.error.decisive(row).is_some());
-            let band = bands.iter().find(is_resolved).or(bands.iter().find(is_known))?;
-            let lower = &band.lower[first..=last];
-            let dip = lower.windows(3).map(|l| SAFETY / 8.0 * (l[0] - 2.0 * l[1] + l[2]).abs()).fold(0.0, f64::max);
-            let reached = |row: usize| lower[row] - band.error.decisive(first + row).unwrap_or(f64::NAN);
-            let least = (0..lower.len()).map(reached).fold(f64::INFINITY, f64::min) - dip;
-            let lower = lower.iter().copied().fold(f64::INFINITY, f64::min);
-            Some(Part {
-                lower,
-                error: lower - least,
-                surrogate: band.error.surrogate,
-                time: band.error.time,
-                is_known: true,
-                method: band.method.name(),
-            })
-        };
-        let parts: Vec<Part> = own.places.iter().map(of_slack).collect::<Option<_>>()?;
-        let part = parts.into_iter().min_by(|a, b| a.reached().total_cmp(&b.reached()))?;
-        (is_whole && part.reached() <= simulated).then_some(part)
-    }
+/// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a
+/// margin of `simulated` contradicts them.
+pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64) -> Option<Part> {
+    let (from, to) = own.times.filter(|(from, to)| from < to)?;
+    let schedule = &rows.plan.schedule;
+    let span: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
+    // The span begins and ends where there are rows, and a dip takes three.
+    let [first, .., last] = *span.as_slice() else { return None };
+    let end = to.min(schedule.time(schedule.rows - 1));
+    let is_whole = schedule.time(first) == from && schedule.time(last) == end && span.len() > 2;
+    let of_slack = |&place: &usize| {
+        let bands = bands(study, rows, place, schedule.rows);
+        let is_resolved = |band: &&Band| span.iter().all(|&row| !band.error.unresolved[row]);
+        let is_known = |band: &&Band| span.iter().all(|&row| band.error.decisive(row).is_some());
+        let band = bands.iter().find(is_resolved).or(bands.iter().find(is_known))?;
+        let lower = &band.lower[first..=last];
+        let dip = lower.windows(3).map(|l| SAFETY / 8.0 * (l[0] - 2.0 * l[1] + l[2]).abs()).fold(0.0, f64::max);
+        let reached = |row: usize| lower[row] - band.error.decisive(first + row).unwrap_or(f64::NAN);
+        let least = (0..lower.len()).map(reached).fold(f64::INFINITY, f64::min) - dip;
+        let lower = lower.iter().copied().fold(f64::INFINITY, f64::min);
+        Some(Part {
+            lower,
+            error: lower - least,
+            surrogate: band.error.surrogate,
+            time: band.error.time,
+            is_known: true,
+            method: band.method.name(),
+        })
+    };
+    let parts: Vec<Part> = own.places.iter().map(of_slack).collect::<Option<_>>()?;
+    let part = parts.into_iter().min_by(|a, b| a.reached().total_cmp(&b.reached()))?;
+    (is_whole && part.reached() <= simulated).then_some(part)
 }

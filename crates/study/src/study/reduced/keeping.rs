@@ -2,47 +2,46 @@
 
 use std::sync::Arc;
 
-use super::super::outcome::Results;
-use super::super::single::Study;
+use crate::study::bounding::Bounded;
+use crate::study::problem::Study;
+
 use super::kept::KeptReduced;
 use super::values::Values;
 use crate::methods::Method;
 use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
 
-impl Study<'_> {
-    /// Surrogates kept of reduced outputs and margins, with the errors of their values.
-    pub(super) fn kept_reduced(
-        &self,
-        results: &mut Results,
-        values: &Arc<Values>,
-        unreliable: bool,
-    ) -> Option<KeptReduced> {
-        if !self.request.keep {
-            return None;
-        }
-        let place = results.methods.iter().position(|(method, _)| *method == Method::Chebyshev)?;
-        let surrogate = results.methods[place].1.result.kept.take().filter(|kept| kept.rows() > 0)?;
-        let outcome = &results.methods[place].1;
-        let (validation, _) = results.validation.as_ref()?;
-        let mut kept = KeptReduced { surrogate, values: values.clone(), errors: Vec::new() };
-        let samples: Vec<Sample> = self.domain.samples(&validation.points);
-        let every: Vec<usize> = (0..values.count()).collect();
-        let own = kept.surrogate.values(0, (&every, &samples), &kept.closures());
-        let of_value = |value: usize| {
-            let direct = validation.direct.at(0, value);
-            let known = &own[value * samples.len()..][..samples.len()];
-            let surrogate = largest([surrogate_error(known, &direct), outcome.result.surrogate[value][0]]);
-            let correction = validation.corrections(value, 1, None)[0];
-            let time = correction.of(step_error(&direct, &validation.halved.at(0, value)));
-            let ranges = &outcome.result.bands[value][..1];
-            let span = validation.spans[value];
-            let mut error = BandError::new(ranges, &[surrogate], &[time], span, self.request.tolerance);
-            if unreliable {
-                error.distrust(0..1);
-            }
-            error
-        };
-        kept.errors = every.iter().map(|&value| of_value(value)).collect();
-        Some(kept)
+/// Surrogates kept of reduced outputs and margins, with the errors of their values.
+pub fn kept_reduced(
+    study: &Study,
+    results: &mut Bounded,
+    values: &Arc<Values>,
+    unreliable: bool,
+) -> Option<KeptReduced> {
+    if !study.request.keep {
+        return None;
     }
+    let place = results.methods.iter().position(|(method, _)| *method == Method::Chebyshev)?;
+    let surrogate = results.methods[place].1.result.kept.take().filter(|kept| kept.rows() > 0)?;
+    let outcome = &results.methods[place].1;
+    let (validation, _) = results.validation.as_ref()?;
+    let mut kept = KeptReduced { surrogate, values: values.clone(), errors: Vec::new() };
+    let samples: Vec<Sample> = study.domain.samples(&validation.points);
+    let every: Vec<usize> = (0..values.count()).collect();
+    let own = kept.surrogate.values(0, (&every, &samples), &kept.closures());
+    let of_value = |value: usize| {
+        let direct = validation.direct.at(0, value);
+        let known = &own[value * samples.len()..][..samples.len()];
+        let surrogate = largest([surrogate_error(known, &direct), outcome.result.surrogate[value][0]]);
+        let correction = validation.corrections(value, 1, None)[0];
+        let time = correction.of(step_error(&direct, &validation.halved.at(0, value)));
+        let ranges = &outcome.result.bands[value][..1];
+        let span = validation.spans[value];
+        let mut error = BandError::new(ranges, &[surrogate], &[time], span, study.request.tolerance);
+        if unreliable {
+            error.distrust(0..1);
+        }
+        error
+    };
+    kept.errors = every.iter().map(|&value| of_value(value)).collect();
+    Some(kept)
 }

@@ -1,300 +1,31 @@
 //! Reduced outputs and requirements: bounds of one number a motion, and verdicts.
 //!
 //! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities, `values` what follows from them;
-//! `ensemble` is what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it);
-//! `answers` puts those of subsystems together; `keeping`, `kept` and `margins` evaluate them after the run; `refine`
-//! runs a model until all are decided.
+//! `ensemble` is what the methods see, and `bound` asks them; `verdicts` decides requirements, some of them `by_rows`
+//! (`found` has all of it); `answers` puts those of subsystems together; `keeping`, `kept` and `margins` evaluate them
+//! after the run; `refine` runs a model until all are decided.
 
 mod answers;
+mod bound;
 mod by_rows;
 mod ensemble;
+mod evaluated;
 mod expand;
 mod found;
 mod keeping;
 mod kept;
 mod margins;
+mod part;
 mod plan;
 mod refine;
 mod values;
 mod verdicts;
 
 pub(super) use answers::{Parameters, together};
+pub(super) use bound::{plan_reduction, reduced};
 pub(super) use ensemble::{Store, steps_of};
 pub(super) use expand::{expanded, shown};
 pub(super) use found::Found;
 pub use kept::KeptReduced;
 pub use margins::{Margins, MarginsOfPart, ReducedValues};
 pub(super) use refine::run;
-
-use super::bands::bands;
-use super::conclude::contributions;
-use super::ensemble::Progress;
-use super::outcome::{Outcome, Results};
-use super::single::{Study, simulation_error, timed};
-use crate::methods::{
-    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated,
-    Until, Validation, ends_of_combinations,
-};
-use crate::model::ReducedOutput;
-use crate::numerics::{Ledger, Range, Sample};
-use crate::results::{
-    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
-};
-use crate::simulate::{Controller, Divided, Schedule, SimulationError};
-use ensemble::ReducedEnsemble;
-use plan::Plan;
-
-/// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
-const MUCH: f64 = 4.0;
-
-/// Results of the methods for each value, with the parts common to all.
-struct Values<'a> {
-    results: &'a Results,
-    /// Whether something makes all bounds unreliable.
-    unreliable: bool,
-    /// Simulated samples with their values.
-    samples: Vec<(Sample, Vec<f64>)>,
-    /// Samples that reached the end.
-    whole: usize,
-}
-
-impl Study<'_> {
-    /// Plans the reductions during the motions, by the nominal one.
-    ///
-    /// # Errors
-    /// Where that cannot be assembled.
-    pub(super) fn plan_reduction(
-        &self,
-        schedule: &Schedule,
-        tolerance: Option<Controller>,
-    ) -> Result<(), SimulationError> {
-        let description = self.description;
-        if (description.reduced.is_empty() && description.requirements.is_empty()) || self.store.get().is_some() {
-            return Ok(());
-        }
-        (self.stage)("nominal motion");
-        let Divided { schedule, .. } = self.divided(schedule.clone());
-        let progress = Progress::new(usize::MAX, self.progress);
-        let motions = self.motions(&schedule, tolerance, &progress);
-        // A deviation from the nominal motion is rounding in the nominal motion: opposite corners show its course.
-        let corner = |xi: f64| self.domain.sample(&vec![xi; self.domain.dimension()]);
-        let mut samples = vec![self.domain.nominal.clone()];
-        if self.domain.dimension() > 0 {
-            samples.extend([corner(-1.0), corner(1.0)]);
-        }
-        let (outputs, mut values) = (motions.outputs(), Vec::new());
-        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
-        motions
-            .simulate(&samples, sampling, &mut |_, rows| values.extend_from_slice(rows))
-            .map_err(simulation_error)?;
-        let stride = outputs * samples.len();
-        let times: Vec<f64> = (0..values.len() / stride).map(|row| schedule.time(row)).collect();
-        let of = |output: usize, sample: usize| -> Vec<f64> {
-            values.iter().skip(output * samples.len() + sample).step_by(stride).copied().collect()
-        };
-        let course = |output: usize| {
-            let wider = |a: Vec<f64>, b: Vec<f64>| if Range::of(&b).width() > Range::of(&a).width() { b } else { a };
-            // The nominal one, unless another moves much more.
-            let nominal = of(output, 0);
-            let widest = (1..samples.len()).map(|sample| of(output, sample)).fold(nominal.clone(), wider);
-            if Range::of(&widest).width() > MUCH * Range::of(&nominal).width() { widest } else { nominal }
-        };
-        self.store.get_or_init(|| Store::new(Plan::of(description, &times, &course)));
-        Ok(())
-    }
-
-    /// Bounds of reduced outputs and verdicts, from the samples of a schedule's bounds.
-    ///
-    /// # Errors
-    /// Where a sample cannot be assembled.
-    pub(super) fn reduced(
-        &self,
-        rows: &Results,
-        tolerance: Option<Controller>,
-        progress: &Progress,
-    ) -> Result<Found, SimulationError> {
-        let Some(store) = self.store.get() else { return Ok(Found::default()) };
-        let begun = std::time::Instant::now();
-        (self.stage)("reduced outputs");
-        let schedule = &rows.schedule;
-        let (halved, odd) = (schedule.refined(2), schedule.at_odds());
-        let finer = tolerance.map(|tolerance| tolerance.for_parts(2));
-        let motions = self.motions(schedule, tolerance, progress).noting(&rows.seen);
-        let [motions_halved, motions_odd] = [&halved, &odd].map(|schedule| self.motions(schedule, finer, progress));
-        let direct = ReducedEnsemble::new(&motions, store, schedule);
-        let with_halved = ReducedEnsemble::new(&motions_halved, store, &halved);
-        let with_odd = ReducedEnsemble::new(&motions_odd, store, &odd);
-        let ensembles =
-            Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(&odd) };
-        let mut results = self.bounds_of(ensembles, schedule, &halved)?;
-        let kept = self.kept_reduced(&mut results, &store.plan.values, rows.unreliable_from().is_some());
-        let unreliable = rows.unreliable_from().is_some();
-        results.note(&direct);
-        let values = self.values(&results, unreliable, store);
-        (self.stage)("requirements");
-        let requirements = match self.verdicts(&values, rows, [&direct, &with_halved]) {
-            Err(SimulationError::Interrupted) => Found::nothing(self.description).requirements,
-            found => found?,
-        };
-        // The search for a sample that fails has simulated some more.
-        results.note(&direct);
-        let values = self.values(&results, unreliable, store);
-        let reduced = self.description.reduced.iter().enumerate();
-        let contributions = contributions(self, &results, 1);
-        let reduced = reduced.map(|place| self.summary_of(place, &values, &contributions)).collect();
-        let simulations = motions.over() + motions_halved.over() + motions_odd.over();
-        let summary = (simulations > 0).then(|| MethodSummary {
-            method: "reduced outputs".to_owned(),
-            simulations,
-            steps: schedule.steps_before(schedule.rows - 1),
-            seconds: Some(begun.elapsed().as_secs_f64()),
-            ..MethodSummary::default()
-        });
-        Ok(Found { reduced, requirements, summary, kept })
-    }
-
-    /// What each sampled method finds of all values.
-    fn bounds_of(
-        &self,
-        ensembles: Ensembles,
-        schedule: &Schedule,
-        halved: &Schedule,
-    ) -> Result<Results, SimulationError> {
-        let ensemble = ensembles.direct;
-        let nominal = self.nominal_values(ensemble)?;
-        let (nominal, ()) = timed(schedule, "nominal", || Ok((nominal, ())))?;
-        let mut results = Results {
-            schedule: schedule.clone(),
-            unresolved_from: None,
-            switches: None,
-            damped: Vec::new(),
-            nominal,
-            singular: Vec::new(),
-            seen: Ledger::new(1, ensemble.outputs()),
-            validation: None,
-            methods: Vec::new(),
-            attained: None,
-            halved: Vec::new(),
-            internal: Vec::new(),
-            found: Found::default(),
-        };
-        let mut request = self.request.clone();
-        if request.is_empty() {
-            return Ok(results);
-        }
-        // A reduced output with kinks has no polynomial about the middle.
-        request.omit(Method::Taylor);
-        if request.methods().iter().all(|(method, _)| !method.about().is_sampled) {
-            request.ask(Method::Chebyshev, &super::single::problem(self.description, &self.simulator));
-        }
-        // Channels are to reduced outputs what coordinates are to outputs.
-        if let Some(chebyshev) = &mut request.chebyshev {
-            chebyshev.expand = Expand::Coordinates;
-        }
-        let sampled = request.methods().into_iter().filter(|(method, _)| method.about().is_sampled);
-        let sampled: Vec<(Method, &dyn BoundingMethod)> = sampled.collect();
-        let summary = MethodSummary { method: "validation".to_owned(), ..results.nominal.summary.clone() };
-        if self.domain.dimension() == 0 {
-            let known = (&results.nominal.result.bands[..], 1);
-            let validation = Validation::of_nominal(ensembles, known).map_err(simulation_error)?;
-            for (method, _) in sampled {
-                let known = |range: &Range| if range.lower.is_nan() { f64::NAN } else { 0.0 };
-                let own = &results.nominal.result;
-                let surrogate = own.bands.iter().map(|ranges| ranges.iter().map(known).collect()).collect();
-                let result = MethodResult { surrogate, ..own.clone() };
-                results.methods.push((method, timed(schedule, method.name(), || Ok((result, ())))?.0));
-            }
-            results.validation = Some((validation, summary));
-            return Ok(results);
-        }
-        let ends = ends_of_combinations(ensembles.direct);
-        let validation =
-            Validation::run(ensembles, Observed::Motion, self.request.degree(), ends).map_err(simulation_error)?;
-        let bound = |ensemble: &dyn Ensemble, schedule: &Schedule| {
-            let of_method = |&(method, own): &(Method, &dyn BoundingMethod)| {
-                let bound = || Ok((own.bound(ensemble, &validation, &request).map_err(simulation_error)?, ()));
-                Ok((method, timed(schedule, method.name(), bound)?.0))
-            };
-            sampled.iter().map(of_method).collect::<Result<Vec<(Method, Outcome)>, SimulationError>>()
-        };
-        results.methods = bound(ensemble, schedule)?;
-        if self.certify_time {
-            results.halved = bound(ensembles.halved, halved)?;
-        }
-        results.validation = Some((validation, summary));
-        Ok(results)
-    }
-
-    /// The nominal motion's values as bands without width.
-    fn nominal_values(&self, ensemble: &dyn Ensemble) -> Result<MethodResult, SimulationError> {
-        let mut bands = BandBuilder::new(ensemble.outputs(), 1);
-        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
-        let nominal = std::slice::from_ref(&self.domain.nominal);
-        let mut take = |_, values: &[f64]| {
-            for (place, &value) in values.iter().enumerate() {
-                bands.set(0, place, Range { lower: value, upper: value }, 0.0);
-            }
-        };
-        ensemble.simulate(nominal, sampling, &mut take).map_err(simulation_error)?;
-        Ok(bands.finish(0, Simulated::default()))
-    }
-
-    /// The results, with the samples of the box that reached the end so far.
-    fn values<'r>(&self, results: &'r Results, unreliable: bool, store: &Store) -> Values<'r> {
-        let whole = |(sample, channels): (Sample, Vec<f64>)| {
-            let is_whole = self.domain.contains(&sample) && channels.iter().all(|value| value.is_finite());
-            let mut values = Vec::new();
-            store.plan.values.evaluate(&channels, &sample, &mut values);
-            is_whole.then_some((sample, values))
-        };
-        let all = store.samples(steps_of(&results.schedule));
-        let samples: Vec<_> = all.into_iter().filter_map(whole).collect();
-        Values { results, unreliable, whole: samples.len(), samples }
-    }
-
-    fn summary_of(
-        &self,
-        (place, reduced): (usize, &ReducedOutput),
-        values: &Values,
-        contributions: &[Vec<Contribution>],
-    ) -> ReducedSummary {
-        let band = |band: Band| ReducedBand {
-            method: band.method.name().to_owned(),
-            lower: band.lower[0],
-            upper: band.upper[0],
-            error: band.error.total[0],
-            surrogate: band.error.surrogate,
-            time: band.error.time,
-            unresolved: band.error.unresolved[0] || values.unreliable,
-        };
-        let of_parameter = |contribution: &Contribution| ReducedContribution {
-            parameter: contribution.parameter.clone(),
-            main: contribution.main[0],
-            total: contribution.total[0],
-            width_without: contribution.width_without[0],
-        };
-        let mut contributions: Vec<ReducedContribution> =
-            contributions.get(place).into_iter().flatten().map(of_parameter).collect();
-        contributions.retain(|contribution| contribution.total.is_finite());
-        contributions.sort_by(|a, b| b.total.total_cmp(&a.total));
-        let known = || values.samples.iter().filter(|(_, values)| !values[place].is_nan());
-        let case =
-            |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[place] };
-        let least = known().min_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
-        let greatest = known().max_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
-        let absent = values.samples.iter().find(|(_, values)| values[place].is_nan());
-        let absent = absent.map(|(sample, _)| sample.to_vec());
-        let occurs = Occurrence { samples: known().count(), of: values.whole, absent };
-        ReducedSummary {
-            name: reduced.name.clone(),
-            of: reduced.text.clone(),
-            unit: reduced.unit.clone(),
-            display: self.description.display.get(&reduced.name).cloned(),
-            nominal: values.results.nominal.result.bands[place][0].lower,
-            bands: bands(self, values.results, place, 1).into_iter().map(band).collect(),
-            contributions,
-            worst: least.zip(greatest).map(|(least, greatest)| [least, greatest]),
-            occurs: (occurs.samples < occurs.of).then_some(occurs),
-        }
-    }
-}

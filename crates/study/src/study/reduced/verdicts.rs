@@ -1,16 +1,17 @@
 //! Whether requirements are fulfilled.
 
-use super::super::bands::bands;
-use super::super::outcome::Results;
-use super::super::single::{Study, simulation_error};
-use super::Values;
+use super::by_rows::by_rows;
 use super::ensemble::ReducedEnsemble;
+use super::evaluated::Evaluated;
+use super::part::Part;
 use crate::grammar::display_unit::ShownUnit;
 use crate::methods::Method;
 use crate::model::Requirement;
 use crate::numerics::{Sample, step_error};
 use crate::results::{Band, LimitLine, NearestCase, RequirementSummary, Verdict, foremost};
 use crate::simulate::SimulationError;
+use crate::study::bounding::{Bounded, bands, simulation_error};
+use crate::study::problem::Study;
 
 /// What the estimate of a sample's time error may be wrong by.
 const SAFETY: f64 = 1.25;
@@ -22,238 +23,218 @@ const ROUNDING: f64 = 1e-12;
 const ROUNDS: usize = 6;
 const REACH: f64 = 0.5;
 
-/// Bounds of a part of a margin. What decides is the margin beside its error, however little or much it moves.
-pub(super) struct Part {
-    pub(super) lower: f64,
-    pub(super) error: f64,
-    pub(super) surrogate: f64,
-    pub(super) time: f64,
-    /// Whether the error is to be believed.
-    pub(super) is_known: bool,
-    pub(super) method: &'static str,
-}
-
-impl Part {
-    /// What the margin may be with the error.
-    pub(super) fn reached(&self) -> f64 {
-        self.lower - self.error
-    }
-}
-
 /// NaN is passed on.
 fn smaller(a: f64, b: f64) -> f64 {
     if b < a || b.is_nan() { b } else { a }
 }
 
-impl Study<'_> {
-    /// The verdict of each requirement.
-    ///
-    /// # Errors
-    /// Where a sample cannot be assembled, and at an interruption.
-    pub(super) fn verdicts(
-        &self,
-        values: &Values,
-        rows: &Results,
-        ensembles: [&ReducedEnsemble; 2],
-    ) -> Result<Vec<RequirementSummary>, SimulationError> {
-        let requirements = self.description.requirements.iter().enumerate();
-        let verdict = |own| match self.interruption.is_asked() {
-            true => Err(SimulationError::Interrupted),
-            false => self.verdict(own, values, rows, ensembles),
-        };
-        requirements.map(verdict).collect()
-    }
+/// The verdict of each requirement.
+///
+/// # Errors
+/// Where a sample cannot be assembled, and at an interruption.
+pub fn verdicts(
+    study: &Study,
+    values: &Evaluated,
+    rows: &Bounded,
+    ensembles: [&ReducedEnsemble; 2],
+) -> Result<Vec<RequirementSummary>, SimulationError> {
+    let requirements = study.description.requirements.iter().enumerate();
+    let verdict = |own| match study.interruption.is_asked() {
+        true => Err(SimulationError::Interrupted),
+        false => verdict(study, own, values, rows, ensembles),
+    };
+    requirements.map(verdict).collect()
+}
 
-    fn verdict(
-        &self,
-        (number, own): (usize, &Requirement),
-        values: &Values,
-        rows: &Results,
-        ensembles: [&ReducedEnsemble; 2],
-    ) -> Result<RequirementSummary, SimulationError> {
-        let mut parts: Vec<Part> =
-            ensembles[0].plan().values.parts(number).map(|place| self.part(values, place)).collect();
-        let decided = |parts: &[Part]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
-        if !decided(&parts) && !values.unreliable {
-            let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().values.margin(number, |place| all[place]);
-            // NaN stays, and contradicts.
-            let simulated = values.samples.iter().map(margin).fold(f64::INFINITY, smaller);
-            parts = match self.by_rows(own, rows, simulated) {
-                Some(part) if part.reached() >= 0.0 => vec![part],
-                _ => parts,
-            };
-        }
-        let lower = parts.iter().map(|part| part.lower).fold(f64::INFINITY, smaller);
-        let least = parts.iter().map(Part::reached).fold(f64::INFINITY, smaller);
-        let error = lower - least;
-        // The part that decides.
-        let part = parts.iter().min_by(|a, b| a.reached().total_cmp(&b.reached()));
-        let is_known = parts.iter().all(|part| part.is_known) && !values.unreliable;
-        let holds = is_known && least >= 0.0;
-        let nearest = self.nearest((number, own), values, holds, ensembles)?;
-        let fails = nearest.as_ref().is_some_and(|case| case.margin.is_nan() || case.margin + case.error < 0.0);
-        let verdict = match (fails, holds) {
-            (true, _) => Verdict::Violated,
-            (false, true) => Verdict::Holds,
-            (false, false) => Verdict::Undecided,
+fn verdict(
+    study: &Study,
+    (number, own): (usize, &Requirement),
+    values: &Evaluated,
+    rows: &Bounded,
+    ensembles: [&ReducedEnsemble; 2],
+) -> Result<RequirementSummary, SimulationError> {
+    let mut parts: Vec<Part> =
+        ensembles[0].plan().values.parts(number).map(|place| part(study, values, place)).collect();
+    let decided = |parts: &[Part]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
+    if !decided(&parts) && !values.unreliable {
+        let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().values.margin(number, |place| all[place]);
+        // NaN stays, and contradicts.
+        let simulated = values.samples.iter().map(margin).fold(f64::INFINITY, smaller);
+        parts = match by_rows(study, own, rows, simulated) {
+            Some(part) if part.reached() >= 0.0 => vec![part],
+            _ => parts,
         };
-        let margin = match &nearest {
-            Some(case) if lower.is_nan() || case.margin < lower => case.margin,
-            _ => lower,
-        };
-        let limit = own.limits.first().map(|limit| limit.value.abs()).filter(|limit| *limit > 0.0);
-        let [surrogate, time] = [part.map(|part| part.surrogate), part.map(|part| part.time)];
-        let decides = (verdict == Verdict::Undecided)
-            .then(|| decides(own, lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_known));
-        Ok(RequirementSummary {
-            name: own.name.clone(),
-            text: own.text.clone(),
-            unit: own.unit.clone(),
-            display: own.display.clone(),
-            verdict,
-            certified: verdict == Verdict::Holds && self.is_certified(own, rows),
-            margin,
-            percent: limit.map(|limit| 100.0 * margin / limit),
-            error,
-            surrogate: surrogate.unwrap_or(f64::NAN),
-            time: time.unwrap_or(f64::NAN),
-            method: part.map_or("nominal", |part| part.method).to_owned(),
-            nearest,
-            decides,
-            limits: self.limit_lines(own),
-        })
     }
+    let lower = parts.iter().map(|part| part.lower).fold(f64::INFINITY, smaller);
+    let least = parts.iter().map(Part::reached).fold(f64::INFINITY, smaller);
+    let error = lower - least;
+    // The part that decides.
+    let part = parts.iter().min_by(|a, b| a.reached().total_cmp(&b.reached()));
+    let is_known = parts.iter().all(|part| part.is_known) && !values.unreliable;
+    let holds = is_known && least >= 0.0;
+    let nearest = nearest(study, (number, own), values, holds, ensembles)?;
+    let fails = nearest.as_ref().is_some_and(|case| case.margin.is_nan() || case.margin + case.error < 0.0);
+    let verdict = match (fails, holds) {
+        (true, _) => Verdict::Violated,
+        (false, true) => Verdict::Holds,
+        (false, false) => Verdict::Undecided,
+    };
+    let margin = match &nearest {
+        Some(case) if lower.is_nan() || case.margin < lower => case.margin,
+        _ => lower,
+    };
+    let limit = own.limits.first().map(|limit| limit.value.abs()).filter(|limit| *limit > 0.0);
+    let [surrogate, time] = [part.map(|part| part.surrogate), part.map(|part| part.time)];
+    let decides = (verdict == Verdict::Undecided)
+        .then(|| decides(own, lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_known));
+    Ok(RequirementSummary {
+        name: own.name.clone(),
+        text: own.text.clone(),
+        unit: own.unit.clone(),
+        display: own.display.clone(),
+        verdict,
+        certified: verdict == Verdict::Holds && is_certified(own, rows),
+        margin,
+        percent: limit.map(|limit| 100.0 * margin / limit),
+        error,
+        surrogate: surrogate.unwrap_or(f64::NAN),
+        time: time.unwrap_or(f64::NAN),
+        method: part.map_or("nominal", |part| part.method).to_owned(),
+        nearest,
+        decides,
+        limits: limit_lines(study, own),
+    })
+}
 
-    /// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be
-    /// believed.
-    fn part(&self, values: &Values, place: usize) -> Part {
-        let bands = bands(self, values.results, place, 1);
-        let is_resolved = |band: &Band| !band.error.unresolved[0];
-        let is_known = |band: &Band| band.error.decisive(0).is_some();
-        let band = bands.iter().find(|band| is_resolved(band)).or(foremost(&bands, is_known));
-        let decisive = band.and_then(|band| band.error.decisive(0));
-        Part {
-            lower: band.map_or(f64::NAN, |band| band.lower[0]),
-            error: band.map_or(f64::NAN, |band| decisive.unwrap_or(band.error.total[0])),
-            surrogate: band.map_or(f64::NAN, |band| band.error.surrogate),
-            time: band.map_or(f64::NAN, |band| band.error.time),
-            is_known: decisive.is_some(),
-            method: band.map_or("nominal", |band| band.method.name()),
-        }
+/// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be
+/// believed.
+fn part(study: &Study, values: &Evaluated, place: usize) -> Part {
+    let bands = bands(study, values.bounded, place, 1);
+    let is_resolved = |band: &Band| !band.error.unresolved[0];
+    let is_known = |band: &Band| band.error.decisive(0).is_some();
+    let band = bands.iter().find(|band| is_resolved(band)).or(foremost(&bands, is_known));
+    let decisive = band.and_then(|band| band.error.decisive(0));
+    Part {
+        lower: band.map_or(f64::NAN, |band| band.lower[0]),
+        error: band.map_or(f64::NAN, |band| decisive.unwrap_or(band.error.total[0])),
+        surrogate: band.map_or(f64::NAN, |band| band.error.surrogate),
+        time: band.map_or(f64::NAN, |band| band.error.time),
+        is_known: decisive.is_some(),
+        method: band.map_or("nominal", |band| band.method.name()),
     }
+}
 
-    /// The simulated sample with the least margin; where bounds do not tell that all hold, the neighbours of the best
-    /// are tried too.
-    fn nearest(
-        &self,
-        (number, own): (usize, &Requirement),
-        values: &Values,
-        holds: bool,
-        [direct, halved]: [&ReducedEnsemble; 2],
-    ) -> Result<Option<NearestCase>, SimulationError> {
-        let margin = |all: &[f64]| direct.plan().values.margin(number, |place| all[place]);
-        // A missing value fails more than any value.
-        let key = |value: f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
-        let of_sample = |(sample, all): &(Sample, Vec<f64>)| (sample.clone(), margin(all));
-        let best = values.samples.iter().map(of_sample).min_by(|a, b| key(a.1).total_cmp(&key(b.1)));
-        let Some(mut best) = best else { return Ok(None) };
-        if !holds && best.1 > 0.0 {
-            self.search(number, &mut best, direct)?;
-        }
-        let sample = std::slice::from_ref(&best.0);
-        let of = |ensemble: &ReducedEnsemble| {
-            let (mut channels, _) = ensemble.channels(sample, true).map_err(simulation_error)?;
-            let channels = channels.swap_remove(0);
-            let mut all = Vec::new();
-            ensemble.plan().values.evaluate(&channels, &sample[0], &mut all);
-            Ok::<_, SimulationError>((margin(&all), channels))
-        };
-        let ((least, channels), (finer, _)) = (of(direct)?, of(halved)?);
-        let rounding = own.limits.iter().map(|limit| ROUNDING * limit.value.abs()).fold(0.0, f64::max);
-        let error = SAFETY * step_error(&[least], &[finer]) + rounding;
-        let xi = self.domain.xi(&best.0);
-        let known = self.simulator.system.parameters.iter().zip(best.0.iter());
-        Ok(Some(NearestCase {
-            parameters: best.0.to_vec(),
-            margin: least,
-            error: if error.is_nan() && !least.is_nan() { f64::INFINITY } else { error },
-            time: direct.plan().when((number, own), &channels),
-            corner: !xi.is_empty() && xi.iter().all(|xi| (xi.abs() - 1.0).abs() < 1e-12),
-            settings: known.map(|(parameter, value)| setting(&parameter.name, *value, &parameter.unit)).collect(),
-            command: String::new(),
-        }))
+/// The simulated sample with the least margin; where bounds do not tell that all hold, the neighbours of the best
+/// are tried too.
+fn nearest(
+    study: &Study,
+    (number, own): (usize, &Requirement),
+    values: &Evaluated,
+    holds: bool,
+    [direct, halved]: [&ReducedEnsemble; 2],
+) -> Result<Option<NearestCase>, SimulationError> {
+    let margin = |all: &[f64]| direct.plan().values.margin(number, |place| all[place]);
+    // A missing value fails more than any value.
+    let key = |value: f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
+    let of_sample = |(sample, all): &(Sample, Vec<f64>)| (sample.clone(), margin(all));
+    let best = values.samples.iter().map(of_sample).min_by(|a, b| key(a.1).total_cmp(&key(b.1)));
+    let Some(mut best) = best else { return Ok(None) };
+    if !holds && best.1 > 0.0 {
+        search(study, number, &mut best, direct)?;
     }
+    let sample = std::slice::from_ref(&best.0);
+    let of = |ensemble: &ReducedEnsemble| {
+        let (mut channels, _) = ensemble.channels(sample, true).map_err(simulation_error)?;
+        let channels = channels.swap_remove(0);
+        let mut all = Vec::new();
+        ensemble.plan().values.evaluate(&channels, &sample[0], &mut all);
+        Ok::<_, SimulationError>((margin(&all), channels))
+    };
+    let ((least, channels), (finer, _)) = (of(direct)?, of(halved)?);
+    let rounding = own.limits.iter().map(|limit| ROUNDING * limit.value.abs()).fold(0.0, f64::max);
+    let error = SAFETY * step_error(&[least], &[finer]) + rounding;
+    let xi = study.domain.xi(&best.0);
+    let known = study.simulator.system.parameters.iter().zip(best.0.iter());
+    Ok(Some(NearestCase {
+        parameters: best.0.to_vec(),
+        margin: least,
+        error: if error.is_nan() && !least.is_nan() { f64::INFINITY } else { error },
+        time: direct.plan().when((number, own), &channels),
+        corner: !xi.is_empty() && xi.iter().all(|xi| (xi.abs() - 1.0).abs() < 1e-12),
+        settings: known.map(|(parameter, value)| setting(&parameter.name, *value, &parameter.unit)).collect(),
+        command: String::new(),
+    }))
+}
 
-    /// Looks for a smaller margin around the best sample, along each axis and towards the corners of the box.
-    fn search(
-        &self,
-        requirement: usize,
-        best: &mut (Sample, f64),
-        ensemble: &ReducedEnsemble,
-    ) -> Result<(), SimulationError> {
-        let mut reach = REACH;
-        for _ in 0..ROUNDS {
-            let xi = self.domain.xi(&best.0);
-            let mut around: Vec<Vec<f64>> = Vec::new();
-            for axis in 0..xi.len() {
-                for sign in [-1.0, 1.0] {
-                    let mut next = xi.clone();
-                    next[axis] = (next[axis] + sign * reach).clamp(-1.0, 1.0);
-                    around.push(next);
-                }
-            }
-            let samples = self.domain.samples(&around);
-            let (channels, _) = ensemble.channels(&samples, true).map_err(simulation_error)?;
-            let mut values = Vec::new();
-            let before = best.1;
-            for (sample, channels) in samples.iter().zip(&channels) {
-                ensemble.plan().values.evaluate(channels, sample, &mut values);
-                let margin = ensemble.plan().values.margin(requirement, |place| values[place]);
-                if margin < best.1 {
-                    *best = (sample.clone(), margin);
-                }
-            }
-            if best.1 < 0.0 {
-                break;
-            }
-            if best.1 >= before {
-                reach *= 0.5;
+/// Looks for a smaller margin around the best sample, along each axis and towards the corners of the box.
+fn search(
+    study: &Study,
+    requirement: usize,
+    best: &mut (Sample, f64),
+    ensemble: &ReducedEnsemble,
+) -> Result<(), SimulationError> {
+    let mut reach = REACH;
+    for _ in 0..ROUNDS {
+        let xi = study.domain.xi(&best.0);
+        let mut around: Vec<Vec<f64>> = Vec::new();
+        for axis in 0..xi.len() {
+            for sign in [-1.0, 1.0] {
+                let mut next = xi.clone();
+                next[axis] = (next[axis] + sign * reach).clamp(-1.0, 1.0);
+                around.push(next);
             }
         }
-        Ok(())
+        let samples = study.domain.samples(&around);
+        let (channels, _) = ensemble.channels(&samples, true).map_err(simulation_error)?;
+        let mut values = Vec::new();
+        let before = best.1;
+        for (sample, channels) in samples.iter().zip(&channels) {
+            ensemble.plan().values.evaluate(channels, sample, &mut values);
+            let margin = ensemble.plan().values.margin(requirement, |place| values[place]);
+            if margin < best.1 {
+                *best = (sample.clone(), margin);
+            }
+        }
+        if best.1 < 0.0 {
+            break;
+        }
+        if best.1 >= before {
+            reach *= 0.5;
+        }
     }
+    Ok(())
+}
 
-    /// Whether certified bounds of every slack prove the requirement. They are of the steps' ends, which are rows only
-    /// where each row is a step.
-    fn is_certified(&self, own: &Requirement, rows: &Results) -> bool {
-        let Some((from, to)) = own.times else { return false };
-        let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else {
-            return false;
-        };
-        let schedule = &rows.schedule;
-        let counts: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
-        let seen = schedule.steps_per_row() == Some(1) || (from == to && !counts.is_empty());
-        let holds = |place: &usize| counts.iter().all(|&row| outcome.result.bands[*place][row].lower >= 0.0);
-        seen && !counts.is_empty() && own.places.iter().all(holds)
-    }
+/// Whether certified bounds of every slack prove the requirement. They are of the steps' ends, which are rows only
+/// where each row is a step.
+fn is_certified(own: &Requirement, rows: &Bounded) -> bool {
+    let Some((from, to)) = own.times else { return false };
+    let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else {
+        return false;
+    };
+    let schedule = &rows.plan.schedule;
+    let counts: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
+    let seen = schedule.steps_per_row() == Some(1) || (from == to && !counts.is_empty());
+    let holds = |place: &usize| counts.iter().all(|&row| outcome.result.bands[*place][row].lower >= 0.0);
+    seen && !counts.is_empty() && own.places.iter().all(holds)
+}
 
-    /// Constant limits of outputs and reduced outputs.
-    fn limit_lines(&self, own: &Requirement) -> Vec<LimitLine> {
-        let end = self.description.simulation.duration;
-        let (from, to) = own.times.unwrap_or((0.0, end));
-        let is_output = |name: &str| {
-            self.description.outputs.iter().any(|output| output.name == name)
-                || self.description.reduced.iter().any(|reduced| reduced.name == name)
-        };
-        let line = |limit: &crate::model::Limit| LimitLine {
-            output: limit.of.clone(),
-            value: limit.value,
-            is_upper: limit.is_upper,
-            from,
-            to: to.min(end),
-        };
-        own.limits.iter().filter(|limit| is_output(&limit.of)).map(line).collect()
-    }
+/// Constant limits of outputs and reduced outputs.
+fn limit_lines(study: &Study, own: &Requirement) -> Vec<LimitLine> {
+    let end = study.description.simulation.duration;
+    let (from, to) = own.times.unwrap_or((0.0, end));
+    let is_output = |name: &str| {
+        study.description.outputs.iter().any(|output| output.name == name)
+            || study.description.reduced.iter().any(|reduced| reduced.name == name)
+    };
+    let line = |limit: &crate::model::Limit| LimitLine {
+        output: limit.of.clone(),
+        value: limit.value,
+        is_upper: limit.is_upper,
+        from,
+        to: to.min(end),
+    };
+    own.limits.iter().filter(|limit| is_output(&limit.of)).map(line).collect()
 }
 
 /// What would decide a requirement.

@@ -6,7 +6,7 @@ mod numbers;
 mod requirements;
 mod rows;
 
-use super::kept::Kept;
+use super::answers::Kept;
 use super::{Options, RunError, reduced, subsystems};
 use crate::methods::Method;
 use crate::model::{Description, ParameterValue};

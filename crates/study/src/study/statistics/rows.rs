@@ -12,7 +12,7 @@ use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
 use crate::results::{OutputStatistics, Uncertain};
 use crate::simulate::is_one_number;
 use crate::study::Options;
-use crate::study::kept::{Evaluator, Kept};
+use crate::study::answers::{Evaluator, Kept};
 
 /// Samples where a model asks for no number: about a million.
 const SAMPLES: usize = 1 << 20;

@@ -1,0 +1,90 @@
+//! Ways to integrate an ensemble of samples, or one jet in the parameters: what all of them can do.
+
+use std::fmt::Debug;
+use std::ops::Range;
+
+use super::control::{Schedule, Steps};
+use super::diagnostics::{OpenConstraint, SingularPass, TooDeep};
+use super::ensemble::{Channel, Observed, Stop};
+use super::error::SimulationError;
+use super::interruption::Interruption;
+use super::step::Counters;
+
+/// An ensemble of samples that is integrated in one way. What it is asked besides is asked before the first row.
+pub trait Integrator<'s>: Debug {
+    /// Also searches for singular configurations that the first sample passes, and for constraints that open.
+    fn watch(&mut self);
+
+    /// Also reduces outputs to one number each.
+    fn reduce(&mut self, channels: &'s [Channel]);
+
+    /// Ends where it is asked to.
+    fn heed(&mut self, interruption: Interruption<'s>);
+
+    /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
+    fn is_cut(&self) -> bool;
+
+    /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records the `observed`
+    /// values: row by row, value by value, sample by sample. With a controller, a sample that exceeds its tolerance
+    /// takes shorter steps. Returns the samples that stopped.
+    fn advance(&mut self, steps: Steps<'_>, rows: Range<usize>, observed: Observed, into: &mut Vec<f64>) -> Vec<Stop>;
+
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that
+    /// stopped.
+    fn reduced(&mut self) -> Vec<f64>;
+
+    /// Newton iterations and rank-revealing solves so far; none of explicit methods.
+    fn counters(&self) -> Counters {
+        Counters::default()
+    }
+
+    /// Singular configurations that the first sample has passed, if they are searched for.
+    fn singular_passes(&self) -> Vec<SingularPass> {
+        Vec::new()
+    }
+
+    /// The error of a redundant constraint that the first sample has left open, if they are searched for.
+    fn parted(&self) -> Option<SimulationError> {
+        None
+    }
+
+    /// The constraint that cannot be closed where a sample stopped: the mechanism locks there. Known for the first
+    /// sample of each tile that stops.
+    fn open_constraint(&self, _stop: &Stop, _schedule: &Schedule) -> Option<OpenConstraint> {
+        None
+    }
+
+    /// The first row before which a sample's local errors add up to more than the tolerance, fixed steps pass over a
+    /// force, or a sample meets an event that others do not.
+    fn beyond_tolerance_from(&self) -> Option<usize> {
+        None
+    }
+
+    /// The first surfaces that a contact does not hold apart any more.
+    fn too_deep(&self) -> Option<TooDeep> {
+        None
+    }
+
+    /// The sample with the largest sum of local errors over the tolerance, and that sum.
+    fn largest_error_ratio(&self) -> Option<(usize, f64)> {
+        None
+    }
+}
+
+/// One jet in the parameters that is integrated in one way.
+pub trait JetIntegrator<'s>: Debug {
+    /// Ends where it is asked to.
+    fn heed(&mut self, interruption: Interruption<'s>);
+
+    /// Whether it ended at an interruption: the rows of the last call are not known, and others do not follow.
+    fn is_cut(&self) -> bool;
+
+    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by
+    /// output, coefficient by coefficient. Returns where the run stopped, if it did.
+    fn advance(&mut self, schedule: &Schedule, rows: Range<usize>, into: &mut Vec<f64>) -> Option<Stop>;
+
+    /// Newton iterations and rank-revealing solves so far.
+    fn counters(&self) -> Counters {
+        Counters::default()
+    }
+}

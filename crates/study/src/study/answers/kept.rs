@@ -1,0 +1,214 @@
+//! The surrogates of a run, kept after it: outputs at any point of the box, in any row, without simulation.
+//!
+//! Nothing is kept unless [`run_keeping`](super::run_keeping) is asked. It keeps coefficients and the compiled
+//! mechanism, from which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded
+//! coordinates.
+
+use std::borrow::Cow;
+
+use crate::study::ensemble::closure::MotionClosure;
+use crate::study::reduced::{KeptReduced, Margins, MarginsOfPart, ReducedValues};
+
+use rayon::prelude::*;
+
+use crate::methods::{self, KeptSurrogate};
+use crate::numerics::{BandError, SparseBasis};
+use crate::reduce::Subsystem;
+use crate::simulate::{SimulationError, Simulator};
+
+/// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
+const CHUNK: usize = 1024;
+
+/// A subsystem's surrogate.
+#[derive(Clone, Debug)]
+pub struct KeptPart {
+    pub simulator: Simulator,
+    pub surrogate: KeptSurrogate,
+    /// Errors of the values, by output.
+    pub errors: Vec<BandError>,
+    /// Output times, s.
+    pub times: Vec<f64>,
+    /// Reduced outputs and margins, where the model has some.
+    pub reduced: Option<KeptReduced>,
+}
+
+/// The surrogates of all subsystems of a run.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    parts: Vec<Placed>,
+    /// By output of the model: its subsystem, and its number there.
+    places: Vec<(usize, usize)>,
+    times: Vec<f64>,
+}
+
+/// A subsystem's surrogate among the whole model's parameters.
+#[derive(Clone, Debug)]
+struct Placed {
+    part: KeptPart,
+    /// Numbers of its uncertain parameters among those of the model.
+    parameters: Vec<usize>,
+    /// Numbers of its reduced outputs in the model.
+    reduced: Vec<usize>,
+    /// Numbers of its requirements in the model.
+    requirements: Vec<usize>,
+}
+
+/// Evaluates the kept surrogate of a run.
+pub struct Evaluator<'k> {
+    kept: &'k Kept,
+    /// By subsystem, for each choice of independent coordinates.
+    closures: Vec<Vec<Box<dyn methods::Closure + 'k>>>,
+}
+
+impl KeptPart {
+    /// The loop closures through which its outputs follow.
+    pub fn closures(&self) -> Result<Vec<Box<dyn methods::Closure + '_>>, SimulationError> {
+        let closure = |independent: Vec<usize>| -> Result<Box<dyn methods::Closure + '_>, SimulationError> {
+            Ok(Box::new(MotionClosure::new(&self.simulator, independent)?))
+        };
+        self.surrogate.independent().into_iter().map(closure).collect()
+    }
+}
+
+impl Placed {
+    fn margins(&self) -> Option<MarginsOfPart<'_>> {
+        let kept = self.part.reduced.as_ref()?;
+        let Self { parameters, reduced, requirements, .. } = self;
+        let (kept, requirements) = (Cow::Borrowed(kept), Cow::Borrowed(&requirements[..]));
+        Some(MarginsOfPart { kept, parameters, reduced, requirements })
+    }
+}
+
+impl Kept {
+    /// Of all subsystems of a model of so many outputs.
+    pub(in crate::study) fn of_parts(parts: Vec<(KeptPart, &Subsystem)>, outputs: usize) -> Self {
+        let mut places = vec![(0, 0); outputs];
+        for (number, (_, subsystem)) in parts.iter().enumerate() {
+            subsystem.outputs.iter().enumerate().for_each(|(place, &output)| places[output] = (number, place));
+        }
+        // What an analysis of one system adds to the model's outputs.
+        if let [(part, _)] = parts.as_slice() {
+            places.extend((outputs..part.errors.len()).map(|place| (0, place)));
+        }
+        let shortest = parts.iter().map(|(part, _)| &part.times).min_by_key(|times| times.len());
+        let times = shortest.cloned().unwrap_or_default();
+        let placed = |(part, Subsystem { parameters, requirements, reduced, .. }): (KeptPart, &Subsystem)| Placed {
+            part,
+            parameters: parameters.clone(),
+            reduced: reduced.clone(),
+            requirements: requirements.clone(),
+        };
+        Self { parts: parts.into_iter().map(placed).collect(), places, times }
+    }
+
+    /// Output times, s, up to the last row that all samples of all subsystems have reached.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// How far an output's values may be from the truth, in each row, anywhere in the box, and in which rows they
+    /// cannot be relied on.
+    pub fn error(&self, output: usize) -> &BandError {
+        let (part, place) = self.places[output];
+        &self.parts[part].part.errors[place]
+    }
+
+    /// Numbers of the uncertain parameters on which an output may depend.
+    pub fn parameters(&self, output: usize) -> &[usize] {
+        &self.parts[self.places[output].0].parameters
+    }
+
+    /// Whether an output is one polynomial of the parameters over the whole box in a row: then it takes nanoseconds,
+    /// else a loop closure.
+    pub fn is_polynomial(&self, row: usize, output: usize) -> bool {
+        let (part, place) = self.places[output];
+        self.parts[part].part.surrogate.is_polynomial(row, place)
+    }
+
+    /// The polynomial through an output's own samples in a row: its terms in ξ ∈ \[−1, 1\] of
+    /// [`parameters`](Self::parameters), and the coefficients before them. `None` where the box was split.
+    pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
+        let (part, place) = self.places[output];
+        self.parts[part].part.surrogate.polynomial(row, place)
+    }
+
+    /// Values of the polynomial through an output's own samples in a row, at samples of the model's box. `None` where
+    /// the box was split.
+    pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, output: usize, samples: &[P]) -> Option<Vec<f64>> {
+        let (number, place) = self.places[output];
+        let Placed { part, parameters, .. } = &self.parts[number];
+        let pick = |sample: &P| -> Vec<f64> { parameters.iter().map(|&own| sample.as_ref()[own]).collect() };
+        part.surrogate.own_values(row, &[place], &samples.iter().map(pick).collect::<Vec<_>>())
+    }
+
+    /// Margins of all requirements. `None` where the model has none, or one of them is not known.
+    pub fn margins(&self) -> Option<Margins<'_>> {
+        let asked = self.parts.iter().filter(|placed| !placed.requirements.is_empty());
+        Margins::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?).filter(|margins| margins.count() > 0)
+    }
+
+    /// All of so many reduced outputs. `None` where there are none, or one of them is not known.
+    pub fn reduced(&self, count: usize) -> Option<ReducedValues<'_>> {
+        let asked = self.parts.iter().filter(|placed| !placed.reduced.is_empty());
+        ReducedValues::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?, count).filter(|_| count > 0)
+    }
+
+    /// How many outputs there are: the model's, and what an analysis adds.
+    pub fn outputs(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Name and unit of an output.
+    pub fn named(&self, output: usize) -> (&str, &str) {
+        let (part, place) = self.places[output];
+        let own = &self.parts[part].part.simulator.system.outputs[place];
+        (&own.name, &own.unit)
+    }
+
+    /// Prepares evaluation: compiles the loop closures that outputs need.
+    ///
+    /// # Errors
+    /// Where a closure's equations have no finite values at the start.
+    pub fn evaluator(&self) -> Result<Evaluator<'_>, SimulationError> {
+        let closures = self.parts.iter().map(|placed| placed.part.closures()).collect::<Result<_, _>>()?;
+        Ok(Evaluator { kept: self, closures })
+    }
+}
+
+impl Evaluator<'_> {
+    /// Outputs in one row at samples of the model's box (values of all its uncertain parameters, in their units),
+    /// output by output, sample by sample; NaN where a closure has no solution. In parallel, with the same bits for any
+    /// number of threads.
+    pub fn values<P: AsRef<[f64]> + Sync>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
+        let chunks: Vec<Vec<f64>> =
+            samples.par_chunks(CHUNK).map(|samples| self.values_of_chunk(row, outputs, samples)).collect();
+        let mut values = Vec::with_capacity(outputs.len() * samples.len());
+        for place in 0..outputs.len() {
+            for (chunk, samples) in chunks.iter().zip(samples.chunks(CHUNK)) {
+                values.extend_from_slice(&chunk[place * samples.len()..][..samples.len()]);
+            }
+        }
+        values
+    }
+
+    fn values_of_chunk<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
+        let mut values = vec![f64::NAN; outputs.len() * samples.len()];
+        for (number, (Placed { part, parameters, .. }, closures)) in
+            self.kept.parts.iter().zip(&self.closures).enumerate()
+        {
+            let asked = |place: &usize| self.kept.places[outputs[*place]].0 == number;
+            let places: Vec<usize> = (0..outputs.len()).filter(asked).collect();
+            if places.is_empty() {
+                continue;
+            }
+            let pick = |sample: &P| parameters.iter().map(|&parameter| sample.as_ref()[parameter]).collect();
+            let own: Vec<Vec<f64>> = samples.iter().map(pick).collect();
+            let of_part: Vec<usize> = places.iter().map(|&place| self.kept.places[outputs[place]].1).collect();
+            let found = part.surrogate.values(row, (&of_part, &own), closures);
+            for (&place, found) in places.iter().zip(found.chunks_exact(samples.len().max(1))) {
+                values[place * samples.len()..][..samples.len()].copy_from_slice(found);
+            }
+        }
+        values
+    }
+}

@@ -1,0 +1,18 @@
+//! From what methods found under one schedule to bounds, a summary and kept surrogates.
+//!
+//! `results` is what was found, `conclude` makes bounds and the summary of it, with `analysis` and `assemblies`;
+//! `keeping` and `kept` keep surrogates for those who evaluate them after the run.
+
+mod analysis;
+mod assemblies;
+mod conclude;
+mod keeping;
+mod kept;
+mod results;
+
+pub use analysis::arrange;
+pub use assemblies::of as assemblies;
+pub use conclude::conclude;
+pub use keeping::keep_surrogate;
+pub use kept::{Evaluator, Kept};
+pub use results::{Ran, Results};

@@ -1,0 +1,31 @@
+//! Results of a subsystem's study, before they become bounds.
+
+use super::kept::KeptPart;
+use crate::results::{Bounds, Summary};
+use crate::simulate::SingularPass;
+use crate::study::bounding::{Attained, Bounded, Outcome};
+use crate::study::internal::InternalError;
+use crate::study::reduced::Found;
+
+/// Results under one schedule.
+pub struct Results {
+    pub bounded: Bounded,
+    /// Singular configurations that the nominal motion passes.
+    pub singular: Vec<SingularPass>,
+    /// Ends that were found along gradients, where they were searched for.
+    pub attained: Option<(Outcome, Attained)>,
+    /// Errors of this program; of what failed nothing is known.
+    pub internal: Vec<InternalError>,
+    /// Reduced outputs.
+    pub found: Found,
+}
+
+/// Bounds and summary of a subsystem.
+pub struct Ran {
+    pub bounds: Bounds,
+    pub summary: Summary,
+    /// Rows that every sample of every method has reached.
+    pub whole: usize,
+    /// The surrogate, where it is to be kept.
+    pub kept: Option<KeptPart>,
+}

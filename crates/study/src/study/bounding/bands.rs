@@ -1,0 +1,104 @@
+//! Bands of an output, with their errors, and what says that they are wrong: values that the run has simulated, and one
+//! another.
+
+use super::{Bounded, Outcome};
+use crate::methods::Method;
+use crate::numerics::{BandError, Range, carries, time_error, time_error_certified};
+use crate::results::Band;
+use crate::study::problem::Study;
+
+/// An output's band by every method, with its error. All that was simulated lies within.
+pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Vec<Band> {
+    let Some((validation, _)) = &bounded.validation else { return Vec::new() };
+    let corrections = validation.corrections(output, rows, bounded.switched_from());
+    let simulated: Vec<Range> = (0..rows).map(|row| bounded.seen.range(row, output)).collect();
+    let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
+        let found = &outcome.result.bands[output][..rows];
+        let is_sampled = method.about().is_sampled;
+        // A proven band needs no samples. (It may miss them by the rounding of the steps' equations.)
+        let widened = |(range, simulated): (&Range, &Range)| if is_sampled { range.with(*simulated) } else { *range };
+        let ranges: Vec<Range> = found.iter().zip(&simulated).map(widened).collect();
+        let halved = bounded.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
+        let by_halving = |row: usize| {
+            if let Some(halved) = halved {
+                return time_error_certified(found[row], halved[row]);
+            }
+            let (direct, halved) = (validation.direct.at(row, output), validation.halved.at(row, output));
+            let by_coordinates = outcome.result.steps[output][row];
+            let by_samples = time_error(found[row], &direct, &halved);
+            // Either is enough: what the validation samples near the ends show, if there are any, and what the
+            // coordinates' errors do to the ends, which is nothing where a range is saturated. (`min` passes over NaN.)
+            if by_coordinates.is_nan() || carries(found[row], &direct[..halved.len()]) {
+                by_samples.min(by_coordinates)
+            } else {
+                by_coordinates
+            }
+        };
+        // What halved steps have damped away too is added.
+        let damped = |row: usize| -> f64 {
+            bounded.doubts.damped.iter().map(|mode| mode.lost(output, bounded.plan.schedule.time(row))).sum()
+        };
+        let time: Vec<f64> = (0..rows).map(|row| corrections[row].of(by_halving(row)) + damped(row)).collect();
+        let with = |surrogate: &[f64]| {
+            BandError::new(&ranges, surrogate, &time, validation.spans[output], study.request.tolerance)
+        };
+        let surrogate = &outcome.result.surrogate[output][..rows];
+        let mut error = with(surrogate);
+        let held: Vec<Range> = match is_sampled {
+            true => simulated.clone(),
+            false => bounded.nominal_within(&study.domain, output)[..rows].to_vec(),
+        };
+        let contradicted = error.contradicted(found, &held);
+        if contradicted.contains(&true) {
+            let beyond = |row: usize| if contradicted[row] { found[row].misses(held[row]) } else { 0.0 };
+            let raised: Vec<f64> = (0..rows).map(|row| surrogate[row].max(beyond(row))).collect();
+            error = with(&raised);
+            (0..rows).filter(|&row| contradicted[row]).for_each(|row| error.distrust(row..row + 1));
+        }
+        if let Some(row) = bounded.unreliable_from() {
+            error.distrust(row..rows);
+        }
+        Band {
+            method: *method,
+            lower: ranges.iter().map(|range| range.lower).collect(),
+            upper: ranges.iter().map(|range| range.upper).collect(),
+            error,
+        }
+    };
+    let mut bands: Vec<Band> = bounded.methods.iter().enumerate().map(band).collect();
+    flag_exclusions(&mut bands);
+    bands
+}
+
+/// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. What is proven is
+/// not.
+fn flag_exclusions(bands: &mut [Band]) {
+    let rows = bands.first().map_or(0, |band| band.lower.len());
+    let mut excluded: Vec<(usize, usize)> = Vec::new();
+    for (a, b) in (0..bands.len()).flat_map(|b| (0..b).map(move |a| (a, b))) {
+        let (a_is_sampled, b_is_sampled) = (bands[a].method.about().is_sampled, bands[b].method.about().is_sampled);
+        for row in (0..rows).filter(|&row| exclude(&bands[a], &bands[b], row)) {
+            excluded.extend(a_is_sampled.then_some((a, row)));
+            excluded.extend(b_is_sampled.then_some((b, row)));
+        }
+    }
+    excluded.into_iter().for_each(|(band, row)| bands[band].error.distrust(row..row + 1));
+}
+
+/// Whether an end of two bands that are relied on in a row cannot be the same. A proven band holds the range, and may
+/// be wider.
+fn exclude(a: &Band, b: &Band, row: usize) -> bool {
+    let proven = [a, b].map(|band| !band.method.about().is_sampled);
+    let below = a.lower[row] - b.lower[row];
+    let above = b.upper[row] - a.upper[row];
+    // How far b reaches beyond a, and a beyond b.
+    let [b_beyond, a_beyond] = [below.max(above), (-below).max(-above)];
+    let apart = match proven {
+        [false, false] => a_beyond.max(b_beyond),
+        [true, false] => b_beyond,
+        [false, true] => a_beyond,
+        [true, true] => 0.0,
+    };
+    let are_relied_on = !a.error.unresolved[row] && !b.error.unresolved[row];
+    are_relied_on && apart > a.error.total[row] + b.error.total[row]
+}

@@ -1,0 +1,41 @@
+//! Constants of the room `formulation`.
+
+use crate::syntax::tuning::tuning;
+
+tuning! {
+    /// The choice of coordinates.
+    "study: formulation" {
+        /// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike:
+        /// what closures leave.
+        alike: f64 = 1e-6, moves "coordinates of mechanisms with loops";
+        /// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
+        cut_instructions: usize = 20_000, moves "cuts of loops, and so the last digits";
+        /// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the
+        /// plane and in space: long planar chains are as short in absolute coordinates, in space they never are.
+        deepest: [usize; 2] = [25, usize::MAX], moves "choice of coordinates of long chains";
+        /// The same where joints close loops: deep loops couple all that is between their ends.
+        deepest_of_loops: [usize; 2] = [25, 50], moves "choice of coordinates of long chains";
+        /// Ratio of the operations of an elimination to those of a step in the other coordinates from which on a
+        /// formulation is given up.
+        given_up: usize = 10, moves "choice of coordinates";
+        /// Weight of a step in a spherical joint's Euler parameters, which errs more than one in a body's own, whose
+        /// inertia is about its centre of mass: of the same length that of a heavy top by 8 times, with order two three
+        /// times as many steps.
+        longer_steps: usize = 3, moves "choice of coordinates in space";
+        /// Operations that are compiled in a moment: no formulation is given up for fewer.
+        soon: usize = 100_000, moves "choice of coordinates";
+        /// Most operations of the start's eliminations, or of the step's: in about a minute, and in 1 GB.
+        operations: usize = 8_000_000, moves "which models are refused";
+        /// The same in joint coordinates where only the start is wanted: in a second or two.
+        operations_of_check: usize = 1_000_000, moves "coordinates in which large models are checked";
+        /// Longest step in which the nominal motion is searched for singular configurations where a tolerance chooses
+        /// the steps, s.
+        longest_look: f64 = 1e-3, moves "choice of coordinates of loops";
+        /// Most steps of that search.
+        looks: f64 = 10_000.0, moves "choice of coordinates of loops";
+        /// Eliminations of the start.
+        eliminations: usize = 3, moves "choice of coordinates of large models";
+        /// Most bodies of a whole model that is compiled to be checked; larger models are only assembled.
+        few_bodies: usize = 50, moves "coordinates in which large models are checked";
+    }
+}

@@ -1,0 +1,104 @@
+//! A subsystem's question: the compiled mechanism, its box, and the methods that are asked for.
+
+use std::sync::OnceLock;
+
+use super::ensemble::{Motions, Progress, Stored};
+use super::reduced::Store;
+use super::{Options, RunError};
+use crate::methods::{BoundsRequest, Problem, can_compose};
+use crate::model::{Description, SchemeChoice, Stepping};
+use crate::numerics::ParameterBox;
+use crate::simulate::{Interruption, Schedule, Simulator, Steps, TimeFunctions};
+
+/// A compiled subsystem, and its questions.
+pub(super) struct Study<'a> {
+    pub(super) description: &'a Description,
+    pub(super) simulator: Simulator,
+    pub(super) domain: ParameterBox,
+    pub(super) request: BoundsRequest,
+    /// Functions of the time in the equations of motion, where there are any.
+    pub(super) time_functions: Option<TimeFunctions>,
+    /// Whether all samples are simulated with halved steps too.
+    pub(super) certify_time: bool,
+    /// Reductions of outputs to one number, and their values in samples, if any.
+    pub(super) store: OnceLock<Store>,
+    pub(super) progress: &'a (dyn Fn(f64) + Sync),
+    /// Called with the current activity.
+    pub(super) stage: &'a (dyn Fn(&str) + Sync),
+    /// Whether to stop with the finished parts.
+    pub(super) interruption: Interruption<'a>,
+    /// Where simulations are stored, if they are.
+    pub(super) stored: Option<Stored<'a>>,
+}
+
+/// What a subsystem is to its bounding methods.
+pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
+    let parameters = simulator.system.parameters.len();
+    let visits = simulator.system.analysis.visits();
+    Problem {
+        parameters,
+        composes: !visits && can_compose(parameters, simulator.system.q.len()),
+        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
+            && description.simulation.extrapolation.is_none()
+            && description.simulation.scheme != SchemeChoice::Explicit,
+        tolerance: description.bounds.tolerance,
+    }
+}
+
+impl<'a> Study<'a> {
+    /// Of a subsystem that is compiled already.
+    ///
+    /// # Errors
+    /// Where a method cannot bound it.
+    pub(super) fn new(
+        description: &'a Description,
+        simulator: Simulator,
+        options: &Options<'a>,
+    ) -> Result<Self, RunError> {
+        let parameters = &simulator.system.parameters;
+        let domain = ParameterBox {
+            nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
+            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
+            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+        };
+        let problem = problem(description, &simulator);
+        let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
+        let Options { certify_time, progress, stage, interrupted, .. } = *options;
+        let has_steps = !simulator.system.analysis.is_without_steps();
+        let time_functions =
+            if has_steps { TimeFunctions::of(&simulator, description.simulation.duration) } else { None };
+        let store = OnceLock::new();
+        Ok(Self {
+            description,
+            simulator,
+            domain,
+            request,
+            time_functions,
+            certify_time,
+            store,
+            progress,
+            stage,
+            interruption: Interruption::new(interrupted),
+            stored: None,
+        })
+    }
+
+    /// The same over a part of the box.
+    pub(super) fn over<'b>(&'b self, part: &ParameterBox, progress: &'b (dyn Fn(f64) + Sync)) -> Study<'b> {
+        let mut request = self.request.clone();
+        request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
+        let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
+        Study { domain: part.clone(), request, progress, simulator, time_functions, store: OnceLock::new(), ..*self }
+    }
+
+    /// Rows of output that are asked for.
+    pub(super) fn rows(&self) -> usize {
+        Schedule::rows_of(self.description.simulation.duration, self.description.simulation.output_step)
+    }
+
+    /// The motions with these steps.
+    pub(super) fn motions<'s>(&'s self, steps: Steps<'s>, progress: &'s Progress<'s>) -> Motions<'s> {
+        let motions = Motions::new(&self.simulator, &self.domain, steps, progress, self.interruption);
+        motions.keeping(self.store.get()).stored(self.stored)
+    }
+}

@@ -1,0 +1,225 @@
+//! Bounds of reduced outputs, by the methods that bound outputs.
+
+use super::Found;
+use super::ensemble::{ReducedEnsemble, Store};
+use super::evaluated::Evaluated;
+use super::keeping::kept_reduced;
+use super::plan::Plan;
+use super::verdicts::verdicts;
+use crate::methods::{
+    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated,
+    Until, Validation, ends_of_combinations,
+};
+use crate::model::ReducedOutput;
+use crate::numerics::{Ledger, Range, Sample};
+use crate::results::{
+    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
+};
+use crate::simulate::{Schedule, SimulationError};
+use crate::study::bounding::{Bounded, Doubts, Outcome, bands, contributions, simulation_error, timed};
+use crate::study::ensemble::Progress;
+use crate::study::problem::{Study, problem};
+use crate::study::stepping::{StepPlan, divided};
+
+/// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
+const MUCH: f64 = 4.0;
+
+/// Plans the reductions during the motions, by the nominal one.
+///
+/// # Errors
+/// Where that cannot be assembled.
+pub fn plan_reduction(study: &Study, plan: &StepPlan) -> Result<(), SimulationError> {
+    let description = study.description;
+    if (description.reduced.is_empty() && description.requirements.is_empty()) || study.store.get().is_some() {
+        return Ok(());
+    }
+    (study.stage)("nominal motion");
+    let plan = StepPlan { schedule: divided(study, plan.schedule.clone()).schedule, ..*plan };
+    let progress = Progress::new(usize::MAX, study.progress);
+    let motions = study.motions(plan.steps(), &progress);
+    // A deviation from the nominal motion is rounding in the nominal motion: opposite corners show its course.
+    let corner = |xi: f64| study.domain.sample(&vec![xi; study.domain.dimension()]);
+    let mut samples = vec![study.domain.nominal.clone()];
+    if study.domain.dimension() > 0 {
+        samples.extend([corner(-1.0), corner(1.0)]);
+    }
+    let (outputs, mut values) = (motions.outputs(), Vec::new());
+    let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
+    motions.simulate(&samples, sampling, &mut |_, rows| values.extend_from_slice(rows)).map_err(simulation_error)?;
+    let stride = outputs * samples.len();
+    let times: Vec<f64> = (0..values.len() / stride).map(|row| plan.schedule.time(row)).collect();
+    let of = |output: usize, sample: usize| -> Vec<f64> {
+        values.iter().skip(output * samples.len() + sample).step_by(stride).copied().collect()
+    };
+    let course = |output: usize| {
+        let wider = |a: Vec<f64>, b: Vec<f64>| if Range::of(&b).width() > Range::of(&a).width() { b } else { a };
+        // The nominal one, unless another moves much more.
+        let nominal = of(output, 0);
+        let widest = (1..samples.len()).map(|sample| of(output, sample)).fold(nominal.clone(), wider);
+        if Range::of(&widest).width() > MUCH * Range::of(&nominal).width() { widest } else { nominal }
+    };
+    study.store.get_or_init(|| Store::new(Plan::of(description, &times, &course)));
+    Ok(())
+}
+
+/// Bounds of reduced outputs and verdicts, from the samples of a schedule's bounds.
+///
+/// # Errors
+/// Where a sample cannot be assembled.
+pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Found, SimulationError> {
+    let Some(store) = study.store.get() else { return Ok(Found::default()) };
+    let begun = std::time::Instant::now();
+    (study.stage)("reduced outputs");
+    let (plan, schedule) = (&rows.plan, &rows.plan.schedule);
+    let finer = [plan.halved(), plan.at_odds()];
+    let motions = study.motions(plan.steps(), progress).noting(&rows.seen);
+    let [motions_halved, motions_odd] = finer.each_ref().map(|plan| study.motions(plan.steps(), progress));
+    let [halved, odd] = finer.each_ref().map(|plan| &plan.schedule);
+    let direct = ReducedEnsemble::new(&motions, store, schedule);
+    let with_halved = ReducedEnsemble::new(&motions_halved, store, halved);
+    let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
+    let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(odd) };
+    let mut results = bounds_of(study, ensembles, plan, halved)?;
+    let kept = kept_reduced(study, &mut results, &store.plan.values, rows.unreliable_from().is_some());
+    let unreliable = rows.unreliable_from().is_some();
+    results.note(&direct);
+    let values = Evaluated::new(study, &results, unreliable, store);
+    (study.stage)("requirements");
+    let requirements = match verdicts(study, &values, rows, [&direct, &with_halved]) {
+        Err(SimulationError::Interrupted) => Found::nothing(study.description).requirements,
+        found => found?,
+    };
+    // The search for a sample that fails has simulated some more.
+    results.note(&direct);
+    let values = Evaluated::new(study, &results, unreliable, store);
+    let reduced = study.description.reduced.iter().enumerate();
+    let contributions = contributions(study, &results, 1);
+    let reduced = reduced.map(|place| summary_of(study, place, &values, &contributions)).collect();
+    let simulations = motions.over() + motions_halved.over() + motions_odd.over();
+    let summary = (simulations > 0).then(|| MethodSummary {
+        method: "reduced outputs".to_owned(),
+        simulations,
+        steps: schedule.steps_before(schedule.rows - 1),
+        seconds: Some(begun.elapsed().as_secs_f64()),
+        ..MethodSummary::default()
+    });
+    Ok(Found { reduced, requirements, summary, kept })
+}
+
+/// What each sampled method finds of all values.
+fn bounds_of(
+    study: &Study,
+    ensembles: Ensembles,
+    plan: &StepPlan,
+    halved: &Schedule,
+) -> Result<Bounded, SimulationError> {
+    let (ensemble, schedule) = (ensembles.direct, &plan.schedule);
+    let nominal = nominal_values(study, ensemble)?;
+    let (nominal, ()) = timed(schedule, "nominal", || Ok((nominal, ())))?;
+    let seen = Ledger::new(1, ensemble.outputs());
+    let mut results = Bounded::new(plan.clone(), nominal, seen, Doubts::default());
+    let mut request = study.request.clone();
+    if request.is_empty() {
+        return Ok(results);
+    }
+    // A reduced output with kinks has no polynomial about the middle.
+    request.omit(Method::Taylor);
+    if request.methods().iter().all(|(method, _)| !method.about().is_sampled) {
+        request.ask(Method::Chebyshev, &problem(study.description, &study.simulator));
+    }
+    // Channels are to reduced outputs what coordinates are to outputs.
+    if let Some(chebyshev) = &mut request.chebyshev {
+        chebyshev.expand = Expand::Coordinates;
+    }
+    let sampled = request.methods().into_iter().filter(|(method, _)| method.about().is_sampled);
+    let sampled: Vec<(Method, &dyn BoundingMethod)> = sampled.collect();
+    let summary = MethodSummary { method: "validation".to_owned(), ..results.nominal.summary.clone() };
+    if study.domain.dimension() == 0 {
+        let known = (&results.nominal.result.bands[..], 1);
+        let validation = Validation::of_nominal(ensembles, known).map_err(simulation_error)?;
+        for (method, _) in sampled {
+            let known = |range: &Range| if range.lower.is_nan() { f64::NAN } else { 0.0 };
+            let own = &results.nominal.result;
+            let surrogate = own.bands.iter().map(|ranges| ranges.iter().map(known).collect()).collect();
+            let result = MethodResult { surrogate, ..own.clone() };
+            results.methods.push((method, timed(schedule, method.name(), || Ok((result, ())))?.0));
+        }
+        results.validation = Some((validation, summary));
+        return Ok(results);
+    }
+    let ends = ends_of_combinations(ensembles.direct);
+    let validation =
+        Validation::run(ensembles, Observed::Motion, study.request.degree(), ends).map_err(simulation_error)?;
+    let bound = |ensemble: &dyn Ensemble, schedule: &Schedule| {
+        let of_method = |&(method, own): &(Method, &dyn BoundingMethod)| {
+            let bound = || Ok((own.bound(ensemble, &validation, &request).map_err(simulation_error)?, ()));
+            Ok((method, timed(schedule, method.name(), bound)?.0))
+        };
+        sampled.iter().map(of_method).collect::<Result<Vec<(Method, Outcome)>, SimulationError>>()
+    };
+    results.methods = bound(ensemble, schedule)?;
+    if study.certify_time {
+        results.halved = bound(ensembles.halved, halved)?;
+    }
+    results.validation = Some((validation, summary));
+    Ok(results)
+}
+
+/// The nominal motion's values as bands without width.
+fn nominal_values(study: &Study, ensemble: &dyn Ensemble) -> Result<MethodResult, SimulationError> {
+    let mut bands = BandBuilder::new(ensemble.outputs(), 1);
+    let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
+    let nominal = std::slice::from_ref(&study.domain.nominal);
+    let mut take = |_, values: &[f64]| {
+        for (place, &value) in values.iter().enumerate() {
+            bands.set(0, place, Range { lower: value, upper: value }, 0.0);
+        }
+    };
+    ensemble.simulate(nominal, sampling, &mut take).map_err(simulation_error)?;
+    Ok(bands.finish(0, Simulated::default()))
+}
+
+fn summary_of(
+    study: &Study,
+    (place, reduced): (usize, &ReducedOutput),
+    values: &Evaluated,
+    contributions: &[Vec<Contribution>],
+) -> ReducedSummary {
+    let band = |band: Band| ReducedBand {
+        method: band.method.name().to_owned(),
+        lower: band.lower[0],
+        upper: band.upper[0],
+        error: band.error.total[0],
+        surrogate: band.error.surrogate,
+        time: band.error.time,
+        unresolved: band.error.unresolved[0] || values.unreliable,
+    };
+    let of_parameter = |contribution: &Contribution| ReducedContribution {
+        parameter: contribution.parameter.clone(),
+        main: contribution.main[0],
+        total: contribution.total[0],
+        width_without: contribution.width_without[0],
+    };
+    let mut contributions: Vec<ReducedContribution> =
+        contributions.get(place).into_iter().flatten().map(of_parameter).collect();
+    contributions.retain(|contribution| contribution.total.is_finite());
+    contributions.sort_by(|a, b| b.total.total_cmp(&a.total));
+    let known = || values.samples.iter().filter(|(_, values)| !values[place].is_nan());
+    let case = |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[place] };
+    let least = known().min_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
+    let greatest = known().max_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
+    let absent = values.samples.iter().find(|(_, values)| values[place].is_nan());
+    let absent = absent.map(|(sample, _)| sample.to_vec());
+    let occurs = Occurrence { samples: known().count(), of: values.samples.len(), absent };
+    ReducedSummary {
+        name: reduced.name.clone(),
+        of: reduced.text.clone(),
+        unit: reduced.unit.clone(),
+        display: study.description.display.get(&reduced.name).cloned(),
+        nominal: values.bounded.nominal.result.bands[place][0].lower,
+        bands: bands(study, values.bounded, place, 1).into_iter().map(band).collect(),
+        contributions,
+        worst: least.zip(greatest).map(|(least, greatest)| [least, greatest]),
+        occurs: (occurs.samples < occurs.of).then_some(occurs),
+    }
+}

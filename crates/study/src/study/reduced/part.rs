@@ -1,0 +1,19 @@
+//! Bounds of a part of a requirement's margin.
+
+/// Bounds of a part of a margin. What decides is the margin beside its error, however little or much it moves.
+pub struct Part {
+    pub lower: f64,
+    pub error: f64,
+    pub surrogate: f64,
+    pub time: f64,
+    /// Whether the error is to be believed.
+    pub is_known: bool,
+    pub method: &'static str,
+}
+
+impl Part {
+    /// What the margin may be with the error.
+    pub fn reached(&self) -> f64 {
+        self.lower - self.error
+    }
+}

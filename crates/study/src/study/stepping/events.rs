@@ -1,0 +1,91 @@
+//! Whether motions are cut at events, and the steps between them.
+
+use super::controlled::controlling_samples;
+use super::validated::may_extrapolate;
+use crate::methods::Method;
+use crate::model::Stepping;
+use crate::numerics::{Sample, spread};
+use crate::results::{EventSummary, MethodSummary};
+use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, segments_of};
+use crate::study::bounding::Switches;
+use crate::study::problem::{Study, problem};
+use crate::study::stepping::tuning::TUNING;
+
+/// Steps between the events that all samples meet, if there are any and all that is asked for follows from motions
+/// that are cut there.
+pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
+    if !may_be_cut(study) {
+        return Ok(None);
+    }
+    (study.stage)("searching for events");
+    let simulation = &study.description.simulation;
+    let times = (simulation.duration, simulation.output_step);
+    let of_steps = match simulation.stepping {
+        Stepping::Tolerance(tolerance) => Some(tolerance),
+        Stepping::Fixed(_) => None,
+    };
+    let asked = of_steps.into_iter().chain(study.request.tolerance).map(|tolerance| TUNING.event_share * tolerance);
+    let tolerance = asked.fold(TUNING.event_error, f64::min);
+    let segments = segments_of(&study.simulator, &study.domain, &event_samples(study), times.0, tolerance)?;
+    // A number that is accumulated over a motion is one of the whole of it.
+    let accumulates = !study.description.reduced.is_empty() || !study.description.requirements.is_empty();
+    let segments = segments.filter(|segments| !accumulates || segments.horizon >= times.0);
+    Ok(segments.map(|segments| Schedule::segmented(times, segments)))
+}
+
+/// The search for events, as a line of the summary: no sample met others.
+pub fn event_search(study: &Study, schedule: &Schedule) -> Switches {
+    let simulations = event_samples(study).len();
+    let found = SwitchSearch { unmet_from: None, switched_from: None, simulations, counters: Counters::default() };
+    let summary = MethodSummary {
+        method: "switches".to_owned(),
+        simulations,
+        steps: schedule.steps_before(schedule.rows - 1),
+        ..MethodSummary::default()
+    };
+    (found, summary)
+}
+
+/// Events that a part of the samples meets.
+pub fn events_of_parts(study: &Study, schedule: &Schedule) -> Vec<EventSummary> {
+    let parameters = &study.simulator.system.parameters;
+    let boundaries = schedule.segments().map_or(&[][..], |segments| &segments.boundaries);
+    let of_boundary = |boundary: &Boundary| {
+        let grazed = parameters.iter().zip(&boundary.grazed_at);
+        EventSummary {
+            event: boundary.event.name(&study.simulator).unwrap_or_default(),
+            samples: boundary.samples.iter().sum(),
+            met: boundary.samples[0],
+            grazed_at: grazed.filter_map(|(own, value)| Some((own.name.clone(), (*value)?))).collect(),
+        }
+    };
+    boundaries.iter().map(of_boundary).collect()
+}
+
+/// Samples that show the events: the controlling ones, and some spread over the box.
+fn event_samples(study: &Study) -> Vec<Sample> {
+    let mut samples = controlling_samples(study);
+    let k = study.domain.dimension();
+    samples.extend(study.domain.samples(&spread(k, TUNING.event_samples * k)));
+    samples
+}
+
+fn may_be_cut(study: &Study) -> bool {
+    let problem = problem(study.description, &study.simulator);
+    let methods = study.request.methods();
+    // What depends on nothing keeps the steps that it is given.
+    let within = match study.domain.dimension() {
+        0 => study.request.tolerance.is_some() || !problem.has_fixed_steps,
+        _ => methods.iter().all(|(_, method)| method.follows_events(&problem)),
+    };
+    // Errors of jets between events are larger than across contacts that the steps resolve: beside other methods,
+    // these steps are kept.
+    let within = within && (methods.len() == 1 || methods.iter().all(|(method, _)| *method != Method::Taylor));
+    may_extrapolate(study)
+        && within
+        && !methods.is_empty()
+        && !study.request.keep
+        && study.stored.is_none()
+        // Constraints that open later are not watched for.
+        && study.simulator.mobility.redundant.is_empty()
+}

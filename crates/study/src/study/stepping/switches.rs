@@ -1,0 +1,59 @@
+//! The search for contacts and kinks in the equations that no sample meets, as a part of a study.
+
+use std::time::Instant;
+
+use super::events::event_search;
+use crate::study::bounding::Switches;
+use crate::study::internal::{InternalError, caught};
+use crate::study::problem::Study;
+
+use crate::methods::Validation;
+use crate::results::MethodSummary;
+use crate::simulate::{Integration, SimulationError, Steps, unmet_switch};
+
+/// Searches the box for them; `None` where the equations have none.
+pub fn switches(
+    study: &Study,
+    steps: Steps<'_>,
+    validation: &Validation,
+    internal: &mut Vec<InternalError>,
+) -> Result<Option<Switches>, SimulationError> {
+    if study.interruption.is_asked() || study.simulator.system.analysis.is_without_steps() {
+        return Ok(None);
+    }
+    if steps.schedule.segments().is_some() {
+        return Ok(Some(event_search(study, steps.schedule)));
+    }
+    (study.stage)("searching for switches");
+    let begun = Instant::now();
+    let at_rows = steps.schedule.ending_at_rows();
+    let steps = Steps { schedule: &at_rows, ..steps };
+    let found = caught("the search for switches", || {
+        unmet_switch(&study.simulator, &study.domain, steps, &validation.points, study.interruption)
+    });
+    let found = match found {
+        Ok(found) => found?,
+        Err(error) => {
+            internal.push(error);
+            None
+        }
+    };
+    Ok(found.map(|mut found| {
+        // Steps that a tolerance decides end at switches.
+        if steps.controller.is_some() || steps.schedule.integration == Integration::Explicit {
+            found.switched_from = None;
+        }
+        let summary = MethodSummary {
+            method: "switches".to_owned(),
+            simulations: found.simulations,
+            steps: steps.schedule.steps_before(steps.schedule.rows - 1),
+            newton_iterations: found.counters.iterations,
+            rank_revealing_solves: found.counters.rank_revealing,
+            order: None,
+            boxes: None,
+            expanded_outputs: Vec::new(),
+            seconds: Some(begun.elapsed().as_secs_f64()),
+        };
+        (found, summary)
+    }))
+}

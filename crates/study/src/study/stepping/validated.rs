@@ -1,0 +1,71 @@
+//! Schedules that resolve as much as they can, and the samples that measure the error of their steps.
+
+use super::plan::StepPlan;
+use crate::methods::{Ensembles, Observed, Validation, ends_of_combinations};
+use crate::model::{SchemeChoice, Simulation, Stepping};
+use crate::simulate::{Divided, ExcitedMode, Integration, Schedule, SimulationError, excited_modes};
+use crate::study::bounding::simulation_error;
+use crate::study::ensemble::Progress;
+use crate::study::problem::Study;
+
+/// How steps are taken where no tolerance decides it.
+pub fn integration(study: &Study) -> Integration {
+    match study.description.simulation.scheme {
+        SchemeChoice::Explicit => Integration::Explicit,
+        _ => Integration::of_levels(study.description.simulation.extrapolation.unwrap_or(1)),
+    }
+}
+
+/// Whether a tolerance may choose levels of extrapolation. Certified bounds enclose the scheme itself.
+pub fn may_extrapolate(study: &Study) -> bool {
+    let Simulation { scheme, extrapolation, .. } = study.description.simulation;
+    let only_sampled = study.request.methods().iter().all(|(method, _)| method.about().is_sampled);
+    scheme == SchemeChoice::Auto && extrapolation.is_none() && only_sampled
+}
+
+/// A schedule with those steps divided that do not resolve a function of the time.
+pub fn divided(study: &Study, schedule: Schedule) -> Divided {
+    match &study.time_functions {
+        // Those have been resolved as they were chosen.
+        _ if schedule.passes_rows() => Divided { schedule, unresolved_from: None },
+        Some(functions) => functions.divided(&schedule),
+        None => Divided { schedule, unresolved_from: None },
+    }
+}
+
+/// Fast modes that are excited and that a schedule's steps damp. Steps that a tolerance decides follow them.
+pub fn damped_modes(study: &Study, schedule: &Schedule) -> Vec<ExcitedMode> {
+    let has_steps = !study.simulator.system.analysis.visits();
+    match study.description.simulation.stepping {
+        // The explicit method damps nothing.
+        Stepping::Fixed(_)
+            if has_steps
+                && !study.request.is_empty()
+                && !matches!(schedule.integration, Integration::Explicit | Integration::Segments) =>
+        {
+            // The finest level has the most weight.
+            let halvings = schedule.integration.order() - 2;
+            match halvings {
+                0 => excited_modes(&study.simulator, schedule),
+                _ => excited_modes(&study.simulator, &schedule.refined(1 << halvings)),
+            }
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The validation samples under a plan and finer ones.
+pub fn validation(
+    study: &Study,
+    plan: &StepPlan,
+    observed: Observed,
+    progress: &Progress,
+) -> Result<Validation, SimulationError> {
+    let plans = [plan.halved(), plan.at_odds()];
+    let direct = study.motions(plan.steps(), progress);
+    let [halved, odd] = plans.each_ref().map(|plan| study.motions(plan.steps(), progress));
+    let ratio = plan.schedule.ratio_to(&plans[1].schedule);
+    let ensembles = Ensembles { direct: &direct, halved: &halved, odd: &odd, ratio };
+    let ends = ends_of_combinations(ensembles.direct);
+    Validation::run(ensembles, observed, study.request.degree(), ends).map_err(simulation_error)
+}
