@@ -160,6 +160,12 @@ impl Attained {
         }
     }
 
+    /// From the least to the largest value of an output in a row.
+    pub fn range(&self, row: usize, output: usize) -> Option<Range> {
+        let [Some((lower, _)), Some((upper, _))] = self.ends[row * self.outputs + output] else { return None };
+        Some(Range { lower, upper })
+    }
+
     /// The value and the sample of an output's ends in a row, the least first.
     pub fn ends(&self, row: usize, output: usize) -> [Option<(f64, &Sample)>; 2] {
         self.ends[row * self.outputs + output].map(|end| end.map(|(value, number)| (value, &self.samples[number])))

@@ -213,8 +213,11 @@ impl<'a> Study<'a> {
         self.note_nominal(&nominal.result, &seen);
         if let Some((validation, _)) = &validation {
             validation.note(&seen);
+            let found = self.attained(&motions, &schedule, validation)?;
+            let followed = found.as_ref().map(|(_, _, followed)| followed);
+            let motions = self.motions(&schedule, tolerance, &progress).noting(&seen).following(followed);
             methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
-            attained = self.attained(&motions, &schedule)?;
+            attained = found.map(|(outcome, attained, _)| (outcome, attained));
             if self.certify_time && !self.interruption.is_asked() {
                 let schedule = schedule.refined(2);
                 let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
