@@ -2,11 +2,8 @@
 //!
 //! In some rows each end is climbed to from three points: from the middle of the box, where the signs of the gradient
 //! name a corner; from where a polynomial through values and gradients is largest; and from the best sample so far.
-//! Where the gradient is taken anew, its signs name the next corner, until they name the corner itself. A parameter
-//! along which the derivative changes its sign from one point to the next has an extreme between them: it goes where
-//! the secant of the derivative vanishes, which is a quasi-Newton step with a diagonal matrix, within the box. A step
-//! that does not improve the end is shortened. Each sample serves all rows; an end that another one's sample improves
-//! is climbed to once more from there, and the rows between begin at the best of all samples.
+//! From there on quasi-Newton steps within the box go on (`climb`). Each sample serves all rows; an end that another
+//! one's sample improves is climbed to once more from there, and the rows between begin at the best of all samples.
 //!
 //! An end is attained. Its error is what its gradient still promises, and how far the second best of its climbs stayed
 //! behind: where they agree, there is one end; where they do not, there may be a better one as far beyond.
@@ -24,7 +21,7 @@ use crate::methods::{
     BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, MethodResult, Observed, Sampling,
     Simulated, Until, Validation,
 };
-use crate::numerics::{Range, Sample, spread};
+use crate::numerics::{Range, SAFETY_OF_SURROGATE, Sample, spread};
 use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
 use climb::{Climb, End, Known};
 use surface::{Surface, Surfaces};
@@ -36,10 +33,13 @@ const MANY: usize = 6;
 const FOLLOWED: usize = 128;
 
 /// Steps of a climb.
-const STEPS: usize = 12;
+const STEPS: usize = 16;
 
 /// How often ends are climbed to from samples that others found.
 const SHARED: usize = 3;
+
+/// Corners from which ends are climbed to at which climbs do not agree.
+const DOUBTED: usize = 12;
 
 /// Simulations that a gradient in the last row costs, for the count; in earlier rows less.
 const COST: usize = 4;
@@ -150,6 +150,10 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         }
         self.follow(&mut climbs)?;
         self.share(&mut climbs)?;
+        let mut doubted = self.doubted(&mut climbs);
+        self.follow(&mut doubted)?;
+        climbs.append(&mut doubted);
+        self.share(&mut climbs)?;
         // Rows between them begin where the others ended.
         let between: Vec<End> = (0..rows)
             .filter(|row| !chosen.contains(row))
@@ -240,6 +244,18 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
             climbs.append(&mut better);
         }
         Ok(())
+    }
+
+    /// Climbs from other corners to ends at which those so far do not agree, or that they did not reach.
+    fn doubted(&self, climbs: &mut [Climb]) -> Vec<Climb> {
+        let corner = |point: Vec<f64>| -> Vec<f64> { point.into_iter().map(f64::signum).collect() };
+        let corners: Vec<Vec<f64>> = spread(self.study.domain.dimension(), DOUBTED).into_iter().map(corner).collect();
+        let is_doubted = |of_end: &&[Climb]| {
+            let open = self.open(of_end);
+            SAFETY_OF_SURROGATE * (open.promise + open.gap) > self.allowed[of_end[0].end.output]
+        };
+        let doubted: Vec<End> = by_end(climbs).filter(is_doubted).map(|of_end| of_end[0].end).collect();
+        doubted.iter().flat_map(|&end| corners.iter().map(move |corner| self.climb(end, corner.clone()))).collect()
     }
 
     /// Polynomials of outputs in some rows, as far as points are enough for any; `None` where gradients are not known.

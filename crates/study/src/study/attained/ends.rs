@@ -9,13 +9,13 @@ use crate::numerics::Range;
 /// Least error of an end, as a share of the one that is allowed: some climbs prove nothing.
 const LEAST_ERROR: f64 = 0.2;
 
-/// What climbs left open at both ends of an output in a row.
+/// What climbs left open at an end, or at both ends of an output in a row.
 #[derive(Clone, Copy, Default)]
-struct Open {
+pub(super) struct Open {
     /// Gradients there still promise so much.
-    promise: f64,
+    pub promise: f64,
     /// Second best climbs stayed so far behind the best.
-    gap: f64,
+    pub gap: f64,
 }
 
 impl AttainedSearch<'_, '_> {
@@ -30,15 +30,9 @@ impl AttainedSearch<'_, '_> {
         let (rows, outputs) = (self.motions.rows(), self.motions.outputs());
         let mut open = vec![Open::default(); rows * outputs];
         for of_end in by_end(climbs) {
-            let Some(best) = best(of_end) else { continue };
-            let end = best.end;
+            let (end, left) = (of_end[0].end, self.open(of_end));
             let known = &mut open[end.row * outputs + end.output];
-            known.promise = known.promise.max(best.promise());
-            let reached = self.best_sample(end).map_or(f64::INFINITY, |(value, _)| value);
-            let mut values: Vec<f64> =
-                of_end.iter().filter_map(|climb| climb.best.as_ref()).map(|known| known.value).collect();
-            values.sort_by(|a, b| b.total_cmp(a));
-            known.gap = known.gap.max(values.get(1).map_or(0.0, |second| reached - second));
+            *known = Open { promise: known.promise.max(left.promise), gap: known.gap.max(left.gap) };
         }
         let mut known = Vec::with_capacity(rows * outputs);
         for row in 0..rows {
@@ -57,6 +51,18 @@ impl AttainedSearch<'_, '_> {
             self.explain(&mut known, surfaces, followed);
         }
         known
+    }
+
+    /// What all climbs to one end left open.
+    pub(super) fn open(&self, of_end: &[Climb]) -> Open {
+        let reached = self.best_sample(of_end[0].end).map_or(f64::INFINITY, |(value, _)| value);
+        let known = of_end.iter().filter_map(|climb| climb.best.as_ref());
+        let mut values: Vec<f64> = known.map(|known| known.value).collect();
+        values.sort_by(|a, b| b.total_cmp(a));
+        Open {
+            promise: best(of_end).map_or(f64::INFINITY, Climb::promise),
+            gap: values.get(1).map_or(0.0, |second| reached - second),
+        }
     }
 
     /// Adds the parameters' shares: those of the polynomials in rows that are followed, and between these of both.

@@ -2,7 +2,7 @@
 //! parameters they come from.
 
 use crate::methods::Sensitivity;
-use crate::numerics::{GradientFit, ParameterBox, Range, SobolDecomposition, surrogate_error};
+use crate::numerics::{GradientFit, ParameterBox, Range, SobolDecomposition};
 
 /// The same for all rows and outputs.
 pub(super) struct Surfaces {
@@ -32,12 +32,6 @@ impl Surfaces {
     /// Where it is largest, or with the sign −1 least, by about.
     pub fn end(&self, Surface(coefficients): &Surface, sign: f64, start: &[f64]) -> Vec<f64> {
         self.fit.maximum(coefficients, sign, start)
-    }
-
-    /// Largest difference from simulated values at some ξ, as a share of the range of these.
-    pub fn defect(&self, Surface(coefficients): &Surface, points: &[Vec<f64>], simulated: &[f64]) -> f64 {
-        let own: Vec<f64> = points.iter().map(|xi| self.fit.value(coefficients, xi)).collect();
-        surrogate_error(&own, simulated) / Range::of(simulated).width()
     }
 
     /// Which parameters an output's spread comes from, given its range and where its ends are.
