@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use super::followed::FollowedEnds;
 use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
@@ -237,6 +238,11 @@ pub trait Ensemble: Sync {
     /// it; empty where that is not noted.
     fn seen(&self, _row: usize, _output: usize) -> Range {
         EMPTY
+    }
+
+    /// Ends of the outputs over the whole box that were followed along gradients, where they were.
+    fn followed(&self) -> Option<&FollowedEnds> {
+        None
     }
 
     /// Whether the results so far are enough.

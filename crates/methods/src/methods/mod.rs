@@ -6,6 +6,7 @@
 
 mod ensemble;
 mod expansion;
+mod followed;
 mod kept;
 mod registry;
 mod request;
@@ -23,6 +24,7 @@ pub use ensemble::{
     Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed,
     OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
+pub use followed::{Followed, FollowedEnds};
 pub use kept::KeptSurrogate;
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};

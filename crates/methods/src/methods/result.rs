@@ -111,11 +111,16 @@ impl BandBuilder {
         self.surrogate[output][row] = surrogate;
     }
 
+    /// Sets what one output's spread in one row comes from.
+    pub fn set_sensitivity(&mut self, row: usize, output: usize, sensitivity: Option<Sensitivity>) {
+        self.sensitivities[output][row] = sensitivity;
+    }
+
     /// Sets all that is estimated of one output in one row.
     pub fn set_estimate(&mut self, row: usize, output: usize, estimate: Estimate) {
         self.set(row, output, estimate.range, estimate.error);
         self.steps[output][row] = estimate.step_error;
-        self.sensitivities[output][row] = estimate.sensitivity;
+        self.set_sensitivity(row, output, estimate.sensitivity);
         self.expanded[output] |= estimate.is_expanded;
     }
 

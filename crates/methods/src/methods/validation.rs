@@ -67,6 +67,12 @@ impl ValidationTable {
         }
     }
 
+    /// Values of all outputs (output, sample), row by row as far as rows were reached.
+    pub fn of_outputs(&self) -> impl Iterator<Item = &[f64]> {
+        let (motions, lines) = (self.motions * self.samples, (self.motions + self.outputs) * self.samples);
+        self.values.chunks_exact(lines.max(1)).map(move |row| &row[motions..])
+    }
+
     /// The samples' motions (line, sample) in one row that was reached, where they were observed.
     pub fn motion(&self, row: usize) -> &[f64] {
         let first = row * (self.motions + self.outputs) * self.samples;

@@ -5,6 +5,7 @@
 //! - `ChebyshevBasis`: responses at its nodes → coefficients → [`PolynomialRange`];
 //! - [`SparseGrid`]: responses at nodes that grow where they are needed → `SparseTransform` → coefficients in a
 //!   [`SparseBasis`], for many parameters → [`SobolDecomposition`];
+//! - [`GradientFit`]: responses and their derivatives at few samples → coefficients, for many parameters;
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`SegmentMotions`]: responses cut at events;
@@ -25,6 +26,7 @@ mod error;
 mod evaluation;
 mod extent;
 mod extremes;
+mod gradient_fit;
 pub mod iso286;
 mod lattice;
 mod least_squares;
@@ -62,6 +64,7 @@ pub use error::{
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
+pub use gradient_fit::GradientFit;
 pub use least_squares::LeastSquares;
 pub use ledger::Ledger;
 pub use observed_order::{Correction, Differences, corrections};

@@ -1,85 +1,60 @@
-//! Attained ends: samples at which outputs are least and largest, found along gradients.
+//! Attained ends: samples at which outputs are least and largest, found along gradients, and bounds of them.
 //!
-//! In the middle of the box the signs of a gradient name a corner. There the gradient is taken anew, until its signs
-//! name the corner itself. A parameter along which the derivative changes its sign from one point to the next has an
-//! extreme between them: it goes where the secant of the derivative vanishes, which is a quasi-Newton step with a
-//! diagonal matrix, within the box. A step that does not improve the end is shortened.
+//! In some rows each end is climbed to from three points: from the middle of the box, where the signs of the gradient
+//! name a corner; from where a polynomial through values and gradients is largest; and from the best sample so far.
+//! From there on quasi-Newton steps within the box go on (`climb`). Each sample serves all rows; an end that another
+//! one's sample improves is climbed to once more from there, and the rows between begin at the best of all samples.
 //!
-//! All of it is simulated, so that bands are widened to it, and rows are distrusted in which it lies beyond a band's
-//! error. Each sample serves all rows, whichever it was found for.
+//! An end is attained. Its error is what its gradient still promises, and how far the second best of its climbs stayed
+//! behind: where they agree, there is one end; where they do not, there may be a better one as far beyond.
+
+mod climb;
+mod ends;
+mod surface;
+
+use std::time::Instant;
 
 use super::bounding::{Attained, Outcome, simulation_error, timed};
 use super::ensemble::Motions;
 use super::problem::Study;
-use crate::methods::{Budget, Chebyshev, Degree, Ensemble, MethodResult, Observed, Sampling, Simulated, Until};
-use crate::numerics::Sample;
+use crate::methods::{
+    BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, MethodResult, Observed, Sampling, Simulated,
+    Until, Validation,
+};
+use crate::numerics::{Range, SAFETY_OF_SURROGATE, Sample, spread};
 use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
+use climb::{Climb, End, Known};
+use surface::{Surface, Surfaces};
 
 /// Fewer parameters are searched by the surrogate alone, whose samples are dense enough.
 const MANY: usize = 6;
 
-/// Most rows, outputs and ends whose gradients are followed; the samples serve the others.
+/// Most ends that are climbed to from three points; more rows are climbed to from samples of those.
 const FOLLOWED: usize = 128;
 
-/// Rounds of gradients and steps.
-const ROUNDS: usize = 8;
+/// Steps of a climb.
+const STEPS: usize = 16;
 
-/// A step that promises less than this share of all parameters' influence is left out.
-const WORTH: f64 = 1e-3;
+/// How often ends are climbed to from samples that others found.
+const SHARED: usize = 3;
 
-/// Simulations that a gradient costs, for the count.
+/// Corners from which ends are climbed to at which climbs do not agree.
+const DOUBTED: usize = 12;
+
+/// Simulations that a gradient in the last row costs, for the count; in earlier rows less.
 const COST: usize = 4;
 
-/// Values of outputs, each with its gradient (in ξ).
-type Slopes = Vec<(f64, Vec<f64>)>;
+/// Work for each simulation of the budget: gradients count in full, and most of them are of shorter motions.
+const WORK: usize = 4;
 
-/// A point with a gradient (both in ξ).
-#[derive(Clone, Debug)]
-struct Known {
-    point: Vec<f64>,
-    /// Of the output, upwards for the upper end, downwards for the lower.
-    slope: Vec<f64>,
-}
+/// Most points of polynomials.
+const MOST_POINTS: usize = 32;
 
-/// An end that is followed.
-struct End {
-    row: usize,
-    output: usize,
-    /// 1 of the upper end, −1 of the lower.
-    sign: f64,
-    /// The best point so far, and its value times the sign.
-    best: Known,
-    value: f64,
-    /// The point before it, or the last that was not better.
-    other: Option<Known>,
-    /// Of the whole step.
-    share: f64,
-    /// Influence of all parameters on the output in the middle, by its gradient.
-    reach: f64,
-    is_done: bool,
-}
+/// Value of an output and its gradient (in ξ).
+type Slope = (f64, Vec<f64>);
 
-impl End {
-    /// The next point; `None` where nothing is to be gained.
-    fn step(&self) -> Option<Vec<f64>> {
-        let Known { point, slope } = &self.best;
-        let target = (0..point.len()).map(|axis| {
-            let (x, own) = (point[axis], slope[axis]);
-            if let Some(other) = &self.other {
-                let (from, before) = (other.point[axis], other.slope[axis]);
-                // An extreme between the two.
-                if before * own < 0.0 && from != x {
-                    return (x - own * (x - from) / (own - before)).clamp(-1.0, 1.0);
-                }
-            }
-            if own == 0.0 || !own.is_finite() { x } else { own.signum() }
-        });
-        let target: Vec<f64> = target.collect();
-        let gain: f64 = target.iter().zip(point).zip(slope).map(|((to, x), slope)| slope * (to - x)).sum();
-        let is_worth = gain.is_finite() && gain > WORTH * self.reach;
-        is_worth.then(|| target.iter().zip(point).map(|(to, x)| x + self.share * (to - x)).collect())
-    }
-}
+/// What the search found: its cost, the samples, and bounds.
+pub(super) type AttainedEnds = (Outcome, Attained, FollowedEnds);
 
 /// Searches the ends of all outputs over time; `None` where surrogates need no help, or motions have no gradients.
 /// The simulations are noted by `motions`.
@@ -90,27 +65,36 @@ pub(super) fn attained(
     study: &Study,
     motions: &Motions,
     schedule: &Schedule,
-) -> Result<Option<(Outcome, Attained)>, SimulationError> {
+    validation: &Validation,
+) -> Result<Option<AttainedEnds>, SimulationError> {
     let is_adaptive = matches!(&study.request.chebyshev, Some(Chebyshev { degree: Degree::Adaptive, .. }));
     let has_motion = !study.simulator.system.analysis.visits() && schedule.segments().is_none();
     // A smaller budget is left to the surrogate.
     let is_afforded = study.request.budget.simulations >= Budget::default().simulations;
     let is_wanted = is_adaptive && is_afforded && study.domain.dimension() >= MANY;
-    if !is_wanted || !has_motion || study.interruption.is_asked() {
+    let is_smooth = (0..motions.outputs()).all(|output| !motions.jumps(output));
+    if !is_wanted || !has_motion || !is_smooth || study.interruption.is_asked() {
         return Ok(None);
     }
     (study.stage)("attained ends");
     let found = timed(schedule, "attained", || {
-        let mut search = AttainedSearch::new(study, motions, schedule);
-        search.run()?;
-        let result = MethodResult { simulations: search.simulations, ..MethodResult::default() };
-        Ok((MethodResult { simulated: search.simulated, ..result }, search.attained))
+        let mut search = AttainedSearch::new(study, motions, schedule, validation);
+        let ends = search.run()?;
+        let result = MethodResult { simulations: search.work, ..MethodResult::default() };
+        Ok((MethodResult { simulated: search.simulated, ..result }, (search.attained, ends)))
     });
     match found {
         // Shards, or nobody, simulate the rest.
         Err(SimulationError::Deferred | SimulationError::Interrupted) => Ok(None),
-        found => found.map(Some),
+        found => found.map(|(outcome, (attained, ends))| Some((outcome, attained, ends?))),
     }
+}
+
+/// An output in a row whose ends are climbed to from several points.
+struct FollowedRow {
+    row: usize,
+    output: usize,
+    surface: Option<Surface>,
 }
 
 /// The search.
@@ -119,74 +103,198 @@ struct AttainedSearch<'s, 'm> {
     motions: &'s dyn Ensemble,
     schedule: &'s Schedule,
     attained: Attained,
-    simulations: usize,
+    /// Error allowed of each output.
+    allowed: Vec<f64>,
+    /// Simulations, and what gradients are worth.
+    work: usize,
+    begun: Instant,
     simulated: Simulated,
 }
 
 impl<'s, 'm> AttainedSearch<'s, 'm> {
-    fn new(study: &'s Study<'m>, motions: &'s dyn Ensemble, schedule: &'s Schedule) -> Self {
-        let attained = Attained::new(motions.rows(), motions.outputs());
-        Self { study, motions, schedule, attained, simulations: 0, simulated: Simulated::default() }
+    fn new(
+        study: &'s Study<'m>,
+        motions: &'s dyn Ensemble,
+        schedule: &'s Schedule,
+        validation: &'s Validation,
+    ) -> Self {
+        let mut attained = Attained::new(motions.rows(), motions.outputs());
+        let samples = study.domain.samples(&validation.points);
+        let of_samples = validation.direct.of_outputs().enumerate();
+        of_samples.for_each(|(row, values)| attained.note(row, &samples, values));
+        let tolerance = study.request.tolerance.unwrap_or(BoundsRequest::TOLERANCE);
+        let allowed = validation.spans.iter().map(|span| tolerance * span).collect();
+        let (work, begun, simulated) = (0, Instant::now(), Simulated::default());
+        Self { study, motions, schedule, attained, allowed, work, begun, simulated }
     }
 
-    fn run(&mut self) -> Result<(), SimulationError> {
-        let mut ends = self.begin()?;
-        for _ in 0..ROUNDS {
-            let steps: Vec<Option<Vec<f64>>> =
-                ends.iter().map(|end| if end.is_done { None } else { end.step() }).collect();
-            ends.iter_mut().zip(&steps).for_each(|(end, step)| end.is_done = step.is_none());
+    /// Ends of all rows and outputs; `None` where gradients do not reach them.
+    fn run(&mut self) -> Result<Option<FollowedEnds>, SimulationError> {
+        let (rows, outputs) = (self.motions.rows(), self.motions.outputs());
+        let every = (2 * rows * outputs).div_ceil(FOLLOWED).max(1);
+        let chosen: Vec<usize> = (0..rows).rev().step_by(every).collect();
+        let Some((surfaces, followed)) = self.surfaces(&chosen)? else { return Ok(None) };
+        let middle = vec![0.0; self.study.domain.dimension()];
+        let mut climbs = Vec::new();
+        for FollowedRow { row, output, surface } in &followed {
+            for sign in [-1.0, 1.0] {
+                let end = End { row: *row, output: *output, sign };
+                climbs.push(self.climb(end, middle.clone()));
+                climbs.extend(self.best_sample(end).map(|(_, point)| self.climb(end, point)));
+                if let (Some(surfaces), Some(surface)) = (&surfaces, surface) {
+                    climbs.push(self.climb(end, surfaces.end(surface, sign, &middle)));
+                }
+            }
+        }
+        self.follow(&mut climbs)?;
+        self.share(&mut climbs)?;
+        let mut doubted = self.doubted(&mut climbs);
+        self.follow(&mut doubted)?;
+        climbs.append(&mut doubted);
+        self.share(&mut climbs)?;
+        // Rows between them begin where the others ended.
+        let between: Vec<End> = (0..rows)
+            .filter(|row| !chosen.contains(row))
+            .flat_map(|row| (0..outputs).flat_map(move |output| [-1.0, 1.0].map(|sign| End { row, output, sign })))
+            .collect();
+        let mut others: Vec<Climb> = between
+            .into_iter()
+            .filter_map(|end| self.best_sample(end).map(|(_, point)| self.climb(end, point)))
+            .collect();
+        self.follow(&mut others)?;
+        climbs.append(&mut others);
+        self.share(&mut climbs)?;
+        // Of samples that stop nothing is known behind.
+        if self.simulated.stop.is_some() {
+            return Ok(None);
+        }
+        Ok(Some(FollowedEnds::new(outputs, self.ends(&mut climbs, surfaces.as_ref(), &followed))))
+    }
+
+    /// A climb to an end from a point.
+    fn climb(&self, end: End, start: Vec<f64>) -> Climb {
+        let width = self.attained.range(end.row, end.output).map_or(0.0, Range::width);
+        Climb::new(end, start, width, self.allowed[end.output])
+    }
+
+    /// The best sample so far of an end: its value, upwards, and ξ.
+    fn best_sample(&self, end: End) -> Option<(f64, Vec<f64>)> {
+        let (value, sample) = self.attained.ends(end.row, end.output)[end.side()]?;
+        Some((end.sign * value, self.study.domain.xi(sample)))
+    }
+
+    /// Whether time or simulations are used up.
+    fn is_spent(&self) -> bool {
+        let Budget { simulations, seconds } = self.study.request.budget;
+        self.study.interruption.is_asked()
+            || self.work >= WORK * simulations
+            || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
+    }
+
+    /// Goes on with climbs until all are done.
+    fn follow(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
+        for _ in 0..STEPS {
             let mut points: Vec<Vec<f64>> = Vec::new();
-            let numbers: Vec<Option<usize>> = steps
-                .into_iter()
-                .map(|step| {
-                    let step = step?;
-                    Some(points.iter().position(|known| *known == step).unwrap_or_else(|| {
-                        points.push(step);
-                        points.len() - 1
-                    }))
-                })
-                .collect();
-            if points.is_empty() || self.study.interruption.is_asked() {
+            let mut going: Vec<(&mut Climb, usize)> = Vec::new();
+            for climb in climbs.iter_mut().filter(|climb| !climb.is_done) {
+                let Some(step) = climb.step() else {
+                    climb.is_done = true;
+                    continue;
+                };
+                let number = points.iter().position(|known| *known == step).unwrap_or_else(|| {
+                    points.push(step);
+                    points.len() - 1
+                });
+                going.push((climb, number));
+            }
+            if points.is_empty() || self.is_spent() {
                 break;
             }
             self.simulate(&points)?;
-            let going: Vec<(&mut End, usize)> =
-                ends.iter_mut().zip(numbers).filter_map(|(end, number)| Some((end, number?))).collect();
-            let wanted = going.iter().map(|(end, number)| (*number, end.row, end.output)).collect::<Vec<_>>();
+            let wanted: Vec<Wanted> = going
+                .iter()
+                .map(|(climb, number)| Wanted { sample: *number, row: climb.end.row, output: climb.end.output })
+                .collect();
             let Some(found) = self.slopes(&points, &wanted)? else { break };
-            for ((end, number), (value, mut slope)) in going.into_iter().zip(found) {
-                slope.iter_mut().for_each(|slope| *slope *= end.sign);
-                end.take(Known { point: points[number].clone(), slope }, end.sign * value);
+            for ((climb, number), (value, slope)) in going.into_iter().zip(found) {
+                let sign = climb.end.sign;
+                let slope = slope.into_iter().map(|slope| sign * slope).collect();
+                climb.take(Known { point: points[number].clone(), value: sign * value, slope });
             }
         }
         Ok(())
     }
 
-    /// The ends that are followed, from the middle of the box.
-    fn begin(&mut self) -> Result<Vec<End>, SimulationError> {
-        let middle = vec![0.0; self.study.domain.dimension()];
-        self.simulate(std::slice::from_ref(&middle))?;
-        let (rows, outputs) = (self.motions.rows(), self.motions.outputs());
-        let every = (2 * rows * outputs).div_ceil(FOLLOWED).max(1);
-        let wanted: Vec<(usize, usize, usize)> =
-            (0..rows).rev().step_by(every).flat_map(|row| (0..outputs).map(move |output| (0, row, output))).collect();
-        let Some(found) = self.slopes(std::slice::from_ref(&middle), &wanted)? else { return Ok(Vec::new()) };
-        let ends = wanted.into_iter().zip(found).flat_map(|((_, row, output), (value, slope))| {
-            let reach: f64 = slope.iter().map(|slope| slope.abs()).sum();
-            let middle = middle.clone();
-            [1.0, -1.0].map(move |sign| End {
-                row,
-                output,
-                sign,
-                best: Known { point: middle.clone(), slope: slope.iter().map(|slope| sign * slope).collect() },
-                value: sign * value,
-                other: None,
-                share: 1.0,
-                reach,
-                is_done: reach == 0.0,
-            })
+    /// Climbs on from samples that are better than all climbs to an end.
+    fn share(&mut self, climbs: &mut Vec<Climb>) -> Result<(), SimulationError> {
+        for _ in 0..SHARED {
+            let mut better: Vec<Climb> = Vec::new();
+            for of_end in by_end(climbs) {
+                let Some(best) = best(of_end) else { continue };
+                let reached = best.best.as_ref().map_or(f64::NEG_INFINITY, |known| known.value);
+                let sample = self.best_sample(best.end).filter(|(value, _)| *value > reached + best.worth());
+                better.extend(sample.map(|(_, point)| self.climb(best.end, point)));
+            }
+            if better.is_empty() || self.is_spent() {
+                break;
+            }
+            self.follow(&mut better)?;
+            climbs.append(&mut better);
+        }
+        Ok(())
+    }
+
+    /// Climbs from other corners to ends at which those so far do not agree, or that they did not reach.
+    fn doubted(&self, climbs: &mut [Climb]) -> Vec<Climb> {
+        let corner = |point: Vec<f64>| -> Vec<f64> { point.into_iter().map(f64::signum).collect() };
+        let corners: Vec<Vec<f64>> = spread(self.study.domain.dimension(), DOUBTED).into_iter().map(corner).collect();
+        let is_doubted = |of_end: &&[Climb]| {
+            let open = self.open(of_end);
+            SAFETY_OF_SURROGATE * (open.promise + open.gap) > self.allowed[of_end[0].end.output]
+        };
+        let doubted: Vec<End> = by_end(climbs).filter(is_doubted).map(|of_end| of_end[0].end).collect();
+        doubted.iter().flat_map(|&end| corners.iter().map(move |corner| self.climb(end, corner.clone()))).collect()
+    }
+
+    /// Polynomials of outputs in some rows, as far as points are enough for any; `None` where gradients are not known.
+    fn surfaces(&mut self, rows: &[usize]) -> Result<Option<(Option<Surfaces>, Vec<FollowedRow>)>, SimulationError> {
+        let k = self.study.domain.dimension();
+        // Twice as many numbers as all terms up to the second degree.
+        let count = k + 2;
+        let mut points = vec![vec![0.0; k]];
+        points.extend(spread(k, count.min(MOST_POINTS)));
+        self.simulate(&points)?;
+        let outputs = self.motions.outputs();
+        let of_row = |row: usize| (0..outputs).map(move |output| (row, output));
+        let all: Vec<(usize, usize)> = rows.iter().flat_map(|&row| of_row(row)).collect();
+        let of_point = |sample: usize| all.iter().map(move |&(row, output)| Wanted { sample, row, output });
+        let wanted: Vec<Wanted> = (0..points.len()).flat_map(of_point).collect();
+        let Some(found) = self.slopes(&points, &wanted)? else { return Ok(None) };
+        let is_known = |(value, slopes): &Slope| value.is_finite() && slopes.iter().all(|slope| slope.is_finite());
+        if !found.iter().all(is_known) {
+            return Ok(None);
+        }
+        let spreads = self.spreads(&found, all.len());
+        let surfaces = Surfaces::new(&self.study.domain, points, &spreads);
+        let followed = all.iter().enumerate().map(|(place, &(row, output))| {
+            let samples: Vec<&Slope> = found.iter().skip(place).step_by(all.len()).collect();
+            FollowedRow { row, output, surface: surfaces.as_ref().map(|surfaces| surfaces.of(&samples)) }
         });
-        Ok(ends.collect())
+        let followed = followed.collect();
+        Ok(Some((surfaces, followed)))
+    }
+
+    /// How much the derivatives by each parameter vary from point to point, over the error that is allowed: by point,
+    /// and so many rows and outputs.
+    fn spreads(&self, found: &[Slope], lines: usize) -> Vec<f64> {
+        let spread = |axis: usize| {
+            let of_line = |line: usize| {
+                let slopes: Vec<f64> = found.iter().skip(line).step_by(lines).map(|(_, slopes)| slopes[axis]).collect();
+                Range::of(&slopes).width() / self.allowed[line % self.allowed.len()]
+            };
+            (0..lines).map(of_line).filter(|spread| spread.is_finite()).fold(0.0, f64::max)
+        };
+        (0..self.study.domain.dimension()).map(spread).collect()
     }
 
     /// Simulates points, and keeps those at which an output is least or largest.
@@ -203,22 +311,19 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         let simulated = self.motions.simulate(&samples, sampling, &mut |rows, values| {
             attained.note(rows.start, &samples, values);
         });
-        self.simulated.add(self.simulations, simulated.map_err(simulation_error)?);
-        self.simulations += samples.len();
+        self.simulated.add(self.work, simulated.map_err(simulation_error)?);
+        self.work += samples.len();
         Ok(())
     }
 
-    /// Values and gradients (in ξ) of outputs: by point, row and output. `None` where there are no gradients.
-    fn slopes(
-        &mut self,
-        points: &[Vec<f64>],
-        wanted: &[(usize, usize, usize)],
-    ) -> Result<Option<Slopes>, SimulationError> {
+    /// Values and gradients (in ξ) of outputs, one for each that is wanted of the points. `None` where there are no
+    /// gradients.
+    fn slopes(&mut self, points: &[Vec<f64>], wanted: &[Wanted]) -> Result<Option<Vec<Slope>>, SimulationError> {
         let study = self.study;
         let samples = study.domain.samples(points);
-        let wanted: Vec<Wanted> = wanted.iter().map(|&(sample, row, output)| Wanted { sample, row, output }).collect();
-        self.simulations += COST * wanted.len();
-        let found = match gradients(&study.simulator, self.schedule, &samples, &wanted, study.interruption) {
+        let rows: usize = wanted.iter().map(|wanted| wanted.row + 1).sum();
+        self.work += (COST * rows).div_ceil(self.motions.rows().max(1));
+        let found = match gradients(&study.simulator, self.schedule, &samples, wanted, study.interruption) {
             Err(NoGradient::Simulation(SimulationError::Interrupted)) => return Err(SimulationError::Interrupted),
             // Some corner cannot be assembled: the ends so far are kept.
             Err(_) => return Ok(None),
@@ -231,51 +336,14 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     }
 }
 
-impl End {
-    /// Takes in a point.
-    fn take(&mut self, found: Known, value: f64) {
-        let is_known = value.is_finite() && found.slope.iter().all(|slope| slope.is_finite());
-        if is_known && value > self.value {
-            self.other = Some(std::mem::replace(&mut self.best, found));
-            self.value = value;
-            self.share = 1.0;
-        } else {
-            self.share *= 0.5;
-            if is_known {
-                self.other = Some(found);
-            }
-        }
-    }
+/// The climb that reached most.
+fn best(climbs: &[Climb]) -> Option<&Climb> {
+    let value = |climb: &Climb| climb.best.as_ref().map_or(f64::NEG_INFINITY, |known| known.value);
+    climbs.iter().max_by(|a, b| value(a).total_cmp(&value(b)))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// −(x − a)² − … + b y: an extreme within, and one at the end.
-    #[test]
-    fn a_step_finds_what_lies_within_and_what_lies_at_an_end() {
-        let value = |point: &[f64]| -(point[0] - 0.3).powi(2) + 2.0 * point[1];
-        let slope = |point: &[f64]| vec![-2.0 * (point[0] - 0.3), 2.0];
-        let known = |point: Vec<f64>| Known { slope: slope(&point), point };
-        let middle = vec![0.0, 0.0];
-        let mut end = End {
-            row: 0,
-            output: 0,
-            sign: 1.0,
-            value: value(&middle),
-            best: known(middle),
-            other: None,
-            share: 1.0,
-            reach: 2.6,
-            is_done: false,
-        };
-        for _ in 0..4 {
-            let Some(step) = end.step() else { break };
-            let found = value(&step);
-            end.take(known(step), found);
-        }
-        assert!(end.step().is_none(), "{:?}", end.best);
-        assert!((end.best.point[0] - 0.3).abs() < 1e-12 && end.best.point[1] == 1.0, "{:?}", end.best);
-    }
+/// Climbs to the same end, end by end.
+fn by_end(climbs: &mut [Climb]) -> impl Iterator<Item = &[Climb]> {
+    climbs.sort_by_key(|climb| (climb.end.row, climb.end.output, climb.end.side()));
+    climbs.chunk_by(|a, b| a.end == b.end)
 }

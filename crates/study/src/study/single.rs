@@ -81,8 +81,11 @@ fn methods(study: &Study, plan: StepPlan) -> Result<Results, SimulationError> {
     let (mut methods, mut halved, mut attained) = (Vec::new(), Vec::new(), None);
     if let Some((validation, _)) = &validation {
         validation.note(&seen);
+        let ends = attained::attained(study, &motions, schedule, validation)?;
+        let followed = ends.as_ref().map(|(_, _, followed)| followed);
+        let motions = study.motions(plan.steps(), &progress).noting(&seen).following(followed);
         methods = bound(study, &motions, schedule, validation, &mut internal, |_| true)?;
-        attained = attained::attained(study, &motions, schedule)?;
+        attained = ends.map(|(outcome, attained, _)| (outcome, attained));
         if study.certify_time && !study.interruption.is_asked() {
             let finer = plan.halved();
             let motions = study.motions(finer.steps(), &progress);

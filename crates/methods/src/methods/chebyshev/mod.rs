@@ -38,6 +38,10 @@ use sensitivity::SensitivityAnalysis;
 /// The least share of a tolerance that is left to the surrogate, whatever the steps take.
 const LEAST_SHARE: f64 = 0.25;
 
+/// For more parameters a sparse grid is not tried where ends that were followed along gradients miss the tolerance: its
+/// nodes and its own search for ends grow with a power of their number.
+const MOST_ON_GRIDS: usize = 12;
+
 /// Highest degree, and most nodes along an axis.
 pub(super) const MOST_ORDER: usize = 200;
 pub(super) const MOST_NODES: usize = 1000;
@@ -318,6 +322,12 @@ fn adapted(
     }
     if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
         return Ok(found);
+    }
+    // A surrogate that is to be kept is one of the whole box.
+    if let Some(followed) = ensemble.followed().filter(|_| !request.keep)
+        && (ensemble.domain().dimension() > MOST_ON_GRIDS || followed.meet(&goal.allowed, goal.rows))
+    {
+        return Ok(followed.result());
     }
     let adapted = adaptive::search(ensemble, goal, validation, request.keep)?;
     let outputs = ensemble.outputs();

@@ -1,6 +1,6 @@
 //! Attained ends: the samples at which outputs are least and largest.
 
-use crate::numerics::Sample;
+use crate::numerics::{Range, Sample};
 
 /// The samples at which each output is least and largest in each row, of those that were searched for them.
 pub struct Attained {
@@ -31,6 +31,12 @@ impl Attained {
                 }
             }
         }
+    }
+
+    /// From the least to the largest value of an output in a row.
+    pub fn range(&self, row: usize, output: usize) -> Option<Range> {
+        let [Some((lower, _)), Some((upper, _))] = self.ends[row * self.outputs + output] else { return None };
+        Some(Range { lower, upper })
     }
 
     /// The value and the sample of an output's ends in a row, the least first.

@@ -6,6 +6,7 @@ mod dense;
 mod jet;
 mod nominal;
 mod progress;
+mod reducing;
 mod stored;
 mod told;
 mod visits;
@@ -19,10 +20,10 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::price::instructions_of_step;
-use super::reduced::{Store, steps_of};
+use super::reduced::Store;
 use crate::compile::{self, has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, OfParameters};
+use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, FollowedEnds, OfParameters};
 use crate::methods::{Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
@@ -63,6 +64,8 @@ pub(super) struct Motions<'a> {
     channels: &'a [Channel],
     /// Notes all simulated values.
     ledger: Option<&'a Ledger>,
+    /// Ends that were followed along gradients, where they were.
+    followed: Option<&'a FollowedEnds>,
     /// Simulations that are over: at the end, or where they stopped.
     over: AtomicUsize,
     /// Made when something is enclosed.
@@ -85,7 +88,7 @@ impl<'a> Motions<'a> {
         let Steps { schedule, controller: tolerance } = steps;
         let over = AtomicUsize::new(0);
         let (certifier, jumps) = (OnceLock::new(), OnceLock::new());
-        let (store, stored, channels, ledger) = (None, None, &[][..], None);
+        let (store, stored, channels, ledger, followed) = (None, None, &[][..], None, None);
         Self {
             simulator,
             domain,
@@ -96,6 +99,7 @@ impl<'a> Motions<'a> {
             store,
             channels,
             ledger,
+            followed,
             over,
             certifier,
             jumps,
@@ -108,31 +112,14 @@ impl<'a> Motions<'a> {
         Self { ledger: Some(ledger), ..self }
     }
 
-    /// The same, which also reduces outputs to one number.
-    pub fn keeping(self, store: Option<&'a Store>) -> Self {
-        Self { store, channels: store.map_or(&[], |store| &store.plan.channels), ..self }
-    }
-
     /// The same, whose simulations are stored.
     pub fn stored(self, stored: Option<Stored<'a>>) -> Self {
         Self { stored, ..self }
     }
 
-    /// The same, which reduces outputs to one number by these channels, for others to keep.
-    pub fn reducing(self, channels: &'a [Channel]) -> Self {
-        Self { channels, ..self }
-    }
-
-    /// By what outputs are reduced to one number.
-    pub fn channels(&self) -> &'a [Channel] {
-        self.channels
-    }
-
-    /// Keeps what outputs of samples were reduced to elsewhere.
-    pub fn keep_reduced(&self, samples: &[Sample], reduced: &[f64]) {
-        if let Some(store) = self.store.filter(|_| !reduced.is_empty()) {
-            store.keep(steps_of(self.schedule), samples, reduced);
-        }
+    /// The same, of whose outputs ends are known.
+    pub fn following(self, followed: Option<&'a FollowedEnds>) -> Self {
+        Self { followed, ..self }
     }
 
     /// Steps, and the tolerance of their local errors.
@@ -288,6 +275,10 @@ impl Ensemble for Motions<'_> {
 
     fn seen(&self, row: usize, output: usize) -> Range {
         self.ledger.map_or(EMPTY, |ledger| ledger.range(row, output))
+    }
+
+    fn followed(&self) -> Option<&FollowedEnds> {
+        self.followed
     }
 
     fn is_interrupted(&self) -> bool {

@@ -1,0 +1,54 @@
+//! Polynomials through values and gradients at a few points of the box: where ends are to be searched for, and which
+//! parameters they come from.
+
+use crate::methods::Sensitivity;
+use crate::numerics::{GradientFit, ParameterBox, Range, SobolDecomposition};
+
+/// The same for all rows and outputs.
+pub(super) struct Surfaces {
+    fit: GradientFit,
+    decomposition: SobolDecomposition,
+    /// ξ of the nominal parameters.
+    nominal: Vec<f64>,
+}
+
+/// An output in a row as a polynomial.
+pub(super) struct Surface(Vec<f64>);
+
+impl Surfaces {
+    /// Through samples at these ξ, at which derivatives by the parameters vary so much; `None` where they are too few.
+    pub fn new(domain: &ParameterBox, points: Vec<Vec<f64>>, spreads: &[f64]) -> Option<Self> {
+        let fit = GradientFit::new(points, spreads)?;
+        let decomposition = SobolDecomposition::new(fit.basis());
+        let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
+        Some(Self { fit, decomposition, nominal })
+    }
+
+    /// From values and gradients (in ξ) at the samples.
+    pub fn of(&self, samples: &[&(f64, Vec<f64>)]) -> Surface {
+        Surface(self.fit.coefficients(samples.iter().map(|(value, slopes)| (*value, slopes.as_slice()))))
+    }
+
+    /// Where it is largest, or with the sign −1 least, by about.
+    pub fn end(&self, Surface(coefficients): &Surface, sign: f64, start: &[f64]) -> Vec<f64> {
+        self.fit.maximum(coefficients, sign, start)
+    }
+
+    /// Which parameters an output's spread comes from, given its range and where its ends are.
+    pub fn sensitivity(&self, Surface(coefficients): &Surface, range: Range, ends: [&[f64]; 2]) -> Sensitivity {
+        let k = self.nominal.len();
+        let (main, total) = match self.decomposition.indices(coefficients) {
+            Some(indices) => (indices.main, indices.total),
+            // Nothing varies.
+            None => (vec![0.0; k], vec![0.0; k]),
+        };
+        // What an end loses by a parameter is the polynomial's difference; its value there may be off.
+        let moved = |end: &[f64], axis: usize| {
+            let mut place = end.to_vec();
+            place[axis] = self.nominal[axis];
+            self.fit.value(coefficients, &place) - self.fit.value(coefficients, end)
+        };
+        let without = |axis: usize| (range.width() + moved(ends[1], axis) - moved(ends[0], axis)).max(0.0);
+        Sensitivity { main, total, width_without: (0..k).map(without).collect() }
+    }
+}
