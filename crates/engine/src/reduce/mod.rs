@@ -71,6 +71,9 @@ pub struct Reduction {
 impl Reduction {
     /// Of a model.
     pub fn of(description: &Description, choices: Choices) -> Self {
+        if description.black_box.is_some() {
+            return Self::whole(description);
+        }
         let mut whole = description.clone();
         let welds = if choices.merge { welds::merge(&mut whole) } else { Vec::new() };
         let mut couplings = Couplings::of(&whole);
@@ -122,6 +125,18 @@ impl Reduction {
             welds: welds.map(|weld| (whole.joints[weld.joint].name.clone(), weld.obstacle)).collect(),
             subsystems,
         }
+    }
+
+    /// A model that has no parts.
+    fn whole(description: &Description) -> Self {
+        let subsystem = Subsystem {
+            outputs: (0..description.outputs.len()).collect(),
+            reduced: (0..description.reduced.len()).collect(),
+            requirements: (0..description.requirements.len()).collect(),
+            parameters: (0..description.uncertain().count()).collect(),
+            description: description.clone(),
+        };
+        Self { subsystems: vec![subsystem], left_out: Vec::new(), welds: Vec::new() }
     }
 
     /// The simulated parts as one model.

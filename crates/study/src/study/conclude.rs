@@ -102,8 +102,13 @@ pub(super) fn contributions(study: &Study, results: &Results, rows: usize) -> Ve
 /// What happened where a sample stopped, for people.
 fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> String {
     let parameters = study.simulator.with_names(sample);
-    let Stop { sample: index, time, cause, .. } = *stop;
-    match cause {
+    let Stop { sample: index, time, .. } = *stop;
+    match stop.cause.clone() {
+        StopCause::NoAnswer { why } => {
+            let place = study.description.black_box.as_ref().map(|own| own.place.clone()).unwrap_or_default();
+            let failed = SimulationError::NoAnswer { place, why, parameters };
+            format!("{failed}; bounds that need it are unknown, a scan is of the others")
+        }
         StopCause::SingularJet => {
             format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
         }
@@ -177,6 +182,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
         analysis: study.analysis_summary(),
+        black_box: study.source.as_ref().and_then(|source| source.summary()),
         parameters: system
             .parameters
             .iter()

@@ -1,5 +1,6 @@
 //! `mbint explain`: what a model is compiled to.
 
+use super::black_box::needs_mechanism;
 use super::decisions::{decisions, uncertain};
 use super::effect_costs::effect_costs;
 use super::prepared::{Prepared, prepare};
@@ -18,6 +19,7 @@ const MOST_NAMED: usize = 8;
 /// # Errors
 /// Where it cannot be built or assembled.
 pub fn explain(description: &Description) -> Result<Explanation, RunError> {
+    needs_mechanism(description, "a list of what a step takes")?;
     let model = reduced::expanded(description);
     let (reduction, prepared) = prepare(&model, Choices::default())?;
     let of_subsystem = |Prepared { subsystem, simulator }: &Prepared| {

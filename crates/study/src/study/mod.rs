@@ -15,6 +15,7 @@ mod analysis;
 mod assemblies;
 mod attained;
 mod bands;
+mod black_box;
 mod comparison;
 mod conclude;
 mod controlled;
@@ -173,7 +174,9 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
     let allowance = Allowance::begin();
-    let interrupted = || (options.interrupted)() || (!options.costly && allowance.is_spent());
+    // Nothing tells how long a program takes.
+    let is_limited = !options.costly && description.black_box.is_none();
+    let interrupted = || (options.interrupted)() || (is_limited && allowance.is_spent());
     let options = Options { interrupted: &interrupted, allowance: Some(&allowance), ..options };
     let found = pool.install(|| {
         if model.statistics.asked {

@@ -1,7 +1,8 @@
 //! One subsystem's study: the step schedule that all samples share, and the methods under it.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
+use super::black_box::Source;
 use super::ensemble::{Motions, Progress, Stored};
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results, Tried};
@@ -38,6 +39,8 @@ pub(super) struct Study<'a> {
     pub(super) interruption: Interruption<'a>,
     /// Where simulations are stored, if they are.
     pub(super) stored: Option<Stored<'a>>,
+    /// The program that answers instead of a mechanism, if one does.
+    pub(super) source: Option<Arc<Source>>,
 }
 
 /// What a subsystem is to its bounding methods.
@@ -50,6 +53,7 @@ pub(super) fn problem(description: &Description, simulator: &Simulator) -> Probl
         has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
             && description.simulation.extrapolation.is_none()
             && description.simulation.scheme != SchemeChoice::Explicit,
+        has_equations: description.black_box.is_none(),
         tolerance: description.bounds.tolerance,
     }
 }
@@ -89,6 +93,7 @@ impl<'a> Study<'a> {
             stage,
             interruption: Interruption::new(interrupted),
             stored: None,
+            source: Source::of(description).map(Arc::new),
         })
     }
 
@@ -97,7 +102,8 @@ impl<'a> Study<'a> {
         let mut request = self.request.clone();
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
         let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
-        Study { domain: part.clone(), request, progress, simulator, time_functions, store: OnceLock::new(), ..*self }
+        let (store, source) = (OnceLock::new(), self.source.clone());
+        Study { domain: part.clone(), request, progress, simulator, time_functions, store, source, ..*self }
     }
 
     /// Rows of output that are asked for.
@@ -113,7 +119,7 @@ impl<'a> Study<'a> {
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
         let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interruption);
-        motions.keeping(self.store.get()).stored(self.stored)
+        motions.keeping(self.store.get()).stored(self.stored).answered_by(self.source.as_deref())
     }
 
     /// Whether samples reach the end: the validation samples, or with a tolerance the controlling samples.
@@ -165,6 +171,7 @@ impl<'a> Study<'a> {
             Stepping::Fixed(step) => {
                 let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
                 let results = self.methods(&schedule.taken(self.integration()), None)?;
+                self.repeat(&results)?;
                 Ok(self.conclude(results, None))
             }
             Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),

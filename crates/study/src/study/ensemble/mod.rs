@@ -17,6 +17,7 @@ use symdiff::Expr;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use super::black_box::Source;
 use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
 use crate::compile::{self, has_kink, jumps};
@@ -69,6 +70,8 @@ pub(super) struct Motions<'a> {
     jumps: OnceLock<Vec<bool>>,
     /// Where simulations are stored, if they are.
     stored: Option<Stored<'a>>,
+    /// The program that answers instead of a mechanism, if one does.
+    pub(super) source: Option<&'a Source>,
 }
 
 impl<'a> Motions<'a> {
@@ -98,6 +101,7 @@ impl<'a> Motions<'a> {
             certifier,
             jumps,
             stored,
+            source: None,
         }
     }
 
@@ -114,6 +118,11 @@ impl<'a> Motions<'a> {
     /// The same, whose simulations are stored.
     pub fn stored(self, stored: Option<Stored<'a>>) -> Self {
         Self { stored, ..self }
+    }
+
+    /// The same, whose samples a program answers.
+    pub fn answered_by(self, source: Option<&'a Source>) -> Self {
+        Self { source, ..self }
     }
 
     /// The same, which reduces outputs to one number by these channels, for others to keep.
