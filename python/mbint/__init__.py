@@ -8,6 +8,7 @@ The command ``mbint`` does the work; this package writes its input and reads its
 """
 
 from ._command import MbintError, command, version
+from .functions import bounds
 from .gradients import gradient
 from .questions import Allocation, allocate, check, cost, snapshot, sweep
 from .result import Result
@@ -20,6 +21,7 @@ __all__ = [
     "Result",
     "Study",
     "allocate",
+    "bounds",
     "check",
     "command",
     "cost",

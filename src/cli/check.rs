@@ -12,7 +12,7 @@ use crate::model::{self, Description};
 use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
 use crate::study::{self, Ready, RunError};
-use crate::syntax::Diagnostics;
+use crate::syntax::{Diagnostics, harmless};
 
 /// More names than this are counted, the first few of them named.
 const MOST_NAMED: usize = 12;
@@ -98,6 +98,9 @@ struct Counts {
     /// Analysis, unless it is a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     analysis: Option<&'static str>,
+    /// The program that answers instead of a mechanism; `check` does not start it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    black_box: Option<Vec<String>>,
     /// Parts that no output depends on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     not_simulated: Vec<String>,
@@ -209,6 +212,7 @@ impl Counts {
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
             spatial_because: model.space.because().map(str::to_owned),
             analysis: model.analysis.in_words(),
+            black_box: model.black_box.as_ref().map(|own| own.command.clone()),
             not_simulated: left_out,
             asks: price.map(|price| price.to_string()),
             structure,
@@ -218,6 +222,16 @@ impl Counts {
 
 impl Counts {
     fn lines(&self) -> String {
+        if let Some(command) = &self.black_box {
+            return format!(
+                "ok {BOLD}{}{BOLD:#}: {}, {}, answered by `{}`, which a run starts\n{}",
+                self.model,
+                count(self.outputs.len(), "output", "outputs"),
+                count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
+                harmless(&command.join(" ")),
+                self.asks.as_ref().map_or_else(String::new, |asks| format!("  a run asks first: {asks}\n")),
+            );
+        }
         let redundant = match &self.redundant_constraints[..] {
             [] => "no redundant constraints".to_owned(),
             names => {
@@ -284,6 +298,7 @@ mod tests {
             analysis: None,
             not_simulated: vec![],
             asks: None,
+            black_box: None,
             structure: Structure {
                 mobility: MobilityCount {
                     spatial: false,

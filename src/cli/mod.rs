@@ -4,6 +4,7 @@
 mod allocate;
 mod args;
 mod assemblies;
+mod black_box;
 mod check;
 mod console;
 mod cost;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::black_box;
 use super::console::{BOLD, coordinates, count, file_names};
 use super::structure::digits;
 use super::table::{Align, Table};
@@ -261,14 +262,16 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
             method.seconds.map_or_else(|| "–".to_owned(), |seconds| format!("{seconds:.3}")),
         ]);
     }
-    let mut text = format!(
-        "{BOLD}{}{BOLD:#}: {}, {}, {}\n\n{}\n",
-        summary.model,
-        coordinates(summary.coordinates, &summary.formulation),
-        count(summary.constraints, "constraint", "constraints"),
-        count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
-        table.render(2),
-    );
+    let kind = match &summary.black_box {
+        Some(own) => black_box::heading(own),
+        None => format!(
+            "{}, {}, {}",
+            coordinates(summary.coordinates, &summary.formulation),
+            count(summary.constraints, "constraint", "constraints"),
+            count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
+        ),
+    };
+    let mut text = format!("{BOLD}{}{BOLD:#}: {kind}\n\n{}\n", summary.model, table.render(2));
     text += &super::assemblies::lines(&summary.assemblies);
     text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
     match &summary.analysis {
@@ -278,6 +281,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
             text += &found.as_ref().map_or_else(String::new, analysis);
         }
     }
+    text += &summary.black_box.as_ref().map_or_else(String::new, black_box::lines);
     text += &contributions(&summary.contributions);
     text += &verdicts::tables(summary);
     text += &super::statistics::statistics(summary);
@@ -333,6 +337,7 @@ mod tests {
             alpha: -0.1,
             duration: 2.0,
             analysis: None,
+            black_box: None,
             parameters: vec![],
             assemblies: vec![],
             methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],

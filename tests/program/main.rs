@@ -6,6 +6,7 @@
 mod allocate;
 mod analyses;
 mod bad_models;
+mod black_box;
 mod book;
 mod check_and_run;
 mod cli;

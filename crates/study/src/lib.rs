@@ -11,6 +11,7 @@ use mbint_methods::methods;
 use mbint_model::{elements, model};
 use mbint_numerics::numerics;
 
+mod black_box;
 pub mod results;
 pub mod store;
 pub mod study;

@@ -16,7 +16,7 @@ pub(in crate::cli) struct SampleArgs {
     #[command(flatten)]
     pub points: PointArgs,
 
-    /// File of the samples [default: samples.npz, or samples.csv].
+    /// File of the samples, `-` for standard output [default: samples.npz, or samples.csv].
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
@@ -39,7 +39,7 @@ pub(in crate::cli) struct SampleArgs {
 #[derive(Clone, Debug, Default, Args)]
 pub(in crate::cli) struct PointArgs {
     /// Simulate at the points of this table: a column for each parameter, in SI units, under its name; parameters
-    /// without a column are nominal.
+    /// without a column are nominal. `-` is standard input.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub points: Option<PathBuf>,
 

@@ -61,6 +61,8 @@ pub(super) fn target(output: Option<PathBuf>, format: Option<FileFormat>) -> (Pa
         Some(FileFormat::Csv) => SampleFormat::Csv,
         Some(FileFormat::Npz) => SampleFormat::Npz,
         None if output.as_ref().is_some_and(is_csv) => SampleFormat::Csv,
+        // A table can go on in a pipe.
+        None if output.as_deref() == Some(Path::new("-")) => SampleFormat::Csv,
         None => SampleFormat::Npz,
     };
     let name = if format == SampleFormat::Csv { "samples.csv" } else { "samples.npz" };
@@ -166,7 +168,8 @@ impl Sampling<'_> {
             );
             console.warning(&message);
         }
-        if let Some((path, _)) = self.output.filter(|_| !self.quiet) {
+        let is_file = |(path, _): &(&Path, SampleFormat)| *path != Path::new("-");
+        if let Some((path, _)) = self.output.filter(is_file).filter(|_| !self.quiet) {
             let samples = count(points.count(), "sample", "samples");
             console.print(&format!("{BOLD}{name}{BOLD:#}: {samples} in {}\n", path.display()))?;
             if !description.reduced.is_empty() {

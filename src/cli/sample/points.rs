@@ -1,10 +1,13 @@
 //! Points at which a model is sampled: a table, or a design over its tolerances.
 
+use std::fs::File;
+use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::cli::Failure;
 use crate::cli::args::PointArgs;
+use crate::model::is_standard_input;
 use crate::numerics::{Design, MOST_AXES, ParameterBox};
 use crate::store::AskedPoints;
 
@@ -54,8 +57,11 @@ impl Points {
 
     fn table(path: &Path) -> Result<Self, Failure> {
         let wrong = |message: String| Failure::Wrong(format!("{}: {message}", path.display()));
-        let reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_path(path);
-        let mut reader = reader.map_err(|error| wrong(error.to_string()))?;
+        let from: Box<dyn Read> = match is_standard_input(path) {
+            true => Box::new(std::io::stdin().lock()),
+            false => Box::new(File::open(path).map_err(|error| wrong(error.to_string()))?),
+        };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(from);
         let headings = reader.headers().map_err(|error| wrong(error.to_string()))?;
         let names: Vec<String> = headings.iter().map(str::to_owned).collect();
         if let Some(twice) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {

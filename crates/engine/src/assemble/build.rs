@@ -137,7 +137,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     let cut = if joint { m.tree.closing(description) } else { Vec::new() };
     let formulation = FormulationInfo { joint, why: "the model asks for them".to_owned(), cut };
     let (analysis, modes) = (description.analysis, questions.modes.clone().into_owned());
-    let is_derived = questions.outputs.iter().any(|output| output.of_results);
+    let is_derived = description.black_box.is_some() || questions.outputs.iter().any(|output| output.of_results);
     let declared_parameters = if is_derived { description.parameters.clone() } else { Vec::new() };
     let mass_of_bodies = m.total_mass();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);

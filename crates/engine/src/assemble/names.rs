@@ -48,6 +48,6 @@ fn least_context(symbol: Symbol) -> Context {
         Symbol::RollPitchYaw { .. } => Context::Positions,
         Symbol::Reaction { .. } => Context::Motion,
         Symbol::Sensor { measure, .. } if measure.is_motion() => Context::Motion,
-        Symbol::Sensor { .. } | Symbol::Energy(_) => Context::Everything,
+        Symbol::Sensor { .. } | Symbol::Energy(_) | Symbol::BlackBox { .. } => Context::Everything,
     }
 }

@@ -68,6 +68,8 @@ impl<'g> Mechanism<'g, '_> {
         match symbol {
             Symbol::Parameter(index) => self.parameters[index],
             Symbol::Time => self.time,
+            // Outputs of answers are no part of the equations.
+            Symbol::BlackBox { .. } => g.number(f64::NAN),
             Symbol::Trajectory { trajectory, order } => self.trajectory(trajectory, order),
             Symbol::Coordinate { body, coordinate, order } => self.bodies[body].motion(order)[dof(coordinate)],
             Symbol::AngularMotion { body, axis, order, in_body } => {
@@ -180,6 +182,7 @@ impl<'g> Mechanism<'g, '_> {
         outputs
             .map(|output| {
                 let Output { name, formula, unit, dimension, of_results } = output.clone();
+                let of_results = of_results || self.questions.description.black_box.is_some();
                 let expr = match of_results {
                     true => self.g.number(0.0),
                     false => self.formula(&formula, Context::Everything)?,

@@ -63,7 +63,7 @@ impl Dependencies {
                     formulas.for_each(|formula| self.add(description, formula));
                 }
                 Some(Symbol::Energy(_)) => self.everything = true,
-                Some(Symbol::Time) | None => {}
+                Some(Symbol::Time | Symbol::BlackBox { .. }) | None => {}
             }
         }
     }

@@ -131,8 +131,12 @@ pub fn narrow(description: &mut Description, left: &[usize]) {
 }
 
 /// By parameter, whether a requirement of numbers of a motion or of results names it, which no equation may:
-/// `stroke <= room`.
+/// `stroke <= room`. All are required by a black box.
 pub fn required(description: &Description) -> Vec<bool> {
+    if description.black_box.is_some() {
+        // The program gets all of them.
+        return vec![true; description.parameters.len()];
+    }
     let of_numbers = description.requirements.iter().filter(|own| own.times.is_none()).flat_map(|own| &own.slacks);
     let of_results = description.outputs.iter().filter(|own| own.of_results).map(|own| &own.formula);
     let named = Dependencies::by(description, of_numbers.chain(of_results)).parameters;

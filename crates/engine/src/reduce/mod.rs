@@ -73,6 +73,9 @@ pub struct Reduction {
 impl Reduction {
     /// Of a model.
     pub fn of(description: &Description, choices: Choices) -> Self {
+        if description.black_box.is_some() {
+            return Self::whole(description);
+        }
         let welds = if choices.merge { welds::welds(description) } else { Vec::new() };
         let mut merged = vec![false; description.joints.len()];
         welds.iter().for_each(|weld| merged[weld.joint] = weld.obstacle.is_none());
@@ -124,6 +127,19 @@ impl Reduction {
             welds: welds.map(|weld| (description.joints[weld.joint].name.clone(), weld.obstacle)).collect(),
             subsystems,
         }
+    }
+
+    /// A model that has no parts.
+    fn whole(description: &Description) -> Self {
+        let subsystem = Subsystem {
+            outputs: (0..description.outputs.len()).collect(),
+            reduced: (0..description.reduced.len()).collect(),
+            requirements: (0..description.requirements.len()).collect(),
+            parameters: (0..description.uncertain().count()).collect(),
+            merged: vec![false; description.joints.len()],
+            description: description.clone(),
+        };
+        Self { subsystems: vec![subsystem], left_out: Vec::new(), welds: Vec::new() }
     }
 
     /// The simulated parts as one model.

@@ -3,6 +3,7 @@
 use super::error::SimulationError;
 use super::modal::is_one_number;
 use crate::assemble::{NumberFormulas, System};
+use crate::model::Analysis;
 
 /// Results that a message lists at most.
 const LISTED: usize = 8;
@@ -25,7 +26,8 @@ impl Derived {
     pub fn of(system: &System) -> Result<Option<Self>, SimulationError> {
         let places: Vec<usize> =
             (0..system.outputs.len()).filter(|&place| system.outputs[place].is_derived()).collect();
-        if places.is_empty() {
+        // Those of a black box follow from its answers.
+        if places.is_empty() || system.analysis == Analysis::BlackBox {
             return Ok(None);
         }
         let formulas: Vec<_> = places.iter().filter_map(|&place| system.outputs[place].of_results.clone()).collect();

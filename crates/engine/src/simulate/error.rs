@@ -45,6 +45,24 @@ pub enum SimulationError {
         /// What stands against it.
         why: String,
     },
+    /// A program that stands for a mechanism cannot be started.
+    #[error("{place}: black box: {why}")]
+    BlackBox {
+        /// Where the model names it.
+        place: String,
+        /// The system's reason.
+        why: String,
+    },
+    /// A program that stands for a mechanism has no answer for a sample.
+    #[error("{place}: the black box has no answer with {}: {why}", parameter_list(parameters))]
+    NoAnswer {
+        /// Where the model names it.
+        place: String,
+        /// What it did, with its last words.
+        why: String,
+        /// The sample.
+        parameters: NamedValues,
+    },
     /// A speed follows a state where other constraints decide it.
     #[error(
         "joint `{joint}` gives a speed by a state where other joints or motors decide it already: leave one of them out, or let all follow the same state"

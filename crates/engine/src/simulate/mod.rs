@@ -67,4 +67,4 @@ pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;
 pub use unmet_switch::{SwitchSearch, unmet_switch};
-pub use visit::Visit;
+pub use visit::{Visit, reduced_rows};

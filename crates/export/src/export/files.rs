@@ -201,6 +201,7 @@ mod tests {
             alpha: -0.1,
             duration: 1.0,
             analysis: None,
+            black_box: None,
             parameters: vec![],
             assemblies: vec![],
             methods: vec![],

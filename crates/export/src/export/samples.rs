@@ -1,6 +1,6 @@
 //! Samples → one file: an archive of NumPy's arrays (`.npz`), or a table. They are written as they come.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::Path;
 
 use rawzip::ZipArchiveWriter;
@@ -16,7 +16,7 @@ const AT_ONCE: usize = 4096;
 /// Gets values (sample, row, output) of consecutive samples.
 pub type Keep<'k> = dyn FnMut(&[f64]) -> Result<(), ExportError> + 'k;
 
-/// Writes all samples; the file appears when it is whole. `fill` gives the values, and says whether these were all.
+/// Writes all samples; the file appears when it is whole, and `-` is standard output. `fill` gives the values, and says whether these were all.
 ///
 /// # Errors
 /// Where the file cannot be written, and those of `fill`.
@@ -27,8 +27,12 @@ pub fn write_samples<E: From<ExportError>>(
     fill: impl FnOnce(&mut Keep) -> Result<bool, E>,
 ) -> Result<bool, E> {
     let failed = |source| ExportError::Write { path: path.to_owned(), source };
+    let is_standard_output = path == Path::new("-");
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let file = tempfile::Builder::new().prefix(".samples-").tempfile_in(folder).map_err(failed)?;
+    let mut builder = tempfile::Builder::new();
+    let builder = builder.prefix(".samples-");
+    let file = if is_standard_output { builder.tempfile() } else { builder.tempfile_in(folder) };
+    let file = file.map_err(failed)?;
     let file = BufWriter::with_capacity(1 << 18, file);
     let done = match format {
         SampleFormat::Npz => npz(file, table, fill, failed)?,
@@ -36,8 +40,17 @@ pub fn write_samples<E: From<ExportError>>(
     };
     let Some(file) = done else { return Ok(false) };
     let file = file.into_inner().map_err(|error| failed(error.into_error()))?;
-    persist(file, path).map_err(failed)?;
+    let written = if is_standard_output { copy_out(file) } else { persist(file, path) };
+    written.map_err(failed)?;
     Ok(true)
+}
+
+/// Writes the file to standard output.
+fn copy_out(mut file: NamedTempFile) -> io::Result<()> {
+    file.as_file_mut().rewind()?;
+    let mut out = io::stdout().lock();
+    io::copy(file.as_file_mut(), &mut out)?;
+    out.flush()
 }
 
 /// Gives the file its name, and lets others read it.

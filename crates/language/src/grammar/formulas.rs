@@ -243,6 +243,9 @@ impl<S: SymbolTable> Reader<'_, S> {
             let per_time = |dimension: Dimension, _| dimension.per(Dimension::TIME);
             return dimension.map_or(Kind::Any, |value| Kind::motion((0..order as usize).fold(value, per_time)));
         }
+        if let Symbol::BlackBox { output } = symbol {
+            return Kind::motion(self.model.black_box_dimension(output));
+        }
         names::kind(symbol, &self.kinds)
     }
 

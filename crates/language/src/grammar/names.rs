@@ -207,7 +207,8 @@ fn word(table: &impl SymbolTable, word: &str) -> Option<Symbol> {
     }
     let value = |trajectory| Symbol::Trajectory { trajectory, order: TimeOrder::Position };
     let parameter = table.parameter(word).map(Symbol::Parameter);
-    parameter.or_else(|| state(table, word)).or_else(|| table.trajectory(word).map(value))
+    let answer = || table.black_box(word).map(|output| Symbol::BlackBox { output });
+    parameter.or_else(|| state(table, word)).or_else(|| table.trajectory(word).map(value)).or_else(answer)
 }
 
 /// Named parts of a trajectory: its derivatives.
@@ -331,6 +332,7 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
         (Context::Time, _) => Some("only parameters and t can stand here: this value does not follow the motion"),
         (_, Symbol::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
         (_, Symbol::Energy(_)) => Some("only outputs may use energies"),
+        (_, Symbol::BlackBox { .. }) => Some("only outputs may use what a black box answers"),
         (Context::Effect, Symbol::Sensor { measure, .. }) if measure.is_motion() => None,
         (Context::Command, Symbol::Sensor { measure, .. })
             if measure.is_motion() && measure.name() == Sensor::VALUE.name() =>
@@ -377,7 +379,7 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
 }
 
 /// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations,
-/// trajectories and of what effects measure are the reader's.
+/// trajectories, black boxes and of what effects measure are the reader's.
 pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
     Kind::motion(match symbol {
         Symbol::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
@@ -391,6 +393,6 @@ pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
         Symbol::Reaction { component, .. } if component.is_torque() => Dimension::TORQUE,
         Symbol::Energy(_) => Dimension::TORQUE,
         Symbol::Reaction { .. } => Dimension::FORCE,
-        Symbol::Sensor { .. } | Symbol::Trajectory { .. } => return Kind::Any,
+        Symbol::Sensor { .. } | Symbol::Trajectory { .. } | Symbol::BlackBox { .. } => return Kind::Any,
     })
 }

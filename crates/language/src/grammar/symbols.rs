@@ -53,6 +53,13 @@ pub trait SymbolTable {
     /// What a joint that is an equation sets equal to something else.
     fn equated(&self, joint: usize) -> Option<&Formula>;
 
+    /// The output of a black box of a name.
+    fn black_box(&self, name: &str) -> Option<usize>;
+    /// The dimension of an output of a black box.
+    fn black_box_dimension(&self, output: usize) -> Dimension;
+    /// Names of the outputs of a black box.
+    fn black_box_outputs(&self) -> impl Iterator<Item = &str> + Clone;
+
     /// Names of the instances of assemblies, and of effects on many, which have dots in the names of their parts.
     fn instances(&self) -> impl Iterator<Item = &str> + Clone;
     /// The body or the point of a body that a port of an instance is.
@@ -208,6 +215,11 @@ pub enum Symbol {
         trajectory: usize,
         /// Its value or a derivative.
         order: TimeOrder,
+    },
+    /// What a black box answers, by its name.
+    BlackBox {
+        /// Index of its output.
+        output: usize,
     },
     /// `energy`, `kinetic_energy`, `potential_energy`, J.
     Energy(EnergyKind),

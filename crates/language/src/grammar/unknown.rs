@@ -87,11 +87,15 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
         return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
     }
     let parameters = table.parameters().filter(|known| is_said(known));
-    let energies = if context == Context::Output { ENERGIES.map(|(energy, _)| energy).to_vec() } else { Vec::new() };
+    let mut others: Vec<&str> = Vec::new();
+    if context == Context::Output {
+        others.extend(table.black_box_outputs());
+        others.extend(ENERGIES.iter().filter(|_| others.is_empty()).map(|(energy, _)| *energy).collect::<Vec<_>>());
+    }
     let help = match name {
         "time" if context != Context::Constant => Some("the time is `t`".to_owned()),
         "PI" | "Pi" | "π" => Some("did you mean `pi`?".to_owned()),
-        _ => suggest::help_beside(name, "parameters", parameters, &energies),
+        _ => suggest::help_beside(name, "parameters", parameters, &others),
     };
     let infinite = matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan");
     let message =

@@ -45,6 +45,9 @@ impl Registered for Certified {
 
 impl BoundingMethod for Certified {
     fn fit(&mut self, problem: &Problem) -> Result<(), Refusal> {
+        if !problem.has_equations {
+            return Err(Refusal::no_equations("certified"));
+        }
         let parameters = problem.parameters;
         if parameters > MOST_PARAMETERS {
             let message = format!("certified bounds are for at most two uncertain parameters, not {parameters}");

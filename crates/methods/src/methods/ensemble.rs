@@ -54,7 +54,7 @@ pub struct Sampling {
 }
 
 /// Why a sample stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StopCause {
     /// A step did not converge; the equation with the largest residual.
     NotConverged {
@@ -70,10 +70,15 @@ pub enum StopCause {
     },
     /// The sample goes on, but its jet does not: the Newton matrix is singular.
     SingularJet,
+    /// A program that stands for a mechanism has no answer.
+    NoAnswer {
+        /// Why, for people.
+        why: String,
+    },
 }
 
 /// Where a sample stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// Number of the sample.
     pub sample: usize,

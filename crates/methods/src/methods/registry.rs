@@ -15,6 +15,13 @@ use crate::numerics::ParameterBox;
 pub struct Refusal(pub String);
 
 impl Refusal {
+    /// Equations are needed, and a black box has none.
+    pub(super) fn no_equations(method: &str) -> Self {
+        Self(format!(
+            "`{method}` needs the equations of motion, and a black box has none: ask for `chebyshev` or `scan`"
+        ))
+    }
+
     /// More simulations than can be run.
     pub(super) fn too_many(method: &str, simulations: f64, parameters: usize) -> Self {
         Self(format!(

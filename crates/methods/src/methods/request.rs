@@ -42,6 +42,8 @@ pub struct Problem {
     pub composes: bool,
     /// Whether all steps have a given length.
     pub has_fixed_steps: bool,
+    /// Whether there are equations of motion; a black box has none.
+    pub has_equations: bool,
     /// Error allowed of the bounds.
     pub tolerance: Option<f64>,
 }
@@ -89,7 +91,7 @@ fn keys_of_bounds() -> &'static [&'static str] {
 
 /// A problem of which only the request is known.
 fn unspecified(parameters: usize, tolerance: Option<f64>) -> Problem {
-    Problem { parameters, composes: true, has_fixed_steps: true, tolerance }
+    Problem { parameters, composes: true, has_fixed_steps: true, has_equations: true, tolerance }
 }
 
 fn tolerance<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Option<f64> {

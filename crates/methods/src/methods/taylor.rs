@@ -7,7 +7,7 @@ use symdiff::jet::JetSpace;
 use super::BoundsRequest;
 use super::chebyshev::segments;
 use super::ensemble::{Ensemble, EnsembleError, JET_WORK};
-use super::registry::{About, BoundingMethod, CostCurve, Registered, Varied};
+use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, Budget, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
@@ -107,6 +107,10 @@ impl Registered for Taylor {
 }
 
 impl BoundingMethod for Taylor {
+    fn fit(&mut self, problem: &Problem) -> Result<(), Refusal> {
+        if problem.has_equations { Ok(()) } else { Err(Refusal::no_equations("taylor")) }
+    }
+
     fn degree(&self) -> usize {
         self.order
     }

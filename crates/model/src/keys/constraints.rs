@@ -35,11 +35,12 @@ pub fn constrain(schema: &mut Schema) {
 const POSITIVE: &str = "exclusiveMinimum";
 const NONNEGATIVE: &str = "minimum";
 
-/// A model stands alone, or on a robot.
+/// A model stands alone, on a robot, or on a program.
 fn of_model(root: &mut Map<String, Value>) {
     let without_time =
         json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes"] } } });
-    root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time]));
+    let black_box = json!({ "required": ["black_box"] });
+    root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time, black_box]));
     let kinematics = json!({ "required": ["analysis"], "properties": { "analysis": { "const": "kinematics" } } });
     let massive = json!({ "bodies": massive(), "assemblies": { "additionalProperties": { "properties": { "bodies": massive() } } } });
     let moved_by_forces =
@@ -57,7 +58,7 @@ fn of_model(root: &mut Map<String, Value>) {
         },
         "allOf": [moved_by_forces(json!({ "bodies": not_only_points }))]
     });
-    root.insert("if".to_owned(), json!({ "not": { "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }] } }));
+    root.insert("if".to_owned(), json!({ "not": { "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }, { "required": ["black_box"] }] } }));
     root.insert("then".to_owned(), alone);
     root.insert("allOf".to_owned(), json!([moved_by_forces(massive)]));
     root.insert("dependentRequired".to_owned(), json!({ "base": ["urdf"], "controls": ["mjcf"] }));

@@ -5,6 +5,7 @@
 use schemars::Schema;
 use schemars::transform::{RecursiveTransform, Transform};
 
+mod black_box;
 mod bodies;
 mod constraints;
 mod model;
@@ -15,6 +16,7 @@ mod run;
 mod statistics;
 mod values;
 
+pub use black_box::*;
 pub use bodies::*;
 pub use model::*;
 pub use parts::*;
@@ -91,6 +93,8 @@ mod tests {
     #[test]
     fn the_reader_and_the_schema_know_the_same_keys() {
         same_keys::<File>();
+        same_keys::<BlackBoxFile>();
+        same_keys::<RefineFile>();
         same_keys::<Scene>();
         same_keys::<SceneSimulation>();
         same_keys::<Parameter>();

@@ -47,6 +47,8 @@ grammar! {
         states: Option<IndexMap<String, State>>,
         /// Analysis of the mechanism; by default its `motion`.
         analysis: Option<AnalysisName>,
+        /// A program that answers instead of a mechanism: the model then has parameters and outputs, and no bodies.
+        black_box: Option<BlackBoxFile>,
         /// Questions of `analysis: modes`.
         modes: Option<Modes>,
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others. Or

@@ -158,7 +158,7 @@ pub fn values_of_start<'n>(fields: &Fields<'n>) -> Option<&'n Node> {
 /// Whether `simulation` has to say how long.
 pub fn needs_time(model: &Description) -> bool {
     use LinearisedAt::{Equilibrium, Start};
-    !matches!(model.analysis, Analysis::Statics | Analysis::Modes(Start | Equilibrium))
+    !matches!(model.analysis, Analysis::Statics | Analysis::Modes(Start | Equilibrium) | Analysis::BlackBox)
 }
 
 /// Without steps, rows are all that there is of the time; statics has one.
@@ -170,7 +170,7 @@ pub fn fit_time(model: &mut Description) {
     }
     match model.analysis {
         Analysis::Motion | Analysis::Modes(LinearisedAt::Motion) => return,
-        Analysis::Kinematics => {}
+        Analysis::Kinematics | Analysis::BlackBox => {}
         Analysis::Statics | Analysis::Modes(_) => (simulation.duration, simulation.output_step) = (0.0, 1e-3),
     }
     simulation.stepping = Stepping::Fixed(simulation.output_step);
@@ -221,8 +221,15 @@ pub fn check_speeds(reader: &mut Reader, entries: &[Entry]) {
 /// Taylor bounds of modes. The entries are those of outputs and requirements.
 pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 2]) {
     let analysis = reader.model.analysis;
-    let over_time = matches!(analysis, Analysis::Motion | Analysis::Kinematics | Analysis::Modes(LinearisedAt::Motion));
-    let help = "with `analysis: motion` it can be asked for";
+    let over_time = match analysis {
+        Analysis::Motion | Analysis::Kinematics | Analysis::Modes(LinearisedAt::Motion) => true,
+        Analysis::BlackBox => reader.model.simulation.duration > 0.0,
+        Analysis::Statics | Analysis::Modes(_) => false,
+    };
+    let help = match analysis {
+        Analysis::BlackBox => "with a `simulation`, which has a `duration`, it can be asked for",
+        _ => "with `analysis: motion` it can be asked for",
+    };
     if !over_time && !reader.model.reduced.is_empty() {
         let message = format!("a reduced output is one number a motion, and `analysis: {}` has none", analysis.name());
         reader.error(fields.key_span("outputs"), message, help.to_owned());
@@ -230,8 +237,12 @@ pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 
     if analysis == Analysis::Kinematics {
         check_reduced_without_forces(reader, entries);
     }
-    if matches!(reader.model.analysis, Analysis::Modes(_)) && reader.model.bounds.taylor.is_some() {
-        let message = "modes have no Taylor bounds: which eigenvalue is which may change over the box";
+    let no_taylor = match reader.model.analysis {
+        Analysis::Modes(_) => Some("modes have no Taylor bounds: which eigenvalue is which may change over the box"),
+        Analysis::BlackBox => Some("a black box has no Taylor bounds: there are no equations of motion to expand"),
+        _ => None,
+    };
+    if let (Some(message), Some(_)) = (no_taylor, &reader.model.bounds.taylor) {
         let help = "ask for `chebyshev` or `scan`".to_owned();
         reader.error(fields.key_span("bounds"), message, help);
     }

@@ -1,6 +1,7 @@
 //! The typed model: what a file says, checked, with every name resolved and every number in SI units.
 
 mod analysis;
+mod black_box;
 mod body;
 mod index;
 mod reduced;
@@ -21,6 +22,7 @@ use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
 pub use crate::robots::urdf::robot::{Shape, Visual};
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
+pub use black_box::{BlackBox, BoxOutput, Protocol, Refine};
 pub use body::{Body, FlexibleBeam, Inertia, Point, Standing};
 use index::NameIndex;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
@@ -55,6 +57,8 @@ pub struct Description {
     pub effects: Vec<Effect>,
     /// Analysis.
     pub analysis: Analysis,
+    /// The program that answers instead of a mechanism, if there is one.
+    pub black_box: Option<BlackBox>,
     /// Questions about small vibrations.
     pub modes: ModesRequest,
     /// Whether the start is an equilibrium, near where assembly begins to look.
@@ -202,6 +206,7 @@ impl Description {
             joints: Vec::new(),
             effects: Vec::new(),
             analysis: Analysis::Motion,
+            black_box: None,
             modes: ModesRequest::default(),
             starts_at_equilibrium: false,
             initial: Vec::new(),

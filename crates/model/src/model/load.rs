@@ -5,8 +5,8 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements, sections,
-    space, states, statistics, tables, teeth, trajectories,
+    analysis, black_box, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements,
+    sections, space, states, statistics, tables, teeth, trajectories,
 };
 use crate::expand::mjcf;
 use crate::expand::overrides::Override;
@@ -286,6 +286,7 @@ fn describe(
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
     parameters::read(&mut reader, parameter_entries, overrides);
+    black_box::read(&mut reader, &fields, Path::new(origin.name));
     trajectories::read(&mut reader, &fields);
     bodies::read(&mut reader, body_entries);
     robot.iter().for_each(|robot| robot.read_points(&mut reader));
@@ -302,6 +303,7 @@ fn describe(
     }
     // A robot's own effects have names, too.
     requests::outputs(&mut reader, output_entries);
+    black_box::all_outputs(&mut reader.model);
     teeth::check(&mut reader, joint_entries, effect_entries, output_entries);
     analysis::check_outputs(&mut reader, output_entries);
     analysis::read_modes(&mut reader, &fields);

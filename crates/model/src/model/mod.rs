@@ -9,6 +9,7 @@ mod references;
 
 mod analysis;
 mod beams;
+mod black_box;
 mod bodies;
 mod bounds;
 mod display;

@@ -77,6 +77,18 @@ impl SymbolTable for Description {
         self.trajectories[trajectory].dimension
     }
 
+    fn black_box(&self, name: &str) -> Option<usize> {
+        self.black_box.as_ref()?.outputs.iter().position(|output| output.name == name)
+    }
+
+    fn black_box_dimension(&self, output: usize) -> Dimension {
+        self.black_box.as_ref().map_or(Dimension::NUMBER, |own| own.outputs[output].unit.dimension())
+    }
+
+    fn black_box_outputs(&self) -> impl Iterator<Item = &str> + Clone {
+        self.black_box.iter().flat_map(|own| own.outputs.iter().map(|output| output.name.as_str()))
+    }
+
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)> {
         self.effects[effect].kind.measures()
     }

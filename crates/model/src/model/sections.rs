@@ -11,7 +11,8 @@ use crate::syntax::yaml::{Entry, Node, Value};
 pub(super) fn title(reader: &mut Reader, fields: &Fields, scene: Option<&str>) {
     // Where all is missing, one message says so.
     let is_begun = |node: &Node| {
-        let says_nothing = ["bodies", "outputs", "simulation", "urdf"].iter().all(|key| fields.get(key).is_none());
+        let says_nothing =
+            ["bodies", "outputs", "simulation", "urdf", "black_box"].iter().all(|key| fields.get(key).is_none());
         !says_nothing || node.scalar().is_none_or(|scalar| !scalar.text.is_empty())
     };
     if let Some(node) = fields.get("model").filter(|node| is_begun(node))
@@ -37,8 +38,10 @@ pub(super) fn missing_sections(
     bodies: &[Entry],
     outputs: &[Entry],
 ) {
-    let no_body = !is_robot && bodies.iter().all(|entry| entry.key == GROUND);
-    let no_output = !is_robot && outputs.is_empty();
+    // Misread, it has been reported.
+    let is_answered = fields.get("black_box").is_some();
+    let no_body = !is_robot && !is_answered && bodies.iter().all(|entry| entry.key == GROUND);
+    let no_output = !is_robot && !is_answered && outputs.is_empty();
     let no_time = analysis::needs_time(&reader.model) && fields.get("simulation").is_none();
     let asked = [
         (no_body, "bodies", "a model needs at least one body", "e.g. `slider: { mass: 0.45, coordinates: [x] }`"),

@@ -2,6 +2,7 @@
 
 mod allocation;
 mod analysis;
+mod black_box;
 mod bounds;
 mod cost;
 mod decisions;
@@ -23,6 +24,7 @@ mod summary;
 pub use crate::methods::{Method, TooDeep};
 pub use allocation::{AllocatedTolerance, Allocation, Criterion, NotMet, ToleranceZone, TradePoint};
 pub use analysis::{AnalysisSummary, ValueSummary};
+pub use black_box::{BlackBoxSummary, NoiseSummary};
 pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, Witness, foremost};
 #[doc(hidden)]
 pub use cost::example as cost_example;

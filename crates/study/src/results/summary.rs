@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use super::statistics::StatisticsResult;
-use super::{AnalysisSummary, Band, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
+use super::{
+    AnalysisSummary, Band, BlackBoxSummary, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary,
+};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;
 
@@ -66,6 +68,9 @@ pub struct Summary {
     /// Analysis other than a motion from a given start.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub analysis: Option<AnalysisSummary>,
+    /// The program that answered instead of a mechanism.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub black_box: Option<BlackBoxSummary>,
     /// The uncertain parameters.
     pub parameters: Vec<ParameterSummary>,
     /// Of each assembly that the model has instances of: which tolerances are one for all of them.

@@ -18,6 +18,7 @@
 mod allocate;
 mod answers;
 mod attained;
+mod black_box;
 mod bounding;
 mod cost;
 mod deterministic;
@@ -159,7 +160,9 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
     let allowance = Allowance::begin();
-    let interrupted = || (options.interrupted)() || (!options.costly && allowance.is_spent());
+    // Nothing tells how long a program takes.
+    let is_limited = !options.costly && description.black_box.is_none();
+    let interrupted = || (options.interrupted)() || (is_limited && allowance.is_spent());
     let options = Options { interrupted: &interrupted, allowance: Some(&allowance), ..options };
     let found = pool.install(|| {
         if model.statistics.asked {

@@ -1,7 +1,8 @@
 //! A subsystem's question: the compiled mechanism, its box, and the methods that are asked for.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
+use super::black_box::Source;
 use super::ensemble::{Motions, Progress, Stored};
 use super::reduced::Store;
 use super::{Options, RunError};
@@ -29,6 +30,8 @@ pub(super) struct Study<'a> {
     pub(super) interruption: Interruption<'a>,
     /// Where simulations are stored, if they are.
     pub(super) stored: Option<Stored<'a>>,
+    /// The program that answers instead of a mechanism, if one does.
+    pub(super) source: Option<Arc<Source>>,
 }
 
 /// What a subsystem is to its bounding methods.
@@ -41,6 +44,7 @@ pub(super) fn problem(description: &Description, simulator: &Simulator) -> Probl
         has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
             && description.simulation.extrapolation.is_none()
             && description.simulation.scheme != SchemeChoice::Explicit,
+        has_equations: description.black_box.is_none(),
         tolerance: description.bounds.tolerance,
     }
 }
@@ -80,6 +84,7 @@ impl<'a> Study<'a> {
             stage,
             interruption: Interruption::new(interrupted),
             stored: None,
+            source: Source::of(description).map(Arc::new),
         })
     }
 
@@ -88,7 +93,8 @@ impl<'a> Study<'a> {
         let mut request = self.request.clone();
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
         let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
-        Study { domain: part.clone(), request, progress, simulator, time_functions, store: OnceLock::new(), ..*self }
+        let (store, source) = (OnceLock::new(), self.source.clone());
+        Study { domain: part.clone(), request, progress, simulator, time_functions, store, source, ..*self }
     }
 
     /// Rows of output that are asked for.
@@ -99,6 +105,6 @@ impl<'a> Study<'a> {
     /// The motions with these steps.
     pub(super) fn motions<'s>(&'s self, steps: Steps<'s>, progress: &'s Progress<'s>) -> Motions<'s> {
         let motions = Motions::new(&self.simulator, &self.domain, steps, progress, self.interruption);
-        motions.keeping(self.store.get()).stored(self.stored)
+        motions.keeping(self.store.get()).stored(self.stored).answered_by(self.source.as_deref())
     }
 }

@@ -3,6 +3,7 @@
 use super::RunError;
 use super::answers::{Ran, Results, conclude};
 use super::attained;
+use super::black_box::repeat;
 use super::bounding::{Bounded, Doubts, bound, note_nominal, timed, unknown};
 use super::deterministic::deterministic;
 use super::ensemble::{Progress, nominal};
@@ -39,7 +40,9 @@ pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
     }
     let (plan, failure) = planned(study, explicit_samples)?;
     let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
-    Ok(conclude(study, methods(study, plan)?, failure))
+    let results = methods(study, plan)?;
+    repeat(study, results.bounded.validation.as_ref().map(|(validation, _)| validation))?;
+    Ok(conclude(study, results, failure))
 }
 
 /// The nominal motion, the validation samples, then every method asked for. With a tolerance for the bounds, the

@@ -3,12 +3,16 @@
 //! - `statics`: the equilibrium of a sample;
 //! - `kinematics`: positions, velocities and accelerations that follow from motors, row by row;
 //! - `modes`: the small vibrations of a sample;
-//! - `jets`: the same as polynomials in the parameters.
+//! - `jets`: the same as polynomials in the parameters;
+//! - `rows`: the same reductions of rows that something else has found.
 
 mod jets;
 mod kinematics;
 mod modes;
+mod rows;
 mod statics;
+
+pub use rows::reduced_rows;
 
 use super::control::Steps;
 use super::diagnostics::SingularPass;

@@ -12,6 +12,8 @@ pub enum Analysis {
     Kinematics,
     /// It vibrates about a configuration.
     Modes(LinearisedAt),
+    /// There is no mechanism: a program answers, a black box.
+    BlackBox,
 }
 
 /// Where a mechanism's small vibrations are looked at.
@@ -34,6 +36,7 @@ impl Analysis {
             Self::Statics => "statics",
             Self::Kinematics => "kinematics",
             Self::Modes(_) => "modes",
+            Self::BlackBox => "black_box",
         }
     }
 
@@ -48,6 +51,7 @@ impl Analysis {
                 Some("modes: vibrations about the equilibrium nearest to `guess`, no time steps")
             }
             Self::Modes(LinearisedAt::Motion) => Some("modes: vibrations about every row of the motion"),
+            Self::BlackBox => Some("black box: a program answers, row by row"),
         }
     }
 

@@ -83,8 +83,13 @@ fn witnesses(results: &Results, rows: usize) -> Vec<Witness> {
 /// What happened where a sample stopped, for people.
 fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> String {
     let parameters = study.simulator.with_names(sample);
-    let Stop { sample: index, time, cause, .. } = *stop;
-    match cause {
+    let Stop { sample: index, time, .. } = *stop;
+    match stop.cause.clone() {
+        StopCause::NoAnswer { why } => {
+            let place = study.description.black_box.as_ref().map(|own| own.place.clone()).unwrap_or_default();
+            let failed = SimulationError::NoAnswer { place, why, parameters };
+            format!("{failed}; bounds that need it are unknown, a scan is of the others")
+        }
         StopCause::SingularJet => {
             format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
         }
@@ -163,6 +168,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
         analysis: analysis_summary(study),
+        black_box: study.source.as_ref().and_then(|source| source.summary()),
         parameters: system
             .parameters
             .iter()

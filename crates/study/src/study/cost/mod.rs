@@ -77,6 +77,7 @@ const MOST_FOR_SCHEMES: f64 = 5.0;
 /// # Errors
 /// Where the model cannot be run at all, or the reference cannot be computed.
 pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, CostError> {
+    super::black_box::needs_mechanism(model, "a study of methods and integrators").map_err(RunError::from)?;
     let begun = Instant::now();
     let system = super::prepare(model)?.system;
     let k = uncertain(model);

@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 
 use super::RunError;
+use super::black_box::needs_mechanism;
 use super::formulation::assembled;
 use crate::assemble::Questions;
 use crate::elements::effects::Scope;
@@ -62,6 +63,7 @@ pub(super) fn extent(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
 
 /// Draws it with its ground from one place to another along x, m.
 pub(super) fn drawn(description: &Description, along: Option<[f64; 2]>) -> Result<Drawing, RunError> {
+    needs_mechanism(description, "a drawing")?;
     let mut asked = Asked::default();
     let bodies = description.bodies.iter().enumerate();
     let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();

@@ -1,5 +1,6 @@
 //! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
 
+mod answered;
 pub(in crate::study) mod closure;
 mod cut;
 mod dense;
@@ -19,6 +20,7 @@ use symdiff::Expr;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use super::black_box::Source;
 use super::price::instructions_of_step;
 use super::reduced::Store;
 use crate::compile::{self, has_kink, jumps};
@@ -74,6 +76,8 @@ pub(super) struct Motions<'a> {
     jumps: OnceLock<Vec<bool>>,
     /// Where simulations are stored, if they are.
     stored: Option<Stored<'a>>,
+    /// The program that answers instead of a mechanism, if one does.
+    pub(super) source: Option<&'a Source>,
 }
 
 impl<'a> Motions<'a> {
@@ -104,6 +108,7 @@ impl<'a> Motions<'a> {
             certifier,
             jumps,
             stored,
+            source: None,
         }
     }
 
@@ -120,6 +125,11 @@ impl<'a> Motions<'a> {
     /// The same, of whose outputs ends are known.
     pub fn following(self, followed: Option<&'a FollowedEnds>) -> Self {
         Self { followed, ..self }
+    }
+
+    /// The same, whose samples a program answers.
+    pub fn answered_by(self, source: Option<&'a Source>) -> Self {
+        Self { source, ..self }
     }
 
     /// Steps, and the tolerance of their local errors.

@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering;
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
+use super::answered::answered;
 use super::{Motions, stopped_at};
 use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::Sample;
@@ -35,6 +36,9 @@ pub fn visit_watching(
     sampling: Sampling,
     reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
 ) -> Result<(Simulated, Vec<SingularPass>), SimulationError> {
+    if let Some(source) = motions.source {
+        return Ok((answered(motions, source, samples, sampling, reduce)?, Vec::new()));
+    }
     let (times, outputs, count) = (times(motions), motions.simulator.system.outputs.len(), samples.len());
     let rows = times.len();
     let mut values = vec![f64::NAN; rows * outputs * count];

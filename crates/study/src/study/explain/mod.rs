@@ -3,6 +3,7 @@
 mod decisions;
 mod effect_costs;
 
+use super::black_box::needs_mechanism;
 use super::prepared::{Prepared, prepare, questions};
 use super::{RunError, reduced};
 use crate::compile::{Program, Tapes};
@@ -25,6 +26,7 @@ const MOST_NAMED: usize = 8;
 /// # Errors
 /// Where it cannot be built or assembled.
 pub fn explain(description: &Description) -> Result<Explanation, RunError> {
+    needs_mechanism(description, "a list of what a step takes")?;
     let model = reduced::expanded(description);
     let (reduction, prepared) = prepare(&model, Choices::default())?;
     let of_subsystem = |Prepared { subsystem, simulator }: &Prepared| {

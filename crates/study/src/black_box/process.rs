@@ -1,0 +1,183 @@
+//! A process of the program, with threads that write to it and read from it, so that nothing waits for ever.
+
+use std::collections::VecDeque;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::trouble::Words;
+use crate::model::BlackBox;
+
+/// Bytes of standard error that are kept.
+const WORDS: usize = 4096;
+
+/// Time between two questions whether to go on.
+const GLANCE: Duration = Duration::from_millis(20);
+
+/// Time that a process has to end by itself once its input has ended.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// What a process wrote.
+pub(super) enum Said {
+    /// A line, without its end.
+    Line(String),
+    /// More than it may in a call.
+    TooMuch,
+    /// Its output ended.
+    End,
+    /// Nothing until the time was over.
+    Nothing,
+    /// The run is to end.
+    Interrupted,
+}
+
+/// A process of the program.
+#[derive(Debug)]
+pub(super) struct Process {
+    child: Child,
+    /// `None` once its input has ended.
+    input: Option<Sender<String>>,
+    output: Receiver<Option<String>>,
+    /// Bytes that it may yet write.
+    left: Arc<AtomicU64>,
+    words: Arc<Mutex<VecDeque<u8>>>,
+}
+
+impl Process {
+    /// Starts the program, without a shell, in the user's environment.
+    ///
+    /// # Errors
+    /// Where it cannot be started.
+    pub fn start(own: &BlackBox) -> std::io::Result<Self> {
+        let mut command = Command::new(&own.command[0]);
+        command.args(&own.command[1..]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        if let Some(folder) = &own.directory {
+            command.current_dir(folder);
+        }
+        // An interruption of the terminal is for mbint, which ends its processes itself.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn()?;
+        let missing = || std::io::Error::other("a pipe is missing");
+        let stdin = child.stdin.take().ok_or_else(missing)?;
+        let stdout = child.stdout.take().ok_or_else(missing)?;
+        let stderr = child.stderr.take().ok_or_else(missing)?;
+        let (input, texts) = channel::<String>();
+        let (lines, output) = channel();
+        let (left, words) = (Arc::new(AtomicU64::new(0)), Arc::new(Mutex::new(VecDeque::new())));
+        thread::spawn(move || write(stdin, &texts));
+        let (allowed, heard) = (left.clone(), words.clone());
+        thread::spawn(move || read(stdout, &allowed, &lines));
+        thread::spawn(move || listen(stderr, &heard));
+        Ok(Self { child, input: Some(input), output, left, words })
+    }
+
+    /// Gives it a text; `most` bytes may come back. With `ends`, it gets no more.
+    pub fn give(&mut self, text: String, most: u64, ends: bool) {
+        self.left.store(most, Ordering::Relaxed);
+        // A process that has ended is found where its answers are read.
+        let _ = self.input.as_ref().map(|input| input.send(text));
+        if ends {
+            self.input = None;
+        }
+    }
+
+    /// What it writes next.
+    pub fn next(&self, until: Option<Instant>, interrupted: &dyn Fn() -> bool) -> Said {
+        loop {
+            let rest = until.map_or(GLANCE, |until| until.saturating_duration_since(Instant::now()).min(GLANCE));
+            match self.output.recv_timeout(rest) {
+                Ok(Some(line)) => return Said::Line(line),
+                Ok(None) => return Said::TooMuch,
+                Err(RecvTimeoutError::Disconnected) => return Said::End,
+                Err(RecvTimeoutError::Timeout) if interrupted() => return Said::Interrupted,
+                Err(RecvTimeoutError::Timeout) if until.is_some_and(|until| Instant::now() >= until) => {
+                    return Said::Nothing;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// Ends it: its input, then itself where it goes on. Returns how it ended.
+    pub fn end(&mut self, grace: bool) -> String {
+        self.input = None;
+        let until = Instant::now() + if grace { GRACE } else { Duration::ZERO };
+        let mut pause = Duration::from_micros(200);
+        loop {
+            match self.child.try_wait() {
+                Ok(Some(status)) => return status.to_string(),
+                Ok(None) if Instant::now() < until => {
+                    thread::sleep(pause);
+                    pause = (2 * pause).min(GLANCE);
+                }
+                _ => break,
+            }
+        }
+        // Where it cannot be ended it has ended.
+        let _ = self.child.kill();
+        self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string())
+    }
+
+    /// Its last words on standard error.
+    pub fn words(&self) -> Words {
+        let mut words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
+        Words(String::from_utf8_lossy(words.make_contiguous()).into_owned())
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        self.end(true);
+    }
+}
+
+/// Writes texts until there are no more, which ends the input.
+fn write(mut stdin: impl Write, texts: &Receiver<String>) {
+    for text in texts {
+        // A process that reads no more is found by the end of its output.
+        if stdin.write_all(text.as_bytes()).and_then(|()| stdin.flush()).is_err() {
+            return;
+        }
+    }
+}
+
+/// Reads lines as long as they are allowed; `None` where they are too long or too many.
+fn read(stdout: impl Read, allowed: &AtomicU64, lines: &Sender<Option<String>>) {
+    let mut stdout = BufReader::new(stdout);
+    loop {
+        let mut line = Vec::new();
+        // One byte more tells a line that is too long from one that is not.
+        let most = allowed.load(Ordering::Relaxed) + 1;
+        match stdout.by_ref().take(most).read_until(b'\n', &mut line) {
+            Ok(0) | Err(_) => return,
+            Ok(read) => {
+                let left = allowed.load(Ordering::Relaxed);
+                if read as u64 > left {
+                    let _ = lines.send(None);
+                    return;
+                }
+                allowed.store(left - read as u64, Ordering::Relaxed);
+            }
+        }
+        let line = String::from_utf8_lossy(&line).trim_end_matches(['\n', '\r']).to_owned();
+        if lines.send(Some(line)).is_err() {
+            return;
+        }
+    }
+}
+
+/// Keeps the end of what comes.
+fn listen(mut stderr: impl Read, words: &Mutex<VecDeque<u8>>) {
+    let mut buffer = [0; 1024];
+    while let Ok(read @ 1..) = stderr.read(&mut buffer) {
+        let mut words = words.lock().unwrap_or_else(PoisonError::into_inner);
+        words.extend(&buffer[..read]);
+        let beyond = words.len().saturating_sub(WORDS);
+        words.drain(..beyond);
+    }
+}

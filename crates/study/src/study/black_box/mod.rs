@@ -1,0 +1,26 @@
+//! A program as an ensemble: its answers stand where simulations of a mechanism do.
+//!
+//! `source` asks it, and makes the model's outputs of its answers; `repeated` asks once more, for its noise.
+
+mod repeated;
+mod source;
+
+pub(super) use repeated::repeat;
+pub(super) use source::Source;
+
+use crate::methods::Refusal;
+use crate::model::Description;
+
+/// Refuses a question about bodies to a program.
+///
+/// # Errors
+/// Where a program answers instead of a mechanism.
+pub(super) fn needs_mechanism(description: &Description, question: &str) -> Result<(), Refusal> {
+    match &description.black_box {
+        None => Ok(()),
+        Some(own) => {
+            let place = &own.place;
+            Err(Refusal(format!("{place}: {question} needs a mechanism, and here a black box answers instead of one")))
+        }
+    }
+}

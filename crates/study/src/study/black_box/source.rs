@@ -1,0 +1,187 @@
+//! A program's answers as the model's outputs.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use symdiff::{Formula, math};
+
+use crate::assemble::NumberFormulas;
+use crate::black_box::{Answer, Pool, Questions, Unanswered};
+use crate::model::{BlackBox, Description, ParameterValue, Refine};
+use crate::numerics::Sample;
+use crate::results::BlackBoxSummary;
+use crate::simulate::{Interruption, Schedule, SimulationError};
+
+/// Values that are kept of points that were asked, at most: a validation sample is asked under several schedules.
+const MOST_KEPT: usize = 1 << 22;
+
+/// The time among the names that a formula of answers may use.
+const TIME: &str = "t";
+
+/// A program, and the model that asks it.
+#[derive(Debug)]
+pub(in crate::study) struct Source {
+    description: Description,
+    pub(super) own: BlackBox,
+    pool: Pool,
+    /// The outputs as formulas of answers, the time and the parameters.
+    outputs: NumberFormulas,
+    output_count: usize,
+    /// The model's schedule, with one step a row.
+    schedule: Schedule,
+    known: Mutex<Known>,
+    /// Findings of repeated points.
+    summary: OnceLock<BlackBoxSummary>,
+}
+
+/// Answers that are kept, by the bits of their points.
+#[derive(Debug, Default)]
+struct Known {
+    answers: HashMap<Vec<u64>, Arc<Vec<f64>>>,
+    values: usize,
+}
+
+impl Source {
+    /// Of a model; `None` where a mechanism moves.
+    pub fn of(description: &Description) -> Option<Self> {
+        let own = description.black_box.clone()?;
+        let simulation = &description.simulation;
+        let schedule = Schedule::fixed(simulation.duration, simulation.output_step, simulation.output_step);
+        let questions = Questions {
+            parameters: description.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            outputs: own.outputs.iter().map(|output| (output.name.clone(), output.unit.si())).collect(),
+            times: (0..schedule.rows).map(|row| schedule.time(row)).collect(),
+        };
+        let names: Vec<&str> = own.outputs.iter().map(|output| output.name.as_str()).chain([TIME]).collect();
+        let formulas: Vec<Formula> = description.outputs.iter().map(|output| output.formula.clone()).collect();
+        Some(Self {
+            outputs: NumberFormulas::of(&description.parameters, &names, &formulas),
+            output_count: formulas.len(),
+            pool: Pool::new(own.clone(), questions),
+            description: description.clone(),
+            own,
+            schedule,
+            known: Mutex::default(),
+            summary: OnceLock::new(),
+        })
+    }
+
+    /// Times of the rows, s.
+    pub fn times(&self) -> &[f64] {
+        &self.pool.questions().times
+    }
+
+    /// Number of the model's outputs.
+    pub fn outputs(&self) -> usize {
+        self.output_count
+    }
+
+    /// Notes what repeated points have shown, the first time that they do.
+    pub fn note(&self, summary: BlackBoxSummary) {
+        // Parts of a box share one program.
+        let _ = self.summary.set(summary);
+    }
+
+    /// Findings of repeated points, as far as there are any.
+    pub fn summary(&self) -> Option<BlackBoxSummary> {
+        self.summary.get().cloned()
+    }
+
+    /// How many times finer than the model's the program's own steps shall be under a schedule; 1 where nothing
+    /// refines them.
+    pub fn refinement(&self, schedule: &Schedule) -> f64 {
+        if self.own.refine.is_none() { 1.0 } else { self.schedule.first_step() / schedule.first_step() }
+    }
+
+    /// The model's outputs (row, output) at samples, sample by sample. What is known is not asked again.
+    ///
+    /// # Errors
+    /// Where the program cannot be started, and at an interruption.
+    pub fn answers(
+        &self,
+        samples: &[Sample],
+        refinement: f64,
+        interruption: Interruption<'_>,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Vec<Answer>, SimulationError> {
+        let points = self.points(samples, refinement);
+        let bits = |point: &Vec<f64>| point.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
+        let mut found: Vec<Option<Answer>> = {
+            let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+            points.iter().map(|point| known.answers.get(&bits(point)).map(|own| Ok(own.to_vec()))).collect()
+        };
+        let open: Vec<usize> = (0..points.len()).filter(|&place| found[place].is_none()).collect();
+        done(points.len() - open.len());
+        let asked: Vec<Vec<f64>> = open.iter().map(|&place| points[place].clone()).collect();
+        let answers = self.asked(&asked, interruption, done)?;
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        for (place, answer) in open.into_iter().zip(answers) {
+            let answer = answer.map(|rows| self.outputs_of(&rows, &samples[place]));
+            if let Ok(values) = &answer
+                && known.values + values.len() <= MOST_KEPT
+            {
+                known.values += values.len();
+                known.answers.insert(bits(&points[place]), Arc::new(values.clone()));
+            }
+            found[place] = Some(answer);
+        }
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    /// The same, asked once more whatever is known.
+    ///
+    /// # Errors
+    /// Where the program cannot be started, and at an interruption.
+    pub fn once_more(
+        &self,
+        samples: &[Sample],
+        interruption: Interruption<'_>,
+    ) -> Result<Vec<Answer>, SimulationError> {
+        let answers = self.asked(&self.points(samples, 1.0), interruption, &|_| ())?;
+        let outputs = answers.into_iter().zip(samples);
+        Ok(outputs.map(|(answer, sample)| answer.map(|rows| self.outputs_of(&rows, sample))).collect())
+    }
+
+    fn asked(
+        &self,
+        points: &[Vec<f64>],
+        interruption: Interruption<'_>,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Vec<Answer>, SimulationError> {
+        let interrupted = || interruption.is_asked();
+        self.pool.answers(points, rayon::current_num_threads(), &interrupted, done).map_err(|why| match why {
+            Unanswered::Interrupted => SimulationError::Interrupted,
+            not_started => SimulationError::BlackBox { place: self.own.place.clone(), why: not_started.to_string() },
+        })
+    }
+
+    /// All parameters at samples of the uncertain ones, with steps that are so many times finer.
+    fn points(&self, samples: &[Sample], refinement: f64) -> Vec<Vec<f64>> {
+        let mut parameters = self.description.parameters.clone();
+        if let Some(Refine { parameter, by }) = self.own.refine.filter(|_| refinement != 1.0)
+            && let ParameterValue::Formula(formula) = parameters[parameter].value.clone()
+        {
+            let value = NumberFormulas::of(&parameters, &[], &[formula]).values(&[], &[])[0];
+            let factor = math::exp(math::ln(by) * math::log2(refinement));
+            // Twice is exactly the factor that the model gives.
+            let factor = if refinement == 2.0 { by } else { factor };
+            parameters[parameter].value = ParameterValue::Formula(Formula::number(value * factor));
+        }
+        let names: Vec<Formula> = parameters.iter().map(|parameter| Formula::name(&parameter.name)).collect();
+        let formulas = NumberFormulas::of(&parameters, &[], &names);
+        samples.iter().map(|sample| formulas.values(sample, &[])).collect()
+    }
+
+    /// The model's outputs of a program's rows.
+    fn outputs_of(&self, rows: &[f64], sample: &Sample) -> Vec<f64> {
+        let width = self.own.outputs.len();
+        let mut values = Vec::with_capacity(rows.len() / width * self.output_count);
+        let mut numbers = vec![0.0; width + 1];
+        for (row, &time) in rows.chunks_exact(width).zip(self.times()) {
+            numbers[..width].copy_from_slice(row);
+            numbers[width] = time;
+            values.extend(self.outputs.values(sample, &numbers));
+        }
+        values
+    }
+}

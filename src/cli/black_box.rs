@@ -1,0 +1,28 @@
+//! A program that answered instead of a mechanism, for people.
+
+use super::console::count;
+use crate::grammar::display_unit::ShownUnit;
+use crate::results::{BlackBoxSummary, NoiseSummary};
+use crate::syntax::harmless;
+
+/// The program, at the head of an overview.
+pub(super) fn heading(own: &BlackBoxSummary) -> String {
+    format!("a black box, `{}`", harmless(&own.command.join(" ")))
+}
+
+/// How far a program's answers are to be trusted.
+pub(super) fn lines(own: &BlackBoxSummary) -> String {
+    let steps = match &own.refined_by {
+        Some(parameter) => format!("the error of its own steps was found by finer `{parameter}`"),
+        None => "the error of its own steps is not included (`refine` says how to find it)".to_owned(),
+    };
+    let noise = |own: &NoiseSummary| {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        format!("{} {:.2e} {}", own.output, unit.of_si(own.noise), unit.text).trim_end().to_owned()
+    };
+    let noise = match own.noise.iter().map(noise).collect::<Vec<_>>() {
+        noise if noise.is_empty() => "the same answers".to_owned(),
+        noise => format!("noise of {}", noise.join(", ")),
+    };
+    format!("  black box: {steps}; {} asked twice: {noise}\n\n", count(own.repeated, "point", "points"))
+}
