@@ -8,6 +8,7 @@ pub mod declared;
 pub mod dimension;
 pub mod display_unit;
 mod element;
+pub mod fits;
 pub mod formulas;
 mod friction;
 mod image;

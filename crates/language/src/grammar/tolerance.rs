@@ -5,9 +5,11 @@
 //! (150 ± 2) mm        a unit for both
 //! 0.5 m +0.01 -0.02   upwards and downwards; no space between sign and number
 //! [0.49, 0.51] m      the smallest and the largest value; [490 mm, 0.51 m]
-//! ± 1%, 1%            the deviation alone, of a value that stands elsewhere
+//! 12 mm H7            a tolerance class: H7, g6, IT8, ISO 2768-m
+//! ± 1%, 1%, H7        the deviation alone, of a value that stands elsewhere
 //! ```
 
+use super::fits::ToleranceClass;
 use super::unit::{Unit, number_and_unit};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -39,6 +41,8 @@ pub enum Deviation {
     },
     /// A list of the smallest and the largest value.
     Between(Node),
+    /// As a tolerance class has it, by the size.
+    Class(Node),
 }
 
 /// Splits a number. A text of none of the forms is a value without a deviation.
@@ -87,6 +91,12 @@ pub fn read(node: &Node) -> Result<Toleranced, Box<Diagnostic>> {
         let value = shifted(value);
         let value = (!value.is_empty()).then(|| whole.part(value));
         return Ok(Toleranced::of(value, deviation));
+    }
+    if let Some(class) = class(text) {
+        let at = all.end - class.len();
+        let value = whole.trimmed(all.start..at);
+        let value = (!value.is_empty()).then(|| whole.part(value));
+        return Ok(Toleranced::of(value, Deviation::Class(whole.part(at..all.end))));
     }
     let percentage = number_and_unit(text).is_some_and(|(_, unit, _)| unit == "%");
     if percentage {
@@ -178,6 +188,17 @@ impl Text<'_> {
     }
 }
 
+/// The tolerance class that ends a text, behind a number or alone.
+fn class(text: &str) -> Option<&str> {
+    let is_behind_size = |at: usize| {
+        let size = &text[..at];
+        let is_number = || number_and_unit(size).is_some() || size.trim().parse::<f64>().is_ok();
+        size.is_empty() || size.ends_with(char::is_whitespace) && is_number()
+    };
+    let starts = text.rfind("ISO").into_iter().chain(text.rfind(char::is_whitespace).map(|space| space + 1)).chain([0]);
+    starts.filter(|&at| is_behind_size(at)).map(|at| &text[at..]).find(|class| ToleranceClass::parse(class).is_some())
+}
+
 /// The unit of a number with a unit.
 fn own_unit(text: &str) -> Option<&str> {
     let (_, unit, _) = number_and_unit(text)?;
@@ -265,6 +286,7 @@ mod tests {
             Some(Deviation::Either(either)) => format!("{value} | {}", text(&either)),
             Some(Deviation::Sides { plus, minus }) => format!("{value} | +{} | -{}", text(&plus), text(&minus)),
             Some(Deviation::Between(between)) => format!("{value} | {}", text(&between)),
+            Some(Deviation::Class(class)) => format!("{value} | class {}", text(&class)),
         }
     }
 
@@ -289,6 +311,12 @@ mod tests {
             ("[0.49, 0.51] m", "- | [0.49 m, 0.51 m]"),
             ("[490 mm, .51] m", "- | [490 mm, .51 m]"),
             ("[1, 2]", "- | [1, 2]"),
+            ("12 mm H7", "12 mm | class H7"),
+            ("0.5 in  js9", "0.5 in | class js9"),
+            ("120 mm ISO 2768-m", "120 mm | class ISO 2768-m"),
+            ("IT8", "- | class IT8"),
+            ("25 mm q7", "25 mm | class q7"),
+            ("12 H7", "12 | class H7"),
         ] {
             assert_eq!(parts(written), wanted, "{written}");
         }
@@ -296,9 +324,22 @@ mod tests {
 
     #[test]
     fn formulas_stay_formulas() {
-        for formula in
-            ["1 + 2 - 3", "l +1 -2", "-1", "1e+3 -2", "2*l", "(1 + 2)*l", "0.5 m", "", "a - +2 -3", "3 +2 +1"]
-        {
+        for formula in [
+            "1 + 2 - 3",
+            "l +1 -2",
+            "-1",
+            "1e+3 -2",
+            "2*l",
+            "(1 + 2)*l",
+            "0.5 m",
+            "",
+            "a - +2 -3",
+            "3 +2 +1",
+            "l h7",
+            "2*H7",
+            "12 mm*H7",
+            "h7 + 1",
+        ] {
             assert_eq!(parts(formula), formula, "{formula}");
         }
     }

@@ -16,6 +16,7 @@ pub fn fields(node: &Node) -> Vec<Entry> {
         Some(Deviation::Either(either)) => fields.push(field("tolerance", either)),
         Some(Deviation::Sides { plus, minus }) => fields.extend([field("plus", plus), field("minus", minus)]),
         Some(Deviation::Between(between)) => fields.push(field("interval", between)),
+        Some(Deviation::Class(class)) => fields.push(field("tolerance", class)),
     }
     fields
 }

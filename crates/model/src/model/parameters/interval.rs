@@ -4,8 +4,10 @@ use symdiff::formula::Term;
 
 use super::{Draft, Spec};
 use crate::grammar::dimension::Kind;
+use crate::grammar::fits::ToleranceClass;
 use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
 use crate::grammar::unit::number_and_unit;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
@@ -14,7 +16,7 @@ use crate::syntax::yaml::Node;
 
 /// Nominal, lower and upper value.
 pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<[f64; 3]> {
-    let Spec { value, tolerance, interval, plus, minus, .. } = &draft.spec;
+    let Spec { value, tolerance, interval, plus, minus, class, .. } = &draft.spec;
     if draft.spec.contradictory {
         return None;
     }
@@ -42,6 +44,9 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
     }
     // Without a value there is nothing to deviate from; that was reported.
     value.as_ref()?;
+    if let Some(node) = class {
+        return by_class(reader, node, nominal, kind);
+    }
     let (above, below) = deviations(reader, draft, nominal, kind)?;
     let nominal = nominal?;
     let (lower, upper) = (nominal - below, nominal + above);
@@ -54,9 +59,37 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
     Some([nominal, lower, upper])
 }
 
+/// The middle of the limits that a tolerance class gives a size, and the limits.
+fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &Kind) -> Option<[f64; 3]> {
+    let size = size?;
+    if kind.dimension() != Some(Dimension::LENGTH) {
+        let help = "e.g. `12 mm H7`".to_owned();
+        reader.error(node.span.clone(), "a tolerance class is of a length, and this value is none", help);
+        return None;
+    }
+    // Without the rounding error of 12 mm in metres.
+    let millimetres = (size * 1e9).round() / 1e6;
+    let found = ToleranceClass::parse(&node.scalar()?.text)?.and_then(|class| class.deviations(millimetres));
+    match found {
+        Ok(deviations) => {
+            let [lower, upper] = deviations.map(|deviation| (1e6 * millimetres + 1e3 * deviation) / 1e9);
+            Some([lower + (upper - lower) / 2.0, lower, upper])
+        }
+        Err(error) => {
+            reader.error(node.span.clone(), error.to_string(), None);
+            None
+        }
+    }
+}
+
 /// How far the value may deviate upwards and downwards.
 pub fn deviations(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<(f64, f64)> {
-    let Spec { tolerance, plus, minus, .. } = &draft.spec;
+    let Spec { tolerance, plus, minus, class, .. } = &draft.spec;
+    if let Some(node) = class {
+        let help = "give the deviations themselves, e.g. `tolerance: 0.01 mm`".to_owned();
+        reader.error(node.span.clone(), "a tolerance class needs a size that no uncertain parameter changes", help);
+        return None;
+    }
     let (above, below) = match tolerance {
         Some(node) => {
             let either = deviation(reader, draft, Some(node), nominal, kind);

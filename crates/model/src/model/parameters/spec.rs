@@ -17,6 +17,8 @@ pub struct Spec {
     pub interval: Option<Node>,
     pub plus: Option<Node>,
     pub minus: Option<Node>,
+    /// Name of a tolerance class.
+    pub class: Option<Node>,
     pub distribution: Option<Node>,
     pub cost: Option<Node>,
     /// The deviation is said twice, as was reported: there is none to go on with.
@@ -73,7 +75,7 @@ impl Spec {
 
     pub fn is_uncertain(&self) -> bool {
         self.contradictory
-            || [&self.tolerance, &self.interval, &self.plus, &self.minus].into_iter().any(Option::is_some)
+            || [&self.tolerance, &self.interval, &self.plus, &self.minus, &self.class].into_iter().any(Option::is_some)
     }
 
     /// The long form.
@@ -159,6 +161,7 @@ impl Spec {
             Some(Deviation::Either(either)) => self.tolerance = Some(either),
             Some(Deviation::Sides { plus, minus }) => (self.plus, self.minus) = (Some(plus), Some(minus)),
             Some(Deviation::Between(between)) => self.interval = Some(between),
+            Some(Deviation::Class(class)) => self.class = Some(class),
         }
     }
 
