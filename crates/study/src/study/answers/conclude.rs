@@ -32,7 +32,6 @@ const RESOLVING: f64 = 0.1;
 
 /// Bounds up to the last row of which something is known, and the summary.
 pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ran {
-    let study = study;
     let stop = results.bounded.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
     // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
     let rows = results.bounded.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
