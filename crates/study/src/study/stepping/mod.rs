@@ -2,8 +2,8 @@
 //! are known.
 //!
 //! `validated` has the model's own steps and the samples that measure their error, `controlled` those from a tolerance
-//! of the steps, `explicit` those of the explicit method, `balance` those from a tolerance of the bounds, by a `search`,
-//! and `events` those between events; `switches` searches the box for events that no sample meets.
+//! of the steps, `explicit` those of the explicit method, `balance` those from a tolerance of the bounds, by a
+//! `search`, and `events` those between events; `switches` searches the box for events that no sample meets.
 
 mod balance;
 mod controlled;
