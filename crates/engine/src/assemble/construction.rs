@@ -18,8 +18,8 @@ use crate::multibody::{
 };
 
 impl<'g, 'd> Mechanism<'g, 'd> {
-    /// The symbols and bodies of a description with its questions; with `by_joints`, as many bodies as can be are children, without
-    /// coordinates of their own.
+    /// The symbols and bodies of a description with its questions; with `by_joints`, as many bodies as can be are
+    /// children, without coordinates of their own.
     pub fn new(g: &'g Builder, questions: &'d Questions<'d>, by_joints: bool) -> Result<Self, BuildError> {
         let description = questions.description;
         let time = g.variable("t");

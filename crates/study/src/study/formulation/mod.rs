@@ -7,18 +7,21 @@
 //! branch. A start in a singular configuration, a motion that passes one, and redundant constraints are left to
 //! absolute coordinates.
 
+mod candidates;
 mod comparison;
 mod loop_cuts;
+mod singular;
 pub mod tuning;
 
-use crate::assemble::{self, BuildError, FormulationInfo, Questions, System};
-use crate::model::{Formulation, Stepping};
-use crate::numerics::Sample;
-use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularWatch, Stepper};
-use crate::study::formulation::tuning::TUNING;
+use super::RunError;
+use crate::assemble::{self, FormulationInfo, Questions, System};
+use crate::model::Formulation;
+use crate::simulate::{Assembled, SimulationError, Simulator};
 
-use super::{RunError, first_step, scheme};
+use candidates::{Candidate, Compiled, asked, because, other_way, where_absolute_are_singular};
 use comparison::starts_alike;
+use singular::passes_singular;
+use tuning::TUNING;
 
 pub use comparison::instructions;
 
@@ -28,172 +31,113 @@ pub use comparison::instructions;
 /// # Errors
 /// Where the mechanism cannot be built or assembled, or takes too many operations in both formulations.
 pub fn compiled(questions: &Questions) -> Result<Simulator, RunError> {
-    let within = |system: System, operations: usize| {
-        Simulator::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
-    };
-    let compile = |system: System| within(system, TUNING.operations);
     if questions.formulation != Formulation::Auto {
-        let first = within_budget(questions, TUNING.operations, &|system| Ok(compile(system)?))?;
-        let is_open = questions.is_cut_open();
-        if !is_open || !first.system.formulation.joint {
-            return Ok(first);
-        }
-        let why = first.system.formulation.why.clone();
-        let mut shortest = loop_cuts::shortest(questions, first, false, |other, best| {
-            within(assemble::build(other).ok()?, enough(best)).ok()
-        });
-        shortest.system.formulation.why = why;
-        return Ok(shortest);
+        return in_shortest_cut(questions, asked(questions)?);
     }
     let absolute = assemble::in_absolute_coordinates(questions)?;
-    if assemble::closes_loops(questions) {
-        return of_loops(questions, absolute);
+    match assemble::closes_loops(questions) {
+        true => of_loops(questions, absolute),
+        false => of_trees(questions, absolute),
     }
-    let joint = match assemble::in_joint_coordinates(questions, Some(deepest(questions)), None)? {
-        Ok(joint) => joint,
-        Err(why) => {
-            return match compile(because(absolute, why)) {
-                Err(SimulationError::TooLong) => other_way(questions, Formulation::Joint, &|joint| Ok(compile(joint)?)),
+}
+
+/// Joint coordinates that are asked for, with the cut of the loops whose steps are shortest where it is left open.
+fn in_shortest_cut(questions: &Questions, asked: Simulator) -> Result<Simulator, RunError> {
+    if !questions.is_cut_open() || !asked.system.formulation.joint {
+        return Ok(asked);
+    }
+    let why = asked.system.formulation.why.clone();
+    let shortest = loop_cuts::shortest(questions, asked, false, |other, best| {
+        Compiled::within(assemble::build(other).ok()?, other.description, enough(best)).ok()
+    });
+    Ok(chosen(shortest, why))
+}
+
+/// Without loops: joint coordinates first, whose length tells when absolute ones are given up.
+fn of_trees(questions: &Questions, absolute: System) -> Result<Simulator, RunError> {
+    let joint = match Candidate::<Simulator>::in_joint_coordinates(questions, TUNING.operations, None)? {
+        Candidate::Runs(joint) => joint,
+        Candidate::Refused(why) => {
+            return match Compiled::of(because(absolute, why), questions.description) {
+                Err(SimulationError::TooLong) => other_way(questions, Formulation::Joint),
                 compiled => Ok(compiled?),
             };
         }
+        // A position singular in one formulation may be regular in the other.
+        Candidate::TooLong | Candidate::Singular(_) => return Ok(Compiled::of(absolute, questions.description)?),
     };
-    // A position singular in one formulation may be regular in the other.
-    let Ok(mut joint) = compile(joint) else { return Ok(compile(absolute)?) };
     if joint.system.space.spatial && joint.system.is_mass_left_out() {
-        joint.system.formulation.why =
-            "long trees in space take several times as many instructions in absolute ones".to_owned();
-        return Ok(joint);
+        let why = "long trees in space take several times as many instructions in absolute ones";
+        return Ok(chosen(joint, why.to_owned()));
     }
-    let absolute = match within(absolute, enough(&joint)) {
-        Ok(absolute) => absolute,
-        Err(why) => {
-            if why == SimulationError::TooLong {
-                joint.system.formulation.why =
-                    format!("{} instructions a step instead of several times as many", instructions(&joint));
-            }
-            return Ok(joint);
+    match Candidate::of(absolute, questions, enough(&joint)) {
+        Candidate::Runs(absolute) if assemble::has_joints_of_several_axes(questions.description) => {
+            // What the start says of bodies behind such joints are conditions.
+            Ok(shortest(questions, absolute, joint, None))
         }
-    };
-    if !assemble::has_joints_of_several_axes(questions.description) {
-        return Ok(shorter(absolute, joint));
+        Candidate::Runs(absolute) => Ok(shorter(absolute, joint)),
+        Candidate::TooLong => Ok(several_times_shorter(joint)),
+        Candidate::Refused(_) | Candidate::Singular(_) => Ok(joint),
     }
-    // What the start says of bodies behind such joints are conditions.
-    if !starts_alike(&absolute, &joint) {
-        return Ok(kept(absolute, "outputs start elsewhere in joint coordinates".to_owned()));
-    }
-    let joint = loop_cuts::shortest(questions, joint, true, |other, best| {
-        let system = assemble::in_joint_coordinates(other, None, None).ok()?.ok()?;
-        within(system, enough(best)).ok()
-    });
-    Ok(shorter(absolute, joint))
 }
 
-/// A simulator in absolute coordinates, with the reason.
-fn kept(mut absolute: Simulator, why: String) -> Simulator {
-    absolute.system.formulation.why = why;
-    absolute
-}
-
-/// Compiles a model in which joints close loops in the shorter formulation.
+/// With loops: absolute coordinates first, from whose start joint ones close the loops in the same branch.
 fn of_loops(questions: &Questions, absolute: System) -> Result<Simulator, RunError> {
-    let within = |system: System, operations: usize| {
-        Simulator::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
+    let absolute = match Candidate::<Simulator>::of(absolute, questions, TUNING.operations) {
+        Candidate::Runs(absolute) => absolute,
+        Candidate::Singular(error) => return where_absolute_are_singular(questions).ok_or(error.into()),
+        Candidate::TooLong | Candidate::Refused(_) => return other_way(questions, Formulation::Joint),
     };
-    let absolute = match within(absolute, TUNING.operations) {
-        Err(SimulationError::TooLong) => {
-            return other_way(questions, Formulation::Joint, &|joint| Ok(within(joint, TUNING.operations)?));
-        }
-        Err(singular) => {
-            return regular_in_joint_coordinates(questions, &|joint| within(joint, TUNING.operations))
-                .ok_or(singular.into());
-        }
-        Ok(absolute) => absolute,
-    };
-    let keep = |absolute: Simulator, why: String| Ok(kept(absolute, why));
     if !absolute.mobility.singular_at_start.is_empty() {
-        return keep(absolute, "the start is singular".to_owned());
+        return Ok(chosen(absolute, "the start is singular".to_owned()));
     }
     // Joint coordinates do not have them, and would not show the undetermined ones.
     if !absolute.mobility.redundant.is_empty() {
-        return keep(absolute, "constraints are redundant".to_owned());
+        return Ok(chosen(absolute, "constraints are redundant".to_owned()));
     }
-    let start = &absolute.nominal[absolute.start.layout.q.clone()];
-    let joint = match assemble::in_joint_coordinates(questions, Some(deepest(questions)), Some(start))? {
-        Ok(joint) => joint,
-        Err(why) => return keep(absolute, why),
-    };
-    match within(joint, enough(&absolute)) {
-        Ok(joint) if starts_alike(&absolute, &joint) => {
-            // The nominal motion is looked at only where joint coordinates would be taken, and before other cuts are:
-            // of many loops it takes longer than all else, of few the cuts do.
-            let singular = "the nominal motion passes singular configurations";
-            let is_first_shorter = is_shorter(&joint, &absolute);
-            if is_first_shorter && passes_singular(questions, &absolute) {
-                return keep(absolute, singular.to_owned());
-            }
-            let joint = loop_cuts::shortest(questions, joint, true, |other, best| {
-                let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
-                within(system, enough(best)).ok()
-            });
-            if !is_first_shorter && is_shorter(&joint, &absolute) && passes_singular(questions, &absolute) {
-                return keep(absolute, singular.to_owned());
-            }
-            Ok(shorter(absolute, joint))
-        }
-        Ok(_) => keep(absolute, "outputs start elsewhere in joint coordinates".to_owned()),
-        Err(SimulationError::TooLong) => {
-            let why = format!("{} instructions a step instead of several times as many", instructions(&absolute));
-            keep(absolute, why)
-        }
-        Err(_) => keep(absolute, "joint coordinates have no start".to_owned()),
-    }
+    let start = absolute.nominal[absolute.start.layout.q.clone()].to_vec();
+    Ok(match Candidate::in_joint_coordinates(questions, enough(&absolute), Some(&start))? {
+        Candidate::Runs(joint) => shortest(questions, absolute, joint, Some(&start)),
+        Candidate::Refused(why) => chosen(absolute, why),
+        Candidate::TooLong => several_times_shorter(absolute),
+        Candidate::Singular(_) => chosen(absolute, "joint coordinates have no start".to_owned()),
+    })
 }
 
-/// Loops in joint coordinates, where absolute ones have no start: bodies without mass, as between the axes of an MJCF's
-/// body, are singular there where constraints are redundant.
-fn regular_in_joint_coordinates<T>(
-    questions: &Questions,
-    of_system: &dyn Fn(System) -> Result<T, SimulationError>,
-) -> Option<T> {
-    let joint = assemble::in_joint_coordinates(questions, Some(deepest(questions)), None).ok()?.ok()?;
-    of_system(because(joint, "absolute coordinates are singular at the start".to_owned())).ok()
+/// The shortest of absolute coordinates and of joint ones with all cuts of the loops. `start`: coordinates from which
+/// loops are closed, if there are any.
+fn shortest(questions: &Questions, absolute: Simulator, joint: Simulator, start: Option<&[f64]>) -> Simulator {
+    if !starts_alike(&absolute, &joint) {
+        return chosen(absolute, "outputs start elsewhere in joint coordinates".to_owned());
+    }
+    // The nominal motion is examined only where joint coordinates would be taken, and before other cuts are: of many
+    // loops it takes longer than all else, of few the cuts do.
+    let passes = || start.is_some() && passes_singular(questions, &absolute);
+    let singular = "the nominal motion passes singular configurations";
+    let is_first_shorter = is_shorter(&joint, &absolute);
+    if is_first_shorter && passes() {
+        return chosen(absolute, singular.to_owned());
+    }
+    let joint = loop_cuts::shortest(questions, joint, true, |other, best| {
+        let system = assemble::in_joint_coordinates(other, None, start).ok()?.ok()?;
+        Compiled::within(system, other.description, enough(best)).ok()
+    });
+    if !is_first_shorter && is_shorter(&joint, &absolute) && passes() {
+        return chosen(absolute, singular.to_owned());
+    }
+    shorter(absolute, joint)
 }
 
-/// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates
-/// amplify rounding more the shorter the steps are.
-fn passes_singular(questions: &Questions, simulator: &Simulator) -> bool {
-    let simulation = &questions.description.simulation;
-    if simulator.system.analysis.is_without_steps() {
-        return false;
-    }
-    let step = match simulation.stepping {
-        Stepping::Fixed(step) => step,
-        Stepping::Tolerance(_) => TUNING.longest_look.min(simulation.output_step),
-    };
-    let step = step.max(simulation.duration / TUNING.looks);
-    let steps = (simulation.output_step / step).round().max(1.0);
-    let schedule = Schedule::fixed(simulation.duration, simulation.output_step / steps, simulation.output_step);
-    let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-    let Ok(start) = simulator.assemble(1, schedule.first_step(), |_| nominal.clone()) else { return true };
-    let mut stepper = Stepper::new(&simulator.program, &start);
-    let mut watch = SingularWatch::new(simulator, &stepper);
-    for (h, end) in (0..schedule.rows).flat_map(|row| schedule.steps_to(row)) {
-        if !stepper.step(h, end).is_empty() {
-            return true;
-        }
-        watch.look(&stepper, end);
-        if watch.has_passed() {
-            return true;
-        }
-    }
-    false
+/// A simulator with the reason for its formulation.
+fn chosen(mut simulator: Simulator, why: String) -> Simulator {
+    simulator.system.formulation.why = why;
+    simulator
 }
 
-/// Joints from the root beyond which joint coordinates are not tried.
-fn deepest(questions: &Questions) -> usize {
-    let deepest = if assemble::closes_loops(questions) { TUNING.deepest_of_loops } else { TUNING.deepest };
-    deepest[usize::from(questions.description.space.spatial)]
+/// The same where the other formulation was given up.
+fn several_times_shorter(simulator: Simulator) -> Simulator {
+    let why = format!("{} instructions a step instead of several times as many", instructions(&simulator));
+    chosen(simulator, why)
 }
 
 /// Operations after which the other formulation is given up.
@@ -220,9 +164,7 @@ fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
         }
         (false, false) => format!("{many} instructions a step instead of {few}"),
     };
-    let mut chosen = if is_joint { joint } else { absolute };
-    chosen.system.formulation.why = why;
-    chosen
+    chosen(if is_joint { joint } else { absolute }, why)
 }
 
 /// Builds and assembles a model, without its steps' program where that is not needed to choose the formulation.
@@ -230,15 +172,8 @@ fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
 /// # Errors
 /// As for [`compiled`].
 pub fn assembled(questions: &Questions) -> Result<Assembled, RunError> {
-    let within = |system: System, operations: usize| {
-        Assembled::within(system, scheme(questions.description), first_step(questions.description), Some(operations))
-    };
-    let of_system = |system: System| {
-        let operations = if system.formulation.joint { TUNING.operations_of_check } else { TUNING.operations };
-        Ok(within(system, operations)?)
-    };
     if questions.formulation != Formulation::Auto {
-        return within_budget(questions, TUNING.operations_of_check, &of_system);
+        return asked(questions);
     }
     if questions.description.bodies.len() <= TUNING.few_bodies {
         let Simulator {
@@ -258,53 +193,17 @@ pub fn assembled(questions: &Questions) -> Result<Assembled, RunError> {
     }
     if assemble::closes_loops(questions) {
         let absolute = assemble::in_absolute_coordinates(questions)?;
-        return within(absolute, TUNING.operations).or_else(|singular| {
-            regular_in_joint_coordinates(questions, &|joint| within(joint, TUNING.operations_of_check))
-                .ok_or(singular.into())
-        });
+        return Compiled::of(absolute, questions.description)
+            .or_else(|singular| where_absolute_are_singular(questions).ok_or(singular.into()));
     }
-    let why = match assemble::in_joint_coordinates(questions, Some(deepest(questions)), None)? {
-        Ok(joint) => match of_system(joint) {
-            Err(RunError::Simulation(SimulationError::TooLong)) => "joint coordinates take too long".to_owned(),
-            assembled => return assembled,
-        },
-        Err(why) => why,
+    let why = match Candidate::in_joint_coordinates(questions, Assembled::operations(true), None)? {
+        Candidate::Runs(joint) => return Ok(joint),
+        Candidate::Singular(error) => return Err(error.into()),
+        Candidate::TooLong => "joint coordinates take too long".to_owned(),
+        Candidate::Refused(why) => why,
     };
-    of_system(because(assemble::in_absolute_coordinates(questions)?, why))
-}
-
-/// What a model asks for; where that takes too many operations, the other formulation. Where joint coordinates take
-/// more than `most`, they are not tried.
-fn within_budget<T>(
-    questions: &Questions,
-    most: usize,
-    of_system: &dyn Fn(System) -> Result<T, RunError>,
-) -> Result<T, RunError> {
-    let asked = questions.formulation;
-    if asked == Formulation::Joint && assemble::joint_elimination(questions) > most / TUNING.eliminations {
-        return other_way(questions, Formulation::Absolute, of_system);
-    }
-    match of_system(assemble::build(questions)?) {
-        Err(RunError::Simulation(SimulationError::TooLong)) => {
-            let other = if asked == Formulation::Joint { Formulation::Absolute } else { Formulation::Joint };
-            other_way(questions, other, of_system)
-        }
-        found => found,
-    }
-}
-
-/// A formulation in place of one that takes too many operations.
-fn other_way<T>(
-    questions: &Questions,
-    formulation: Formulation,
-    of_system: &dyn Fn(System) -> Result<T, RunError>,
-) -> Result<T, RunError> {
-    let system = match assemble::build(&Questions { formulation, ..questions.clone() }) {
-        Err(BuildError::NoJointCoordinates { .. }) => return Err(SimulationError::TooLong.into()),
-        built => built?,
-    };
-    let other = if formulation == Formulation::Joint { "absolute" } else { "joint" };
-    of_system(because(system, format!("{other} coordinates take too many instructions")))
+    let absolute = because(assemble::in_absolute_coordinates(questions)?, why);
+    Ok(Compiled::of(absolute, questions.description)?)
 }
 
 /// The same questions in the formulation that was chosen for them, with its cut of the loops.
@@ -312,9 +211,4 @@ pub fn as_chosen<'d>(questions: &Questions<'d>, chosen: &Simulator) -> Questions
     let FormulationInfo { joint, cut, .. } = &chosen.system.formulation;
     let formulation = if *joint { Formulation::Joint } else { Formulation::Absolute };
     Questions { formulation, ..questions.cut_at(cut.clone()) }
-}
-
-fn because(mut system: System, why: String) -> System {
-    system.formulation = FormulationInfo { why, ..system.formulation };
-    system
 }

@@ -13,7 +13,8 @@ use crate::numerics::{Sample, corners};
 use crate::simulate::{Controller, SimulationError, ToleranceSchedule, schedule_for_tolerance};
 
 /// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors
-/// that are allowed for it; also what ended it before the last row, if anything did. How far an error made early is carried is the problem's: the first schedule shows it.
+/// that are allowed for it; also the error that ended it before the last row, if there is one. How far an early error
+/// is carried depends on the problem: the first schedule shows it.
 pub fn schedule_within(
     study: &Study,
     tolerance: f64,

@@ -9,9 +9,9 @@ use crate::numerics::Sample;
 use crate::simulate::{Schedule, SimulationError};
 use crate::study::problem::Study;
 
-/// The steps that are tried first, and what ended their control before the last row, if anything did: the model's own
-/// steps, or those within its tolerance at the controlling samples, by the explicit method where `samples` of the study
-/// allow it.
+/// The steps that are tried first, and the error that ended their control before the last row, if there is one: the
+/// model's own steps, or those within its tolerance at the controlling samples, by the explicit method where `samples`
+/// of the study allow it.
 pub fn planned(
     study: &Study,
     samples: fn(&Study) -> Vec<Sample>,

@@ -1,9 +1,9 @@
-//! The steps of a subsystem's samples: a `plan` that all of them share, the `first` of which is tried
-//! before its errors are known.
+//! The steps of a subsystem's samples: a `plan` that all of them share, the `first` of which is tried before its errors
+//! are known.
 //!
 //! `validated` has the model's own steps and the samples that measure their error, `controlled` those from a tolerance
-//! of the steps, `explicit` those of the explicit method, `balance` those from a tolerance of the bounds (`search`), and
-//! `events` those between events; `switches` searches the box for events that no sample meets.
+//! of the steps, `explicit` those of the explicit method, `balance` those from a tolerance of the bounds, by a
+//! `search`, and `events` those between events; `switches` searches the box for events that no sample meets.
 
 mod balance;
 mod controlled;
