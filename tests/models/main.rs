@@ -80,6 +80,7 @@ mod tables;
 mod through_events;
 mod time_steps;
 mod tolerance;
+mod total_degree;
 mod urdf;
 mod vehicles;
 mod wiper;

@@ -21,7 +21,7 @@ use crate::methods::{
     BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, MethodResult, Observed, Sampling,
     Simulated, Until, Validation,
 };
-use crate::numerics::{Range, SAFETY_OF_SURROGATE, Sample, spread};
+use crate::numerics::{Derivatives, Range, SAFETY_OF_SURROGATE, Sample, spread};
 use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
 use climb::{Climb, End, Known};
 use surface::{Surface, Surfaces};
@@ -47,7 +47,8 @@ const COST: usize = 4;
 /// Work for each simulation of the budget: gradients count in full, and most of them are of shorter motions.
 const WORK: usize = 4;
 
-/// Most points of polynomials.
+/// Fewest and most points of polynomials beside the middle of the box: two more than the parameters.
+const LEAST_POINTS: usize = 16;
 const MOST_POINTS: usize = 32;
 
 /// Value of an output and its gradient (in ξ).
@@ -261,10 +262,8 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     /// Polynomials of outputs in some rows, as far as points are enough for any; `None` where gradients are not known.
     fn surfaces(&mut self, rows: &[usize]) -> Result<Option<(Option<Surfaces>, Vec<FollowedRow>)>, SimulationError> {
         let k = self.study.domain.dimension();
-        // Twice as many numbers as all terms up to the second degree.
-        let count = k + 2;
         let mut points = vec![vec![0.0; k]];
-        points.extend(spread(k, count.min(MOST_POINTS)));
+        points.extend(spread(k, (k + 2).clamp(LEAST_POINTS, MOST_POINTS)));
         self.simulate(&points)?;
         let outputs = self.motions.outputs();
         let of_row = |row: usize| (0..outputs).map(move |output| (row, output));
@@ -276,27 +275,18 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         if !found.iter().all(is_known) {
             return Ok(None);
         }
-        let spreads = self.spreads(&found, all.len());
-        let surfaces = Surfaces::new(&self.study.domain, points, &spreads);
+        let derivatives = |(line, (_, output)): (usize, &(usize, usize))| Derivatives {
+            slopes: found.iter().skip(line).step_by(all.len()).map(|(_, slopes)| slopes.as_slice()).collect(),
+            scale: self.allowed[*output],
+        };
+        let functions: Vec<Derivatives> = all.iter().enumerate().map(derivatives).collect();
+        let surfaces = Surfaces::new(&self.study.domain, points, &functions);
         let followed = all.iter().enumerate().map(|(place, &(row, output))| {
             let samples: Vec<&Slope> = found.iter().skip(place).step_by(all.len()).collect();
             FollowedRow { row, output, surface: surfaces.as_ref().map(|surfaces| surfaces.of(&samples)) }
         });
         let followed = followed.collect();
         Ok(Some((surfaces, followed)))
-    }
-
-    /// How much the derivatives by each parameter vary from point to point, over the error that is allowed: by point,
-    /// and so many rows and outputs.
-    fn spreads(&self, found: &[Slope], lines: usize) -> Vec<f64> {
-        let spread = |axis: usize| {
-            let of_line = |line: usize| {
-                let slopes: Vec<f64> = found.iter().skip(line).step_by(lines).map(|(_, slopes)| slopes[axis]).collect();
-                Range::of(&slopes).width() / self.allowed[line % self.allowed.len()]
-            };
-            (0..lines).map(of_line).filter(|spread| spread.is_finite()).fold(0.0, f64::max)
-        };
-        (0..self.study.domain.dimension()).map(spread).collect()
     }
 
     /// Simulates points, and keeps those at which an output is least or largest.
