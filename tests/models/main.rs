@@ -32,6 +32,7 @@ mod first_correction;
 mod formulas;
 mod formulations;
 mod gradients;
+mod half_car;
 mod hard_cases;
 mod honesty;
 mod honesty_adaptive;

@@ -15,7 +15,9 @@ fn model(analysis: &str) -> String {
     let each = |line: fn(usize) -> String| (0..SPRINGS).map(line).collect::<String>();
     let parameters = each(|spring| format!("  k{spring}: {{ value: 20, unit: N/m, tolerance: 10% }}\n"));
     let springs = each(|spring| {
-        format!("  s{spring}: {{ spring_damper: {{ between: [ground, mass], along: y, stiffness: k{spring}, free_length: 0 }} }}\n")
+        format!(
+            "  s{spring}: {{ spring_damper: {{ between: [ground, mass], along: y, stiffness: k{spring}, free_length: 0 }} }}\n"
+        )
     });
     format!(
         "{analysis}

@@ -171,7 +171,8 @@ impl GradientFit {
         for _ in 0..SWEEPS {
             let mut moved = 0.0_f64;
             for axis in 0..k {
-                let at_middle = linear[axis] + products[axis].iter().map(|&(other, own)| own * point[other]).sum::<f64>();
+                let at_middle =
+                    linear[axis] + products[axis].iter().map(|&(other, own)| own * point[other]).sum::<f64>();
                 let target = match bend[axis] < 0.0 {
                     true => (-at_middle / bend[axis]).clamp(-1.0, 1.0),
                     false if at_middle == 0.0 => point[axis],

@@ -35,9 +35,11 @@ impl SparseGrid {
     pub fn simplex(orders: &[usize], most: usize) -> Option<Self> {
         /// Shares of a sum that is one may round to more.
         const ROUNDING: f64 = 1e-9;
-        let mut grid = Self::new(&orders.iter().map(|&order| u8::try_from(order).unwrap_or(u8::MAX)).collect::<Vec<_>>());
+        let mut grid =
+            Self::new(&orders.iter().map(|&order| u8::try_from(order).unwrap_or(u8::MAX)).collect::<Vec<_>>());
         let mut next = vec![0; orders.len()];
-        let share = |levels: &[u8]| levels.iter().zip(orders).map(|(l, o)| f64::from(*l) / (*o).max(1) as f64).sum::<f64>();
+        let share =
+            |levels: &[u8]| levels.iter().zip(orders).map(|(l, o)| f64::from(*l) / (*o).max(1) as f64).sum::<f64>();
         // Lexicographic order: every smaller index comes first. Beyond the sum an axis begins anew.
         let mut axis = orders.len();
         while let Some(raised) = axis.checked_sub(1) {

@@ -18,8 +18,8 @@ use super::ensemble::Motions;
 use super::outcome::{Attained, Outcome};
 use super::single::{Study, simulation_error, timed};
 use crate::methods::{
-    BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, MethodResult, Observed, Sampling,
-    Simulated, Until, Validation,
+    BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, MethodResult, Observed, Sampling, Simulated,
+    Until, Validation,
 };
 use crate::numerics::{Derivatives, Range, SAFETY_OF_SURROGATE, Sample, spread};
 use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};

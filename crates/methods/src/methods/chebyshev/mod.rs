@@ -284,7 +284,10 @@ impl BoundingMethod for Chebyshev {
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
         // An output is no polynomial behind an event, whatever is to be expanded.
-        if composes && is_full && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)? {
+        if composes
+            && is_full
+            && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
+        {
             return Ok(result);
         }
         let mut kept_rows = request.keep.then(Vec::new);
@@ -292,9 +295,7 @@ impl BoundingMethod for Chebyshev {
             Expand::Coordinates if composes => {
                 composed(ensemble, &surrogate, &samples, validation, kept_rows.as_mut())?
             }
-            _ if !is_full => {
-                composed(&OutputsAlone(ensemble), &surrogate, &samples, validation, kept_rows.as_mut())?
-            }
+            _ if !is_full => composed(&OutputsAlone(ensemble), &surrogate, &samples, validation, kept_rows.as_mut())?,
             _ => {
                 let range = PolynomialRange::new(order, self.range);
                 expanded(ensemble, &surrogate, range, &samples, validation, kept_rows.as_mut())?

@@ -96,7 +96,8 @@ impl Climb {
         let Known { point, slope, .. } = best;
         let is_free = |axis: usize| slope[axis] * point[axis] < 0.0 || point[axis].abs() < 1.0;
         let free: Vec<f64> = (0..point.len()).map(|axis| if is_free(axis) { slope[axis] } else { 0.0 }).collect();
-        let moved = |way: &[f64]| -> Vec<f64> { point.iter().zip(way).map(|(x, by)| (x + by).clamp(-1.0, 1.0)).collect() };
+        let moved =
+            |way: &[f64]| -> Vec<f64> { point.iter().zip(way).map(|(x, by)| (x + by).clamp(-1.0, 1.0)).collect() };
         let by_curvature = self.newton(&free).map(|way| moved(&way)).filter(|target| gain(best, target) > 0.0);
         by_curvature.unwrap_or_else(|| {
             let way: Vec<f64> = free.iter().map(|own| if *own == 0.0 { 0.0 } else { 2.0 * own.signum() }).collect();
