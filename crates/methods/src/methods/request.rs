@@ -171,7 +171,8 @@ pub(super) fn check_simulations<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     fields: &Fields,
     key: &str,
-    (parameters, simulations): (usize, f64),
+    parameters: usize,
+    simulations: f64,
 ) {
     if simulations > MOST_SIMULATIONS {
         let message = format!("{parameters} parameters make {simulations:.2e} simulations");

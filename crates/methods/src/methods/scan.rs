@@ -55,7 +55,7 @@ impl Scan {
         let points = request::per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, Self::POINTS)?;
         let scan = Self { points };
         let simulations = scan.samples().unwrap_or(f64::INFINITY);
-        request::check_simulations(reader, fields, "points", (uncertain.len(), simulations));
+        request::check_simulations(reader, fields, "points", uncertain.len(), simulations);
         Some(scan)
     }
 }

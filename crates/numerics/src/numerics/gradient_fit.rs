@@ -1,8 +1,8 @@
 //! Polynomials of many parameters from few samples whose derivatives are known: each gives k + 1 numbers.
 //!
-//! The terms are the constant, those of first and second degree in each parameter, and products of two parameters: those
-//! with which derivatives vary most, as many as the samples determine well. Coefficients follow from weighted least
-//! squares over values and derivatives (Peng, Hampton & Doostan, J. Comput. Phys. 310 (2016) 440).
+//! The terms are the constant, those of first and second degree in each parameter, and products of two parameters:
+//! those with which derivatives vary most, as many as the samples determine well. Coefficients follow from weighted
+//! least squares over values and derivatives (Peng, Hampton & Doostan, J. Comput. Phys. 310 (2016) 440).
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 

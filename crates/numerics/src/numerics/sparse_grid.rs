@@ -30,8 +30,8 @@ impl SparseGrid {
         grid
     }
 
-    /// All indices whose levels, each as a share of its order, add up to one at most: of equal orders, all of that total
-    /// degree. `None` if they are more than `most`.
+    /// All indices whose levels, each as a share of its order, add up to one at most: of equal orders, all of that
+    /// total degree. `None` if they are more than `most`.
     pub fn simplex(orders: &[usize], most: usize) -> Option<Self> {
         /// Shares of a sum that is one may round to more.
         const ROUNDING: f64 = 1e-9;

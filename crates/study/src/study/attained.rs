@@ -14,15 +14,16 @@ mod surface;
 
 use std::time::Instant;
 
-use super::ensemble::Motions;
+use super::ensemble::{Motions, Progress};
+use super::internal::InternalError;
 use super::outcome::{Attained, Outcome};
 use super::single::{Study, simulation_error, timed};
 use crate::methods::{
-    BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, MethodResult, Observed, Sampling, Simulated,
-    Until, Validation,
+    BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, Method, MethodResult, Observed, Sampling,
+    Simulated, Until, Validation,
 };
-use crate::numerics::{Derivatives, Range, SAFETY_OF_SURROGATE, Sample, spread};
-use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
+use crate::numerics::{Derivatives, Ledger, Range, SAFETY_OF_SURROGATE, Sample, spread};
+use crate::simulate::{NoGradient, Schedule, SimulationError, Steps, Wanted, gradients};
 use climb::{Climb, End, Known};
 use surface::{Surface, Surfaces};
 
@@ -55,15 +56,40 @@ const MOST_POINTS: usize = 32;
 type Slope = (f64, Vec<f64>);
 
 /// What the search found: its cost, the samples, and bounds.
-pub(super) type AttainedEnds = (Outcome, Attained, FollowedEnds);
+type AttainedEnds = (Outcome, Attained, FollowedEnds);
+
+/// What methods found, and the ends that were searched for before.
+type Bounded = (Vec<(Method, Outcome)>, Option<(Outcome, Attained)>);
 
 impl Study<'_> {
+    /// Bounds by every method that is wanted, which know the ends that were searched for before, where they were.
+    ///
+    /// # Errors
+    /// Where a sample cannot be simulated.
+    pub(super) fn bound_along(
+        &self,
+        steps: Steps<'_>,
+        progress: &Progress<'_>,
+        seen: Option<&Ledger>,
+        validation: &Validation,
+        internal: &mut Vec<InternalError>,
+        wanted: impl Fn(Method) -> bool,
+    ) -> Result<Bounded, SimulationError> {
+        let Steps { schedule, controller } = steps;
+        let motions = || self.motions(schedule, controller, progress).noting(seen);
+        let found = self.attained(&motions(), schedule, validation)?;
+        let followed = found.as_ref().map(|(_, _, followed)| followed);
+        let motions = motions().following(followed);
+        let methods = self.bound(&motions, schedule, validation, internal, wanted)?;
+        Ok((methods, found.map(|(outcome, attained, _)| (outcome, attained))))
+    }
+
     /// Searches the ends of all outputs over time; `None` where surrogates need no help, or motions have no gradients.
     /// The simulations are noted by `motions`.
     ///
     /// # Errors
     /// Where a sample cannot be simulated.
-    pub(super) fn attained(
+    fn attained(
         &self,
         motions: &Motions,
         schedule: &Schedule,

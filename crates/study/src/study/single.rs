@@ -206,24 +206,22 @@ impl<'a> Study<'a> {
             None => None,
         };
         let seen = Ledger::new(schedule.rows, self.simulator.program.outputs.len());
-        let motions = self.motions(&schedule, tolerance, &progress).noting(&seen);
+        let motions = self.motions(&schedule, tolerance, &progress).noting(Some(&seen));
         (self.stage)("nominal motion");
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
         let (mut methods, mut halved, mut attained) = (Vec::new(), Vec::new(), None);
         self.note_nominal(&nominal.result, &seen);
         if let Some((validation, _)) = &validation {
             validation.note(&seen);
-            let found = self.attained(&motions, &schedule, validation)?;
-            let followed = found.as_ref().map(|(_, _, followed)| followed);
-            let motions = self.motions(&schedule, tolerance, &progress).noting(&seen).following(followed);
-            methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
-            attained = found.map(|(outcome, attained, _)| (outcome, attained));
+            let steps = Steps { schedule: &schedule, controller: tolerance };
+            (methods, attained) =
+                self.bound_along(steps, &progress, Some(&seen), validation, &mut internal, |_| true)?;
             if self.certify_time && !self.interruption.is_asked() {
                 let schedule = schedule.refined(2);
-                let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
-                let motions = self.motions(&schedule, halved_tolerance, &progress);
+                let controller = tolerance.map(|tolerance| tolerance.for_parts(2));
+                let steps = Steps { schedule: &schedule, controller };
                 let sampled = |method: Method| method.about().is_sampled;
-                halved = self.bound(&motions, &schedule, validation, &mut internal, sampled)?;
+                (halved, _) = self.bound_along(steps, &progress, None, validation, &mut internal, sampled)?;
             }
         }
         drop(motions);

@@ -172,7 +172,7 @@ impl Chebyshev {
             reader.error(node.span.clone(), message, format!("at least {} are needed", order[few] + 1));
         }
         let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
-        request::check_simulations(reader, fields, key, (uncertain.len(), total_degree::samples(&order, &nodes)));
+        request::check_simulations(reader, fields, key, uncertain.len(), total_degree::samples(&order, &nodes));
         Some(Self { degree: Degree::Fixed { order, nodes }, expand: expand?, range: range? })
     }
 

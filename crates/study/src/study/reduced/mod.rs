@@ -119,7 +119,7 @@ impl Study<'_> {
         let schedule = &rows.schedule;
         let (halved, odd) = (schedule.refined(2), schedule.at_odds());
         let finer = tolerance.map(|tolerance| tolerance.for_parts(2));
-        let motions = self.motions(schedule, tolerance, progress).noting(&rows.seen);
+        let motions = self.motions(schedule, tolerance, progress).noting(Some(&rows.seen));
         let [motions_halved, motions_odd] = [&halved, &odd].map(|schedule| self.motions(schedule, finer, progress));
         let direct = ReducedEnsemble::new(&motions, store, schedule);
         let with_halved = ReducedEnsemble::new(&motions_halved, store, &halved);
