@@ -126,6 +126,9 @@ struct FollowedRow {
     surface: Option<Surface>,
 }
 
+/// What polynomials have in common, where points are enough for any, and all that are followed.
+type Followable = (Option<Surfaces>, Vec<FollowedRow>);
+
 /// The search.
 struct AttainedSearch<'s, 'm> {
     study: &'s Study<'m>,
@@ -286,7 +289,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     }
 
     /// Polynomials of outputs in some rows, as far as points are enough for any; `None` where gradients are not known.
-    fn surfaces(&mut self, rows: &[usize]) -> Result<Option<(Option<Surfaces>, Vec<FollowedRow>)>, SimulationError> {
+    fn surfaces(&mut self, rows: &[usize]) -> Result<Option<Followable>, SimulationError> {
         let k = self.study.domain.dimension();
         let mut points = vec![vec![0.0; k]];
         points.extend(spread(k, (k + 2).clamp(LEAST_POINTS, MOST_POINTS)));
