@@ -5,6 +5,7 @@
 //! (`outputs_alone`).
 
 mod adaptive;
+mod along_gradients;
 mod combined;
 mod composition;
 mod detail;
@@ -332,7 +333,7 @@ fn adapted(
     if let Some(followed) = ensemble.followed().filter(|_| !request.keep)
         && (ensemble.domain().dimension() > MOST_ON_GRIDS || followed.meet(&goal.allowed, goal.rows))
     {
-        return Ok(followed.result());
+        return Ok(along_gradients::bounds(followed, ensemble.outputs(), ensemble.rows()));
     }
     let adapted = adaptive::search(ensemble, goal, validation, request.keep)?;
     let outputs = ensemble.outputs();
