@@ -1,6 +1,6 @@
 //! Bounds of many parameters against the truth: an oscillator whose stiffness and start are sums over 6 to 40
-//! parameters, alone or in pairs, so that their ranges are closed forms. Some rise along a parameter, some have their extreme
-//! inside, and some are saddles or products, whose gradient vanishes in the middle of the box.
+//! parameters, alone or in pairs, so that their ranges are closed forms. Some rise along a parameter, some have their
+//! extreme inside, and some are saddles or products, whose gradient vanishes in the middle of the box.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::{self, Display, Formatter};
