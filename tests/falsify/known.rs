@@ -17,3 +17,6 @@ pub const CONTRADICTED: usize = 0;
 /// Draws of shares that fail and of allocations, and how many are known to be missed.
 pub const SHARES: (u64, usize) = (12, 0);
 pub const ALLOCATIONS: (u64, usize) = (24, 0);
+
+/// Rows of many parameters that are missed without a flag.
+pub const WIDE: usize = 0;

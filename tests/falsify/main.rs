@@ -28,6 +28,7 @@ mod shrink;
 mod table;
 mod truth;
 mod verdict;
+mod wide;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -223,4 +224,24 @@ fn shares_that_fail_are_honest() {
 fn allocations_are_honest() {
     let tally = questioned(known::ALLOCATIONS.0, questions::allocations);
     assert!(tally.missed <= known::ALLOCATIONS.1, "{tally}");
+}
+
+/// Bounds of 6 to 40 parameters, which follow gradients.
+fn wide(draws: u64) {
+    let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
+    let tally = wide::compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
+    println!("{tally}");
+    assert!(tally.missed <= known::WIDE, "{tally}");
+    assert!(4 * tally.flagged <= tally.rows, "{tally}");
+}
+
+#[test]
+fn ends_of_a_few_draws_of_many_parameters_are_honest() {
+    wide(4);
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn ends_of_many_parameters_are_honest() {
+    wide(60);
 }

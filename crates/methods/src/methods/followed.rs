@@ -1,9 +1,18 @@
 //! Ends of outputs that were followed along gradients of the simulations themselves: bounds of many parameters, for
 //! which a polynomial over the whole box would take too many samples.
 
-use super::ensemble::Simulated;
-use super::result::{BandBuilder, MethodResult, Sensitivity};
 use crate::numerics::{Range, SAFETY_OF_SURROGATE};
+
+/// How an output's spread in one row comes about.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    /// First-order Sobol indices: each parameter's share of the variance, alone.
+    pub main: Vec<f64>,
+    /// Total Sobol indices: the same together with others.
+    pub total: Vec<f64>,
+    /// Width of the range if a parameter were at its nominal value.
+    pub width_without: Vec<f64>,
+}
 
 /// An output's ends in one row.
 #[derive(Clone, Debug)]
@@ -37,14 +46,8 @@ impl FollowedEnds {
         ends.take(rows * self.outputs).all(|(found, allowed)| SAFETY_OF_SURROGATE * found.error <= *allowed)
     }
 
-    /// As what a method finds. The simulations were counted where they were made.
-    pub(super) fn result(&self) -> MethodResult {
-        let mut bands = BandBuilder::new(self.outputs, self.ends.len() / self.outputs.max(1));
-        for (place, found) in self.ends.iter().enumerate() {
-            let (row, output) = (place / self.outputs, place % self.outputs);
-            bands.set(row, output, found.range, found.error);
-            bands.set_sensitivity(row, output, found.sensitivity.clone());
-        }
-        bands.finish(0, Simulated::default())
+    /// By row and output.
+    pub(super) fn ends(&self) -> &[Followed] {
+        &self.ends
     }
 }

@@ -24,11 +24,11 @@ pub use ensemble::{
     Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed,
     OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
-pub use followed::{Followed, FollowedEnds};
+pub use followed::{Followed, FollowedEnds, Sensitivity};
 pub use kept::KeptSurrogate;
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};
-pub use result::{BandBuilder, MethodResult, Sensitivity};
+pub use result::{BandBuilder, MethodResult};
 pub use scan::Scan;
 pub use taylor::Taylor;
 pub use validation::{Ensembles, Validation};

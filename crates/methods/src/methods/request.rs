@@ -173,11 +173,11 @@ pub(super) fn check_simulations<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     fields: &Fields,
     key: &str,
-    counts: &[usize],
+    parameters: usize,
+    simulations: f64,
 ) {
-    let simulations: f64 = counts.iter().map(|count| *count as f64).product();
     if simulations > MOST_SIMULATIONS {
-        let message = format!("{} parameters make {simulations:.2e} simulations", counts.len());
+        let message = format!("{parameters} parameters make {simulations:.2e} simulations");
         let help = "lower the number, or make fewer parameters uncertain";
         reader.error(fields.key_span(key), message, format!("at most {MOST_SIMULATIONS:e} can be run: {help}"));
     }

@@ -3,6 +3,7 @@
 use std::ops::Range as Rows;
 
 use super::ensemble::Simulated;
+use super::followed::Sensitivity;
 use super::kept::KeptSurrogate;
 use super::validation::Validation;
 use crate::numerics::{Range, largest, surrogate_error};
@@ -10,17 +11,6 @@ use crate::numerics::{Range, largest, surrogate_error};
 /// How much further a polynomial may be from a function with a kink than it is at validation samples: it is worst at
 /// the kink, and there they need not be.
 pub(super) const BETWEEN_KINKS: f64 = 3.0;
-
-/// How an output's spread in one row comes about.
-#[derive(Clone, Debug)]
-pub struct Sensitivity {
-    /// First-order Sobol indices: each parameter's share of the variance, alone.
-    pub main: Vec<f64>,
-    /// Total Sobol indices: the same together with others.
-    pub total: Vec<f64>,
-    /// Width of the range if a parameter were at its nominal value.
-    pub width_without: Vec<f64>,
-}
 
 /// A method's bands of all outputs, their errors, and their cost.
 #[derive(Clone, Debug, Default)]

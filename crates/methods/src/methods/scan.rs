@@ -53,8 +53,10 @@ impl Scan {
         _tolerance: Option<f64>,
     ) -> Option<Self> {
         let points = request::per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, Self::POINTS)?;
-        request::check_simulations(reader, fields, "points", &points);
-        Some(Self { points })
+        let scan = Self { points };
+        let simulations = scan.samples().unwrap_or(f64::INFINITY);
+        request::check_simulations(reader, fields, "points", uncertain.len(), simulations);
+        Some(scan)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Polynomials of many parameters from few samples whose derivatives are known: each gives k + 1 numbers.
 //!
-//! The terms are the constant, those of first and second degree in each parameter, and products of two parameters: all,
-//! or those of the parameters whose derivatives vary most, as long as the samples determine them. Coefficients follow
-//! from weighted least squares over values and derivatives (Peng, Hampton & Doostan, J. Comput. Phys. 310 (2016) 440).
+//! The terms are the constant, those of first and second degree in each parameter, and products of two parameters:
+//! those with which derivatives vary most, as many as the samples determine well. Coefficients follow from weighted
+//! least squares over values and derivatives (Peng, Hampton & Doostan, J. Comput. Phys. 310 (2016) 440).
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -12,8 +12,8 @@ use super::sparse_grid::SparseGrid;
 /// Most terms: the work grows with their cube.
 const MOST_TERMS: usize = 1000;
 
-/// Equations for each term, at least.
-const EQUATIONS_A_TERM: usize = 2;
+/// Equations for each term, at least: with two, what the terms lack went into products by tens of their size.
+const EQUATIONS_A_TERM: usize = 4;
 
 /// Weight of a derivative beside that of a value: terms of second degree have derivatives of at most 4.
 const WEIGHT: f64 = 0.5;
@@ -53,6 +53,43 @@ impl Term {
     }
 }
 
+/// A function's derivatives by all parameters (k), sample by sample.
+pub struct Derivatives<'d> {
+    /// The derivatives.
+    pub slopes: Vec<&'d [f64]>,
+    /// Differences of this size matter.
+    pub scale: f64,
+}
+
+/// Pairs of parameters, first those whose product has the largest coefficient in some function, as far as the change of
+/// one parameter's derivatives with the other tells: for values spread evenly the mean square of ξ is 1/3.
+fn products(points: &[Vec<f64>], functions: &[Derivatives<'_>]) -> Vec<(usize, usize)> {
+    let k = points.first().map_or(0, Vec::len);
+    let share = 3.0 / points.len() as f64;
+    let mut largest = vec![0.0_f64; k * k];
+    let mut changes = vec![0.0; k * k];
+    for Derivatives { slopes, scale } in functions.iter().filter(|own| own.scale > 0.0) {
+        let mean: Vec<f64> =
+            (0..k).map(|axis| slopes.iter().map(|own| own[axis]).sum::<f64>() / points.len() as f64).collect();
+        changes.fill(0.0);
+        for (point, own) in points.iter().zip(slopes) {
+            for (a, changes) in changes.chunks_exact_mut(k).enumerate() {
+                let change = share * (own[a] - mean[a]);
+                changes.iter_mut().zip(point).for_each(|(of_pair, xi)| *of_pair += change * xi);
+            }
+        }
+        for a in 0..k {
+            for b in a + 1..k {
+                let coefficient = 0.5 * (changes[a * k + b] + changes[b * k + a]) / scale;
+                largest[a * k + b] = largest[a * k + b].max(coefficient.abs());
+            }
+        }
+    }
+    let mut pairs: Vec<(usize, usize)> = (0..k).flat_map(|a| (a + 1..k).map(move |b| (a, b))).collect();
+    pairs.sort_by(|x, y| largest[y.0 * k + y.1].total_cmp(&largest[x.0 * k + x.1]).then(x.cmp(y)));
+    pairs
+}
+
 /// Fits through one set of samples.
 #[derive(Clone, Debug)]
 pub struct GradientFit {
@@ -64,21 +101,14 @@ pub struct GradientFit {
 }
 
 impl GradientFit {
-    /// Through samples at these ξ; `spreads`: how much the derivative by each of the k parameters varies. `None` where
-    /// samples are too few for terms of first and second degree.
-    pub fn new(points: Vec<Vec<f64>>, spreads: &[f64]) -> Option<Self> {
-        let k = spreads.len();
+    /// Through samples at these ξ, for functions with these derivatives there. `None` where samples are too few for
+    /// terms of first and second degree.
+    pub fn new(points: Vec<Vec<f64>>, functions: &[Derivatives<'_>]) -> Option<Self> {
+        let k = points.first()?.len();
         let room = (points.len() * (k + 1) / EQUATIONS_A_TERM).min(MOST_TERMS).checked_sub(2 * k + 1)?;
-        let mut order: Vec<usize> = (0..k).collect();
-        order.sort_by(|&a, &b| spreads[b].total_cmp(&spreads[a]).then(a.cmp(&b)));
-        // Of n parameters there are n (n − 1)/2 products.
-        let together = (0..=k).rev().find(|n| n * n.saturating_sub(1) / 2 <= room).unwrap_or(0);
-        let mut chosen = order[..together].to_vec();
-        chosen.sort_unstable();
-        let products = chosen.iter().enumerate().flat_map(|(place, &a)| {
-            let others = &chosen[place + 1..];
-            others.iter().map(move |&b| Term::Product(a, b))
-        });
+        let mut products = products(&points, functions);
+        products.truncate(room);
+        let products = products.into_iter().map(|(a, b)| Term::Product(a, b));
         let alone = (0..k).map(Term::First).chain((0..k).map(Term::Second));
         let terms: Vec<Term> = [Term::Constant].into_iter().chain(alone).chain(products).collect();
         let mut matrix = DMatrix::<f64>::zeros(points.len() * (k + 1), terms.len());
@@ -99,11 +129,6 @@ impl GradientFit {
     /// The terms' basis.
     pub fn basis(&self) -> &SparseBasis {
         &self.basis
-    }
-
-    /// ξ of the samples.
-    pub fn points(&self) -> &[Vec<f64>] {
-        &self.points
     }
 
     /// Coefficients of the terms, from values and derivatives (k each) at the samples.
@@ -186,7 +211,7 @@ mod tests {
     use super::super::sparse_basis::SparseWork;
     use super::*;
 
-    /// 1 + 2 ξ₀ − 3 ξ₁² + ξ₀ ξ₂ of eight parameters, from eight samples where 45 terms would take 45 values.
+    /// 1 + 2 ξ₀ − 3 ξ₁² + ξ₀ ξ₂ of eight parameters, from twelve samples where 45 terms would take 45 values.
     #[test]
     fn derivatives_stand_for_samples() {
         let value = |xi: &[f64]| 1.0 + 2.0 * xi[0] - 3.0 * xi[1] * xi[1] + xi[0] * xi[2];
@@ -197,8 +222,10 @@ mod tests {
         };
         let points = spread(8, 12);
         let known: Vec<(f64, Vec<f64>)> = points.iter().map(|xi| (value(xi), slopes(xi))).collect();
-        let fit = GradientFit::new(points, &[1.0; 8]).unwrap();
-        assert_eq!(fit.basis().len(), 45);
+        let own = Derivatives { slopes: known.iter().map(|(_, slopes)| slopes.as_slice()).collect(), scale: 1.0 };
+        let fit = GradientFit::new(points, &[own]).unwrap();
+        // 108 equations for 27 terms, of which 17 are of one parameter.
+        assert_eq!(fit.basis().len(), 27);
         let coefficients = fit.coefficients(known.iter().map(|(value, slopes)| (*value, slopes.as_slice())));
         let corners = [vec![1.0; 8], vec![-0.5; 8]];
         let mut found = [0.0; 2];
@@ -214,14 +241,11 @@ mod tests {
         assert!((value(&least) + 5.0).abs() < 1e-6, "{least:?}");
     }
 
-    /// Of too few samples those products stay whose parameters' derivatives vary.
     #[test]
-    fn few_samples_have_few_products() {
-        let mut spreads = [0.0; 8];
-        (spreads[0], spreads[2], spreads[5]) = (1.0, 2.0, 0.5);
-        let fit = GradientFit::new(spread(8, 5), &spreads).unwrap();
-        // 45 equations, 22 terms: 17 alone, and 3 products of 3 parameters.
-        assert_eq!(fit.basis().len(), 20);
-        assert!(GradientFit::new(spread(8, 2), &spreads).is_none());
+    fn few_samples_are_refused() {
+        let points = spread(8, 7);
+        let none = vec![0.0; 8];
+        let own = Derivatives { slopes: vec![none.as_slice(); 7], scale: 1.0 };
+        assert!(GradientFit::new(points, &[own]).is_none());
     }
 }

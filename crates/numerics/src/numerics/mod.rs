@@ -64,7 +64,7 @@ pub use error::{
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
-pub use gradient_fit::GradientFit;
+pub use gradient_fit::{Derivatives, GradientFit};
 pub use least_squares::LeastSquares;
 pub use ledger::Ledger;
 pub use observed_order::{Correction, Differences, corrections};

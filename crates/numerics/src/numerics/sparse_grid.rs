@@ -30,6 +30,35 @@ impl SparseGrid {
         grid
     }
 
+    /// All indices whose levels, each as a share of its order, add up to one at most: of equal orders, all of that
+    /// total degree. `None` if they are more than `most`.
+    pub fn simplex(orders: &[usize], most: usize) -> Option<Self> {
+        /// Shares of a sum that is one may round to more.
+        const ROUNDING: f64 = 1e-9;
+        let mut grid =
+            Self::new(&orders.iter().map(|&order| u8::try_from(order).unwrap_or(u8::MAX)).collect::<Vec<_>>());
+        let mut next = vec![0; orders.len()];
+        let share =
+            |levels: &[u8]| levels.iter().zip(orders).map(|(l, o)| f64::from(*l) / (*o).max(1) as f64).sum::<f64>();
+        // Lexicographic order: every smaller index comes first. Beyond the sum an axis begins anew.
+        let mut axis = orders.len();
+        while let Some(raised) = axis.checked_sub(1) {
+            next[raised] += 1;
+            next[raised + 1..].fill(0);
+            if next[raised] > grid.caps[raised] || share(&next) > 1.0 + ROUNDING {
+                next[raised] = 0;
+                axis = raised;
+                continue;
+            }
+            if grid.len() == most {
+                return None;
+            }
+            grid.add(&next);
+            axis = orders.len();
+        }
+        Some(grid)
+    }
+
     /// The full tensor grid of the given levels, which are its caps too.
     #[cfg(test)]
     pub fn tensor(levels: &[u8]) -> Self {
@@ -126,6 +155,17 @@ mod tests {
         assert_eq!(nodes.len(), 15);
         assert!(nodes.iter().all(|node| node[1] == 0.0 && [-1.0, 0.0, 1.0].contains(&node[2])));
         assert!(grid.candidates().is_empty());
+    }
+
+    #[test]
+    fn a_simplex_has_all_of_a_total_degree() {
+        // C(14 + 2, 2), and of two orders those under a line.
+        assert_eq!(SparseGrid::simplex(&[2; 14], 1000).map(|grid| grid.len()), Some(120));
+        assert!(SparseGrid::simplex(&[2; 14], 119).is_none());
+        let grid = SparseGrid::simplex(&[4, 2], 100).unwrap();
+        let levels: Vec<&[u8]> = (0..grid.len()).map(|index| grid.levels(index)).collect();
+        assert_eq!(levels, [[0, 0], [0, 1], [0, 2], [1, 0], [1, 1], [2, 0], [2, 1], [3, 0], [4, 0]]);
+        assert_eq!(SparseGrid::simplex(&[], 1).map(|grid| grid.len()), Some(1));
     }
 
     #[test]

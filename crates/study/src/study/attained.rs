@@ -14,15 +14,16 @@ mod surface;
 
 use std::time::Instant;
 
-use super::bounding::{Attained, Outcome, simulation_error, timed};
-use super::ensemble::Motions;
+use super::bounding::{Attained, Outcome, bound, simulation_error, timed};
+use super::ensemble::{Motions, Progress};
+use super::internal::InternalError;
 use super::problem::Study;
 use crate::methods::{
-    BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, MethodResult, Observed, Sampling, Simulated,
-    Until, Validation,
+    BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, Method, MethodResult, Observed, Sampling,
+    Simulated, Until, Validation,
 };
-use crate::numerics::{Range, SAFETY_OF_SURROGATE, Sample, spread};
-use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
+use crate::numerics::{Derivatives, Ledger, Range, SAFETY_OF_SURROGATE, Sample, spread};
+use crate::simulate::{NoGradient, Schedule, SimulationError, Steps, Wanted, gradients};
 use climb::{Climb, End, Known};
 use surface::{Surface, Surfaces};
 
@@ -47,21 +48,46 @@ const COST: usize = 4;
 /// Work for each simulation of the budget: gradients count in full, and most of them are of shorter motions.
 const WORK: usize = 4;
 
-/// Most points of polynomials.
+/// Fewest and most points of polynomials beside the middle of the box: two more than the parameters.
+const LEAST_POINTS: usize = 16;
 const MOST_POINTS: usize = 32;
 
 /// Value of an output and its gradient (in ξ).
 type Slope = (f64, Vec<f64>);
 
 /// What the search found: its cost, the samples, and bounds.
-pub(super) type AttainedEnds = (Outcome, Attained, FollowedEnds);
+type AttainedEnds = (Outcome, Attained, FollowedEnds);
+
+/// What methods found, and the ends that were searched for before.
+type BoundsAlong = (Vec<(Method, Outcome)>, Option<(Outcome, Attained)>);
+
+/// Bounds by every method that is wanted, which know the ends that were searched for before, where they were.
+///
+/// # Errors
+/// Where a sample cannot be simulated.
+pub(super) fn bound_along(
+    study: &Study,
+    steps: Steps<'_>,
+    progress: &Progress<'_>,
+    seen: Option<&Ledger>,
+    validation: &Validation,
+    internal: &mut Vec<InternalError>,
+    wanted: impl Fn(Method) -> bool,
+) -> Result<BoundsAlong, SimulationError> {
+    let motions = || study.motions(steps, progress).noting(seen);
+    let found = attained(study, &motions(), steps.schedule, validation)?;
+    let followed = found.as_ref().map(|(_, _, followed)| followed);
+    let motions = motions().following(followed);
+    let methods = bound(study, &motions, steps.schedule, validation, internal, wanted)?;
+    Ok((methods, found.map(|(outcome, attained, _)| (outcome, attained))))
+}
 
 /// Searches the ends of all outputs over time; `None` where surrogates need no help, or motions have no gradients.
 /// The simulations are noted by `motions`.
 ///
 /// # Errors
 /// Where a sample cannot be simulated.
-pub(super) fn attained(
+fn attained(
     study: &Study,
     motions: &Motions,
     schedule: &Schedule,
@@ -96,6 +122,9 @@ struct FollowedRow {
     output: usize,
     surface: Option<Surface>,
 }
+
+/// What polynomials have in common, where points are enough for any, and all that are followed.
+type Followable = (Option<Surfaces>, Vec<FollowedRow>);
 
 /// The search.
 struct AttainedSearch<'s, 'm> {
@@ -257,12 +286,10 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     }
 
     /// Polynomials of outputs in some rows, as far as points are enough for any; `None` where gradients are not known.
-    fn surfaces(&mut self, rows: &[usize]) -> Result<Option<(Option<Surfaces>, Vec<FollowedRow>)>, SimulationError> {
+    fn surfaces(&mut self, rows: &[usize]) -> Result<Option<Followable>, SimulationError> {
         let k = self.study.domain.dimension();
-        // Twice as many numbers as all terms up to the second degree.
-        let count = k + 2;
         let mut points = vec![vec![0.0; k]];
-        points.extend(spread(k, count.min(MOST_POINTS)));
+        points.extend(spread(k, (k + 2).clamp(LEAST_POINTS, MOST_POINTS)));
         self.simulate(&points)?;
         let outputs = self.motions.outputs();
         let of_row = |row: usize| (0..outputs).map(move |output| (row, output));
@@ -274,27 +301,18 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         if !found.iter().all(is_known) {
             return Ok(None);
         }
-        let spreads = self.spreads(&found, all.len());
-        let surfaces = Surfaces::new(&self.study.domain, points, &spreads);
+        let derivatives = |(line, (_, output)): (usize, &(usize, usize))| Derivatives {
+            slopes: found.iter().skip(line).step_by(all.len()).map(|(_, slopes)| slopes.as_slice()).collect(),
+            scale: self.allowed[*output],
+        };
+        let functions: Vec<Derivatives> = all.iter().enumerate().map(derivatives).collect();
+        let surfaces = Surfaces::new(&self.study.domain, points, &functions);
         let followed = all.iter().enumerate().map(|(place, &(row, output))| {
             let samples: Vec<&Slope> = found.iter().skip(place).step_by(all.len()).collect();
             FollowedRow { row, output, surface: surfaces.as_ref().map(|surfaces| surfaces.of(&samples)) }
         });
         let followed = followed.collect();
         Ok(Some((surfaces, followed)))
-    }
-
-    /// How much the derivatives by each parameter vary from point to point, over the error that is allowed: by point,
-    /// and so many rows and outputs.
-    fn spreads(&self, found: &[Slope], lines: usize) -> Vec<f64> {
-        let spread = |axis: usize| {
-            let of_line = |line: usize| {
-                let slopes: Vec<f64> = found.iter().skip(line).step_by(lines).map(|(_, slopes)| slopes[axis]).collect();
-                Range::of(&slopes).width() / self.allowed[line % self.allowed.len()]
-            };
-            (0..lines).map(of_line).filter(|spread| spread.is_finite()).fold(0.0, f64::max)
-        };
-        (0..self.study.domain.dimension()).map(spread).collect()
     }
 
     /// Simulates points, and keeps those at which an output is least or largest.

@@ -2,9 +2,9 @@
 
 use super::RunError;
 use super::answers::{Ran, Results, conclude};
-use super::attained;
+use super::attained::bound_along;
 use super::black_box::repeat;
-use super::bounding::{Bounded, Doubts, bound, note_nominal, timed, unknown};
+use super::bounding::{Bounded, Doubts, note_nominal, timed, unknown};
 use super::deterministic::deterministic;
 use super::ensemble::{Progress, nominal};
 use super::internal::{InternalError, caught};
@@ -77,23 +77,19 @@ fn methods(study: &Study, plan: StepPlan) -> Result<Results, SimulationError> {
         None => None,
     };
     let seen = Ledger::new(schedule.rows, study.simulator.program.outputs.len());
-    let motions = study.motions(plan.steps(), &progress).noting(&seen);
+    let motions = study.motions(plan.steps(), &progress).noting(Some(&seen));
     (study.stage)("nominal motion");
     let (nominal, singular) = timed(schedule, "nominal", || nominal(&motions))?;
     note_nominal(study, &nominal.result, &seen);
     let (mut methods, mut halved, mut attained) = (Vec::new(), Vec::new(), None);
     if let Some((validation, _)) = &validation {
         validation.note(&seen);
-        let ends = attained::attained(study, &motions, schedule, validation)?;
-        let followed = ends.as_ref().map(|(_, _, followed)| followed);
-        let motions = study.motions(plan.steps(), &progress).noting(&seen).following(followed);
-        methods = bound(study, &motions, schedule, validation, &mut internal, |_| true)?;
-        attained = ends.map(|(outcome, attained, _)| (outcome, attained));
+        (methods, attained) =
+            bound_along(study, plan.steps(), &progress, Some(&seen), validation, &mut internal, |_| true)?;
         if study.certify_time && !study.interruption.is_asked() {
-            let finer = plan.halved();
-            let motions = study.motions(finer.steps(), &progress);
             let sampled = |method: Method| method.about().is_sampled;
-            halved = bound(study, &motions, &finer.schedule, validation, &mut internal, sampled)?;
+            let finer = plan.halved();
+            (halved, _) = bound_along(study, finer.steps(), &progress, None, validation, &mut internal, sampled)?;
         }
     }
     drop(motions);

@@ -3,7 +3,8 @@
 use super::composition::Row;
 use super::range_search::{Previous, RangeSearch};
 use super::sensitivity::SensitivityAnalysis;
-use crate::methods::result::{Estimate, Sensitivity};
+use crate::methods::followed::Sensitivity;
+use crate::methods::result::Estimate;
 use crate::methods::validation::ValidationTable;
 
 /// Estimates ranges with their errors.

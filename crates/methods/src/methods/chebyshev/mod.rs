@@ -5,6 +5,7 @@
 //! (`outputs_alone`).
 
 mod adaptive;
+mod along_gradients;
 mod combined;
 mod composition;
 mod detail;
@@ -15,6 +16,7 @@ mod range_search;
 pub(super) mod segments;
 mod sensitivity;
 mod sub_box;
+mod total_degree;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
@@ -171,7 +173,7 @@ impl Chebyshev {
             reader.error(node.span.clone(), message, format!("at least {} are needed", order[few] + 1));
         }
         let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
-        request::check_simulations(reader, fields, key, &nodes);
+        request::check_simulations(reader, fields, key, uncertain.len(), total_degree::samples(&order, &nodes));
         Some(Self { degree: Degree::Fixed { order, nodes }, expand: expand?, range: range? })
     }
 
@@ -248,7 +250,7 @@ impl BoundingMethod for Chebyshev {
 
     fn samples(&self) -> Option<f64> {
         match &self.degree {
-            Degree::Fixed { nodes, .. } => Some(nodes.iter().map(|&count| count as f64).product()),
+            Degree::Fixed { order, nodes } => Some(total_degree::samples(order, nodes)),
             Degree::Adaptive => None,
         }
     }
@@ -279,11 +281,14 @@ impl BoundingMethod for Chebyshev {
             let alone = OutputsAlone(ensemble);
             return adapted(if self.expand == Expand::Output { &alone } else { ensemble }, validation, request);
         };
-        let surrogate = Surrogate::tensor(order, nodes);
+        let (surrogate, is_full) = total_degree::surrogate(order, nodes);
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
         // An output is no polynomial behind an event, whatever is to be expanded.
-        if composes && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)? {
+        if composes
+            && is_full
+            && let Some(result) = segments::of_degree(ensemble, &surrogate, &samples, validation)?
+        {
             return Ok(result);
         }
         let mut kept_rows = request.keep.then(Vec::new);
@@ -291,6 +296,7 @@ impl BoundingMethod for Chebyshev {
             Expand::Coordinates if composes => {
                 composed(ensemble, &surrogate, &samples, validation, kept_rows.as_mut())?
             }
+            _ if !is_full => composed(&OutputsAlone(ensemble), &surrogate, &samples, validation, kept_rows.as_mut())?,
             _ => {
                 let range = PolynomialRange::new(order, self.range);
                 expanded(ensemble, &surrogate, range, &samples, validation, kept_rows.as_mut())?
@@ -327,7 +333,7 @@ fn adapted(
     if let Some(followed) = ensemble.followed().filter(|_| !request.keep)
         && (ensemble.domain().dimension() > MOST_ON_GRIDS || followed.meet(&goal.allowed, goal.rows))
     {
-        return Ok(followed.result());
+        return Ok(along_gradients::bounds(followed, ensemble.outputs(), ensemble.rows()));
     }
     let adapted = adaptive::search(ensemble, goal, validation, request.keep)?;
     let outputs = ensemble.outputs();

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::sensitivity::{Predicted, SensitivityAnalysis};
 use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
+use crate::methods::followed::Sensitivity;
 use crate::methods::kept::KeptRow;
-use crate::methods::result::{BandBuilder, PolynomialEstimate, Sensitivity};
+use crate::methods::result::{BandBuilder, PolynomialEstimate};
 use crate::methods::validation::Validation;
 use crate::numerics::{
     Extent, PolynomialRange, Range, Sample, SparseWork, Surrogate, SurrogateWork, corners, truncation,

@@ -7,7 +7,7 @@ use symdiff::math;
 use super::combined::Combined;
 use super::composition::Row;
 use super::range_search::block;
-use crate::methods::result::Sensitivity;
+use crate::methods::followed::Sensitivity;
 use crate::numerics::{
     Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseGrid, SparseWork, Surrogate, SurrogateWork,
     TensorGrid,

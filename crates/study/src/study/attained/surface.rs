@@ -2,7 +2,7 @@
 //! parameters they come from.
 
 use crate::methods::Sensitivity;
-use crate::numerics::{GradientFit, ParameterBox, Range, SobolDecomposition};
+use crate::numerics::{Derivatives, GradientFit, ParameterBox, Range, SobolDecomposition};
 
 /// The same for all rows and outputs.
 pub(super) struct Surfaces {
@@ -16,9 +16,9 @@ pub(super) struct Surfaces {
 pub(super) struct Surface(Vec<f64>);
 
 impl Surfaces {
-    /// Through samples at these ξ, at which derivatives by the parameters vary so much; `None` where they are too few.
-    pub fn new(domain: &ParameterBox, points: Vec<Vec<f64>>, spreads: &[f64]) -> Option<Self> {
-        let fit = GradientFit::new(points, spreads)?;
+    /// Through samples at these ξ, for functions with these derivatives there (in ξ); `None` where they are too few.
+    pub fn new(domain: &ParameterBox, points: Vec<Vec<f64>>, functions: &[Derivatives<'_>]) -> Option<Self> {
+        let fit = GradientFit::new(points, functions)?;
         let decomposition = SobolDecomposition::new(fit.basis());
         let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
         Some(Self { fit, decomposition, nominal })

@@ -112,9 +112,9 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// The same, which notes all simulated values.
-    pub fn noting(self, ledger: &'a Ledger) -> Self {
-        Self { ledger: Some(ledger), ..self }
+    /// The same, which notes all simulated values, where there is a ledger for them.
+    pub fn noting(self, ledger: Option<&'a Ledger>) -> Self {
+        Self { ledger, ..self }
     }
 
     /// The same, whose simulations are stored.

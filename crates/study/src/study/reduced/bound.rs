@@ -72,7 +72,7 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     (study.stage)("reduced outputs");
     let (plan, schedule) = (&rows.plan, &rows.plan.schedule);
     let finer = [plan.halved(), plan.at_odds()];
-    let motions = study.motions(plan.steps(), progress).noting(&rows.seen);
+    let motions = study.motions(plan.steps(), progress).noting(Some(&rows.seen));
     let [motions_halved, motions_odd] = finer.each_ref().map(|plan| study.motions(plan.steps(), progress));
     let [halved, odd] = finer.each_ref().map(|plan| &plan.schedule);
     let direct = ReducedEnsemble::new(&motions, store, schedule);
