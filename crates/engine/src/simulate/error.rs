@@ -58,7 +58,7 @@ pub enum SimulationError {
     NoAnswer {
         /// Where the model names it.
         place: String,
-        /// What it did, with its last words.
+        /// The reason, with its last line of standard error.
         why: String,
         /// The sample.
         parameters: NamedValues,

@@ -10,7 +10,7 @@ use super::error::SimulationError;
 use super::interruption::Interruption;
 use super::step::Counters;
 
-/// An ensemble of samples that is integrated in one way. What it is asked besides is asked before the first row.
+/// An ensemble of samples that is integrated in one way. Further questions come before the first row.
 pub trait Integrator<'s>: Debug {
     /// Also searches for singular configurations that the first sample passes, and for constraints that open.
     fn watch(&mut self);

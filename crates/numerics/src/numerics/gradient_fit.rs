@@ -18,8 +18,8 @@ const EQUATIONS_A_TERM: usize = 4;
 /// Weight of a derivative beside that of a value: terms of second degree have derivatives of at most 4.
 const WEIGHT: f64 = 0.5;
 
-/// What is added to the diagonal of the normal equations, as a share of its largest entry: terms that samples do not
-/// tell apart share what they have together.
+/// Added to the diagonal of the normal equations, as a share of its largest entry: terms that samples do not tell
+/// apart share the response.
 const RIDGE: f64 = 1e-10;
 
 /// A term: the product of Chebyshev polynomials of these degrees.

@@ -86,7 +86,7 @@ impl Process {
         }
     }
 
-    /// What it writes next.
+    /// Its next line.
     pub fn next(&self, until: Option<Instant>, interrupted: &dyn Fn() -> bool) -> Said {
         loop {
             let rest = until.map_or(GLANCE, |until| until.saturating_duration_since(Instant::now()).min(GLANCE));

@@ -5,13 +5,13 @@
 //! chooses the steps (`stepping`) and has the requested methods bound (`bounding`) the [`Ensemble`] of its motions
 //! (`ensemble`), block by block of output rows, so that memory does not grow with samples × steps; `attained` searches
 //! ends along gradients, `reduced` bounds numbers of a motion and decides requirements, and `deterministic` is the case
-//! without uncertain parameters. `answers` makes bounds, a summary and kept surrogates of what was found. `feasible`
+//! without uncertain parameters. `answers` makes bounds, a summary and kept surrogates of the findings. `feasible`
 //! bounds the part of a box in which there is a motion, `cost` runs one model with many settings to find the cost of
 //! accuracy, `explain` lists what a model is compiled to, and `price` estimates a run. `drawing` and `motion` show the
 //! mechanism, `internal` confines a panic, `statistics` evaluates kept surrogates, and `allocate` searches tolerances.
 //!
-//! A type has its methods in its own file; other files have functions that take it. So what a file uses is what it
-//! imports, and a test finds circles.
+//! A type has its methods in its own file; other files have functions that take it. So the imports of a file are
+//! all that it uses, and a test finds circles.
 //!
 //! [`Ensemble`]: crate::methods::Ensemble
 

@@ -208,8 +208,8 @@ mod tests {
         }
     }
 
-    /// A shaft in a hole of the same letters, one grade finer, has the clearance that the hole has in a shaft h (rule of
-    /// mated fits, ISO 286-1:2010, 4.3.2): Δ is there for it.
+    /// A shaft in a hole of the same letters, one grade finer, has the clearance of the same pair turned
+    /// round (ISO 286-1:2010, 4.3.2): Δ is there for it.
     #[test]
     fn fits_of_hole_and_of_shaft_are_the_same() {
         for letters in ["p", "r", "s", "u", "x"] {

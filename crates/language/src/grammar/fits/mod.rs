@@ -8,7 +8,7 @@
 //! js, JS, IT    ± IT/2
 //! ```
 //!
-//! Δ = ITₙ − ITₙ₋₁ for K, M, N up to grade 8 and for P to ZC up to grade 7, of sizes above 3 mm (ISO 286-1:2010, 4.3.2).
+//! Δ = ITₙ − ITₙ₋₁ for K, M, N up to grade 8 and for P to ZC up to grade 7, of sizes above 3 mm (4.3.2).
 
 mod classes;
 mod general;

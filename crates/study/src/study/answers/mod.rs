@@ -1,6 +1,6 @@
 //! From what methods found under one schedule to bounds, a summary and kept surrogates.
 //!
-//! `results` is what was found, `conclude` makes bounds and the summary of it, with `analysis` and `assemblies`;
+//! `results` holds the findings, `conclude` makes bounds and the summary of it, with `analysis` and `assemblies`;
 //! `keeping` and `kept` keep surrogates for those who evaluate them after the run.
 
 mod analysis;

@@ -1,4 +1,4 @@
-//! Bounds from climbs: what each end's climbs reached, and what they leave open.
+//! Bounds from climbs: the values that each end's climbs reached, and their errors.
 
 use super::climb::Climb;
 use super::surface::Surfaces;
