@@ -19,8 +19,23 @@ use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Sections of a mechanism.
 const OF_MECHANISMS: [&str; 17] = [
-    "bodies", "joints", "effects", "states", "trajectories", "urdf", "mjcf", "base", "controls", "assemblies",
-    "instances", "analysis", "modes", "initial", "guess", "limits", "space",
+    "bodies",
+    "joints",
+    "effects",
+    "states",
+    "trajectories",
+    "urdf",
+    "mjcf",
+    "base",
+    "controls",
+    "assemblies",
+    "instances",
+    "analysis",
+    "modes",
+    "initial",
+    "guess",
+    "limits",
+    "space",
 ];
 
 /// Keys of `simulation` that choose steps, which are the program's own.
@@ -50,9 +65,11 @@ pub fn read(reader: &mut Reader, fields: &Fields, model: &Path) {
         // One row: the answers are numbers, not motions.
         (reader.model.simulation.duration, reader.model.simulation.output_step) = (0.0, 1e-3);
     }
-    let place = reader.diagnostics.sources.locate(&at).map_or_else(String::new, |(source, span)| {
-        format!("{}:{}", source.name, source.place(span.start).line)
-    });
+    let place = reader
+        .diagnostics
+        .sources
+        .locate(&at)
+        .map_or_else(String::new, |(source, span)| format!("{}:{}", source.name, source.place(span.start).line));
     let Some(fields) = reader.fields::<keys::BlackBoxFile>(node, at) else { return };
     let command = reader.required(&fields, "command").and_then(|node| command(reader, node));
     let outputs = reader.required(&fields, "outputs").and_then(|node| outputs(reader, node));
@@ -106,7 +123,13 @@ pub fn all_outputs(model: &mut Description) {
     let output = |own: &BoxOutput| {
         let dimension = own.unit.dimension();
         let formula = Formula::name(&own.name);
-        Output { name: own.name.clone(), formula, unit: dimension.unit(), dimension: Some(dimension), of_results: false }
+        Output {
+            name: own.name.clone(),
+            formula,
+            unit: dimension.unit(),
+            dimension: Some(dimension),
+            of_results: false,
+        }
     };
     if model.outputs.is_empty() && model.reduced.is_empty() {
         model.outputs = own.outputs.iter().map(output).collect();

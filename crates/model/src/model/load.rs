@@ -5,8 +5,8 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, black_box, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements, sections,
-    space, states, statistics, tables, teeth, trajectories,
+    analysis, black_box, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements,
+    sections, space, states, statistics, tables, teeth, trajectories,
 };
 use crate::expand::mjcf;
 use crate::expand::overrides::Override;

@@ -11,7 +11,8 @@ use crate::syntax::yaml::{Entry, Node, Value};
 pub(super) fn title(reader: &mut Reader, fields: &Fields, scene: Option<&str>) {
     // Where all is missing, one message says so.
     let is_begun = |node: &Node| {
-        let says_nothing = ["bodies", "outputs", "simulation", "urdf", "black_box"].iter().all(|key| fields.get(key).is_none());
+        let says_nothing =
+            ["bodies", "outputs", "simulation", "urdf", "black_box"].iter().all(|key| fields.get(key).is_none());
         !says_nothing || node.scalar().is_none_or(|scalar| !scalar.text.is_empty())
     };
     if let Some(node) = fields.get("model").filter(|node| is_begun(node))

@@ -51,7 +51,8 @@ impl Questions {
     /// Where it is of another.
     pub(super) fn check_time(&self, row: usize, found: f64) -> Result<(), Trouble> {
         let wanted = self.times.get(row).copied().unwrap_or(f64::NAN);
-        let spacing = if row > 0 { wanted - self.times[row - 1] } else { self.times.get(1).map_or(1.0, |t| t - wanted) };
+        let spacing =
+            if row > 0 { wanted - self.times[row - 1] } else { self.times.get(1).map_or(1.0, |t| t - wanted) };
         let is_same = (found - wanted).abs() <= SAME_TIME * spacing.abs();
         if is_same || self.times.len() == 1 { Ok(()) } else { Err(Trouble::Time { row, found, wanted }) }
     }

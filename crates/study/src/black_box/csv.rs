@@ -99,9 +99,7 @@ impl Columns {
     fn of(questions: &Questions, heading: &[&str]) -> Result<Self, Trouble> {
         let find = |name: &str| heading.iter().position(|field| *field == name);
         let found = || heading.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-        let needed = |name: &str| {
-            find(name).ok_or_else(|| Trouble::NoOutput { name: name.to_owned(), found: found() })
-        };
+        let needed = |name: &str| find(name).ok_or_else(|| Trouble::NoOutput { name: name.to_owned(), found: found() });
         let time = if questions.times.len() == 1 { find("t") } else { Some(needed("t")?) };
         let outputs = questions.outputs.iter().map(|(name, _)| needed(name)).collect::<Result<_, _>>()?;
         Ok(Self { sample: needed("sample")?, time, outputs })

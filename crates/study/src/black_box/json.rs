@@ -48,14 +48,15 @@ pub(super) fn lines(questions: &Questions, first: u64, points: &[&[f64]]) -> Str
     let mut text = String::new();
     for (place, point) in points.iter().enumerate() {
         let (number, left) = (first + place as u64, points.len() - 1 - place);
-        let parameters: Vec<String> =
-            questions.parameters.iter().zip(*point).map(|(name, value)| format!("{}:{value:?}", quoted(name))).collect();
+        let parameters: Vec<String> = questions
+            .parameters
+            .iter()
+            .zip(*point)
+            .map(|(name, value)| format!("{}:{value:?}", quoted(name)))
+            .collect();
         let parameters = parameters.join(",");
         // Writing to a string does not fail.
-        let _ = writeln!(
-            text,
-            r#"{{"point":{number},"left":{left},"parameters":{{{parameters}}},"times":{times}}}"#
-        );
+        let _ = writeln!(text, r#"{{"point":{number},"left":{left},"parameters":{{{parameters}}},"times":{times}}}"#);
     }
     text
 }

@@ -99,7 +99,8 @@ impl Pool {
             work();
         });
         let mut answers = Vec::with_capacity(points.len());
-        let found: Vec<_> = found.into_iter().map(|own| own.into_inner().unwrap_or_else(PoisonError::into_inner)).collect();
+        let found: Vec<_> =
+            found.into_iter().map(|own| own.into_inner().unwrap_or_else(PoisonError::into_inner)).collect();
         // A program that cannot be started interrupts the others.
         if let Some(Err(why)) = found.iter().find(|own| matches!(own, Err(Unanswered::NotStarted { .. }))) {
             return Err(why.clone());
@@ -194,7 +195,8 @@ impl Pool {
                 }
             }
         };
-        if self.own.protocol == Protocol::Csv && !matches!(why, Some(Trouble::TooSlow { .. } | Trouble::TooMuch { .. })) {
+        if self.own.protocol == Protocol::Csv && !matches!(why, Some(Trouble::TooSlow { .. } | Trouble::TooMuch { .. }))
+        {
             table.end(&self.questions, &mut answers);
         }
         Ok(answers.finish(why))

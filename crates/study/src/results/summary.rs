@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use super::statistics::StatisticsResult;
-use super::{AnalysisSummary, Band, BlackBoxSummary, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
+use super::{
+    AnalysisSummary, Band, BlackBoxSummary, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary,
+};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;
 

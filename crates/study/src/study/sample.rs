@@ -260,7 +260,7 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
 impl Study<'_> {
     /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a
     /// tolerance those that a run would try first.
-    fn steps_of_samples(&self) -> Result<(Schedule, Option<Controller>), SimulationError> {
+    pub(super) fn steps_of_samples(&self) -> Result<(Schedule, Option<Controller>), SimulationError> {
         let simulation = &self.description.simulation;
         let (schedule, controller) = match simulation.stepping {
             Stepping::Fixed(step) => {

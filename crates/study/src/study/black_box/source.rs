@@ -151,9 +151,7 @@ impl Source {
         let interrupted = || interruption.is_asked();
         self.pool.answers(points, rayon::current_num_threads(), &interrupted, done).map_err(|why| match why {
             Unanswered::Interrupted => SimulationError::Interrupted,
-            not_started => {
-                SimulationError::BlackBox { place: self.own.place.clone(), why: not_started.to_string() }
-            }
+            not_started => SimulationError::BlackBox { place: self.own.place.clone(), why: not_started.to_string() },
         })
     }
 

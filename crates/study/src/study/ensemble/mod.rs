@@ -1,6 +1,7 @@
 //! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
 
 pub(in crate::study) mod closure;
+mod combinations;
 mod cut;
 mod dense;
 mod jet;
@@ -13,16 +14,15 @@ use std::ops::Range as Rows;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use symdiff::Expr;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::black_box::Source;
+use super::black_box::source::Source;
 use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
-use crate::compile::{self, has_kink, jumps};
+use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, OfParameters};
+use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError};
 use crate::methods::{Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
@@ -279,19 +279,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn combinations(&self) -> Vec<Combination<'_>> {
-        let system = &self.simulator.system;
-        let known = |found: compile::Combination| {
-            let of = |expr: Expr| -> OfParameters<'_> {
-                let symbols = found.parameters.iter().map(|&number| system.parameters[number].symbol);
-                let symbols: Vec<Expr> = symbols.collect();
-                Box::new(move |values| {
-                    let at = |symbol: Expr| symbols.iter().position(|&own| own == symbol);
-                    system.graph.evaluate(&[expr], |symbol| at(symbol).map_or(f64::NAN, |at| values[at]))[0]
-                })
-            };
-            Combination { first: of(found.first), last: of(found.last), parameters: found.parameters }
-        };
-        compile::combinations(system).into_iter().map(known).collect()
+        combinations::of(&self.simulator.system)
     }
 
     fn seen(&self, row: usize, output: usize) -> Range {

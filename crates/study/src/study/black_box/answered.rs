@@ -1,0 +1,66 @@
+//! Answers of a program as simulations of samples.
+
+use std::ops::Range as Rows;
+use std::sync::atomic::Ordering;
+
+use super::source::Source;
+use crate::methods::{Effort, Sampling, Simulated, Stop, StopCause, Until};
+use crate::numerics::Sample;
+use crate::simulate::{SimulationError, reduced_rows};
+use crate::study::ensemble::Motions;
+
+impl Motions<'_> {
+    /// As [`Ensemble::simulate`](crate::methods::Ensemble::simulate), by the answers of a program; `reduce` gets all
+    /// rows at once. A sample without an answer stops in its first row.
+    ///
+    /// # Errors
+    /// Where the program cannot be started.
+    pub(in crate::study) fn answered(
+        &self,
+        source: &Source,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, SimulationError> {
+        let (times, outputs, count) = (source.times(), source.outputs(), samples.len());
+        let rows = times.len();
+        let answers = source.answers(samples, source.refinement(self.schedule), self.interruption, &|points| {
+            self.progress.advance(points * rows);
+        });
+        let answers = match answers {
+            Err(SimulationError::Interrupted) => {
+                return Ok(Simulated { missing: rows, ..Simulated::default() });
+            }
+            answers => answers?,
+        };
+        let mut values = vec![f64::NAN; rows * outputs * count];
+        let mut reduced = vec![f64::NAN; self.channels().len() * count];
+        let mut stops: Vec<Stop> = Vec::new();
+        for (sample, answer) in answers.into_iter().enumerate() {
+            let found = match answer {
+                Ok(found) => found,
+                Err(why) => {
+                    let cause = StopCause::NoAnswer { why: why.to_string() };
+                    stops.push(Stop { sample, row: 0, time: times[0], cause });
+                    continue;
+                }
+            };
+            for (line, &value) in found.iter().enumerate() {
+                values[line * count + sample] = value;
+            }
+            for (channel, value) in reduced_rows(self.channels(), times, &found).into_iter().enumerate() {
+                reduced[channel * count + sample] = value;
+            }
+        }
+        self.over.fetch_add(count, Ordering::Relaxed);
+        reduce(0..rows, &values);
+        self.keep_reduced(samples, &reduced);
+        let stopped: Vec<usize> = stops.iter().map(|stop| stop.sample).collect();
+        let missing = if stops.is_empty() || sampling.until == Until::End { 0 } else { rows };
+        let stop = stops.into_iter().next().map(|stop| {
+            let sample = samples[stop.sample].clone();
+            (stop, sample)
+        });
+        Ok(Simulated { effort: Effort::default(), reduced, stop, stopped, missing, ..Simulated::default() })
+    }
+}
