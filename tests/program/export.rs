@@ -1,4 +1,4 @@
-//! `mbint export --c`: what C computes is the nominal motion of `mbint run`.
+//! `mbint export`: what C and units of FMI compute is the nominal motion of `mbint run`.
 
 use std::fs;
 use std::process::Command;
@@ -64,6 +64,83 @@ fn c_repeats_the_nominal_motion() {
             let off = values.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(off <= 1e-9 * size, "{name}: {output} is off by {off} of {size}");
         }
+    }
+}
+
+/// A host of FMI 3.0: instantiates the library of a unit, and steps it from row to row.
+const HOST: &str = r#"
+#include <dlfcn.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+typedef void *(*instantiate)(const char *, const char *, const char *, bool, bool, bool, bool, const uint32_t *, size_t, void *, void *, void *);
+typedef int (*enter)(void *, bool, double, double, bool, double);
+typedef int (*of)(void *);
+typedef int (*get)(void *, const uint32_t *, size_t, double *, size_t);
+typedef int (*do_step)(void *, double, double, bool, bool *, bool *, bool *, double *);
+int main(int count, char **given)
+{
+    void *library = dlopen(given[1], RTLD_NOW);
+    double step = atof(given[3]), values[2], reached;
+    int rows = atoi(given[4]), row;
+    bool event, ends, early;
+    uint32_t references[2] = { 0, 1 };
+    void *own;
+    (void)count;
+    if (!library) return 9;
+    own = ((instantiate)dlsym(library, "fmi3InstantiateCoSimulation"))("own", "another", "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
+    if (own) return 8;
+    own = ((instantiate)dlsym(library, "fmi3InstantiateCoSimulation"))("own", given[2], "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
+    if (!own || ((enter)dlsym(library, "fmi3EnterInitializationMode"))(own, false, 0, 0, false, 0)) return 7;
+    if (((of)dlsym(library, "fmi3ExitInitializationMode"))(own)) return 6;
+    printf("t,x\n");
+    for (row = 0; row < rows; row++) {
+        if (row > 0 && ((do_step)dlsym(library, "fmi3DoStep"))(own, (row - 1) * step, step, true, &event, &ends, &early, &reached)) return 5;
+        if (((get)dlsym(library, "fmi3GetFloat64"))(own, references, 2, values, 2)) return 4;
+        printf("%.17g,%.17g\n", values[0], values[1]);
+    }
+    return 0;
+}
+"#;
+
+#[test]
+fn a_unit_repeats_the_nominal_motion() {
+    let place = Place::new();
+    for name in ["slider_crank", "car_axis", "andrews"] {
+        let model = format!("{}/models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        place.run(&format!("export {model} --fmu -o {name}"), 0);
+        let folder = place.path().join(name);
+        fs::write(folder.join("host.c"), HOST).unwrap();
+        let done = |program: &str, arguments: &[&str]| {
+            let done = Command::new(program).args(arguments).current_dir(&folder).output().unwrap();
+            assert!(
+                done.status.success(),
+                "{name}, {program}: {:?} {}",
+                done.status,
+                String::from_utf8_lossy(&done.stderr)
+            );
+            String::from_utf8(done.stdout).unwrap()
+        };
+        done("python3", &["-m", "zipfile", "-e", &format!("{name}.fmu"), "unit"]);
+        done("gcc", &["-std=gnu11", "-o", "host", "host.c", "-ldl"]);
+        let text = fs::read_to_string(folder.join("unit/modelDescription.xml")).unwrap();
+        let description = roxmltree::Document::parse(&text).unwrap();
+        let root = description.root_element();
+        let find = |tag: &str| root.descendants().find(|node| node.has_tag_name(tag)).unwrap();
+        let token = root.attribute("instantiationToken").unwrap();
+        let step = find("DefaultExperiment").attribute("stepSize").unwrap();
+        let outputs: Vec<_> = root.descendants().filter(|node| node.attribute("causality") == Some("output")).collect();
+        let output = outputs[0].attribute("name").unwrap();
+        place.run(&format!("run {model} --method chebyshev --yes --quiet -o {name}/run"), 0);
+        let expected = columns(&fs::read_to_string(folder.join("run/bounds.csv")).unwrap());
+        let (_, expected) = expected.iter().find(|(own, _)| *own == format!("{output}.nominal")).unwrap();
+        let library = format!("./unit/binaries/{}-linux/{name}.so", std::env::consts::ARCH);
+        let found = columns(&done("./host", &[&library, token, step, &expected.len().to_string()]));
+        let size = expected.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        let off = found[1].1.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off <= 1e-9 * size, "{name}: {output} is off by {off} of {size}");
     }
 }
 

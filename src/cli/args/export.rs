@@ -13,9 +13,8 @@ pub(in crate::cli) struct ExportArgs {
     #[arg(value_name = "MODEL")]
     pub model: PathBuf,
 
-    /// As C99 without dependencies: a header, the model, and an example that writes its outputs as a table.
-    #[arg(long, required = true)]
-    pub c: bool,
+    #[command(flatten)]
+    pub formats: Formats,
 
     /// Export this scene of the model.
     #[arg(long, value_name = "NAME")]
@@ -27,6 +26,19 @@ pub(in crate::cli) struct ExportArgs {
 
     #[command(flatten)]
     pub set: SetArgs,
+}
+
+/// Forms of the export.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = true)]
+pub(in crate::cli) struct Formats {
+    /// As C99 without dependencies: a header, the model, and an example that writes its outputs as a table.
+    #[arg(long)]
+    pub c: bool,
+
+    /// As a unit of FMI 3.0 for co-simulation: sources, and a library for this platform where there is a C compiler.
+    #[arg(long)]
+    pub fmu: bool,
 }
 
 const EXPORT_HELP: &str = "\

@@ -1,9 +1,10 @@
 //! A compiled mechanism as C99: the programs of its steps, the nominal start, and Newton's iteration (`runtime.c`).
 //!
-//! What is written repeats the nominal motion of a run with fixed steps of HHT-I3. It has no rank-revealing solve: a
+//! The code repeats the nominal motion of a run with fixed steps of HHT-I3. It has no rank-revealing solve: a
 //! step in a singular configuration fails.
 
 mod data;
+mod fmi;
 
 use std::fmt::Write;
 
@@ -21,12 +22,16 @@ const RUNTIME: &str = include_str!("runtime.c");
 pub struct CModel {
     /// Names and texts: a header, the model, and an example that writes its outputs as a table.
     pub files: Vec<(String, String)>,
+    /// The same of a unit of FMI 3.0 for co-simulation, by paths in it, without a library.
+    pub unit: Vec<(String, String)>,
+    /// Name of the unit and of its library: one of C.
+    pub identifier: String,
 }
 
 /// Why a model is not written as C.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoCode {
-    /// What it asks for is not in the runtime.
+    /// The runtime lacks something that the model needs.
     #[error("it cannot be written as C: {0}")]
     NotWritten(&'static str),
     /// It has no start.
@@ -70,8 +75,10 @@ pub fn c_code(simulator: &Simulator, schedule: &Schedule, name: &str) -> Result<
     text += &functions;
     text += RUNTIME;
     let example = EXAMPLE.replace("NAME", name).replace("PREFIX", &prefix);
-    let files = vec![(format!("{name}.h"), header), (format!("{name}.c"), text), (format!("{name}_main.c"), example)];
-    Ok(CModel { files })
+    let code = vec![(format!("{name}.h"), header), (format!("{name}.c"), text)];
+    let unit = fmi::files(&fmi::Unit { name, prefix: &prefix, outputs: &outputs, schedule }, &code);
+    let files = code.into_iter().chain([(format!("{name}_main.c"), example)]).collect();
+    Ok(CModel { files, unit, identifier: prefix })
 }
 
 /// The tapes as functions of the memory.

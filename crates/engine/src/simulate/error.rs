@@ -58,7 +58,7 @@ pub enum SimulationError {
     NoAnswer {
         /// Where the model names it.
         place: String,
-        /// What it did, with its last words.
+        /// Its fault, with its last words.
         why: String,
         /// The sample.
         parameters: NamedValues,

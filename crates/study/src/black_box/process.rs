@@ -86,7 +86,7 @@ impl Process {
         }
     }
 
-    /// What it writes next.
+    /// Its next line, or why there is none.
     pub fn next(&self, until: Option<Instant>, interrupted: &dyn Fn() -> bool) -> Said {
         loop {
             let rest = until.map_or(GLANCE, |until| until.saturating_duration_since(Instant::now()).min(GLANCE));
@@ -146,7 +146,7 @@ fn write(mut stdin: impl Write, texts: &Receiver<String>) {
     }
 }
 
-/// Reads lines as long as they are allowed; `None` where they are too long or too many. What is allowed is asked when
+/// Reads lines as long as they are allowed; `None` where they are too long or too many. The limit is read when
 /// something has come: before, the call may not have begun.
 fn read(stdout: impl Read, allowed: &AtomicU64, lines: &Sender<Option<String>>) {
     let mut stdout = BufReader::new(stdout);

@@ -43,7 +43,7 @@ pub enum Trouble {
     Unreadable {
         /// The line.
         line: String,
-        /// What is wrong with it.
+        /// Its fault.
         why: String,
     },
     /// An output is missing.

@@ -14,7 +14,7 @@ pub enum CodeError {
     /// It cannot be run either.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// It takes more than what is written.
+    /// It takes more than the runtime has.
     #[error(transparent)]
     None(#[from] NoCode),
 }

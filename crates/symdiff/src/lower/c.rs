@@ -12,8 +12,8 @@ pub struct CWriter {
 }
 
 impl CWriter {
-    /// The statements of a tape: each is the same operation on doubles that an evaluator does; functions are those of C's
-    /// library, and `mb_select`, `mb_sign`, `mb_min`, `mb_max` and `mb_spline`, which [`helpers`](Self::helpers)
+    /// The statements of a tape: each is the same operation on doubles that an evaluator does; functions are those of
+    /// C's library, and `mb_select`, `mb_sign`, `mb_min`, `mb_max` and `mb_spline`, which [`helpers`](Self::helpers)
     /// defines.
     pub fn statements(&mut self, tape: &Tape) -> String {
         let mut text = String::new();

@@ -1,7 +1,7 @@
 //! A program as an ensemble: its answers stand where simulations of a mechanism do.
 //!
-//! `source` asks it, and makes the model's outputs of its answers; `answered` gives them to methods; `repeated` asks once
-//! more, for its noise.
+//! `source` asks it, and makes the model's outputs of its answers; `answered` gives them to methods; `repeated` asks
+//! once more, for its noise.
 
 mod answered;
 mod repeated;

@@ -93,7 +93,7 @@ impl Source {
         if self.own.refine.is_none() { 1.0 } else { self.schedule.first_step() / schedule.first_step() }
     }
 
-    /// The model's outputs (row, output) at samples, sample by sample. What is known is not asked again.
+    /// The model's outputs (row, output) at samples, sample by sample. Known points are not asked again.
     ///
     /// # Errors
     /// Where the program cannot be started, and at an interruption.
