@@ -296,6 +296,7 @@ mod tests {
             outputs: vec![],
             spatial_because: None,
             analysis: None,
+            black_box: None,
             not_simulated: vec![],
             asks: None,
             structure: Structure {
