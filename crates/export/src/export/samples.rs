@@ -16,7 +16,8 @@ const AT_ONCE: usize = 4096;
 /// Gets values (sample, row, output) of consecutive samples.
 pub type Keep<'k> = dyn FnMut(&[f64]) -> Result<(), ExportError> + 'k;
 
-/// Writes all samples; the file appears when it is whole, and `-` is standard output. `fill` gives the values, and says whether these were all.
+/// Writes all samples; the file appears when it is whole, and `-` is standard output. `fill` gives the values, and says
+/// whether these were all.
 ///
 /// # Errors
 /// Where the file cannot be written, and those of `fill`.

@@ -71,8 +71,8 @@ impl Spline {
         Ok(*known.entry((bits, periodic)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
     }
 
-    /// Knots, cubics (below the first knot, between each two, above the last; of powers of x minus the knot before), and
-    /// whether it repeats.
+    /// Knots, cubics (below the first knot, between each two, above the last; of powers of x minus the knot before),
+    /// and whether it repeats.
     pub(crate) fn pieces(self) -> (&'static [f64], &'static [[f64; 4]], bool) {
         (&self.0.knots, &self.0.cubics, self.0.periodic)
     }

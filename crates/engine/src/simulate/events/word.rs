@@ -23,8 +23,8 @@ const DECIDING: usize = 8;
 /// Most words.
 const MOST_WORDS: usize = 6;
 
-/// Parameters, at most, of boxes with several words: each word costs a surrogate, of which the ranges of many parameters
-/// take long.
+/// Parameters, at most, of boxes with several words: each word costs a surrogate, and ranges of many parameters take
+/// long.
 const MOST_OF_PARTS: usize = 2;
 
 /// Motions are cut if their words can be followed for at least this share of the duration.
