@@ -16,7 +16,7 @@ pub use results::{GradientParameter, Gradients, OutputGradients, Summary};
 pub use syntax::Diagnostics;
 
 // Rooms of the crates below keep their names here.
-use mbint_engine::{assemble, compile, reduce, simulate};
+use mbint_engine::{assemble, c_code, compile, reduce, simulate};
 use mbint_export::export;
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;

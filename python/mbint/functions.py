@@ -62,7 +62,7 @@ def bounds(
         A study as :func:`run` returns.
 
     Raises:
-        MbintError: the function failed at every point, or what was asked has errors.
+        MbintError: the function failed at every point, or the question has errors.
         ValueError: ``times`` do not begin at 0, or have different distances.
     """
     units = (
@@ -140,7 +140,7 @@ class _Answers:
         try:
             columns = self._columns(self.function(**arrays))
             shaped = {name: np.asarray(values, float).reshape(len(points), count) for name, values in columns.items()}
-        except Exception as error:  # noqa: BLE001 - the function is the user's, and what it raises is its answer
+        except Exception as error:  # noqa: BLE001 - the function is the user's: its exception is its answer
             return [_failed(error)] * len(points)
         return [
             {"outputs": {name: values[place].tolist() for name, values in shaped.items()}}

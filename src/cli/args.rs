@@ -2,6 +2,7 @@
 
 mod allocate;
 mod explain;
+mod export;
 mod gradient;
 mod sample;
 mod shards;
@@ -19,6 +20,7 @@ use crate::model::Override;
 use crate::results::Method;
 pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
+pub(super) use export::ExportArgs;
 pub(super) use gradient::GradientArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
@@ -61,6 +63,8 @@ pub(super) enum Command {
     Explain(ExplainArgs),
     /// Simulate at chosen points: outputs over time, for other programs.
     Sample(SampleArgs),
+    /// Write a model's nominal motion as source code.
+    Export(ExportArgs),
     /// Cut what models ask for into shards, for many machines.
     Plan(PlanArgs),
     /// Simulate a shard of a plan; existing parts are skipped.

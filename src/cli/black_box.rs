@@ -2,7 +2,7 @@
 
 use super::console::count;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{BlackBoxSummary, NoiseSummary};
+use crate::results::{BlackBoxSummary, ErrorSummary, NoiseSummary};
 use crate::syntax::harmless;
 
 /// The program, at the head of an overview.
@@ -10,8 +10,11 @@ pub(super) fn heading(own: &BlackBoxSummary) -> String {
     format!("a black box, `{}`", harmless(&own.command.join(" ")))
 }
 
-/// How far a program's answers are to be trusted.
-pub(super) fn lines(own: &BlackBoxSummary) -> String {
+/// Share of a band's width that held-out answers of a smooth response do not miss a surrogate by.
+const ABRUPT: f64 = 0.1;
+
+/// How far a program's answers are to be trusted; `errors` are those of all bands.
+pub(super) fn lines(own: &BlackBoxSummary, errors: &[ErrorSummary]) -> String {
     let steps = match &own.refined_by {
         Some(parameter) => format!("the error of its own steps was found by finer `{parameter}`"),
         None => "the error of its own steps is not included (`refine` says how to find it)".to_owned(),
@@ -24,5 +27,13 @@ pub(super) fn lines(own: &BlackBoxSummary) -> String {
         noise if noise.is_empty() => "the same answers".to_owned(),
         noise => format!("noise of {}", noise.join(", ")),
     };
-    format!("  black box: {steps}; {} asked twice: {noise}\n\n", count(own.repeated, "point", "points"))
+    let abrupt = |error: &&ErrorSummary| error.width > 0.0 && error.surrogate > ABRUPT * error.width;
+    let jumps: String = errors.iter().filter(abrupt).map(|error| {
+        let share = 100.0 * error.surrogate / error.width;
+        format!(
+            "  {}.{}: held-out answers are off by {share:.0} % of the width: the response jumps between samples, or has noise\n",
+            error.output, error.method
+        )
+    }).collect();
+    format!("  black box: {steps}; {} asked twice: {noise}\n{jumps}\n", count(own.repeated, "point", "points"))
 }

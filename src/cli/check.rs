@@ -296,9 +296,9 @@ mod tests {
             outputs: vec![],
             spatial_because: None,
             analysis: None,
+            black_box: None,
             not_simulated: vec![],
             asks: None,
-            black_box: None,
             structure: Structure {
                 mobility: MobilityCount {
                     spatial: false,

@@ -12,7 +12,7 @@ use crate::export::write_cost;
 use crate::methods::BoundsRequest;
 use crate::model::{Description, Stepping};
 use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
-use crate::study::{self, CostOptions};
+use crate::study::{self, CostError, CostOptions, RunError};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
     let model = load::load(&args.model, &args.set.given()?, args.run.scene.as_ref(), console)?;
@@ -34,6 +34,9 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
             drop(progress);
             console.error(&format!("{}: interrupted before any setting was finished", model.name));
             return Ok(Status::Interrupted);
+        }
+        Err(error @ CostError::Run(RunError::Refused(_))) => {
+            return Err(Failure::Wrong(format!("{}: {error}", model.name)));
         }
         Err(error) => return Err(failed(&error)),
     };

@@ -34,7 +34,9 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
                 GradientError::NoParameter | GradientError::NoOutput | GradientError::None(_) => {
                     Failure::Wrong(message)
                 }
-                GradientError::Run(RunError::Costly(_) | RunError::Memory(_)) => Failure::Wrong(message),
+                GradientError::Run(RunError::Costly(_) | RunError::Memory(_) | RunError::Refused(_)) => {
+                    Failure::Wrong(message)
+                }
                 GradientError::Run(_) | GradientError::Lost { .. } => Failure::Failed(message),
             }
         })?,

@@ -10,6 +10,7 @@ mod console;
 mod cost;
 mod effects;
 mod explain;
+mod export_code;
 mod gradient;
 mod interrupt;
 mod job;
@@ -150,6 +151,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Explain(args) => explain::explain(&args, console),
         Command::Report(args) => report::report(&args, console),
         Command::Show(args) => show::show(&args, console),
+        Command::Export(args) => export_code::export(&args, console),
         Command::Sample(args) => sample::sample(args, console),
         Command::Plan(args) => shards::plan(args, console),
         Command::Shard(args) => shards::shard(&args, console),

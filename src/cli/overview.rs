@@ -281,7 +281,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
             text += &found.as_ref().map_or_else(String::new, analysis);
         }
     }
-    text += &summary.black_box.as_ref().map_or_else(String::new, black_box::lines);
+    text += &summary.black_box.as_ref().map_or_else(String::new, |own| black_box::lines(own, &summary.errors));
     text += &contributions(&summary.contributions);
     text += &verdicts::tables(summary);
     text += &super::statistics::statistics(summary);

@@ -243,6 +243,71 @@ fn noise_is_found_and_stated() {
     let noise = summary(&place, "out")["black_box"]["noise"][0]["noise"].as_f64().unwrap();
     // In m; the answers are in mm.
     assert!(noise > 1e-4 && noise <= 0.5e-3, "{noise}");
+    // Held-out samples have it, too.
+    let bounds = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
+    let error = column(&bounds, "x.chebyshev.error").into_iter().fold(0.0, f64::max);
+    assert!(error > 0.3 * noise, "{error} beside {noise}");
+}
+
+/// A response that jumps over the parameters has no polynomial: that is said, and the error covers the jump.
+#[test]
+fn jumps_are_flagged() {
+    let place = place("right", "bounds: { chebyshev: { order: 4 } }");
+    fs::write(place.path().join("spring.py"), SPRING.replace("for t in", "+ 500 * (k > 203) for t in")).unwrap();
+    let (output, _) = place.run("run spring.yaml -o out", 0);
+    assert!(output.contains("x.chebyshev: held-out answers are off by"), "{output}");
+    let bounds = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
+    let [lower, upper, error] =
+        ["lower", "upper", "error"].map(|end| column(&bounds, &format!("x.chebyshev.{end}"))[0]);
+    // At the start x is 1 m, and 0.5 m more beyond the jump.
+    assert!((lower - 1.0).abs() <= error && (upper - 1.5).abs() <= error, "{lower} to {upper}, {error}");
+}
+
+/// Answers without a time are numbers, one an output; points are asked in calls of several.
+#[test]
+fn numbers_need_no_time() {
+    let place = Place::new();
+    let script = "
+import json, sys
+asked = []
+for line in sys.stdin:
+    asked.append(json.loads(line))
+    if asked[-1]['left'] == 0:
+        for one in reversed(asked):
+            assert one['times'] == [0.0] and len(asked) <= 4
+            print(json.dumps({'point': one['point'], 'outputs': {'area': one['parameters']['a'] * one['parameters']['b']}}))
+        sys.stdout.flush()
+        asked = []
+";
+    fs::write(place.path().join("area.py"), script).unwrap();
+    let text = "parameters: { a: 2 m ± 10%, b: 3 m ± 10% }
+black_box: { command: [python3, area.py], outputs: { area: m^2 }, points: 4, processes: 1 }
+bounds: { chebyshev: { order: 2 } }
+";
+    fs::write(place.path().join("area.yaml"), text).unwrap();
+    let (output, _) = place.run("run area.yaml -o out", 0);
+    let values = summary(&place, "out")["analysis"]["values"][0].clone();
+    let close = |value: &Value, expected: f64| (value.as_f64().unwrap() - expected).abs() < 1e-9;
+    assert!(close(&values["nominal"], 6.0), "{output}");
+    let bounds = &values["bounds"][0];
+    let error = bounds[3].as_f64().unwrap();
+    let within = |value: &Value, expected: f64| (value.as_f64().unwrap() - expected).abs() <= error;
+    assert!(error < 1e-3 && within(&bounds[1], 0.81 * 6.0) && within(&bounds[2], 1.21 * 6.0), "{values}");
+}
+
+/// What a script answered is kept with `--store`, and asked anew where the script has changed.
+#[test]
+fn stored_answers_are_those_of_the_script() {
+    let place = place("right", "bounds: { chebyshev: { order: 3 } }");
+    let run = |folder: &str| {
+        place.run(&format!("run spring.yaml -o {folder} --store kept"), 0);
+        fs::read_to_string(place.path().join(folder).join("bounds.csv")).unwrap()
+    };
+    let first = run("first");
+    assert_eq!(first, run("again"));
+    fs::write(place.path().join("spring.py"), SPRING.replace("1000 *", "2000 *")).unwrap();
+    let [before, after] = [&first, &run("changed")].map(|text| column(text, "x.nominal"));
+    assert!(before.iter().zip(&after).all(|(a, b)| (2.0 * a - b).abs() < 1e-12));
 }
 
 #[test]

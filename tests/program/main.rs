@@ -15,6 +15,7 @@ mod declared_units;
 mod dependencies;
 mod docs_effects;
 mod everyday;
+mod export;
 mod faults;
 mod old_models;
 mod parts;

@@ -11,8 +11,8 @@ const CRATES: [(&str, &[&str]); 8] = [
     ("crates/language/src", &["syntax", "grammar", "multibody"]),
     ("crates/methods/src", &["methods"]),
     ("crates/model/src", &["robots", "elements", "keys", "expand", "model"]),
-    ("crates/engine/src", &["reduce", "assemble", "compile", "simulate"]),
-    ("crates/study/src", &["results", "store", "study"]),
+    ("crates/engine/src", &["reduce", "assemble", "compile", "simulate", "c_code"]),
+    ("crates/study/src", &["results", "store", "black_box", "study"]),
     ("crates/export/src", &["export"]),
     ("src", &["api", "cli", "inner"]),
 ];

@@ -10,6 +10,7 @@ use mbint_model::{elements, model};
 use mbint_numerics::numerics;
 
 pub mod assemble;
+pub mod c_code;
 pub mod compile;
 pub mod reduce;
 pub mod simulate;

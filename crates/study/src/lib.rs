@@ -1,11 +1,11 @@
 //! A study asks a model's questions of its simulations: bounds, reduced outputs, requirements, statistics, sweeps and
-//! allocation. `results` holds the answers, `store` keeps simulations on disk.
+//! allocation. `results` holds the answers, `store` keeps simulations on disk, `black_box` asks programs.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
 // Rooms of the crates below keep their names here.
-use mbint_engine::{assemble, compile, reduce, simulate};
+use mbint_engine::{assemble, c_code, compile, reduce, simulate};
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;
 use mbint_model::{elements, model};

@@ -36,5 +36,7 @@ pub use eval::tile::{Tile, WIDTHS};
 pub use eval::{Adjoints, Ranges, Vectorise, instruction_set, interval, jet, math, sincos, taylor_model, vectorised};
 pub use expr::{Binary, Builder, Expr, Graph, Node, Scalar, SparseMatrix, Spline, SplineError, Unary};
 pub use formula::{Formula, SyntaxError};
-pub use lower::{Guard, Input, Lowered, Op, Operands, Outputs, Stages, Tape, lower, lower_where, with_reciprocals};
+pub use lower::{
+    CWriter, Guard, Input, Lowered, Op, Operands, Outputs, Stages, Tape, c_number, lower, lower_where, with_reciprocals,
+};
 pub use slopes::slopes;

@@ -58,7 +58,7 @@ pub enum SimulationError {
     NoAnswer {
         /// Where the model names it.
         place: String,
-        /// The reason, with its last line of standard error.
+        /// Its fault, with its last words.
         why: String,
         /// The sample.
         parameters: NamedValues,

@@ -2,6 +2,7 @@
 
 mod allocation;
 mod analysis;
+mod archive;
 mod columns;
 mod contributions;
 mod cost;
@@ -36,6 +37,7 @@ mod witnesses;
 
 pub use self::csv::bounds_csv;
 pub use allocation::{OVERLAY, shown_unit, write_allocation};
+pub use archive::write_archive;
 pub use columns::{columns_json, contribution_columns_json};
 pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::write_cost;

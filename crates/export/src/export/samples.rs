@@ -55,7 +55,7 @@ fn copy_out(mut file: NamedTempFile) -> io::Result<()> {
 }
 
 /// Gives the file its name, and lets others read it.
-fn persist(file: NamedTempFile, path: &Path) -> io::Result<()> {
+pub(super) fn persist(file: NamedTempFile, path: &Path) -> io::Result<()> {
     file.as_file().sync_all()?;
     #[cfg(unix)]
     {

@@ -30,6 +30,7 @@ pub mod report;
 mod requirement;
 mod rotating;
 mod rotation;
+mod sensor;
 mod standing;
 mod suspicious;
 mod symbols;

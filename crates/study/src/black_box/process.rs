@@ -86,7 +86,7 @@ impl Process {
         }
     }
 
-    /// Its next line.
+    /// Its next line, or why there is none.
     pub fn next(&self, until: Option<Instant>, interrupted: &dyn Fn() -> bool) -> Said {
         loop {
             let rest = until.map_or(GLANCE, |until| until.saturating_duration_since(Instant::now()).min(GLANCE));
@@ -146,29 +146,42 @@ fn write(mut stdin: impl Write, texts: &Receiver<String>) {
     }
 }
 
-/// Reads lines as long as they are allowed; `None` where they are too long or too many.
+/// Reads lines as long as they are allowed; `None` where they are too long or too many. The limit is read when
+/// something has come: before, the call may not have begun.
 fn read(stdout: impl Read, allowed: &AtomicU64, lines: &Sender<Option<String>>) {
     let mut stdout = BufReader::new(stdout);
+    let mut line: Vec<u8> = Vec::new();
     loop {
-        let mut line = Vec::new();
-        // One byte more tells a line that is too long from one that is not.
-        let most = allowed.load(Ordering::Relaxed) + 1;
-        match stdout.by_ref().take(most).read_until(b'\n', &mut line) {
-            Ok(0) | Err(_) => return,
-            Ok(read) => {
-                let left = allowed.load(Ordering::Relaxed);
-                if read as u64 > left {
-                    let _ = lines.send(None);
-                    return;
-                }
-                allowed.store(left - read as u64, Ordering::Relaxed);
-            }
-        }
-        let line = String::from_utf8_lossy(&line).trim_end_matches(['\n', '\r']).to_owned();
-        if lines.send(Some(line)).is_err() {
+        let come = match stdout.fill_buf() {
+            Ok(come) if !come.is_empty() => come,
+            _ => break,
+        };
+        let end = come.iter().position(|&byte| byte == b'\n').map(|end| end + 1);
+        let taken = end.unwrap_or(come.len());
+        line.extend_from_slice(&come[..taken]);
+        stdout.consume(taken);
+        let (left, length) = (allowed.load(Ordering::Relaxed), line.len() as u64);
+        if length > left {
+            // Whoever waits is told; where nobody does, nothing is lost.
+            let _ = lines.send(None);
             return;
         }
+        if end.is_some() {
+            allowed.store(left - length, Ordering::Relaxed);
+            if lines.send(Some(text(&line))).is_err() {
+                return;
+            }
+            line.clear();
+        }
     }
+    if !line.is_empty() {
+        let _ = lines.send(Some(text(&line)));
+    }
+}
+
+/// A line without its end.
+fn text(line: &[u8]) -> String {
+    String::from_utf8_lossy(line).trim_end_matches(['\n', '\r']).to_owned()
 }
 
 /// Keeps the end of what comes.
@@ -179,5 +192,43 @@ fn listen(mut stderr: impl Read, words: &Mutex<VecDeque<u8>>) {
         words.extend(&buffer[..read]);
         let beyond = words.len().saturating_sub(WORDS);
         words.drain(..beyond);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pipe whose bytes come one by one, after the limit of the call is known.
+    struct Slow<'s>(&'s [u8], &'s AtomicU64);
+
+    impl Read for Slow<'_> {
+        fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+            self.1.fetch_max(100, Ordering::Relaxed);
+            let Some((first, rest)) = self.0.split_first() else { return Ok(0) };
+            into[0] = *first;
+            self.0 = rest;
+            Ok(1)
+        }
+    }
+
+    #[test]
+    fn lines_are_whole_whenever_they_come() {
+        let (lines, found) = channel();
+        // Nothing is allowed while the reader waits for the first byte.
+        let allowed = AtomicU64::new(0);
+        read(Slow(b"{\"point\": 0}\r\nlast", &allowed), &allowed, &lines);
+        drop(lines);
+        let found: Vec<Option<String>> = found.iter().collect();
+        assert_eq!(found, [Some("{\"point\": 0}".to_owned()), Some("last".to_owned())]);
+    }
+
+    #[test]
+    fn a_flood_is_cut() {
+        let (lines, found) = channel();
+        let allowed = AtomicU64::new(10);
+        read(&b"12345\n123456789"[..], &allowed, &lines);
+        drop(lines);
+        assert_eq!(found.iter().collect::<Vec<_>>(), [Some("12345".to_owned()), None]);
     }
 }

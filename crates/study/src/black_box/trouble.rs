@@ -43,7 +43,7 @@ pub enum Trouble {
     Unreadable {
         /// The line.
         line: String,
-        /// The fault.
+        /// Its fault.
         why: String,
     },
     /// An output is missing.

@@ -20,6 +20,7 @@ mod answers;
 mod attained;
 mod black_box;
 mod bounding;
+mod code;
 mod cost;
 mod deterministic;
 mod drawing;
@@ -57,6 +58,7 @@ use prepared::Prepared;
 
 pub use allocate::{AllocateError, AllocateOptions, allocate};
 pub use answers::{Evaluator, Kept, assemblies};
+pub use code::{CodeError, code};
 pub use cost::{CostError, CostOptions, cost};
 pub use drawing::drawing;
 pub use explain::{explain, language_costs};

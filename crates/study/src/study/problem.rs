@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::black_box::Source;
+use super::black_box::source::Source;
 use super::ensemble::{Motions, Progress, Stored};
 use super::reduced::Store;
 use super::{Options, RunError};

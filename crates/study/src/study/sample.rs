@@ -261,7 +261,7 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
 
 /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a tolerance
 /// those that a run would try first.
-fn steps_of_samples(study: &Study) -> Result<StepPlan, SimulationError> {
+pub(super) fn steps_of_samples(study: &Study) -> Result<StepPlan, SimulationError> {
     let (plan, _) = planned(study, controlling_samples)?;
     if study.request.tolerance.is_some() && study.domain.dimension() > 0 {
         let progress = Progress::new(usize::MAX, study.progress);

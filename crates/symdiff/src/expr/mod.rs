@@ -8,6 +8,7 @@ mod node;
 mod passes;
 mod scalar;
 mod spline;
+mod spline_error;
 mod visits;
 
 pub use derivative::SparseMatrix;
@@ -15,4 +16,5 @@ pub use graph::Graph;
 pub use node::{Binary, Expr, Node, Unary};
 pub(crate) use passes::Choice;
 pub use scalar::{Builder, Scalar};
-pub use spline::{Spline, SplineError};
+pub use spline::Spline;
+pub use spline_error::SplineError;

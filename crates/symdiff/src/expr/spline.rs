@@ -11,6 +11,7 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use super::spline_error::SplineError;
 use crate::eval::interval::Interval;
 
 /// A spline; equal if its points are.
@@ -27,23 +28,6 @@ struct Pieces {
     cubics: Vec<[f64; 4]>,
     /// Whether the spline repeats beyond its first and last knots.
     periodic: bool,
-}
-
-/// Points that make no spline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SplineError {
-    /// Fewer than two.
-    #[error("a table has at least two points")]
-    TooFew,
-    /// The point at this place is not a finite number.
-    #[error("point {} is not finite", .0 + 1)]
-    NotFinite(usize),
-    /// The point at this place does not come after the one before.
-    #[error("point {} does not come after the one before", .0 + 1)]
-    NotAscending(usize),
-    /// A periodic one does not end with the value that it begins with.
-    #[error("the last value is not the first")]
-    NotPeriodic,
 }
 
 impl Spline {
@@ -85,6 +69,12 @@ impl Spline {
         let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
         let pieces = || if periodic { Pieces::periodic(points) } else { Pieces::natural(points) };
         Ok(*known.entry((bits, periodic)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
+    }
+
+    /// Knots, cubics (below the first knot, between each two, above the last; of powers of x minus the knot before),
+    /// and whether it repeats.
+    pub(crate) fn pieces(self) -> (&'static [f64], &'static [[f64; 4]], bool) {
+        (&self.0.knots, &self.0.cubics, self.0.periodic)
     }
 
     /// The derivative of this order at x.

@@ -4,6 +4,7 @@
 //! operands. The caller asks for kernels, each with outputs; whatever a kernel needs of a lower stage is computed by
 //! that stage's own tape and kept in a slot of its own, so that nothing is evaluated more often than it can change.
 
+mod c;
 mod node_table;
 mod reciprocals;
 mod regions;
@@ -14,6 +15,7 @@ pub(crate) mod tape;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+pub use self::c::{CWriter, c_number};
 pub use self::reciprocals::with_reciprocals;
 pub use self::stages::{Input, Stages};
 pub use self::tape::{Guard, Op, Operands, Tape};

@@ -87,6 +87,16 @@ impl Region {
         (condition <= 0.0) == self.elsewhere
     }
 
+    /// Whether it is wanted where the condition is not positive.
+    pub fn is_elsewhere(&self) -> bool {
+        self.elsewhere
+    }
+
+    /// Part of the tape that follows it.
+    pub fn end(&self) -> usize {
+        self.end
+    }
+
     /// On to its end where nobody wants it.
     #[inline(always)]
     pub fn skip_unless(&self, wanted: bool, place: &mut usize) {

@@ -1,12 +1,12 @@
 //! A program as an ensemble: its answers stand where simulations of a mechanism do.
 //!
-//! `source` asks it, and makes the model's outputs of its answers; `repeated` asks once more, for its noise.
+//! `source` asks it, and makes the model's outputs of its answers, which the ensemble gives to methods (`answered`
+//! there); `repeated` asks once more, for its noise.
 
 mod repeated;
-mod source;
+pub(super) mod source;
 
 pub(super) use repeated::repeat;
-pub(super) use source::Source;
 
 use crate::methods::Refusal;
 use crate::model::Description;

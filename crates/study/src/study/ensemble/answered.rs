@@ -7,7 +7,7 @@ use super::Motions;
 use crate::methods::{Effort, Sampling, Simulated, Stop, StopCause, Until};
 use crate::numerics::Sample;
 use crate::simulate::{SimulationError, reduced_rows};
-use crate::study::black_box::Source;
+use crate::study::black_box::source::Source;
 
 /// As [`Ensemble::simulate`](crate::methods::Ensemble::simulate), by the answers of a program; `reduce` gets all
 /// rows at once. A sample without an answer stops in its first row.

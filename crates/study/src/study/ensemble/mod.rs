@@ -2,6 +2,7 @@
 
 mod answered;
 pub(in crate::study) mod closure;
+mod combinations;
 mod cut;
 mod dense;
 mod jet;
@@ -16,16 +17,15 @@ use std::ops::Range as Rows;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use symdiff::Expr;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::black_box::Source;
+use super::black_box::source::Source;
 use super::price::instructions_of_step;
 use super::reduced::Store;
-use crate::compile::{self, has_kink, jumps};
+use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, FollowedEnds, OfParameters};
+use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, FollowedEnds};
 use crate::methods::{Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
@@ -268,19 +268,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn combinations(&self) -> Vec<Combination<'_>> {
-        let system = &self.simulator.system;
-        let known = |found: compile::Combination| {
-            let of = |expr: Expr| -> OfParameters<'_> {
-                let symbols = found.parameters.iter().map(|&number| system.parameters[number].symbol);
-                let symbols: Vec<Expr> = symbols.collect();
-                Box::new(move |values| {
-                    let at = |symbol: Expr| symbols.iter().position(|&own| own == symbol);
-                    system.graph.evaluate(&[expr], |symbol| at(symbol).map_or(f64::NAN, |at| values[at]))[0]
-                })
-            };
-            Combination { first: of(found.first), last: of(found.last), parameters: found.parameters }
-        };
-        compile::combinations(system).into_iter().map(known).collect()
+        combinations::of(&self.simulator.system)
     }
 
     fn seen(&self, row: usize, output: usize) -> Range {

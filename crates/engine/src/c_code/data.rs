@@ -1,0 +1,156 @@
+//! Numbers of a mechanism as C: sizes, tables, the nominal start and the schedule.
+
+use std::fmt::Write;
+
+use symdiff::{Tile, c_number};
+
+use crate::compile::Tapes;
+use crate::simulate::{Schedule, Simulator};
+
+/// Steps that follow one another: begin, length and number.
+struct Run {
+    start: f64,
+    h: f64,
+    count: usize,
+}
+
+/// Steps of a schedule, row by row; steps of one length that end where multiples of it do are one run.
+fn runs(schedule: &Schedule) -> Vec<Vec<Run>> {
+    let mut now = 0.0;
+    let of_row = |row: usize| {
+        let mut runs: Vec<Run> = Vec::new();
+        for (h, end) in schedule.steps_to(row) {
+            match runs.last_mut() {
+                Some(last) if last.h == h => last.count += 1,
+                _ => runs.push(Run { start: now, h, count: 1 }),
+            }
+            now = end;
+        }
+        runs
+    };
+    (0..schedule.rows).map(of_row).collect()
+}
+
+/// What the runtime calls the model's parts.
+pub(super) fn macros(simulator: &Simulator, schedule: &Schedule, prefix: &str, solves: bool) -> String {
+    let program = &simulator.program;
+    let layout = &program.layout;
+    let watched: usize = program.watched.iter().map(|own| own.pivots.len()).sum();
+    let (constants, solver) = (program.constants().len(), simulator.start.constants().len());
+    let refines = i32::from(simulator.system.observes_accelerations());
+    let mut text = String::new();
+    for (name, value) in [
+        ("N", layout.q.len()),
+        ("M", layout.lambda.len()),
+        ("STEP", layout.step),
+        ("TIME", layout.time),
+        ("Q", layout.q.start),
+        ("A", layout.a.start),
+        ("W", layout.w.start),
+        ("LAMBDA", layout.lambda.start),
+        ("ITERATE", layout.iterate.start),
+        ("CORRECTION", layout.correction.start),
+        ("LAYOUT", layout.registers()),
+        ("OUTPUTS", program.outputs.len()),
+        ("REDUNDANT", program.redundant.len()),
+        ("WATCHED", watched),
+        ("CONSTANTS", constants),
+        ("SOLVER_CONSTANTS", solver),
+        ("ROWS", schedule.rows),
+    ] {
+        let _ = writeln!(text, "#define {name} {value}");
+    }
+    let _ = writeln!(text, "#define SOLVES {}\n#define REFINES {refines}", i32::from(solves));
+    let _ = writeln!(text, "#define GAIN {}", c_number(program.coefficients.position_gain(1.0)));
+    for (name, own) in [
+        ("MODEL", "model"),
+        ("MODEL_START", "start"),
+        ("MODEL_ROW", "row"),
+        ("MODEL_STEP", "step"),
+        ("MODEL_TIME", "time"),
+        ("MODEL_OBSERVE", "outputs"),
+    ] {
+        let _ = writeln!(text, "#define {name} {prefix}_{own}");
+    }
+    text
+}
+
+/// The tables that the runtime names.
+pub(super) fn tables(
+    simulator: &Simulator,
+    schedule: &Schedule,
+    start: &Tile,
+    prefix: &str,
+    outputs: &[(&str, &str)],
+    solves: bool,
+) -> String {
+    let program = &simulator.program;
+    let mut text = String::from(
+        "\ntypedef struct { int at; double value; } constant;\n\
+         typedef struct { int pivot; double largest; int mode, inactive; } watched_pivot;\n\
+         typedef struct { double start, h; int count; } run;\n\n",
+    );
+    let numbers = |values: &mut dyn Iterator<Item = f64>| list(values.map(c_number));
+    let layout = program.layout.registers();
+    let _ = writeln!(
+        text,
+        "static const double start_values[] = {};",
+        numbers(&mut start.values()[..layout].iter().copied())
+    );
+    let _ = writeln!(text, "static const double scale[] = {};", numbers(&mut program.scale.iter().copied()));
+    let registers = |values: &[usize]| list(values.iter().map(usize::to_string));
+    let _ = writeln!(text, "static const int redundant[] = {};", registers(&program.redundant));
+    let _ = writeln!(text, "static const int output_registers[] = {};", registers(&program.outputs));
+    let pivots = program.watched.iter().flat_map(|own| {
+        let (mode, inactive) = own.mode.map_or((-1, 0), |mode| (mode.register as i64, i32::from(mode.inactive)));
+        own.pivots.iter().map(move |pivot| {
+            format!("{{ {}, {}, {mode}, {inactive} }}", pivot.register, c_number(pivot.largest_inverse))
+        })
+    });
+    let _ = writeln!(text, "static const watched_pivot watched[] = {};", structs(pivots, "{ 0, 0.0, 0, 0 }"));
+    let constants = |values: &[(u32, f64)]| {
+        structs(values.iter().map(|(at, value)| format!("{{ {at}, {} }}", c_number(*value))), "{ 0, 0.0 }")
+    };
+    let _ = writeln!(text, "static const constant constants[] = {};", constants(program.constants()));
+    if solves {
+        let own = constants(simulator.start.constants());
+        let _ = writeln!(text, "static const constant solver_constants[] = {own};");
+    }
+    let rows = runs(schedule);
+    let first: Vec<usize> = rows
+        .iter()
+        .scan(0, |next, row| {
+            *next += row.len();
+            Some(*next)
+        })
+        .collect();
+    let all = rows.iter().flatten();
+    let all = all.map(|run| format!("{{ {}, {}, {} }}", c_number(run.start), c_number(run.h), run.count));
+    let _ = writeln!(text, "static const run runs[] = {};", structs(all, "{ 0.0, 0.0, 0 }"));
+    let first: Vec<usize> = std::iter::once(0).chain(first).collect();
+    let _ = writeln!(text, "static const int row_runs[] = {};", registers(&first));
+    let mut times = (0..schedule.rows).map(|row| schedule.time(row));
+    let _ = writeln!(text, "static const double row_times[] = {};", numbers(&mut times));
+    let quoted = |texts: &mut dyn Iterator<Item = &str>| {
+        list(texts.map(|text| format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))))
+    };
+    let names = quoted(&mut outputs.iter().map(|(name, _)| *name));
+    let units = quoted(&mut outputs.iter().map(|(_, unit)| *unit));
+    let _ = writeln!(text, "const char *const {prefix}_output_names[] = {names};");
+    let _ = writeln!(text, "const char *const {prefix}_output_units[] = {units};\n");
+    text
+}
+
+/// Values in braces, eight a line; C has no empty ones.
+fn list(values: impl Iterator<Item = String>) -> String {
+    structs(values, "0")
+}
+
+fn structs(values: impl Iterator<Item = String>, none: &str) -> String {
+    let mut values: Vec<String> = values.collect();
+    if values.is_empty() {
+        values.push(none.to_owned());
+    }
+    let lines: Vec<String> = values.chunks(8).map(|line| line.join(", ")).collect();
+    format!("{{\n    {}\n}}", lines.join(",\n    "))
+}

@@ -1,0 +1,40 @@
+//! A model as source code of its nominal motion.
+
+use super::black_box::needs_mechanism;
+use super::prepared::Prepared;
+use super::problem::Study;
+use super::sample::steps_of_samples;
+use super::{Options, RunError};
+use crate::c_code::{CModel, NoCode, c_code};
+use crate::model::Description;
+use crate::reduce::Reduction;
+
+/// Why a model is not written as source code.
+#[derive(Debug, thiserror::Error)]
+pub enum CodeError {
+    /// It cannot be run either.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// It takes more than the runtime has.
+    #[error(transparent)]
+    None(#[from] NoCode),
+}
+
+/// C99 that repeats a model's nominal motion: its programs under the steps of a run, all subsystems as one.
+///
+/// # Errors
+/// Where the model has no motion, or its steps are not fixed ones of HHT-I3.
+pub fn code(description: &Description) -> Result<CModel, CodeError> {
+    needs_mechanism(description, "source code").map_err(RunError::from)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(0).build().map_err(RunError::from)?;
+    pool.install(|| {
+        let Prepared { subsystem, simulator } = Prepared::new(Reduction::joined(description))?;
+        let options = Options { methods: Some(Vec::new()), ..Options::default() };
+        let study = Study::new(&subsystem.description, simulator, &options)?;
+        let plan = steps_of_samples(&study).map_err(RunError::from)?;
+        if plan.controller.is_some() {
+            return Err(NoCode::NotWritten("a tolerance chooses its steps; give a fixed `step`").into());
+        }
+        Ok(c_code(&study.simulator, &plan.schedule, &description.name.replace('/', "_"))?)
+    })
+}

@@ -1,0 +1,166 @@
+//! `mbint export`: what C and units of FMI compute is the nominal motion of `mbint run`.
+
+use std::fs;
+use std::process::Command;
+
+use super::place::Place;
+
+/// Shipped models: planar and spatial linkages, contacts, controllers, beams, cams, belts, redundant constraints and
+/// reactions; with the largest difference that was measured, relative to the output's largest value.
+const MODELS: [&str; 14] = [
+    "pendulum",
+    "slider_crank",
+    "andrews",
+    "belt",
+    "braking_car",
+    "bricard",
+    "cam",
+    "car_axis",
+    "chain",
+    "coin",
+    "computed_torque",
+    "crane",
+    "delta_robot",
+    "double_pendulum",
+];
+
+/// Columns of a table by name, in its order.
+fn columns(text: &str) -> Vec<(String, Vec<f64>)> {
+    let mut lines = text.lines();
+    let mut columns: Vec<(String, Vec<f64>)> =
+        lines.next().unwrap().split(',').map(|name| (name.to_owned(), Vec::new())).collect();
+    for line in lines {
+        for ((_, values), text) in columns.iter_mut().zip(line.split(',')) {
+            values.push(text.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
+
+#[test]
+fn c_repeats_the_nominal_motion() {
+    let place = Place::new();
+    for name in MODELS {
+        let model = format!("{}/models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        place.run(&format!("export {model} --c -o {name}"), 0);
+        let folder = place.path().join(name);
+        let compiled = Command::new("gcc")
+            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1", "-o", "motion"])
+            .args([format!("{name}.c"), format!("{name}_main.c"), "-lm".to_owned()])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert!(compiled.status.success(), "{name}: {}", String::from_utf8_lossy(&compiled.stderr));
+        let found = Command::new(folder.join("motion")).output().unwrap();
+        assert!(found.status.success(), "{name}: {}", String::from_utf8_lossy(&found.stderr));
+        let found = columns(&String::from_utf8(found.stdout).unwrap());
+        // A scan of the fewest points: only its nominal motion is looked at.
+        place.run(&format!("run {model} --method chebyshev --yes --quiet -o {name}/run"), 0);
+        let expected = columns(&fs::read_to_string(folder.join("run/bounds.csv")).unwrap());
+        for (output, values) in &found[1..] {
+            let (_, expected) = expected.iter().find(|(own, _)| *own == format!("{output}.nominal")).unwrap();
+            assert_eq!(values.len(), expected.len(), "{name}: {output}");
+            let size = expected.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+            let off = values.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off <= 1e-9 * size, "{name}: {output} is off by {off} of {size}");
+        }
+    }
+}
+
+/// A host of FMI 3.0: instantiates the library of a unit, and steps it from row to row.
+const HOST: &str = r#"
+#include <dlfcn.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+typedef void *(*instantiate)(const char *, const char *, const char *, bool, bool, bool, bool, const uint32_t *, size_t, void *, void *, void *);
+typedef int (*enter)(void *, bool, double, double, bool, double);
+typedef int (*of)(void *);
+typedef int (*get)(void *, const uint32_t *, size_t, double *, size_t);
+typedef int (*do_step)(void *, double, double, bool, bool *, bool *, bool *, double *);
+int main(int count, char **given)
+{
+    void *library = dlopen(given[1], RTLD_NOW);
+    double step = atof(given[3]), values[2], reached;
+    int rows = atoi(given[4]), row;
+    bool event, ends, early;
+    uint32_t references[2] = { 0, 1 };
+    void *own;
+    (void)count;
+    if (!library) return 9;
+    own = ((instantiate)dlsym(library, "fmi3InstantiateCoSimulation"))("own", "another", "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
+    if (own) return 8;
+    own = ((instantiate)dlsym(library, "fmi3InstantiateCoSimulation"))("own", given[2], "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
+    if (!own || ((enter)dlsym(library, "fmi3EnterInitializationMode"))(own, false, 0, 0, false, 0)) return 7;
+    if (((of)dlsym(library, "fmi3ExitInitializationMode"))(own)) return 6;
+    printf("t,x\n");
+    for (row = 0; row < rows; row++) {
+        if (row > 0 && ((do_step)dlsym(library, "fmi3DoStep"))(own, (row - 1) * step, step, true, &event, &ends, &early, &reached)) return 5;
+        if (((get)dlsym(library, "fmi3GetFloat64"))(own, references, 2, values, 2)) return 4;
+        printf("%.17g,%.17g\n", values[0], values[1]);
+    }
+    return 0;
+}
+"#;
+
+#[test]
+fn a_unit_repeats_the_nominal_motion() {
+    let place = Place::new();
+    for name in ["slider_crank", "car_axis", "andrews"] {
+        let model = format!("{}/models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        place.run(&format!("export {model} --fmu -o {name}"), 0);
+        let folder = place.path().join(name);
+        fs::write(folder.join("host.c"), HOST).unwrap();
+        let done = |program: &str, arguments: &[&str]| {
+            let done = Command::new(program).args(arguments).current_dir(&folder).output().unwrap();
+            assert!(
+                done.status.success(),
+                "{name}, {program}: {:?} {}",
+                done.status,
+                String::from_utf8_lossy(&done.stderr)
+            );
+            String::from_utf8(done.stdout).unwrap()
+        };
+        done("python3", &["-m", "zipfile", "-e", &format!("{name}.fmu"), "unit"]);
+        done("gcc", &["-std=gnu11", "-o", "host", "host.c", "-ldl"]);
+        let text = fs::read_to_string(folder.join("unit/modelDescription.xml")).unwrap();
+        let description = roxmltree::Document::parse(&text).unwrap();
+        let root = description.root_element();
+        let find = |tag: &str| root.descendants().find(|node| node.has_tag_name(tag)).unwrap();
+        let token = root.attribute("instantiationToken").unwrap();
+        let step = find("DefaultExperiment").attribute("stepSize").unwrap();
+        let outputs: Vec<_> = root.descendants().filter(|node| node.attribute("causality") == Some("output")).collect();
+        let output = outputs[0].attribute("name").unwrap();
+        place.run(&format!("run {model} --method chebyshev --yes --quiet -o {name}/run"), 0);
+        let expected = columns(&fs::read_to_string(folder.join("run/bounds.csv")).unwrap());
+        let (_, expected) = expected.iter().find(|(own, _)| *own == format!("{output}.nominal")).unwrap();
+        let library = format!("./unit/binaries/{}-linux/{name}.so", std::env::consts::ARCH);
+        let found = columns(&done("./host", &[&library, token, step, &expected.len().to_string()]));
+        let size = expected.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        let off = found[1].1.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off <= 1e-9 * size, "{name}: {output} is off by {off} of {size}");
+    }
+}
+
+#[test]
+fn what_is_not_written_is_refused() {
+    let place = Place::new();
+    let ball = "bodies: { ball: { mass: 1, coordinates: [y] } }
+effects: { weight: { force: { on: ball, value: [0, -9.81] } } }
+initial: { ball.y: 0, ball.vy: 0 }
+outputs: { y: ball.y }
+";
+    for (simulation, why) in [
+        ("{ duration: 1, tolerance: 1e-6, scheme: hht }", "a tolerance chooses its steps; give a fixed `step`"),
+        ("{ duration: 1, step: 1e-2, scheme: explicit }", "its steps are combined, explicit or cut at events"),
+        ("{ duration: 1, step: 1e-2, extrapolation: 2 }", "its steps are combined, explicit or cut at events"),
+    ] {
+        fs::write(place.path().join("ball.yaml"), format!("{ball}simulation: {simulation}\n")).unwrap();
+        let (_, message) = place.run("export ball.yaml --c", 2);
+        assert!(message.contains(why), "{message}");
+    }
+    let (_, message) = place.run("export ball.yaml", 2);
+    assert!(message.contains("--c"), "{message}");
+}
