@@ -197,7 +197,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         if self.simulated.stop.is_some() {
             return Ok(None);
         }
-        Ok(Some(FollowedEnds::new(outputs, self.ends(&mut climbs, surfaces.as_ref(), &followed))))
+        Ok(Some(FollowedEnds::new(outputs, ends::ends(self, &mut climbs, surfaces.as_ref(), &followed))))
     }
 
     /// A climb to an end from a point.
@@ -278,7 +278,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         let corner = |point: Vec<f64>| -> Vec<f64> { point.into_iter().map(f64::signum).collect() };
         let corners: Vec<Vec<f64>> = spread(self.study.domain.dimension(), DOUBTED).into_iter().map(corner).collect();
         let is_doubted = |of_end: &&[Climb]| {
-            let open = self.open(of_end);
+            let open = ends::open_of(self, of_end);
             SAFETY_OF_SURROGATE * (open.promise + open.gap) > self.allowed[of_end[0].end.output]
         };
         let doubted: Vec<End> = by_end(climbs).filter(is_doubted).map(|of_end| of_end[0].end).collect();

@@ -4,6 +4,7 @@ use std::ops::Range as Rows;
 use std::sync::atomic::Ordering;
 
 use super::Motions;
+use super::reducing::keep_reduced;
 use crate::methods::{Effort, Sampling, Simulated, Stop, StopCause, Until};
 use crate::numerics::Sample;
 use crate::simulate::{SimulationError, reduced_rows};
@@ -33,7 +34,7 @@ pub fn answered(
         answers => answers?,
     };
     let mut values = vec![f64::NAN; rows * outputs * count];
-    let mut reduced = vec![f64::NAN; motions.channels().len() * count];
+    let mut reduced = vec![f64::NAN; motions.channels.len() * count];
     let mut stops: Vec<Stop> = Vec::new();
     for (sample, answer) in answers.into_iter().enumerate() {
         let found = match answer {
@@ -47,13 +48,13 @@ pub fn answered(
         for (line, &value) in found.iter().enumerate() {
             values[line * count + sample] = value;
         }
-        for (channel, value) in reduced_rows(motions.channels(), times, &found).into_iter().enumerate() {
+        for (channel, value) in reduced_rows(motions.channels, times, &found).into_iter().enumerate() {
             reduced[channel * count + sample] = value;
         }
     }
     motions.over.fetch_add(count, Ordering::Relaxed);
     reduce(0..rows, &values);
-    motions.keep_reduced(samples, &reduced);
+    keep_reduced(motions, samples, &reduced);
     let stopped: Vec<usize> = stops.iter().map(|stop| stop.sample).collect();
     let missing = if stops.is_empty() || sampling.until == Until::End { 0 } else { rows };
     let stop = stops.into_iter().next().map(|stop| {

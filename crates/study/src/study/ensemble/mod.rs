@@ -20,6 +20,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use self::reducing::keep_reduced;
 use super::black_box::source::Source;
 use super::price::instructions_of_step;
 use super::reduced::Store;
@@ -110,6 +111,16 @@ impl<'a> Motions<'a> {
             stored,
             source: None,
         }
+    }
+
+    /// The same, which also reduces outputs to one number.
+    pub fn keeping(self, store: Option<&'a Store>) -> Self {
+        Self { store, channels: store.map_or(&[], |store| &store.plan.channels), ..self }
+    }
+
+    /// The same, which reduces outputs to one number by these channels, for others to store.
+    pub fn reducing(self, channels: &'a [Channel]) -> Self {
+        Self { channels, ..self }
     }
 
     /// The same, which notes all simulated values, where there is a ledger for them.
@@ -205,7 +216,7 @@ impl<'a> Motions<'a> {
             next = rows.end;
         }
         let reduced = if next == self.schedule.rows { run.reduced() } else { Vec::new() };
-        self.keep_reduced(samples, &reduced);
+        keep_reduced(self, samples, &reduced);
         if next == self.schedule.rows || !goes_on(&stop) {
             self.over.fetch_add(samples.len(), Ordering::Relaxed);
         }

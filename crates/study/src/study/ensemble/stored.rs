@@ -4,6 +4,7 @@ use std::ops::Range as Rows;
 use std::sync::atomic::Ordering;
 
 use super::Motions;
+use super::reducing::keep_reduced;
 use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan_shard};
 use crate::numerics::{Sample, ScanBounds, ScanGrid};
 use crate::simulate::{SimulationError, Steps};
@@ -70,7 +71,7 @@ impl Stored<'_> {
         let mut total = Simulated::default();
         let counts: Vec<usize> = samples.chunks(size).map(<[Sample]>::len).collect();
         for ((number, part), samples) in parts.iter().enumerate().zip(samples.chunks(size)) {
-            motions.keep_reduced(samples, &part.simulated.reduced);
+            keep_reduced(motions, samples, &part.simulated.reduced);
             total.add(number * size, part.simulated.clone());
         }
         deliver(&mut parts, (&counts, lines), reduce)?;
@@ -90,7 +91,7 @@ impl Stored<'_> {
                 return Err(SimulationError::Store { message: "a part of a scan has no bounds".to_owned() });
             };
             bounds.merge(own);
-            motions.keep_reduced(&task.samples, &part.simulated.reduced);
+            keep_reduced(motions, &task.samples, &part.simulated.reduced);
             total.add(scan.first, part.simulated);
             Ok(())
         })?;
@@ -109,7 +110,7 @@ impl Stored<'_> {
         scan: Option<ScanPart>,
     ) -> Task {
         let Steps { schedule, controller } = motions.steps();
-        let (subsystem, schedule, channels) = (self.subsystem, schedule.clone(), motions.channels().to_vec());
+        let (subsystem, schedule, channels) = (self.subsystem, schedule.clone(), motions.channels.to_vec());
         Task { subsystem, schedule, tolerance: controller, observed, until, channels, scan, samples }
     }
 

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
 use super::answered::answered;
+use super::reducing::keep_reduced;
 use super::{Motions, stopped_at};
 use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
 use crate::numerics::Sample;
@@ -42,7 +43,7 @@ pub fn visit_watching(
     let (times, outputs, count) = (times(motions), motions.simulator.system.outputs.len(), samples.len());
     let rows = times.len();
     let mut values = vec![f64::NAN; rows * outputs * count];
-    let mut reduced = vec![f64::NAN; motions.channels().len() * count];
+    let mut reduced = vec![f64::NAN; motions.channels.len() * count];
     let mut stops: Vec<Stop> = Vec::new();
     let mut singular = Vec::new();
     let mut visited = 0;
@@ -56,7 +57,7 @@ pub fn visit_watching(
                 motions.simulator.visit(
                     sample,
                     Steps { schedule: motions.schedule, controller: motions.tolerance },
-                    motions.channels(),
+                    motions.channels,
                     motions.interruption,
                 )
             })
@@ -89,7 +90,7 @@ pub fn visit_watching(
     if visited < count {
         reduced.clear();
     }
-    motions.keep_reduced(samples, &reduced);
+    keep_reduced(motions, samples, &reduced);
     let simulated = Simulated {
         effort: Effort::default(),
         reduced,
