@@ -327,3 +327,33 @@ bounds: { scan: { points: 3 } }
         assert!(ends.iter().all(|end| (end - expected).abs() < 1e-11), "{name}: {ends:?}, not {expected}");
     }
 }
+
+/// A floating body and a joint of one name have multipliers of their own: the closed chain is not singular, and the
+/// motion that of other names and of absolute coordinates.
+#[test]
+fn a_joint_may_be_called_like_a_floating_body() {
+    let outputs = |joint: &str, formulation: &str| {
+        let text = format!(
+            "
+parameters: {{ k: {{ value: 100, unit: N/m, tolerance: 5% }} }}
+bodies:
+  arm: {{ mass: 1, inertia: [0.1, 0.1, 0.1], points: {{ b: [0.2, 0, 0] }} }}
+  wheel: {{ mass: 5, inertia: [1, 2, 3], points: {{ a: [0.5, 0, 0] }} }}
+joints: {{ {joint}: {{ spherical: [arm, wheel.a] }} }}
+effects:
+  hold: {{ bushing: {{ between: [ground, arm.b], stiffness: [k, k, k], torsional_stiffness: 1 }} }}
+  push: {{ force: {{ on: wheel, value: [1, 2, 3] }} }}
+guess: {{ wheel.x: 0, wheel.y: 0, wheel.z: 0 }}
+outputs: {{ x: wheel.x, z: wheel.z, s: arm.b.y }}
+simulation: {{ formulation: {formulation}, duration: 0.2, step: 2e-3, output_step: 0.02 }}
+bounds: {{ chebyshev: {{ order: 2 }} }}
+"
+        );
+        courses(read(&text))
+    };
+    let [same, other, absolute] = [("arm", "joint"), ("ball", "joint"), ("arm", "absolute")]
+        .map(|(joint, formulation)| outputs(joint, formulation));
+    assert_eq!(same, other);
+    let values = same.iter().flatten().zip(absolute.iter().flatten());
+    values.for_each(|(a, b)| assert!((a - b).abs() < 1e-6, "{a} and {b}"));
+}

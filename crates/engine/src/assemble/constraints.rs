@@ -54,7 +54,9 @@ impl<'g> Constraints<'g> {
             let owner = m.joints[joint].name.clone();
             m.normalisations.insert(joint, constraints.positions.values.len());
             let info = ConstraintInfo { name: format!("{owner}.norm"), joint: owner, unit: ResidualUnit::Number };
-            constraints.positions.add(info, normalised(p));
+            // A joint may be called like a body.
+            let multiplier = format!("lambda:joint:{}", info.name);
+            constraints.positions.add_with(&multiplier, info, normalised(p));
         }
         let with_teeth = reactions_are_asked(m.questions);
         for (index, joint) in m.joints.iter().enumerate() {
@@ -119,7 +121,13 @@ impl<'g> Rows<'g> {
     }
 
     pub(super) fn add(&mut self, info: ConstraintInfo, value: Scalar<'g>) -> Scalar<'g> {
-        let lambda = value.builder().variable(&format!("lambda:{}", info.name));
+        let multiplier = format!("lambda:{}", info.name);
+        self.add_with(&multiplier, info, value)
+    }
+
+    /// The same with a name of its multiplier's symbol.
+    fn add_with(&mut self, multiplier: &str, info: ConstraintInfo, value: Scalar<'g>) -> Scalar<'g> {
+        let lambda = value.builder().variable(multiplier);
         self.infos.push(info);
         self.values.push(value);
         self.lambda.push(lambda);

@@ -195,7 +195,8 @@ fn class(text: &str) -> Option<&str> {
         let is_number = || number_and_unit(size).is_some() || size.trim().parse::<f64>().is_ok();
         size.is_empty() || size.ends_with(char::is_whitespace) && is_number()
     };
-    let starts = text.rfind("ISO").into_iter().chain(text.rfind(char::is_whitespace).map(|space| space + 1)).chain([0]);
+    let last_word = text.char_indices().rev().find(|(_, letter)| letter.is_whitespace());
+    let starts = text.rfind("ISO").into_iter().chain(last_word.map(|(at, space)| at + space.len_utf8())).chain([0]);
     starts.filter(|&at| is_behind_size(at)).map(|at| &text[at..]).find(|class| ToleranceClass::parse(class).is_some())
 }
 
