@@ -76,7 +76,7 @@ mod few {
 
     #[test]
     fn mjcf() {
-        super::mjcf(1000);
+        super::mjcf(300);
     }
 
     #[test]
@@ -92,7 +92,7 @@ mod few {
 
 mod many {
     #[test]
-    #[ignore = "10 s: as many inputs as the gate tries"]
+    #[ignore = "a minute: as many inputs as the gate tries"]
     fn models() {
         super::models(20_000);
     }
@@ -104,9 +104,9 @@ mod many {
     }
 
     #[test]
-    #[ignore = "10 s: as many inputs as the gate tries"]
+    #[ignore = "two minutes: as many inputs as the gate tries"]
     fn mjcf() {
-        super::mjcf(5000);
+        super::mjcf(2000);
     }
 
     #[test]

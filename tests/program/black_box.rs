@@ -116,6 +116,19 @@ fn a_sample_that_fails_is_one_sample() {
     }
 }
 
+/// A program with a mistake in it fails for every point: it is asked for the nominal one, and tried again once.
+#[test]
+fn a_program_that_always_fails_is_asked_for_one_point() {
+    let place = place("right", "requirements: { near: x <= 1001 mm }\nbounds: { tolerance: 1e-3 }");
+    let wrong = "import sys\nopen('asked', 'a').write('x')\nsys.stdin.readline()\nprint(math.pi)\n";
+    fs::write(place.path().join("spring.py"), wrong).unwrap();
+    let (_, message) = place.run("run spring.yaml -o out", 2);
+    let said = "spring.yaml:4: the black box has no answer with m = 2, k = 200";
+    assert!(message.contains(said) && message.contains("name 'math' is not defined"), "{message}");
+    assert_eq!(fs::read_to_string(place.path().join("asked")).unwrap().len(), 2);
+    assert!(!place.path().join("out/bounds.csv").exists());
+}
+
 #[test]
 fn samples_without_an_answer_are_not_numbers() {
     let place = place("crash", "");

@@ -3,7 +3,7 @@
 use super::RunError;
 use super::answers::{Ran, Results, conclude};
 use super::attained::bound_along;
-use super::black_box::repeat;
+use super::black_box::{ask_nominal, repeat};
 use super::bounding::{Bounded, Doubts, note_nominal, timed, unknown};
 use super::deterministic::deterministic;
 use super::ensemble::{Progress, nominal};
@@ -38,6 +38,7 @@ pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
     if matches!(study.description.simulation.stepping, Stepping::Tolerance(_)) {
         (study.stage)("choosing the steps");
     }
+    ask_nominal(study)?;
     let (plan, failure) = planned(study, explicit_samples)?;
     let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
     let results = methods(study, plan)?;

@@ -1,11 +1,13 @@
 //! A program as an ensemble: its answers stand where simulations of a mechanism do.
 //!
 //! `source` asks it, and makes the model's outputs of its answers, which the ensemble gives to methods (`answered`
-//! there); `repeated` asks once more, for its noise.
+//! there); `nominal` asks first, `repeated` once more, for its noise.
 
+mod nominal;
 mod repeated;
 pub(super) mod source;
 
+pub(super) use nominal::ask_nominal;
 pub(super) use repeated::repeat;
 
 use crate::methods::Refusal;
