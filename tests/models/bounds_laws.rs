@@ -26,7 +26,11 @@ fn scans_lie_within_chebyshev_bounds() {
     // What a scan finds is really taken, but for the time steps' error.
     let mut findings = Findings::default();
     for path in model_files() {
-        let bounds = run(&load(&path));
+        let description = load(&path);
+        if description.bounds.scan.is_none() {
+            continue;
+        }
+        let bounds = run(&description);
         let name = path.file_stem().unwrap().to_string_lossy();
         for output in &bounds.outputs {
             let share = outside(output, Method::Scan, Method::Chebyshev);

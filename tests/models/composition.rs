@@ -46,6 +46,7 @@ fn ten_seconds_of_the_slider_crank_are_bounded_within_a_percent() {
 #[test]
 #[ignore = "40 s: every model, composed, against scans"]
 fn scans_lie_within_composed_bounds_of_every_model() {
+    const MOST_SCANNED: u32 = 12;
     let mut findings = Findings::default();
     for path in model_files() {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
@@ -56,6 +57,10 @@ fn scans_lie_within_composed_bounds_of_every_model() {
         };
         // As many points along each axis as four parameters can have, of which there are nine.
         let uncertain = description.uncertain().count() as u32;
+        // Two points along each axis are too many.
+        if uncertain > MOST_SCANNED {
+            continue;
+        }
         let points = (2..=9_usize).rev().find(|points| points.pow(uncertain) <= 9_usize.pow(4)).unwrap_or(2);
         let bounds = run(&composed(description, order, points));
         for output in &bounds.outputs {
