@@ -60,9 +60,6 @@ pub enum NoGradient {
     Events,
 }
 
-/// Tiles are cut for so many threads, however many there are: the last bits of a lane depend on the rows of its tile.
-const THREADS: usize = 8;
-
 /// Gradients of outputs of samples under a schedule, each as [`JetRun`](crate::simulate::JetRun) and its kin have the
 /// first derivatives.
 ///
@@ -85,7 +82,7 @@ pub fn gradients(
     // Lanes of a tile end in rows that are near each other.
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by_key(|&number| wanted[number].row);
-    let tiles = tiles(wanted.len(), MEMORIES * simulator.program.registers(), THREADS);
+    let tiles = tiles(wanted.len(), MEMORIES * simulator.program.registers(), rayon::current_num_threads());
     let parts = tiles.into_par_iter().map(|(first, count, width)| {
         if interruption.is_asked() {
             return Err(NoGradient::from(SimulationError::Interrupted));

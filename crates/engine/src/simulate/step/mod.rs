@@ -1,6 +1,7 @@
 //! One step of a scheme for a tile of samples.
 
 mod newton;
+mod pivots;
 mod prediction;
 mod rank_revealing;
 mod rounding;

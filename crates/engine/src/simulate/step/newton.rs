@@ -8,10 +8,11 @@
 
 use symdiff::{Tile, Vectorise, vectorised};
 
+use super::pivots::Watch;
 use super::prediction::Predict;
 use super::rank_revealing::solve_rank_deficient;
 use super::rounding::{ROUND_OFF, is_rounding, matrix_entries, rounding_of_residuals};
-use crate::compile::{Program, Watched};
+use crate::compile::Program;
 use crate::simulate::start::allowed_residual;
 
 /// Corrections with the step's first factorisation before each gets its own.
@@ -61,6 +62,9 @@ impl std::ops::AddAssign for Counters {
 pub struct Newton {
     pending: Vec<bool>,
     singular: Vec<bool>,
+    /// Lanes that took factors of their own, and whether the tile's factors are not those of its prediction any more.
+    late: Vec<bool>,
+    is_renewed: bool,
     last: Vec<f64>,
     norm: Vec<f64>,
     /// Estimated contraction of each lane's first correction.
@@ -82,6 +86,8 @@ impl Newton {
         Self {
             pending: vec![false; width],
             singular: vec![false; width],
+            late: vec![false; width],
+            is_renewed: false,
             last: vec![0.0; width],
             norm: vec![0.0; width],
             contraction: vec![FIRST_CONTRACTION; width],
@@ -115,8 +121,10 @@ impl Newton {
         if h != self.size_before {
             self.known = self.known.min(1);
         }
-        self.predict(program, tile, self.known, h);
+        self.predict(program, tile, self.known, h, &self.pending);
         self.singular.fill(false);
+        self.late.fill(false);
+        self.is_renewed = false;
         if self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS) {
             self.contraction.fill(FIRST_CONTRACTION);
         }
@@ -128,7 +136,8 @@ impl Newton {
         if self.pending.contains(&true) {
             // Lanes that did not converge start again from their prediction, with the rank-revealing solve.
             self.singular.iter_mut().zip(&self.pending).for_each(|(singular, pending)| *singular |= pending);
-            self.predict(program, tile, 0, h);
+            self.predict(program, tile, 0, h, &self.pending);
+            self.is_renewed = true;
             self.iterate(program, tile, h);
         }
         if alive.iter().zip(&self.singular).any(|(alive, singular)| *alive && *singular) {
@@ -150,10 +159,10 @@ impl Newton {
         self.size_before = h;
     }
 
-    /// Predicts w₊ and λ₊ of pending lanes on the parabola (line, constant) through their values now and at the `known`
+    /// Predicts w₊ and λ₊ of these lanes on the parabola (line, constant) through their values now and at the `known`
     /// steps before. λ₊ of a redundant constraint starts from zero: a value that is not unique must not depend on
     /// earlier steps.
-    fn predict(&mut self, program: &Program, tile: &mut Tile, known: usize, h: f64) {
+    fn predict(&self, program: &Program, tile: &mut Tile, known: usize, h: f64, lanes: &[bool]) {
         let [last, second_last] = &self.before;
         let (weights, last, second_last) = match known {
             0 => ([1.0, 0.0, 0.0], &self.start, &self.start),
@@ -161,9 +170,9 @@ impl Newton {
             _ => ([3.0, -3.0, 1.0], last, second_last),
         };
         let values = [&self.start[..], last, second_last];
-        vectorised(Predict { program, tile, pending: &self.pending, weights, values });
+        vectorised(Predict { program, tile, pending: lanes, weights, values });
         for &register in &program.redundant {
-            for (value, _) in tile.lane_mut(register).iter_mut().zip(&self.pending).filter(|(_, pending)| **pending) {
+            for (value, _) in tile.lane_mut(register).iter_mut().zip(lanes).filter(|(_, chosen)| **chosen) {
                 *value = 0.0;
             }
         }
@@ -185,6 +194,10 @@ impl Newton {
     fn iterate(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         let gain = program.coefficients.position_gain(h);
         for count in 0..MAX_CORRECTIONS {
+            if count >= FROZEN_CORRECTIONS {
+                self.is_renewed = true;
+                self.late.iter_mut().zip(&self.pending).for_each(|(late, pending)| *late |= pending);
+            }
             if count == 0 || count >= FROZEN_CORRECTIONS {
                 tile.run(program.factor());
                 vectorised(Watch { watched: &program.watched, tile, singular: &mut self.singular });
@@ -215,9 +228,25 @@ impl Newton {
         let lanes = alive.iter().zip(&self.pending).zip(&self.singular);
         let converged: Vec<bool> = lanes.map(|((alive, pending), singular)| *alive && !pending && !singular).collect();
         let gain = program.coefficients.position_gain(h);
+        if self.is_renewed {
+            self.factor_apart(program, tile, h, &converged);
+        }
         tile.run(program.correct());
         vectorised(Apply { program, tile, gain, pending: &converged, norm: &mut self.norm });
         self.counters.iterations += converged.iter().map(|&converged| u64::from(converged)).sum::<u64>();
+    }
+
+    /// Factors of converged lanes as each would have them alone: those of its prediction, or those of its solution
+    /// where it took its own. A slower lane of the tile has renewed them.
+    fn factor_apart(&self, program: &Program, tile: &mut Tile, h: f64, converged: &[bool]) {
+        let early: Vec<bool> = converged.iter().zip(&self.late).map(|(converged, late)| *converged && !late).collect();
+        let unknowns = [program.layout.iterate.clone(), program.layout.lambda.clone()];
+        let solutions = unknowns.each_ref().map(|registers| tile.block(registers.clone()).to_vec());
+        self.predict(program, tile, self.known, h, &early);
+        tile.run(program.factor());
+        for (registers, solution) in unknowns.into_iter().zip(&solutions) {
+            tile.block_mut(registers).copy_from_slice(solution);
+        }
     }
 
     /// Corrections by the rank-revealing solve, for singular lanes. After the first few corrections, a constraint that
@@ -263,43 +292,6 @@ impl Newton {
             for (lane, residual) in tile.lane(register).iter().enumerate() {
                 let closed = (gain * residual).abs() <= allowed;
                 self.pending[lane] |= self.singular[lane] && !closed;
-            }
-        }
-    }
-}
-
-/// Marks lanes with a pivot that is too small as singular: they take the rank-revealing solve.
-struct Watch<'a> {
-    watched: &'a [Watched],
-    tile: &'a Tile,
-    singular: &'a mut [bool],
-}
-
-impl Vectorise for Watch<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { watched, tile, singular } = self;
-        // NaN is not trusted either.
-        let lost = |inverse: f64, largest: f64| inverse.is_nan() || inverse.abs() > largest;
-        for Watched { mode, pivots } in watched {
-            match mode {
-                None => pivots.iter().for_each(|pivot| {
-                    for (singular, &inverse) in singular.iter_mut().zip(tile.lane(pivot.register)) {
-                        *singular |= lost(inverse, pivot.largest_inverse);
-                    }
-                }),
-                // Lanes that do not use this version have arbitrary factors.
-                Some(mode) if tile.lane(mode.register).iter().any(|&value| mode.holds(value)) => {
-                    for pivot in pivots {
-                        let lanes = singular.iter_mut().zip(tile.lane(pivot.register)).zip(tile.lane(mode.register));
-                        for ((singular, &inverse), &value) in lanes {
-                            *singular |= mode.holds(value) & lost(inverse, pivot.largest_inverse);
-                        }
-                    }
-                }
-                Some(_) => {}
             }
         }
     }
