@@ -5,6 +5,7 @@ pub mod closed_forms;
 pub mod dormand_prince;
 pub mod finite_elements;
 pub mod power;
+pub mod random;
 pub mod restitution;
 pub mod runge_kutta;
 

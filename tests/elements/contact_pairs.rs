@@ -2,6 +2,7 @@
 //! no more of a body than its farthest point in a direction (Gilbert, Johnson & Keerthi, IEEE J. Robot. Autom. 4 (1988)
 //! 193).
 
+use crate::common::random::Random;
 use crate::common::{curve, nominal, read};
 
 type Point = [f64; 3];
@@ -131,26 +132,21 @@ fn firsts() -> [(&'static str, Body); 5] {
     ]
 }
 
-/// Numbers in −1 … 1.
-struct Random(u64);
+/// A number in −1 … 1.
+fn signed(random: &mut Random) -> f64 {
+    2.0 * random.uniform() - 1.0
+}
 
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self, size: f64) -> Point {
-        [(); 3].map(|()| size * self.next())
-    }
+fn vector(random: &mut Random, size: f64) -> Point {
+    [(); 3].map(|()| size * signed(random))
 }
 
 /// The second flies past the first, which stands askew, turns, and is hardly pushed.
 fn assert_gaps(first: &Body, second: &Body, random: &mut Random, error: f64) -> (usize, usize) {
-    let from = random.vector(0.5);
-    let aim = random.vector(0.15);
+    let from = vector(random, 0.5);
+    let aim = vector(random, 0.15);
     let speed = sum(aim, from, -1.0).map(|part| 2.0 * part);
-    let spin = random.vector(6.0);
+    let spin = vector(random, 6.0);
     let bounds = nominal(&read(&format!(
         "
 space: spatial

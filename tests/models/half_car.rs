@@ -2,6 +2,7 @@
 
 use mbint::Model;
 
+use crate::common::random::Random;
 use crate::common::{curve, nominal, read};
 
 /// Without bumps both sides are alike.
@@ -22,15 +23,10 @@ fn samples_of_the_half_car_lie_within_its_bounds() {
     let model = Model::from_yaml_str("half_car", text).unwrap();
     let ranges: Vec<[f64; 2]> = model.uncertain().map(|(_, range)| range).collect();
     assert_eq!(ranges.len(), 65);
-    // Numbers between 0 and 1 (Knuth, The Art of Computer Programming 2, 3.3.4: MMIX).
-    let mut state = 2007_u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f64 / (1_u64 << 24) as f64
-    };
+    let mut random = Random(2007);
     let mut point = |is_corner: bool| -> Vec<f64> {
         let share = |random: f64| if is_corner { random.round() } else { random };
-        ranges.iter().map(|[lower, upper]| lower + share(random()) * (upper - lower)).collect()
+        ranges.iter().map(|[lower, upper]| lower + share(random.uniform()) * (upper - lower)).collect()
     };
     let points: Vec<Vec<f64>> = (0..SAMPLES).map(|sample| point(sample % 2 == 0)).collect();
     let finer = text.replace("step: 2e-3,", "formulation: joint, step: 1e-3,");

@@ -6,6 +6,7 @@ use mbint::inner::results::{OutputStatistics, Summary, Uncertain};
 use mbint::inner::study::{self, Options};
 use symdiff::Formula;
 
+use crate::common::random::Random;
 use crate::common::{nominal, output, read, run};
 
 /// A body at rest at a place that a formula gives.
@@ -163,11 +164,8 @@ fn direct_monte_carlo_of_the_simulation_agrees() {
     let description = read(CRANK);
     let found = summary(&description, 2).statistics.unwrap();
     // Laws by another way: sums and orders of numbers of a linear congruential generator.
-    let mut state = 12_345_u64;
-    let mut uniform = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = Random(12_345);
+    let mut uniform = || random.uniform();
     let mut values = vec![Vec::new(); 2];
     for _ in 0..COUNT {
         // Beta(2, 3) is the second smallest of four.

@@ -74,10 +74,9 @@ pub(super) fn bound_along(
     internal: &mut Vec<InternalError>,
     wanted: impl Fn(Method) -> bool,
 ) -> Result<BoundsAlong, SimulationError> {
-    let motions = || study.motions(steps, progress).noting(seen);
-    let found = attained(study, &motions(), steps.schedule, validation)?;
-    let followed = found.as_ref().map(|(_, _, followed)| followed);
-    let motions = motions().following(followed);
+    let motions = study.motions(steps, progress).noting(seen);
+    let found = attained(study, &motions, steps.schedule, validation)?;
+    let motions = motions.following(found.as_ref().map(|(_, _, followed)| followed));
     let methods = bound(study, &motions, steps.schedule, validation, internal, wanted)?;
     Ok((methods, found.map(|(outcome, attained, _)| (outcome, attained))))
 }
@@ -98,8 +97,8 @@ fn attained(
     // A smaller budget is left to the surrogate.
     let is_afforded = study.request.budget.simulations >= Budget::default().simulations;
     let is_wanted = is_adaptive && is_afforded && study.domain.dimension() >= MANY;
-    let is_smooth = (0..motions.outputs()).all(|output| !motions.jumps(output));
-    if !is_wanted || !has_motion || !is_smooth || study.interruption.is_asked() {
+    let has_jumps = || (0..motions.outputs()).any(|output| motions.jumps(output));
+    if !is_wanted || !has_motion || study.interruption.is_asked() || has_jumps() {
         return Ok(None);
     }
     (study.stage)("attained ends");

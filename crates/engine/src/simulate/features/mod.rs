@@ -130,13 +130,13 @@ impl Features {
         let FeatureWork { path, symbols: [between, begin, end, part], values } = work;
         path.take(passage, &self.layout);
         path.between([0.0, 1.0], between);
-        path.between([0.0, 0.0], begin);
-        path.between([1.0, 1.0], end);
         let mut edges = 0;
         self.functions.iter().any(|function| {
             if function.is_narrow(function.over(between, values)) {
                 return false;
             }
+            path.between([0.0, 0.0], begin);
+            path.between([1.0, 1.0], end);
             let used = |symbols: &[Interval], values: &mut _| {
                 function.is_used(symbols, values).then(|| function.over(symbols, values))
             };

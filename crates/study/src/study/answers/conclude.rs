@@ -3,6 +3,7 @@
 use super::analysis::analysis_summary;
 use super::keeping::kept;
 use super::results::{Ran, Results};
+use crate::study::black_box::no_answer;
 use crate::study::bounding::{bands, contributions};
 use crate::study::internal::{InternalError, caught};
 use crate::study::problem::Study;
@@ -86,8 +87,7 @@ fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> 
     let Stop { sample: index, time, .. } = *stop;
     match stop.cause.clone() {
         StopCause::NoAnswer { why } => {
-            let place = study.description.black_box.as_ref().map(|own| own.place.clone()).unwrap_or_default();
-            let failed = SimulationError::NoAnswer { place, why, parameters };
+            let failed = no_answer(study, sample, why);
             format!("{failed}; bounds that need it are unknown, a scan is of the others")
         }
         StopCause::SingularJet => {

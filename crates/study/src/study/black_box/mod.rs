@@ -10,8 +10,11 @@ pub(super) mod source;
 pub(super) use nominal::ask_nominal;
 pub(super) use repeated::repeat;
 
+use super::problem::Study;
 use crate::methods::Refusal;
 use crate::model::Description;
+use crate::numerics::Sample;
+use crate::simulate::SimulationError;
 
 /// Refuses a question about bodies to a program.
 ///
@@ -25,4 +28,10 @@ pub(super) fn needs_mechanism(description: &Description, question: &str) -> Resu
             Err(Refusal(format!("{place}: {question} needs a mechanism, and here a black box answers instead of one")))
         }
     }
+}
+
+/// Error of a sample for which the program has no answer.
+pub(super) fn no_answer(study: &Study, sample: &Sample, why: String) -> SimulationError {
+    let place = study.description.black_box.as_ref().map(|own| own.place.clone()).unwrap_or_default();
+    SimulationError::NoAnswer { place, why, parameters: study.simulator.with_names(sample) }
 }

@@ -1,5 +1,6 @@
 //! The first question to a program: the nominal point.
 
+use super::no_answer;
 use crate::simulate::SimulationError;
 use crate::study::problem::Study;
 
@@ -10,17 +11,17 @@ use crate::study::problem::Study;
 pub(in crate::study) fn ask_nominal(study: &Study) -> Result<(), SimulationError> {
     let Some(source) = &study.source else { return Ok(()) };
     let nominal = study.domain.nominal.clone();
+    // A part of the box without it may have answers.
+    if !study.domain.contains(&nominal) {
+        return Ok(());
+    }
     let answers = source.answers(std::slice::from_ref(&nominal), 1.0, study.interruption, &|_| ());
     match answers {
         Err(SimulationError::Interrupted) => Ok(()),
         Err(error) => Err(error),
         Ok(answers) => answers.into_iter().try_for_each(|answer| match answer {
             Ok(_) => Ok(()),
-            Err(why) => Err(SimulationError::NoAnswer {
-                place: source.own.place.clone(),
-                why: why.to_string(),
-                parameters: study.simulator.with_names(&nominal),
-            }),
+            Err(why) => Err(no_answer(study, &nominal, why.to_string())),
         }),
     }
 }

@@ -1,13 +1,13 @@
 //! A program's answers as the model's outputs.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use symdiff::{Formula, math};
 
 use crate::assemble::NumberFormulas;
 use crate::black_box::{Answer, Pool, Questions, Unanswered};
-use crate::model::{BlackBox, Description, ParameterValue, Refine};
+use crate::model::{BlackBox, Description, Parameter, ParameterValue, Refine};
 use crate::numerics::Sample;
 use crate::results::BlackBoxSummary;
 use crate::simulate::{Interruption, Schedule, SimulationError};
@@ -21,7 +21,7 @@ const TIME: &str = "t";
 /// A program, and the model that asks it.
 #[derive(Debug)]
 pub(in crate::study) struct Source {
-    description: Description,
+    parameters: Vec<Parameter>,
     pub(super) own: BlackBox,
     pool: Pool,
     /// The outputs as formulas of answers, the time and the parameters.
@@ -37,7 +37,7 @@ pub(in crate::study) struct Source {
 /// Answers that are kept, by the bits of their points.
 #[derive(Debug, Default)]
 struct Known {
-    answers: HashMap<Vec<u64>, Arc<Vec<f64>>>,
+    answers: HashMap<Vec<u64>, Vec<f64>>,
     values: usize,
 }
 
@@ -58,7 +58,7 @@ impl Source {
             outputs: NumberFormulas::of(&description.parameters, &names, &formulas),
             output_count: formulas.len(),
             pool: Pool::new(own.clone(), questions),
-            description: description.clone(),
+            parameters: description.parameters.clone(),
             own,
             schedule,
             known: Mutex::default(),
@@ -108,7 +108,7 @@ impl Source {
         let bits = |point: &Vec<f64>| point.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
         let mut found: Vec<Option<Answer>> = {
             let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-            points.iter().map(|point| known.answers.get(&bits(point)).map(|own| Ok(own.to_vec()))).collect()
+            points.iter().map(|point| known.answers.get(&bits(point)).map(|own| Ok(own.clone()))).collect()
         };
         let open: Vec<usize> = (0..points.len()).filter(|&place| found[place].is_none()).collect();
         done(points.len() - open.len());
@@ -121,7 +121,7 @@ impl Source {
                 && known.values + values.len() <= MOST_KEPT
             {
                 known.values += values.len();
-                known.answers.insert(bits(&points[place]), Arc::new(values.clone()));
+                known.answers.insert(bits(&points[place]), values.clone());
             }
             found[place] = Some(answer);
         }
@@ -157,7 +157,7 @@ impl Source {
 
     /// All parameters at samples of the uncertain ones, with steps that are so many times finer.
     fn points(&self, samples: &[Sample], refinement: f64) -> Vec<Vec<f64>> {
-        let mut parameters = self.description.parameters.clone();
+        let mut parameters = self.parameters.clone();
         if let Some(Refine { parameter, by }) = self.own.refine.filter(|_| refinement != 1.0)
             && let ParameterValue::Formula(formula) = parameters[parameter].value.clone()
         {
