@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::interval::Interval;
+use super::interval::{Interval, TINY};
 use crate::expr::{Binary, Unary};
 
 /// Allowance for a library's error, relative to the value.
@@ -63,7 +63,7 @@ fn sign(a: f64) -> f64 {
 
 /// Computed ends with an allowance for the library's error.
 fn widened(lower: f64, upper: f64) -> Interval {
-    let allowance = |value: f64| OF_LIBRARY * value.abs() + f64::MIN_POSITIVE;
+    let allowance = |value: f64| OF_LIBRARY * value.abs() + TINY;
     Interval::new(lower - allowance(lower), upper + allowance(upper))
 }
 

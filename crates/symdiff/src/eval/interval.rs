@@ -24,6 +24,10 @@ const QUADRANTS: [u64; 3] = [0x3FF9_21FB_5440_0000, 0x3DD0_B461_1A60_0000, 0x3BA
 const TERMS: i32 = 10;
 const SERIES_TAIL: f64 = 2e-22;
 
+/// Least size of an end that is not zero: 2⁻⁵⁰⁰. Products of two ends are then no subnormal numbers, each of which costs a
+/// processor more than a hundred cycles.
+pub(super) const TINY: f64 = f64::from_bits((1023 - 500) << 52);
+
 impl Interval {
     /// All numbers.
     pub const ENTIRE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
@@ -38,9 +42,20 @@ impl Interval {
         if lower <= upper { Self { lower, upper } } else { Self::ENTIRE }
     }
 
-    /// Computed ends, moved outward by one place.
+    /// Computed ends, moved outward by one place, or to zero or [`TINY`].
     fn outward(lower: f64, upper: f64) -> Self {
-        Self::new(lower.next_down(), upper.next_up())
+        Self::new(-Self::above(-lower), Self::above(upper))
+    }
+
+    /// No smaller than the exact number that was computed: one that is negative was no positive number before its
+    /// rounding.
+    fn above(computed: f64) -> f64 {
+        match computed {
+            _ if computed.abs() >= TINY => computed.next_up(),
+            _ if computed < 0.0 => 0.0,
+            _ if computed.is_nan() => computed,
+            _ => TINY,
+        }
     }
 
     /// Lower end.
@@ -253,6 +268,22 @@ mod tests {
             let composed = sin_a * cos_b + cos_a * sin_b;
             prop_assert!(direct.lower() <= composed.upper() && composed.lower() <= direct.upper());
         }
+    }
+
+    #[test]
+    fn no_end_is_a_subnormal_number() {
+        let (zero, least) = (Interval::point(0.0), Interval::point(f64::from_bits(1)));
+        let products = [zero * zero, zero * Interval::new(-3.0, 1e-200), least * least, -least * Interval::point(1e-9)];
+        for interval in products.into_iter().chain([zero + zero, least - Interval::point(1e-160), (zero * zero).square()]) {
+            for end in [interval.lower(), interval.upper()] {
+                assert!(end == 0.0 || end.abs() >= TINY, "{interval:?}");
+                assert!((end * end).is_normal() || end == 0.0, "{interval:?}");
+            }
+        }
+        // The sign of what is not rounded to zero is known.
+        assert_eq!((Interval::point(-1e-200) * Interval::point(1e-9)).upper(), 0.0);
+        assert_eq!((Interval::point(1e-200) * Interval::point(1e-9)).lower(), 0.0);
+        assert!((zero * zero).contains(1e-320) && (zero * zero).contains(-1e-320));
     }
 
     #[test]

@@ -33,10 +33,13 @@ const EDGE: f64 = 0.75;
 pub(super) struct Features {
     layout: Layout,
     functions: Vec<Function>,
+    /// Of all functions at once: they have most of their operations in common.
+    ranges: Ranges,
 }
 
 #[derive(Clone, Debug)]
 struct Function {
+    /// Of this function alone.
     ranges: Ranges,
     /// The width of its range.
     whole: f64,
@@ -70,6 +73,8 @@ pub(super) struct FeatureWork {
     /// Over the whole step, at its beginning, at its end, and over a part.
     symbols: [Vec<Interval>; 4],
     values: Vec<Interval>,
+    /// Indices of functions that change by much over the whole step.
+    wide: Vec<usize>,
 }
 
 impl Features {
@@ -90,7 +95,7 @@ impl Features {
             .chain(std::iter::repeat_n(far, system.q.len()))
             .collect();
         let mut work = Vec::new();
-        let functions: Vec<Function> = candidates
+        let (roots, functions): (Vec<Expr>, Vec<Function>) = candidates
             .into_iter()
             .filter_map(|Candidate { of, conditions }| {
                 let ranges = Ranges::new(&graph, &symbols, &[of]);
@@ -103,40 +108,42 @@ impl Features {
                     _ => ranges.enclose(&everywhere, &mut work).next().unwrap_or(Interval::ENTIRE),
                 };
                 let whole = range.upper() - range.lower();
-                (whole.is_finite() && whole > CONSTANT * range.magnitude()).then(|| Function {
-                    ranges,
-                    whole,
-                    conditions: Ranges::new(&graph, &symbols, &conditions),
+                (whole.is_finite() && whole > CONSTANT * range.magnitude()).then(|| {
+                    let conditions = Ranges::new(&graph, &symbols, &conditions);
+                    (of, Function { ranges, whole, conditions })
                 })
             })
-            .collect();
+            .unzip();
         let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
-        (!functions.is_empty()).then_some(Self { layout, functions })
+        let ranges = Ranges::new(&graph, &symbols, &roots);
+        (!functions.is_empty()).then_some(Self { layout, functions, ranges })
     }
 
     /// Whether a function changes by more than this share of its whole range on the way.
     pub fn change(&self, passage: Passage, share: f64, work: &mut FeatureWork) -> bool {
-        let FeatureWork { path, symbols: [between, ..], values } = work;
+        let FeatureWork { path, symbols: [between, ..], values, .. } = work;
         path.take(passage, &self.layout);
         path.between([0.0, 1.0], between);
-        self.functions.iter().any(|function| {
-            let range = function.over(between, values);
-            range.upper() - range.lower() > share * function.whole
-        })
+        let mut ranges = self.ranges.enclose(between, values).zip(&self.functions);
+        ranges.any(|(range, function)| range.upper() - range.lower() > share * function.whole)
     }
 
     /// Whether the ends of a step hide what functions do on the way.
     pub fn are_hidden(&self, passage: Passage, work: &mut FeatureWork) -> bool {
-        let FeatureWork { path, symbols: [between, begin, end, part], values } = work;
+        let FeatureWork { path, symbols: [between, begin, end, part], values, wide } = work;
         path.take(passage, &self.layout);
         path.between([0.0, 1.0], between);
+        wide.clear();
+        let ranges = self.ranges.enclose(between, values).zip(&self.functions).enumerate();
+        wide.extend(ranges.filter(|(_, (range, function))| !function.is_narrow(*range)).map(|(index, _)| index));
+        if wide.is_empty() {
+            return false;
+        }
+        path.between([0.0, 0.0], begin);
+        path.between([1.0, 1.0], end);
         let mut edges = 0;
-        self.functions.iter().any(|function| {
-            if function.is_narrow(function.over(between, values)) {
-                return false;
-            }
-            path.between([0.0, 0.0], begin);
-            path.between([1.0, 1.0], end);
+        wide.iter().any(|&index| {
+            let function = &self.functions[index];
             let used = |symbols: &[Interval], values: &mut _| {
                 function.is_used(symbols, values).then(|| function.over(symbols, values))
             };
