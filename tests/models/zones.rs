@@ -49,7 +49,7 @@ fn linear_gaps_are_exact_in_every_zone() {
     }
 }
 
-/// Two zones and a length: variances add, and each zone is one contribution. Of a radius and an angle that are even, each
+/// Two zones and a length: variances add, and each zone is one contribution. Of an even radius and angle, each
 /// coordinate has the variance r²/6.
 #[test]
 fn a_zone_is_one_contribution() {
@@ -91,7 +91,7 @@ fn laws_in_zones_have_their_moments() {
     near("sphere", "radial_normal", (3.0 - density / inside) / 3.0 / 9.0);
 }
 
-/// The pin of a crank in a disc: a linkage whose slider is at r + l when both are in line, moved by x alone to first order.
+/// The pin of a turning arm in a disc, which is the same disc from every side.
 #[test]
 fn the_point_of_a_body_lies_in_a_disc() {
     let text = "

@@ -1,7 +1,8 @@
 //! `zones:`, and zones of points: parameters in [-1, 1], and formulas of them that lie in the zone.
 //!
-//! Polar coordinates take the square onto the disc and the cube onto the ball, so that surrogates of boxes serve zones:
-//! the radius has both signs, and directions are half a turn, so that the centre of the box is that of the zone.
+//! Polar coordinates take the square onto the disc and the cube onto the ball, so that surrogates of boxes serve zones. The
+//! nominal radius is 0, an end of its interval: at the middle of the box every angle acts alone, which grids that grow
+//! axis by axis need.
 
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
@@ -36,9 +37,9 @@ impl Zone {
 /// What parameters in [-1, 1] are mapped onto.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZoneShape {
-    /// Discs, each by two of the parameters: a radius with its sign, and an angle in quarter turns.
+    /// Discs, each by two of the parameters: a radius from 0 on, and an angle in half turns.
     Discs,
-    /// A ball, by three: a radius with its sign, an elevation and an angle in quarter turns.
+    /// A ball, by three: a radius from 0 on, an elevation in quarter turns and an angle in half turns.
     Ball,
     /// The box itself, or a linear map of it.
     Box,
@@ -223,11 +224,14 @@ impl Writer<'_> {
             _ => 2,
         };
         let names = self.hidden(count);
-        for name in &names {
+        for (index, name) in names.iter().enumerate() {
             let number = |text: &str| Node { span: self.at.clone(), value: Value::Scalar(Scalar::plain(text, None)) };
             let ends = Node { span: self.at.clone(), value: Value::Sequence(vec![number("-1"), number("1")]) };
-            let interval = Entry { key: "interval".to_owned(), key_span: self.at.clone(), value: ends };
-            let value = Node { span: self.at.clone(), value: Value::Mapping(vec![interval]) };
+            let key = |key: &str, value: Node| Entry { key: key.to_owned(), key_span: self.at.clone(), value };
+            let is_radius = shape != ZoneShape::Box && (index == 0 || shape == ZoneShape::Discs && index == 2);
+            let nominal = number(if is_radius { "-1" } else { "0" });
+            let keys = vec![key("value", nominal), key("interval", ends)];
+            let value = Node { span: self.at.clone(), value: Value::Mapping(keys) };
             self.written.parameters.push(Entry { key: name.clone(), key_span: self.at.clone(), value });
         }
         names
@@ -263,15 +267,15 @@ impl Writer<'_> {
     }
 }
 
-/// The disc of radius 1, by a radius and half a turn.
+/// The disc of radius 1, by a radius and a turn.
 fn disc(u: &str, v: &str) -> [String; 2] {
-    [format!("{u}*cos(pi/2*{v})"), format!("{u}*sin(pi/2*{v})")]
+    [format!("(1 + {u})/2*cos(pi*{v})"), format!("(1 + {u})/2*sin(pi*{v})")]
 }
 
-/// The ball of radius 1: an elevation from the plane of x and y, and half a turn about z.
+/// The ball of radius 1: a radius, an elevation from the plane of x and y, and a turn about z.
 fn ball(u: &str, v: &str, w: &str) -> [String; 3] {
-    let across = format!("{u}*cos(pi/2*{v})");
-    [format!("{across}*cos(pi/2*{w})"), format!("{across}*sin(pi/2*{w})"), format!("{u}*sin(pi/2*{v})")]
+    let across = format!("(1 + {u})/2*cos(pi/2*{v})");
+    [format!("{across}*cos(pi*{w})"), format!("{across}*sin(pi*{w})"), format!("(1 + {u})/2*sin(pi/2*{v})")]
 }
 
 /// Deviations in an ellipse or an ellipsoid, by their names.

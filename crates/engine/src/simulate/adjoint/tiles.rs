@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use symdiff::Tile;
 
 use super::add;
-use super::formulas::gradients_of_formulas;
+use super::formulas::derivatives_of_formulas;
 use super::path::Path;
 use super::rows::RowAdjoints;
 use super::start::StartAdjoints;
@@ -76,7 +76,12 @@ pub fn gradients(
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
     if simulator.system.analysis == Analysis::Dimensions {
-        return Ok(gradients_of_formulas(&simulator.system, samples, wanted));
+        let asked = wanted.iter().map(|wanted| (wanted.sample, wanted.output));
+        let found = derivatives_of_formulas(&simulator.system, samples, asked);
+        return Ok(found
+            .into_iter()
+            .map(|(value, by_parameters)| Gradient { value, by_parameters, lost: None })
+            .collect());
     }
     if simulator.system.analysis.visits() {
         return Err(NoGradient::NoMotion { analysis: simulator.system.analysis.name() });

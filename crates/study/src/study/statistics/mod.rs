@@ -1,6 +1,7 @@
 //! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation,
 //! and the linearised tolerance stack.
 
+mod causes;
 mod laws;
 mod numbers;
 mod requirements;

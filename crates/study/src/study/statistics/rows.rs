@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
+use super::INTERRUPTED;
+use super::causes::{Cause, causes};
 use super::laws::Laws;
-use super::{INTERRUPTED, stack};
 use crate::model::Description;
 use crate::numerics::largest;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
@@ -213,14 +214,19 @@ impl<'a> Rows<'a> {
 
     /// The linearised worst case about the nominal value, and the root sum square.
     fn stack(&self, row: usize, output: usize) -> (f64, f64) {
-        let causes = stack::causes(self, row, output);
+        let causes = self.causes(row, output);
         let deviations: Vec<f64> = causes.iter().map(|(.., deviation)| *deviation).collect();
         let linear = deviations.iter().map(|d| d.abs()).sum();
         (linear, deviations.iter().map(|d| d * d).sum::<f64>().sqrt())
     }
 
+    /// What an output does by each of its causes about the nominal values.
+    pub fn causes(&self, row: usize, output: usize) -> Vec<Cause> {
+        causes(&self.description.zones, self.laws, |at| self.derivatives(row, output, at))
+    }
+
     /// By parameter: the derivative at a point, and that times the parameter's larger deviation.
-    pub fn derivatives(&self, row: usize, output: usize, at: &[f64]) -> Vec<(f64, f64)> {
+    fn derivatives(&self, row: usize, output: usize, at: &[f64]) -> Vec<(f64, f64)> {
         let Laws { nominal, lower, upper, .. } = self.laws;
         let mut points: Vec<Vec<f64>> = Vec::with_capacity(2 * nominal.len());
         for axis in 0..nominal.len() {

@@ -1,7 +1,7 @@
 //! A stack of dimensions: sensitivities about the nominal values, and a histogram.
 
 use super::rows::Rows;
-use crate::model::{Analysis, Description, Zone, ZoneShape};
+use crate::model::{Analysis, Description};
 use crate::numerics::statistics::REPLICATES;
 use crate::results::{Histogram, Sensitivity};
 
@@ -15,7 +15,7 @@ pub(super) fn is_stack(description: &Description, output: &str) -> bool {
 
 /// How an output follows each parameter, the largest deviation first.
 pub(super) fn sensitivities(rows: &Rows, row: usize, output: usize) -> Vec<Sensitivity> {
-    let causes = causes(rows, row, output);
+    let causes = rows.causes(row, output);
     let squares: f64 = causes.iter().map(|(.., deviation)| deviation * deviation).sum();
     let sensitivity = |(parameter, derivative, deviation): (String, f64, f64)| Sensitivity {
         parameter,
@@ -26,39 +26,6 @@ pub(super) fn sensitivities(rows: &Rows, row: usize, output: usize) -> Vec<Sensi
     let mut found: Vec<Sensitivity> = causes.into_iter().map(sensitivity).collect();
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     found
-}
-
-/// Causes by name, with derivative and deviation about the nominal values. A zone is one: its deviation is the largest
-/// of a linear output in it, the gradient's length times the radius of a disc or a ball.
-pub(super) fn causes(rows: &Rows, row: usize, output: usize) -> Vec<(String, f64, f64)> {
-    let zones = &rows.description.zones;
-    let names = &rows.laws.names;
-    let derivatives = rows.derivatives(row, output, &rows.laws.nominal);
-    let is_member = |name: &String| zones.iter().any(|zone| zone.members.contains(name));
-    let alone = names.iter().zip(&derivatives).filter(|(name, _)| !is_member(name));
-    let alone = alone.map(|(name, &(derivative, deviation))| (name.clone(), derivative, deviation));
-    let of_zone = |zone: &Zone| {
-        let index = |member: &String| names.iter().position(|name| name == member);
-        let members: Vec<usize> = zone.members.iter().filter_map(index).collect();
-        // Along the radius, with the angles at these quarter turns.
-        let along = |members: &[usize], angles: &[f64]| {
-            let mut at = rows.laws.nominal.clone();
-            members[1..].iter().zip(angles).for_each(|(&member, angle)| at[member] = *angle);
-            rows.derivatives(row, output, &at)[members[0]].1
-        };
-        let length = |members: &[usize]| {
-            let axes: &[[f64; 2]] = &[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];
-            let axes = if members.len() == 2 { &[[0.0; 2], [1.0; 2]] } else { axes };
-            axes.iter().map(|angles| along(members, angles).powi(2)).sum::<f64>().sqrt()
-        };
-        let deviation = match zone.shape {
-            ZoneShape::Box => members.iter().map(|&member| derivatives[member].1.abs()).sum(),
-            ZoneShape::Discs => members.chunks_exact(2).map(length).sum(),
-            ZoneShape::Ball => length(&members),
-        };
-        (zone.name.clone(), deviation, deviation)
-    };
-    alone.chain(zones.iter().map(of_zone)).collect()
 }
 
 /// How the samples of an output are distributed; `None` where they are all the same, or unknown.

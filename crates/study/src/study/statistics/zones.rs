@@ -35,20 +35,20 @@ impl LawInZone {
 
     /// Replaces independent uniform values of the parameters in [-1, 1] by those of the law.
     pub fn place(&self, sample: &mut [f64]) {
+        // Shares from 0 to 1, of values from -1 to 1.
+        let by_share = |value: &mut f64, of: &dyn Fn(f64) -> f64| *value = 2.0 * of(0.5 * (1.0 + *value)) - 1.0;
         match self.shape {
             ZoneShape::Box => {}
             ZoneShape::Discs => {
                 for members in self.members.chunks_exact(2) {
-                    let radius = &mut sample[members[0]];
-                    *radius = self.radius_in_disc(radius.abs()).copysign(*radius);
+                    by_share(&mut sample[members[0]], &|share| self.radius_in_disc(share));
                 }
             }
             ZoneShape::Ball => {
                 let &[radius, elevation, _] = &self.members[..] else { return };
-                sample[radius] = self.radius_in_ball(sample[radius].abs()).copysign(sample[radius]);
+                by_share(&mut sample[radius], &|share| self.radius_in_ball(share));
                 // Heights are even on a sphere.
-                let height = sample[elevation].clamp(-1.0, 1.0);
-                sample[elevation] = 1.0 - math::acos(height) / (0.5 * PI);
+                sample[elevation] = 1.0 - math::acos(sample[elevation].clamp(-1.0, 1.0)) / (0.5 * PI);
             }
         }
     }
