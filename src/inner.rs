@@ -30,8 +30,8 @@ pub mod methods {
 
 pub mod model {
     pub use crate::model::{
-        Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading, SchemeChoice,
-        Stepping, load, load_str, read, read_str, schema,
+        Analysis, Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading,
+        SchemeChoice, Stepping, load, load_str, read, read_str, schema,
     };
 }
 
@@ -45,8 +45,9 @@ pub mod reduce {
 
 pub mod results {
     pub use crate::results::{
-        Allocation, Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics, ReducedBand,
-        ReducedSummary, RequirementSummary, StatisticsResult, Summary, Uncertain, Verdict,
+        Allocation, Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics,
+        OutputStatisticsSummary, ReducedBand, ReducedSummary, RequirementSummary, StatisticsResult, Summary, Uncertain,
+        Verdict,
     };
 }
 
@@ -60,8 +61,8 @@ pub mod simulate {
 
 pub mod study {
     pub use crate::study::{
-        AllocateOptions, CostOptions, Evaluator, Kept, Options, allocate, cost, explain, language_costs, prepare,
-        ready, run, run_keeping,
+        AllocateOptions, CostOptions, Evaluator, Kept, Options, allocate, cost, explain, gradient, language_costs,
+        prepare, ready, run, run_keeping,
     };
 }
 

@@ -36,6 +36,7 @@ mod scenes;
 mod shards;
 mod show;
 mod snapshot;
+mod stack;
 mod statistics;
 mod status;
 mod structure;

@@ -262,9 +262,12 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
             method.seconds.map_or_else(|| "–".to_owned(), |seconds| format!("{seconds:.3}")),
         ]);
     }
-    let kind = match &summary.black_box {
-        Some(own) => black_box::heading(own),
-        None => format!(
+    let kind = match (&summary.black_box, &summary.analysis) {
+        (Some(own), _) => black_box::heading(own),
+        (None, Some(own)) if own.kind == "dimensions" => {
+            count(summary.parameters.len(), "uncertain dimension", "uncertain dimensions")
+        }
+        (None, _) => format!(
             "{}, {}, {}",
             coordinates(summary.coordinates, &summary.formulation),
             count(summary.constraints, "constraint", "constraints"),
@@ -340,6 +343,7 @@ mod tests {
             black_box: None,
             parameters: vec![],
             assemblies: vec![],
+            chains: vec![],
             methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],
             errors: vec![ErrorSummary {
                 output: "x3".into(),

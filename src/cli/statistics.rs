@@ -1,5 +1,6 @@
 //! Statistics for people, beside the bounds: worst case first.
 
+use super::stack;
 use super::table::{Align, Table};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{StatisticsSummary, Summary, Uncertain};
@@ -22,6 +23,7 @@ pub(super) fn statistics(summary: &Summary) -> String {
         ("statistical", Align::Right),
         ("unit", Align::Left),
     ]);
+    let has_time = has_time(summary);
     for output in &found.outputs {
         let unit = ShownUnit::of(&output.display, &output.unit);
         let shown = |value: f64| unit.of_si(value);
@@ -38,7 +40,7 @@ pub(super) fn statistics(summary: &Summary) -> String {
         };
         table.row([
             output.output.clone(),
-            format!("{:.4}", output.time),
+            if has_time { format!("{:.4}", output.time) } else { "–".to_owned() },
             ends(output.worst_case[0], output.worst_case[1]),
             format!("± {}", number(shown(output.linear))),
             format!("± {}", number(shown(output.rss))),
@@ -57,10 +59,11 @@ pub(super) fn statistics(summary: &Summary) -> String {
         _ => String::new(),
     };
     format!(
-        "{}{note}{}{}  the worst case is every case of the box{shares}, by {} samples of the surrogate\n{}\n",
+        "{}{note}{}{}{}  the worst case is every case of the box{shares}, by {} samples of the surrogate\n{}\n",
         laws(found),
         table.render(2),
         reduced(found),
+        stack::sensitivities(summary),
         found.samples,
         yields(found.requirements.iter().chain(&found.together))
     )
@@ -149,4 +152,9 @@ fn laws(found: &StatisticsSummary) -> String {
         outside => format!("; up to {:.2} % of them lies outside of the box that is bounded", 100.0 * outside),
     };
     format!("  distributions: {}{outside}\n", laws.join(", "))
+}
+
+/// Whether there is a time at which numbers are: a stack of dimensions has none.
+fn has_time(summary: &Summary) -> bool {
+    summary.analysis.as_ref().is_none_or(|analysis| analysis.kind != "dimensions")
 }

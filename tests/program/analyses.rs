@@ -28,7 +28,7 @@ const PLAIN: &str = "bodies: { block: { mass: m, coordinates: [x] } }
 effects: { spring: { spring_damper: { between: [ground, block], along: x, stiffness: k, damping: 0.4, free_length: 0.1 } } }";
 
 /// In the order of the columns.
-const ANALYSES: [Analysis; 6] = [
+const ANALYSES: [Analysis; 7] = [
     Analysis {
         keys: "simulation: { duration: 0.2, step: 2e-3, output_step: 0.02 }\ninitial: { block.x: 0.2, block.vx: 0 }",
         body: PLAIN,
@@ -60,6 +60,7 @@ const ANALYSES: [Analysis; 6] = [
         output: "mode1.frequency",
         limited: "drive.amplitude <= 1",
     },
+    Analysis { keys: "analysis: dimensions", body: "", output: "x", limited: "x <= 0.3 m" },
 ];
 
 /// What a question adds to a model.
@@ -79,12 +80,14 @@ fn asked(question: &str, analysis: &Analysis) -> String {
         _ => (String::new(), format!("requirements: {{ holds: {} }}", analysis.limited)),
     };
     let (keys, body) = (analysis.keys, analysis.body);
+    // Without bodies there is nothing but the parameters.
+    let observed = if body.is_empty() { "80 N / k" } else { "block.x" };
     format!(
         "model: asked
 {keys}
 parameters: {{ k: {{ value: 400, unit: N/m, tolerance: 5% }}, m: {{ value: 1, unit: kg, tolerance: 2% }} }}
 {body}
-outputs: {{ x: block.x{outputs} }}
+outputs: {{ x: {observed}{outputs} }}
 {further}
 bounds: {{ chebyshev: {{ order: 3 }} }}
 "

@@ -36,6 +36,7 @@ mod shards;
 mod shells;
 mod show;
 mod snapshot;
+mod stacks;
 mod statistics;
 mod structure;
 mod submit;

@@ -23,6 +23,6 @@ pub fn further_outputs(system: &mut System, vibrations: Option<&Vibrations>) {
             let expr = system.graph.constant(0.0);
             system.outputs.push(OutputInfo { name, unit: "1/s^2".to_owned(), dimension: None, expr, of_results: None });
         }
-        Analysis::Motion | Analysis::Kinematics | Analysis::Statics | Analysis::Modes(_) | Analysis::BlackBox => {}
+        _ => {}
     }
 }

@@ -10,6 +10,7 @@ use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{PAGE, SCHEMA, SUMMARY};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
+use crate::export::stack;
 use crate::export::statistics::{reduced_statistics_csv, statistics_csv};
 use crate::export::stems::unique_stems;
 use crate::export::witnesses::{POINTS, points_csv, witnesses_csv};
@@ -92,6 +93,19 @@ pub fn write_results(
             plots.push(svg);
         }
         figures.push(PageFigure { output: output.name.clone(), plots });
+    }
+    let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
+    for (output, name) in bounds.outputs.iter().zip(names) {
+        let mut plots = Vec::new();
+        for (suffix, svg) in stack::figures(summary, &output.name) {
+            files.add(&format!("{name}.{suffix}"), svg.as_bytes())?;
+            plots.push(svg);
+        }
+        match figures.iter_mut().find(|figure| figure.output == output.name) {
+            Some(figure) => figure.plots.extend(plots),
+            None if plots.is_empty() => {}
+            None => figures.push(PageFigure { output: output.name.clone(), plots }),
+        }
     }
     let motion = report.map(motion_json).transpose()?;
     motion.iter().try_for_each(|motion| files.add(MOTION, motion))?;

@@ -3,30 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use csv::WriterBuilder;
-use svg::node::element::{Rectangle, Title};
 
 use super::csv::number;
 use super::error::ExportError;
-use super::figure::Caption;
-use super::figure::axis::Axis;
-use super::figure::document::{Anchor, document, finished, group, heading, line, shortened, text, text_width};
-use super::figure::panel::Panel;
-use super::figure::path::px;
-use super::figure::style::{Color, Hue};
+use super::figure::document::shortened;
 use super::folder::AtomicFiles;
 use super::rounded::rounded;
 use super::stems::file_stem;
+use super::tornado::{Bar, derivative_in, tornado};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{GradientParameter, Gradients, OutputGradients};
-
-/// Most bars of a plot; parameters of less influence are left out.
-const MOST: usize = 24;
-
-/// Width on the page, px, and heights of a bar and of what stands above and below all.
-const WIDTH: f64 = 760.0;
-const BAR: f64 = 22.0;
-const TOP: f64 = 40.0;
-const BOTTOM: f64 = 50.0;
 
 /// Writes the table, and a plot of each output at a row of its own.
 ///
@@ -76,78 +62,29 @@ pub fn by_influence(gradients: &Gradients, output: usize, row: usize) -> Vec<(us
 
 /// A derivative in the units in which people see both, and their quotient: `mm/mm`.
 pub fn shown_derivative(output: &OutputGradients, parameter: &GradientParameter, by: f64) -> (f64, String) {
-    let [above, below] =
-        [ShownUnit::of(&output.display, &output.unit), ShownUnit::of(&parameter.display, &parameter.unit)];
-    let unit = match (above.text, below.text) {
-        ("", "") => String::new(),
-        (above, "") => above.to_owned(),
-        ("", below) => format!("1/{}", bracketed(below)),
-        (above, below) => format!("{above}/{}", bracketed(below)),
-    };
-    (by / above.si * below.si, unit)
-}
-
-/// A unit below a line.
-fn bracketed(unit: &str) -> String {
-    if unit.contains(['*', '/', ' ']) { format!("({unit})") } else { unit.to_owned() }
+    let below = ShownUnit::of(&parameter.display, &parameter.unit);
+    derivative_in(ShownUnit::of(&output.display, &output.unit), below, by)
 }
 
 /// Influences of the parameters on an output at a row, over half of their intervals, as an SVG document.
 pub fn tornado_svg(gradients: &Gradients, output: usize, row: usize) -> String {
     let own = &gradients.outputs[output];
-    let mut bars = by_influence(gradients, output, row);
-    bars.retain(|(_, _, influence)| influence.is_finite());
-    bars.truncate(MOST);
-    let unit = ShownUnit::of(&own.display, &own.unit);
-    let most = bars.iter().fold(0.0_f64, |most, (_, _, influence)| most.max(influence.abs()));
-    let x = Axis::fit([-most, most].into_iter(), unit, 7, 0.04, 0.0);
-    let y = Axis::fit([0.0, 1.0].into_iter(), "", 2, 0.0, 0.0);
-    let name = |number: usize| shortened(&gradients.parameters[number].name, 30);
-    let left = bars.iter().map(|&(number, ..)| text_width(&name(number))).fold(40.0, f64::max) + 20.0;
-    let label = |number: usize, by: f64| {
-        let (value, unit) = shown_derivative(own, &gradients.parameters[number], by);
-        format!("{} {unit}", rounded(significant(value))).trim_end().to_owned()
+    let mut influences = by_influence(gradients, output, row);
+    influences.retain(|(_, _, influence)| influence.is_finite());
+    let bar = |(number, by, influence): (usize, f64, f64)| {
+        let parameter = &gradients.parameters[number];
+        let (value, unit) = shown_derivative(own, parameter, by);
+        Bar::new(&parameter.name, (value, &unit), influence)
     };
-    let labels: Vec<String> = bars.iter().map(|&(number, by, _)| label(number, by)).collect();
-    let right = labels.iter().map(|label| text_width(label)).fold(40.0, f64::max) + 20.0;
-    let bottom = TOP + BAR * bars.len().max(1) as f64;
-    let caption = Caption { model: &gradients.model, prefix: "gradients" };
-    let id = format!("{}-tornado", caption.prefix);
-    let panel = Panel { id, left, right: WIDTH - right, top: TOP, bottom, x: &x, y: &y };
-    let at = |influence: f64| panel.place(influence, 0.0).0;
-    let mut drawn = group("data");
-    for (place, (&(number, _, influence), label)) in bars.iter().zip(&labels).enumerate() {
-        let middle = TOP + BAR * (place as f64 + 0.5);
-        let (from, to) = (at(0.0).min(at(influence)), at(0.0).max(at(influence)));
-        let bar = Rectangle::new()
-            .set("class", "area")
-            .set("x", px(from))
-            .set("y", px(middle - 0.36 * BAR))
-            .set("width", px(to - from))
-            .set("height", px(0.72 * BAR));
-        let hue = Hue::Color(Color::of(usize::from(influence < 0.0)));
-        let title = format!("{}: {label}", gradients.parameters[number].name);
-        drawn = drawn.add(hue.paint(group("bar").add(Title::new(title)).add(bar), "bar"));
-        drawn = drawn.add(text(&name(number), (left - 8.0, middle), Anchor::End));
-        drawn = drawn.add(text(label, (WIDTH - right + 8.0, middle), Anchor::Start));
-    }
     let title = format!(
         "{}: {} at t = {} s, by parameters",
-        shortened(caption.model, 50),
+        shortened(&gradients.model, 50),
         shortened(&own.name, 50),
         rounded(gradients.times[row])
     );
-    let figure = document((WIDTH, bottom + BOTTOM), &title)
-        .add(heading(&title, (12.0, 16.0)))
-        .add(drawn)
-        .add(line((at(0.0), TOP), (at(0.0), bottom)).set("class", "frame"))
-        .add(group("across").add(panel.time_axis("derivative times half of the interval")));
-    finished(&figure)
-}
-
-/// Four significant digits.
-fn significant(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+    let unit = ShownUnit::of(&own.display, &own.unit);
+    let bars: Vec<Bar> = influences.into_iter().map(bar).collect();
+    tornado("gradients", &title, ("derivative times half of the interval", unit), &bars)
 }
 
 #[cfg(test)]

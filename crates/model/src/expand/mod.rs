@@ -1,8 +1,9 @@
-//! Tree → tree: robots of MJCF, parts (`include`, `assemblies`, `instances`, `repeat`) and scenes are written out, so
-//! that the model's reader sees nothing but bodies, joints, effects and questions.
+//! Tree → tree: robots of MJCF, parts (`include`, `assemblies`, `instances`, `repeat`), dimensions, zones and scenes are
+//! written out, so that the model's reader sees nothing but bodies, joints, effects and questions.
 //!
 //! Every node keeps its place in the file that it comes from. No names are resolved here (decision 0156).
 
+pub mod dimensions;
 pub mod instance;
 pub mod mjcf;
 pub mod notation;
@@ -11,3 +12,4 @@ pub mod overrides;
 pub mod parts;
 pub mod scenes;
 pub mod tuning;
+pub mod zones;

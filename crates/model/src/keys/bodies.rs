@@ -59,6 +59,8 @@ grammar! {
         position: Option<Components> as Image::Polar,
         /// Of the frame at the point against the body's; by default none.
         rotation: Option<Rotation> as Image::Rotation,
+        /// The zone in which it lies about its position: a `disc` in the body's plane, or a `sphere`.
+        zone: Option<ZoneFile>,
     }
 
     /// Elements of the inertia tensor; xy is the integral of -x*y, as in URDF.

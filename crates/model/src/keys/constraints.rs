@@ -37,17 +37,22 @@ const NONNEGATIVE: &str = "minimum";
 
 /// A model stands alone, on a robot, or on a program.
 fn of_model(root: &mut Map<String, Value>) {
-    let without_time =
-        json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes"] } } });
+    let without_time = json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes", "dimensions"] } } });
     let black_box = json!({ "required": ["black_box"] });
-    root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time, black_box]));
+    // Formulas of parameters: nothing of a mechanism, which the reader tells from what is there.
+    let of_mechanisms = ["bodies", "joints", "effects", "instances", "urdf", "mjcf", "simulation", "black_box"];
+    let of_mechanisms: Vec<Value> = of_mechanisms.iter().map(|key| json!({ "required": [key] })).collect();
+    let stack = json!({
+        "anyOf": [{ "required": ["dimensions"] }, { "required": ["parameters", "outputs"] }],
+        "not": { "anyOf": of_mechanisms }
+    });
+    root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time, black_box, stack]));
     let kinematics = json!({ "required": ["analysis"], "properties": { "analysis": { "const": "kinematics" } } });
     let massive = json!({ "bodies": massive(), "assemblies": { "additionalProperties": { "properties": { "bodies": massive() } } } });
     let moved_by_forces =
         |properties: Value| json!({ "if": { "not": kinematics }, "then": { "properties": properties } });
     let not_only_points = json!({ "properties": { "ground": true }, "additionalProperties": { "not": only_points() } });
     let alone = json!({
-        "required": ["outputs"],
         "anyOf": [{ "required": ["bodies"] }, { "required": ["instances"] }],
         "properties": {
             "bodies": {
@@ -56,9 +61,12 @@ fn of_model(root: &mut Map<String, Value>) {
             },
             "outputs": { "type": "object", "minProperties": 1 }
         },
-        "allOf": [moved_by_forces(json!({ "bodies": not_only_points }))]
+        "allOf": [
+            moved_by_forces(json!({ "bodies": not_only_points })),
+            { "anyOf": [{ "required": ["outputs"] }, { "required": ["dimensions"] }] }
+        ]
     });
-    root.insert("if".to_owned(), json!({ "not": { "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }, { "required": ["black_box"] }] } }));
+    root.insert("if".to_owned(), json!({ "not": { "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }, { "required": ["black_box"] }, stack] } }));
     root.insert("then".to_owned(), alone);
     root.insert("allOf".to_owned(), json!([moved_by_forces(massive)]));
     root.insert("dependentRequired".to_owned(), json!({ "base": ["urdf"], "controls": ["mjcf"] }));

@@ -8,6 +8,7 @@ use schemars::transform::{RecursiveTransform, Transform};
 mod black_box;
 mod bodies;
 mod constraints;
+mod dimensions;
 mod model;
 mod parts;
 mod reduced;
@@ -15,15 +16,18 @@ mod repetition;
 mod run;
 mod statistics;
 mod values;
+mod zones;
 
 pub use black_box::*;
 pub use bodies::*;
+pub use dimensions::*;
 pub use model::*;
 pub use parts::*;
 pub use reduced::*;
 pub use run::*;
 pub use statistics::*;
 use values::*;
+pub use zones::*;
 
 use crate::grammar::mapping::grammar;
 use crate::grammar::values::{Components, Number, Rotation, UnitName};
@@ -95,6 +99,8 @@ mod tests {
         same_keys::<File>();
         same_keys::<BlackBoxFile>();
         same_keys::<RefineFile>();
+        same_keys::<DimensionFile>();
+        same_keys::<ZoneFile>();
         same_keys::<Scene>();
         same_keys::<SceneSimulation>();
         same_keys::<Parameter>();

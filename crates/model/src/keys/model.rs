@@ -27,6 +27,10 @@ grammar! {
         controls: Option<IndexMap<String, Number>>,
         /// Named numbers; those with a tolerance or an interval are uncertain.
         parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Dimensions between faces, by name: parameters, and chains of them that close in a gap.
+        dimensions: Option<IndexMap<String, DimensionFile>>,
+        /// Zones of deviations, by name: each is one cause. Formulas have its deviations as parameters.
+        zones: Option<IndexMap<String, ZoneFile>>,
         /// Files of assemblies, beside this one or below.
         include: Option<IncludeFile>,
         /// Mechanisms that the model has instances of.

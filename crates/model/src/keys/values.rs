@@ -130,6 +130,9 @@ schema_only! {
         Kinematics,
         /// It vibrates about a configuration: see `modes`.
         Modes,
+        /// There is no mechanism and no time: outputs are formulas of parameters. The default of a model that has
+        /// parameters or dimensions, outputs, and nothing of a mechanism.
+        Dimensions,
     }
 
     #[schemars(rename_all = "lowercase", inline)]

@@ -3,6 +3,7 @@
 use super::description::{
     Analysis, Description, Formulation, Joint, LinearisedAt, ModesRequest, ResponseRequest, Stepping,
 };
+use super::stack;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::{Context, Symbol};
@@ -13,11 +14,12 @@ use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 
-const ANALYSES: [(&str, Analysis); 4] = [
+const ANALYSES: [(&str, Analysis); 5] = [
     ("motion", Analysis::Motion),
     ("statics", Analysis::Statics),
     ("kinematics", Analysis::Kinematics),
     ("modes", Analysis::Modes(LinearisedAt::Start)),
+    ("dimensions", Analysis::Dimensions),
 ];
 
 const PLACES: [(&str, LinearisedAt); 3] =
@@ -31,6 +33,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
     if let Some(analysis) = fields.get("analysis").and_then(|node| reader.choice(node, &ANALYSES)) {
         reader.model.analysis = analysis;
     }
+    stack::read(reader, fields);
     let at = section_of_modes(reader, fields).and_then(|fields| fields.get("at"));
     if let (Some(node), Analysis::Modes(place)) = (at, &mut reader.model.analysis.clone()) {
         *place = reader.choice(node, &PLACES).unwrap_or_default();
@@ -158,7 +161,10 @@ pub fn values_of_start<'n>(fields: &Fields<'n>) -> Option<&'n Node> {
 /// Whether `simulation` has to say how long.
 pub fn needs_time(model: &Description) -> bool {
     use LinearisedAt::{Equilibrium, Start};
-    !matches!(model.analysis, Analysis::Statics | Analysis::Modes(Start | Equilibrium) | Analysis::BlackBox)
+    !matches!(
+        model.analysis,
+        Analysis::Statics | Analysis::Modes(Start | Equilibrium) | Analysis::BlackBox | Analysis::Dimensions
+    )
 }
 
 /// Without steps, rows are all that there is of the time; statics has one.
@@ -171,7 +177,9 @@ pub fn fit_time(model: &mut Description) {
     match model.analysis {
         Analysis::Motion | Analysis::Modes(LinearisedAt::Motion) => return,
         Analysis::Kinematics | Analysis::BlackBox => {}
-        Analysis::Statics | Analysis::Modes(_) => (simulation.duration, simulation.output_step) = (0.0, 1e-3),
+        Analysis::Statics | Analysis::Modes(_) | Analysis::Dimensions => {
+            (simulation.duration, simulation.output_step) = (0.0, 1e-3)
+        }
     }
     simulation.stepping = Stepping::Fixed(simulation.output_step);
 }
@@ -224,10 +232,11 @@ pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 
     let over_time = match analysis {
         Analysis::Motion | Analysis::Kinematics | Analysis::Modes(LinearisedAt::Motion) => true,
         Analysis::BlackBox => reader.model.simulation.duration > 0.0,
-        Analysis::Statics | Analysis::Modes(_) => false,
+        Analysis::Statics | Analysis::Modes(_) | Analysis::Dimensions => false,
     };
     let help = match analysis {
         Analysis::BlackBox => "with a `simulation`, which has a `duration`, it can be asked for",
+        Analysis::Dimensions => "an output is one number already: limit it directly",
         _ => "with `analysis: motion` it can be asked for",
     };
     if !over_time && !reader.model.reduced.is_empty() {
@@ -250,6 +259,7 @@ pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 
 
 /// Reports outputs that kinematics cannot have: it knows no forces, and bodies may have no masses.
 pub fn check_outputs(reader: &mut Reader, entries: &[Entry]) {
+    stack::refuse_time(reader, entries);
     if reader.model.analysis != Analysis::Kinematics {
         return;
     }

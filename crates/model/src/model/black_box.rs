@@ -18,7 +18,7 @@ use crate::syntax::tuning::TUNING;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Sections of a mechanism.
-const OF_MECHANISMS: [&str; 17] = [
+pub(super) const OF_MECHANISMS: [&str; 17] = [
     "bodies",
     "joints",
     "effects",

@@ -16,7 +16,9 @@ use symdiff::Formula;
 
 use crate::elements::effects::EffectKind;
 use crate::elements::{JointKind, Trajectory};
+pub use crate::expand::dimensions::{Chain, Link};
 pub use crate::expand::instance::{Instance, InstanceKind};
+pub use crate::expand::zones::{Zone, ZoneLaw, ZoneShape};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
@@ -93,6 +95,10 @@ pub struct Description {
     pub states: BTreeSet<String>,
     /// Functions of the time by their points.
     pub trajectories: Vec<Trajectory>,
+    /// Chains of dimensions, with the outputs that close them.
+    pub chains: Vec<Chain>,
+    /// Zones, each of several parameters.
+    pub zones: Vec<Zone>,
     /// Where parameters, bodies and joints are by name.
     pub places: Places,
 }
@@ -232,6 +238,8 @@ impl Description {
             turning_effects: BTreeSet::new(),
             states: BTreeSet::new(),
             trajectories: Vec::new(),
+            chains: Vec::new(),
+            zones: Vec::new(),
             places: Places::default(),
         }
     }

@@ -6,12 +6,14 @@ use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
     analysis, black_box, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements,
-    sections, space, states, statistics, tables, teeth, trajectories,
+    sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
 };
+use crate::expand::dimensions::{self, Chain};
 use crate::expand::mjcf;
 use crate::expand::overrides::Override;
 use crate::expand::parts::{self, Parts, WrittenOut};
 use crate::expand::scenes::{Scenes, Variant};
+use crate::expand::zones::{self, Zone};
 use crate::grammar::report::Report;
 use crate::keys;
 use crate::model::names::Reader;
@@ -145,7 +147,7 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
 }
 
 fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Path>) -> Reading {
-    let origin = Origin { name, files: Within::of(Path::new(name), root) };
+    let origin = Origin { name, files: Within::of(Path::new(name), root), chains: Vec::new(), zones: Vec::new() };
     let mut diagnostics = Diagnostics::new(name, text);
     let mut placed = Vec::new();
     for wanted in overrides {
@@ -187,6 +189,14 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
         placed = parts.follow(placed);
     }
     let parts = parts.as_ref();
+    let before = diagnostics.len();
+    let (root, chains) = dimensions::write_out(&mut origin.report(&mut diagnostics), root);
+    let (root, zones) = zones::write_out(&mut origin.report(&mut diagnostics), root);
+    if diagnostics.len() > before {
+        // What is missing in the tree would be reported again.
+        return Reading { description: None, scenes: Vec::new(), diagnostics };
+    }
+    let origin = Origin { chains, zones, ..origin };
     let plan = Scenes::read(&mut origin.report(&mut diagnostics), &root);
     let before = diagnostics.len();
     let model = plan.model();
@@ -217,6 +227,10 @@ struct Origin<'o> {
     name: &'o str,
     /// Files that it may name.
     files: Within,
+    /// Chains of its dimensions.
+    chains: Vec<Chain>,
+    /// Its zones.
+    zones: Vec<Zone>,
 }
 
 impl Origin<'_> {
@@ -243,6 +257,8 @@ fn describe(
 ) -> (Description, Vec<Diagnostic>) {
     let root = &variant.root;
     let mut reader = Reader::new(origin.report(diagnostics), origin.empty());
+    reader.model.chains = origin.chains.clone();
+    reader.model.zones = origin.zones.clone();
     reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<keys::File>(root, start) else { return (reader.model, Vec::new()) };
@@ -289,6 +305,7 @@ fn describe(
     black_box::read(&mut reader, &fields, Path::new(origin.name));
     trajectories::read(&mut reader, &fields);
     bodies::read(&mut reader, body_entries);
+    zone_sizes::check(&mut reader);
     robot.iter().for_each(|robot| robot.read_points(&mut reader));
     states::declare(&mut reader, state_entries, effect_entries);
     joints::read(&mut reader, joint_entries);

@@ -28,6 +28,7 @@ mod results_by_name;
 mod scheme;
 mod sections;
 mod space;
+mod stack;
 mod states;
 mod statistics;
 mod tables;
@@ -38,6 +39,7 @@ mod tests;
 mod trajectories;
 mod tuning;
 mod urdf;
+mod zone_sizes;
 
 pub use crate::elements::JointKind;
 pub use crate::elements::effects::*;

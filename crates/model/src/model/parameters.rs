@@ -282,7 +282,10 @@ pub fn unused(reader: &Reader, entries: &[Entry], is_count: impl Fn(&str) -> boo
     let used = reader.used.iter().zip(&reader.used_by_parameters).map(|(used, by_parameters)| *used || *by_parameters);
     let used: HashMap<&str, bool> =
         reader.model.parameters.iter().map(|parameter| parameter.name.as_str()).zip(used).collect();
-    let unused = |entry: &&Entry| used.get(entry.key.as_str()) == Some(&false) && !is_count(&entry.key);
+    // Not every deviation of a zone has to act.
+    let is_of_zone = |name: &str| reader.model.zones.iter().any(|zone| zone.owns(name));
+    let is_idle = |name: &str| used.get(name) == Some(&false) && !is_count(name) && !is_of_zone(name);
+    let unused = |entry: &&Entry| is_idle(&entry.key);
     let warning = |entry: &Entry| {
         let message = format!("parameter `{}` is used nowhere", suggest::clip(&entry.key));
         Diagnostic::warning(entry.key_span.clone(), message)

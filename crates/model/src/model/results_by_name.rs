@@ -81,7 +81,7 @@ fn of_analysis(model: &Description, name: &str) -> Option<Option<Dimension>> {
             };
             is_asked.then_some(dimension)
         }
-        Analysis::Motion | Analysis::Kinematics | Analysis::BlackBox => None,
+        Analysis::Motion | Analysis::Kinematics | Analysis::BlackBox | Analysis::Dimensions => None,
     }
 }
 
@@ -90,7 +90,7 @@ pub(super) fn are_named<'t>(model: &Description, mut names: impl Iterator<Item =
     match model.analysis {
         Analysis::Modes(_) => true,
         Analysis::Statics => names.any(|name| name == STABILITY && of_output(model, name).is_none()),
-        Analysis::Motion | Analysis::Kinematics | Analysis::BlackBox => false,
+        Analysis::Motion | Analysis::Kinematics | Analysis::BlackBox | Analysis::Dimensions => false,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Sections that a model has or lacks, and its title.
 
 use super::analysis;
+use super::description::Analysis;
 use crate::grammar::names::GROUND;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
@@ -11,8 +12,9 @@ use crate::syntax::yaml::{Entry, Node, Value};
 pub(super) fn title(reader: &mut Reader, fields: &Fields, scene: Option<&str>) {
     // Where all is missing, one message says so.
     let is_begun = |node: &Node| {
-        let says_nothing =
-            ["bodies", "outputs", "simulation", "urdf", "black_box"].iter().all(|key| fields.get(key).is_none());
+        let says_nothing = ["bodies", "outputs", "simulation", "urdf", "black_box", "dimensions"]
+            .iter()
+            .all(|key| fields.get(key).is_none());
         !says_nothing || node.scalar().is_none_or(|scalar| !scalar.text.is_empty())
     };
     if let Some(node) = fields.get("model").filter(|node| is_begun(node))
@@ -40,7 +42,8 @@ pub(super) fn missing_sections(
 ) {
     // Misread, it has been reported.
     let is_answered = fields.get("black_box").is_some();
-    let no_body = !is_robot && !is_answered && bodies.iter().all(|entry| entry.key == GROUND);
+    let is_stack = reader.model.analysis == Analysis::Dimensions;
+    let no_body = !is_robot && !is_answered && !is_stack && bodies.iter().all(|entry| entry.key == GROUND);
     let no_output = !is_robot && !is_answered && outputs.is_empty();
     let no_time = analysis::needs_time(&reader.model) && fields.get("simulation").is_none();
     let asked = [

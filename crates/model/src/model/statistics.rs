@@ -1,6 +1,6 @@
 //! `statistics:`, and the laws of parameters that have none of their own.
 
-use super::description::{Correlation, ParameterValue};
+use super::description::{Analysis, Correlation, ParameterValue};
 use super::parameters::law::{Place, named};
 use crate::grammar::report::Fields;
 use crate::grammar::unit::number_and_unit;
@@ -20,6 +20,10 @@ const SAMPLES: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 24;
 /// Reads the section, and completes what parameters say of their laws.
 pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
     reader.model.statistics.quantiles = QUANTILES.to_vec();
+    // A stack is asked for its distribution, too.
+    let is_stack = reader.model.analysis == Analysis::Dimensions || !reader.model.chains.is_empty();
+    let is_uncertain = reader.model.uncertain().next().is_some() && reader.model.bounds.chebyshev.is_some();
+    reader.model.statistics.asked |= is_stack && is_uncertain;
     let Some((node, at)) = section else { return };
     let Some(fields) = reader.fields::<keys::Statistics>(node, at) else { return };
     reader.model.statistics.asked = true;
@@ -76,6 +80,8 @@ fn default_law(reader: &mut Reader, node: &Node) {
             ParameterValue::Formula(_) => None,
         })
         .filter(|(name, _)| !known.iter().any(|(known, _)| known == name))
+        // A zone has a joint law of its own.
+        .filter(|(name, _)| !reader.model.zones.iter().any(|zone| zone.members.contains(name)))
         .collect();
     let anywhere = Place { nominal: 0.0, lower: -1.0, upper: 1.0 };
     if named(&scalar.text, anywhere).is_none() {

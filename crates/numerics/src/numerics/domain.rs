@@ -45,12 +45,19 @@ pub struct ParameterBox {
     pub lower: Vec<f64>,
     /// Largest values; none below its `lower`.
     pub upper: Vec<f64>,
+    /// Parameters that are one cause together, by their indices; every other one is a cause alone.
+    pub zones: Vec<Vec<usize>>,
 }
 
 impl ParameterBox {
     /// Number of parameters, k.
     pub fn dimension(&self) -> usize {
         self.lower.len()
+    }
+
+    /// The parameters of the cause that one belongs to.
+    pub fn cause(&self, parameter: usize) -> Vec<usize> {
+        self.zones.iter().find(|zone| zone.contains(&parameter)).cloned().unwrap_or_else(|| vec![parameter])
     }
 
     /// Middle of a parameter's interval, the paper's (9).
@@ -123,7 +130,12 @@ mod tests {
 
     #[test]
     fn the_papers_crank_length() {
-        let domain = ParameterBox { nominal: vec![0.15].into(), lower: vec![0.1485], upper: vec![0.1515] };
+        let domain = ParameterBox {
+            nominal: vec![0.15].into(),
+            lower: vec![0.1485],
+            upper: vec![0.1515],
+            ..ParameterBox::default()
+        };
         assert!((domain.midpoint(0) - 0.15).abs() < 1e-16);
         assert!((domain.half_width(0) - 0.0015).abs() < 1e-16);
         let sample = domain.sample(&[0.5]);
@@ -134,14 +146,14 @@ mod tests {
         #[test]
         fn ends_are_exact_and_nothing_lies_outside(a in -1e3..1e3_f64, b in -1e3..1e3_f64, xi in -1.0..=1.0_f64) {
             let (lower, upper) = (a.min(b), a.max(b));
-            let domain = ParameterBox { nominal: vec![a].into(), lower: vec![lower], upper: vec![upper] };
+            let domain = ParameterBox { nominal: vec![a].into(), lower: vec![lower], upper: vec![upper], ..ParameterBox::default() };
             prop_assert_eq!(domain.value(0, -1.0), lower);
             prop_assert_eq!(domain.value(0, 1.0), upper);
             prop_assert!((lower..=upper).contains(&domain.value(0, xi)));
             prop_assert!(domain.contains(&domain.sample(&[xi])) && !domain.contains(&vec![upper.next_up()].into()));
             let back = domain.xi(&domain.sample(&[xi]))[0];
             prop_assert!((back - xi).abs() * domain.half_width(0) <= 1e-12 * (1.0 + a.abs().max(b.abs())));
-            let certain = ParameterBox { nominal: vec![a].into(), lower: vec![a], upper: vec![a] };
+            let certain = ParameterBox { nominal: vec![a].into(), lower: vec![a], upper: vec![a], ..ParameterBox::default() };
             prop_assert_eq!(certain.value(0, xi), a);
             prop_assert_eq!(certain.half_width(0), 0.0);
         }

@@ -24,13 +24,17 @@ pub struct SobolIndices {
 pub struct SobolDecomposition {
     basis: SparseBasis,
     conversion: Matrix,
+    /// By parameter: the first parameter of its cause.
+    cause: Vec<usize>,
 }
 
 impl SobolDecomposition {
-    /// Prepares the conversion.
-    pub fn new(basis: &SparseBasis) -> Self {
+    /// Prepares the conversion. Parameters of a zone are one cause: its shares are those of each of them.
+    pub fn new(basis: &SparseBasis, zones: &[Vec<usize>]) -> Self {
         let highest = basis.orders().iter().max().copied().unwrap_or(0);
-        Self { basis: basis.clone(), conversion: from_chebyshev(highest.into()) }
+        let of = |axis: usize| zones.iter().find(|zone| zone.contains(&axis)).map_or(axis, |zone| zone[0]);
+        let cause = (0..basis.dimension()).map(of).collect();
+        Self { basis: basis.clone(), conversion: from_chebyshev(highest.into()), cause }
     }
 
     /// SobolIndices in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or
@@ -58,22 +62,28 @@ impl SobolDecomposition {
             }
         }
         let (mut main, mut total, mut variance) = (vec![0.0; k], vec![0.0; k], 0.0);
+        let mut last = vec![0; k];
         for (term, c) in terms.iter().enumerate().skip(1) {
             let degrees = self.basis.degrees(term);
             let part = c * c;
             variance += part;
-            let mut active = (0..k).filter(|&axis| degrees[axis] > 0);
+            let mut active = (0..k).filter(|&axis| degrees[axis] > 0).map(|axis| self.cause[axis]);
             let first = active.next().unwrap_or(0); // only the first term is constant
             total[first] += part;
+            last[first] = term;
             let mut alone = true;
-            for axis in active {
-                total[axis] += part;
-                alone = false;
+            for cause in active {
+                // Of a zone several parameters are active in one term.
+                if std::mem::replace(&mut last[cause], term) != term {
+                    total[cause] += part;
+                    alone = false;
+                }
             }
             main[first] += if alone { part } else { 0.0 };
         }
         main.iter_mut().chain(&mut total).for_each(|share| *share /= variance);
         let interactions = (1.0 - main.iter().sum::<f64>()).max(0.0);
+        let [main, total] = [main, total].map(|own| self.cause.iter().map(|&cause| own[cause]).collect());
         Some(SobolIndices { main, total, interactions })
     }
 }
@@ -112,7 +122,7 @@ mod tests {
         let values: Vec<f64> = (0..grid.len()).map(|index| f(&grid.sample(index))).collect();
         let mut c = vec![0.0; values.len()];
         transform.coefficients(&values, &mut c, &mut TransformWork::default());
-        SobolDecomposition::new(transform.basis()).indices(&c)
+        SobolDecomposition::new(transform.basis(), &[]).indices(&c)
     }
 
     #[test]
@@ -141,10 +151,10 @@ mod tests {
 
     #[test]
     fn what_does_not_vary_has_no_shares() {
-        let basis = SobolDecomposition::new(&SparseBasis::tensor(&[1, 1]));
+        let basis = SobolDecomposition::new(&SparseBasis::tensor(&[1, 1]), &[]);
         assert_eq!(basis.indices(&[3.0, 0.0, 0.0, 0.0]), None);
         assert_eq!(basis.indices(&[3.0, 0.0, f64::NAN, 1.0]), None);
-        assert_eq!(SobolDecomposition::new(&SparseBasis::tensor(&[])).indices(&[3.0]), None);
+        assert_eq!(SobolDecomposition::new(&SparseBasis::tensor(&[]), &[]).indices(&[3.0]), None);
         // Small or large, shares are the same.
         for scale in [1e-300, 1.0, 1e300] {
             let found = basis.indices(&[scale, scale, 0.0, 0.0]).unwrap();
@@ -170,7 +180,7 @@ mod tests {
         fn shares_are_those_of_the_mean_square(c in prop::collection::vec(-1.0..1.0_f64, 12)) {
             // Main effect of the first parameter by quadrature: the variance of the mean over the second.
             let basis = SparseBasis::tensor(&[3, 2]);
-            let found = SobolDecomposition::new(&basis).indices(&c).unwrap();
+            let found = SobolDecomposition::new(&basis, &[]).indices(&c).unwrap();
             // Gauss's two points in each of many cells: an error of about 1e-6 for these degrees.
             let half = 1.0 / 24.0;
             let nodes: Vec<f64> = (0..24)

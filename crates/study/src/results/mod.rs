@@ -4,6 +4,7 @@ mod allocation;
 mod analysis;
 mod black_box;
 mod bounds;
+mod chains;
 mod cost;
 mod decisions;
 mod drawing;
@@ -27,6 +28,7 @@ pub use analysis::{AnalysisSummary, ValueSummary};
 pub use black_box::{BlackBoxSummary, NoiseSummary};
 pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, Witness, foremost};
 #[doc(hidden)]
+pub use chains::{ChainSummary, LinkSummary};
 pub use cost::example as cost_example;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integrator, cost_curves, pareto};
 pub use decisions::{Decision, Each, Saving};
@@ -42,8 +44,8 @@ pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, 
 pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
 pub use samples::{SampleFormat, SampleTable};
 pub use statistics::{
-    LawSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary,
-    Uncertain, YieldSummary,
+    Histogram, LawSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, Sensitivity, StatisticsResult,
+    StatisticsSummary, Uncertain, YieldSummary,
 };
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{

@@ -138,6 +138,36 @@ pub struct OutputStatisticsSummary {
     pub deviation: Uncertain,
     /// In the order of the shares.
     pub quantiles: Vec<Uncertain>,
+    /// Of a stack of dimensions: how it follows each uncertain parameter, the largest deviation first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensitivities: Vec<Sensitivity>,
+    /// Of a stack of dimensions: how its samples are distributed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub histogram: Option<Histogram>,
+}
+
+/// How an output follows a parameter about the nominal values. SI.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// ∂y/∂p, with its sign.
+    pub derivative: f64,
+    /// ∂y/∂p Δp, with its sign: Δp is the larger deviation of the parameter from its nominal value.
+    pub deviation: f64,
+    /// Of the sum of all squared deviations.
+    pub share: f64,
+}
+
+/// Shares of samples in intervals of equal width.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Where the first interval begins, SI.
+    pub lower: f64,
+    /// Where the last one ends, SI.
+    pub upper: f64,
+    /// Interval by interval; their sum is 1.
+    pub shares: Vec<f64>,
 }
 
 /// Distribution of a reduced output. SI.

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::statistics::StatisticsResult;
 use super::{
-    AnalysisSummary, Band, BlackBoxSummary, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary,
+    AnalysisSummary, Band, BlackBoxSummary, Bounds, ChainSummary, Contribution, OutputBounds, ReducedSummary,
+    RequirementSummary,
 };
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;
@@ -76,6 +77,9 @@ pub struct Summary {
     /// Of each assembly that the model has instances of: which tolerances are one for all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assemblies: Vec<AssemblySummary>,
+    /// Chains of dimensions.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub chains: Vec<ChainSummary>,
     /// What each method took.
     pub methods: Vec<MethodSummary>,
     /// Of every band.

@@ -1,6 +1,6 @@
 //! Derivatives of all outputs in all rows by all uncertain parameters, at their nominal values.
 
-use super::black_box::needs_mechanism;
+use super::black_box::needs_equations;
 use super::sample::{Chosen, Trajectories, sample};
 use super::{Options, RunError};
 use crate::model::{Description, Parameter, ParameterValue};
@@ -38,7 +38,7 @@ pub enum GradientError {
 /// # Errors
 /// Where there are none, and at an interruption.
 pub fn gradient(description: &Description, options: &Options) -> Result<Gradients, GradientError> {
-    needs_mechanism(description, "a gradient").map_err(RunError::from)?;
+    needs_equations(description, "a gradient").map_err(RunError::from)?;
     if description.uncertain().next().is_none() {
         return Err(GradientError::NoParameter);
     }

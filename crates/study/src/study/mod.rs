@@ -20,6 +20,7 @@ mod answers;
 mod attained;
 mod black_box;
 mod bounding;
+mod chains;
 mod code;
 mod cost;
 mod deterministic;
@@ -44,6 +45,7 @@ mod stepping;
 mod structure;
 mod subsystems;
 mod tuning;
+mod zones;
 
 use crate::assemble::{BuildError, Questions};
 use crate::compile::Scheme;
@@ -173,7 +175,9 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
         let (bounds, summary, _) = reduced::run(&model, &options, false)?;
         Ok((bounds, summary))
     });
-    let (bounds, mut summary) = reduced::shown(description, &model, found?);
+    let (mut bounds, mut summary) = reduced::shown(description, &model, found?);
+    summary.chains = chains::chains(description, &bounds);
+    zones::joined(description, &mut bounds, &mut summary);
     summary.is_cut = interrupted();
     if let Some(why) = allowance.ended() {
         summary.failure = Some(why);
@@ -190,7 +194,8 @@ pub fn run_keeping(description: &Description, options: Options) -> Result<(Bound
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
     let (bounds, summary, kept) = pool.install(|| reduced::run(&model, &options, true))?;
-    let (bounds, summary) = reduced::shown(description, &model, (bounds, summary));
+    let (mut bounds, mut summary) = reduced::shown(description, &model, (bounds, summary));
+    zones::joined(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::black_box::source::Source;
 use super::ensemble::{Motions, Progress, Stored};
 use super::reduced::Store;
-use super::{Options, RunError};
+use super::{Options, RunError, zones};
 use crate::methods::{BoundsRequest, Problem, can_compose};
 use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::ParameterBox;
@@ -64,6 +64,7 @@ impl<'a> Study<'a> {
             nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
             lower: parameters.iter().map(|parameter| parameter.lower).collect(),
             upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+            zones: zones::of_names(description, parameters.iter().map(|parameter| parameter.name.as_str())),
         };
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;

@@ -10,7 +10,7 @@ use super::price::stored_bytes;
 use super::ready::{Studied, studied};
 use super::reduced::{Parameters, together};
 use super::single;
-use super::{Options, RunError, feasible};
+use super::{Options, RunError, feasible, zones};
 use crate::model::{Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
@@ -105,6 +105,7 @@ pub fn uncertain(description: &Description) -> (Vec<ParameterSummary>, Parameter
         nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
         lower: parameters.iter().map(|parameter| parameter.lower).collect(),
         upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+        zones: zones::of_names(description, parameters.iter().map(|parameter| parameter.name.as_str())),
     };
     (parameters, domain)
 }

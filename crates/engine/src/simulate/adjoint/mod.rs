@@ -5,12 +5,14 @@
 //! following the same tapes in reverse ([`symdiff::Adjoints`]). So a gradient costs a few simulations. Each lane of a
 //! tile is a gradient of its own.
 //!
+//! - `formulas`: formulas of parameters, which need no motion;
 //! - `start`: fixed points of corrections, and the start;
 //! - `path`: states between steps, in bounded memory;
 //! - `steps`: the scheme, on one level or several; `explicit::adjoint` has the explicit method;
 //! - `rows`: outputs of a row;
 //! - `tiles`: gradients in lanes.
 
+mod formulas;
 mod path;
 mod rows;
 mod start;

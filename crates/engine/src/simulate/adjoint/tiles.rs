@@ -4,11 +4,13 @@ use rayon::prelude::*;
 use symdiff::Tile;
 
 use super::add;
+use super::formulas::derivatives_of_formulas;
 use super::path::Path;
 use super::rows::RowAdjoints;
 use super::start::StartAdjoints;
 use super::steps::{StepAdjoints, Steps};
 use crate::compile::Tapes;
+use crate::model::Analysis;
 use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::ensemble::{tiles, weights};
@@ -73,6 +75,14 @@ pub fn gradients(
     wanted: &[Wanted],
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
+    if simulator.system.analysis == Analysis::Dimensions {
+        let asked = wanted.iter().map(|wanted| (wanted.sample, wanted.output));
+        let found = derivatives_of_formulas(&simulator.system, samples, asked);
+        return Ok(found
+            .into_iter()
+            .map(|(value, by_parameters)| Gradient { value, by_parameters, lost: None })
+            .collect());
+    }
     if simulator.system.analysis.visits() {
         return Err(NoGradient::NoMotion { analysis: simulator.system.analysis.name() });
     }

@@ -33,6 +33,10 @@ impl Simulator {
                 times.iter().for_each(|_| row(&unknown));
                 Ok(None)
             }
+            Analysis::Dimensions => {
+                self.jets_of_formulas(space, center, half_width, row);
+                Ok(None)
+            }
             Analysis::Kinematics => self.kinematic_jets(space, center, half_width, times, interruption, row),
             _ => {
                 self.jets_at_equilibrium(space, center, half_width, row)?;

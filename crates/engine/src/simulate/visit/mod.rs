@@ -2,10 +2,12 @@
 //!
 //! - `statics`: the equilibrium of a sample;
 //! - `kinematics`: positions, velocities and accelerations that follow from motors, row by row;
+//! - `formulas`: formulas of parameters alone;
 //! - `modes`: the small vibrations of a sample;
 //! - `jets`: the same as polynomials in the parameters;
 //! - `rows`: the same reductions of rows that something else has found.
 
+mod formulas;
 mod jets;
 mod kinematics;
 mod modes;
@@ -57,6 +59,7 @@ impl Simulator {
         }
         match self.system.analysis {
             Analysis::Kinematics => self.visit_kinematics(sample, steps.schedule, channels, interruption),
+            Analysis::Dimensions => Ok(self.visit_formulas(sample, channels)),
             _ => self.visit_equilibrium(sample, channels),
         }
     }

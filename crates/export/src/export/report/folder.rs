@@ -12,6 +12,7 @@ use crate::export::error::ExportError;
 use crate::export::files::stem_of_response;
 use crate::export::folder::{AtomicFiles, settle};
 use crate::export::owned::{PAGE, SCENES, SUMMARY, read};
+use crate::export::stack::FIGURES;
 use crate::export::stems::unique_stems;
 
 /// Writes `report.html` again from the results in a folder: of a model, or of its scenes. Returns its path.
@@ -67,8 +68,11 @@ pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, Export
     let files = list(&summary, "files").iter().filter_map(Value::as_str);
     let responses = files.filter_map(|file| Some((stem_of_response(file)?, vec![file.to_owned()])));
     let outputs = names.clone().zip(unique_stems(names));
-    let outputs =
-        outputs.map(|(output, stem)| (output, vec![format!("{stem}.svg"), format!("{stem}.contributions.svg")]));
+    let of_output = |stem: String| {
+        let suffixes = ["svg", "contributions.svg"].into_iter().chain(FIGURES);
+        suffixes.map(|suffix| format!("{stem}.{suffix}")).collect::<Vec<_>>()
+    };
+    let outputs = outputs.map(|(output, stem)| (output, of_output(stem)));
     let figure = |(output, files): (&str, Vec<String>)| PageFigure {
         output: output.to_owned(),
         plots: files.into_iter().filter_map(svg).collect(),

@@ -10,10 +10,11 @@ use super::tables::{list, section, shown, table, text};
 /// none.
 pub(super) fn statistics(summary: &Value) -> String {
     let found = &summary["statistics"];
-    stack(found) + &yields(found)
+    let has_time = text(&summary["analysis"], "kind") != "dimensions";
+    stack(found, has_time) + &yields(found)
 }
 
-fn stack(found: &Value) -> String {
+fn stack(found: &Value, has_time: bool) -> String {
     let outputs = list(found, "outputs");
     if outputs.is_empty() {
         return String::new();
@@ -29,7 +30,7 @@ fn stack(found: &Value) -> String {
         };
         vec![
             escaped(text(output, "output")),
-            format!("{} s", number(&output["time"])),
+            if has_time { format!("{} s", number(&output["time"])) } else { "–".to_owned() },
             format!("{lower} to {upper}"),
             spread("linear"),
             spread("rss"),

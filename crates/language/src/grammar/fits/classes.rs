@@ -1,5 +1,6 @@
 //! Tolerance classes of ISO 286-1:2010: letters of the fundamental deviation, and a grade.
 
+use super::large;
 use super::tables::{FINER, GRADES, J, J_OF_HOLES, K, RANGES, fundamental, range};
 use super::{ClassError, out_of_range};
 
@@ -20,6 +21,10 @@ const GRADE_NAMES: [&str; 20] =
 const fn grade(number: usize) -> usize {
     number + 1
 }
+
+/// Sizes with Δ and all letters, and sizes with any limits, mm.
+const LARGEST: f64 = 500.0;
+const LARGEST_OF_ALL: f64 = 3150.0;
 
 /// What a class is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,9 +87,12 @@ impl FitClass {
     /// Lower and upper deviation from a size in mm, µm.
     pub(super) fn deviations(self, size: f64) -> Result<[f64; 2], ClassError> {
         let none = |range: &str| Err(out_of_range(self.name(), range, size));
-        let Some(place) = range(&RANGES, size) else { return none("above 0 mm, to 500 mm") };
+        if size > LARGEST {
+            return self.of_large(size);
+        }
+        let Some(place) = range(&RANGES, size) else { return none("above 0 mm, to 3150 mm") };
         if size <= 1.0 && (matches!(self.letters, "a" | "b") || self.grade >= grade(14)) {
-            return none("above 1 mm, to 500 mm");
+            return none("above 1 mm, to 3150 mm");
         }
         let tolerance = f64::from(GRADES[self.grade][place]) / 10.0;
         let from_lower = |lower: f64| [lower, lower + tolerance];
@@ -111,6 +119,25 @@ impl FitClass {
             (true, false) if self.letters == "j" => from_upper(deviation),
             (true, false) => from_upper(self.of_tight_hole(deviation, place, size)),
         })
+    }
+
+    /// The same above 500 mm: holes are shafts turned round.
+    fn of_large(self, size: f64) -> Result<[f64; 2], ClassError> {
+        let none = |range: &str| Err(out_of_range(self.name(), range, size));
+        let Some(tolerance) = self.grade.checked_sub(grade(0)).and_then(|number| large::tolerance(number, size)) else {
+            return none(if self.grade < grade(1) { "to 500 mm" } else { "above 0 mm, to 3150 mm" });
+        };
+        if self.letters == "js" {
+            return Ok([-tolerance / 2.0, tolerance / 2.0]);
+        }
+        let is_hole = self.feature == Feature::Hole;
+        let found = large::fundamental(self.letters, size).filter(|_| self.letters != "k" || self.grade <= grade(8));
+        let Some(deviation) = found else { return none(&self.sizes()) };
+        let is_loose = LETTERS.iter().position(|letters| *letters == self.letters) <= Some(LOOSE);
+        let of_shaft = if is_loose { [deviation - tolerance, deviation] } else { [deviation, deviation + tolerance] };
+        let [lower, upper] = of_shaft;
+        // No negative zero.
+        Ok(if is_hole { [0.0 - upper, 0.0 - lower] } else { of_shaft })
     }
 
     /// ES of a hole K to ZC, by the deviation of the shaft with the same letters (ISO 286-1:2010, 4.3.2).
@@ -146,13 +173,14 @@ impl FitClass {
         match (self.letters, self.feature) {
             ("j", Feature::Hole) => return "to 500 mm in the grades 6 to 8".to_owned(),
             ("j", _) => return "to 500 mm in the grades 5 to 7".to_owned(),
-            ("k", _) => return "to 500 mm in the grades to 8".to_owned(),
+            ("k", _) => return "to 3150 mm in the grades to 8".to_owned(),
             _ => {}
         }
         let has = |end: &f64| fundamental(self.letters, *end).is_some();
         let first = FINER.iter().position(has).unwrap_or(0);
         let last = FINER.iter().rev().copied().find(has).unwrap_or(0.0);
         let from = if first == 0 { 0.0 } else { FINER[first - 1] };
+        let last = if large::fundamental(self.letters, LARGEST_OF_ALL).is_some() { LARGEST_OF_ALL } else { last };
         format!("above {from} mm, to {last} mm")
     }
 }
@@ -203,6 +231,22 @@ mod tests {
             ("x8", 14.5, 45.0, 72.0),
             ("fg6", 9.0, -17.0, -8.0),
             ("h01", 2.0, -0.3, 0.0),
+            ("H7", 630.0, 0.0, 70.0),
+            ("H7", 1000.0, 0.0, 90.0),
+            ("h6", 900.0, -56.0, 0.0),
+            ("f7", 600.0, -146.0, -76.0),
+            ("g6", 1200.0, -94.0, -28.0),
+            ("F8", 700.0, 80.0, 205.0),
+            ("JS9", 2000.0, -185.0, 185.0),
+            ("k6", 560.0, 0.0, 44.0),
+            ("K7", 560.0, -70.0, 0.0),
+            ("N7", 800.0, -130.0, -50.0),
+            ("p6", 1600.0, 140.0, 218.0),
+            ("P7", 3150.0, -450.0, -240.0),
+            ("r6", 560.0, 150.0, 194.0),
+            ("r6", 561.0, 155.0, 199.0),
+            ("s7", 2500.0, 1100.0, 1275.0),
+            ("u8", 3150.0, 3200.0, 3530.0),
         ] {
             assert_eq!(of(class, size), [lower, upper], "{class} of {size} mm");
         }
@@ -225,8 +269,10 @@ mod tests {
     #[test]
     fn classes_without_limits_are_refused() {
         let refused = |class: &str, size: f64| parse(class).unwrap().unwrap().deviations(size).unwrap_err().to_string();
-        assert_eq!(refused("H7", 600.0), "`H7` has limits for sizes above 0 mm, to 500 mm, but this one is 600 mm");
-        assert_eq!(refused("t6", 20.0), "`t6` has limits for sizes above 24 mm, to 500 mm, but this one is 20 mm");
+        assert_eq!(refused("H7", 3200.0), "`H7` has limits for sizes above 0 mm, to 3150 mm, but this one is 3200 mm");
+        assert_eq!(refused("x7", 600.0), "`x7` has limits for sizes above 0 mm, to 500 mm, but this one is 600 mm");
+        assert_eq!(refused("t6", 20.0), "`t6` has limits for sizes above 24 mm, to 3150 mm, but this one is 20 mm");
+        assert_eq!(refused("h0", 600.0), "`h0` has limits for sizes to 500 mm, but this one is 600 mm");
         assert_eq!(refused("CD8", 12.0), "`CD8` has limits for sizes above 0 mm, to 10 mm, but this one is 12 mm");
         assert!(parse("H7").unwrap().unwrap().deviations(f64::NAN).is_err());
         assert!(parse("K9").unwrap().unwrap().deviations(20.0).is_err());

@@ -12,6 +12,7 @@
 
 mod classes;
 mod general;
+mod large;
 mod tables;
 
 use thiserror::Error;

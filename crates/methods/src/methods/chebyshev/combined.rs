@@ -60,7 +60,8 @@ impl<'e> Combined<'e> {
         let alone: Vec<Line> = alone.map(|parameter| Line::along(domain, parameter)).collect();
         lines.extend(alone);
         let nominal: Sample = lines.iter().map(|line| line.project(&domain.nominal)).collect();
-        let domain = ParameterBox { nominal, lower: vec![-1.0; lines.len()], upper: vec![1.0; lines.len()] };
+        let (lower, upper) = (vec![-1.0; lines.len()], vec![1.0; lines.len()]);
+        let domain = ParameterBox { nominal, lower, upper, zones: Vec::new() };
         Some(Self { ensemble, lines, domain })
     }
 
@@ -324,7 +325,8 @@ mod tests {
     /// A bell on a ring: from the ring, which is in the box, to the farthest corner.
     #[test]
     fn a_line_has_all_values_of_a_combination() {
-        let domain = ParameterBox { nominal: vec![1.0, 0.0].into(), lower: vec![0.5, -1.0], upper: vec![2.0, 1.5] };
+        let (lower, upper) = (vec![0.5, -1.0], vec![2.0, 1.5]);
+        let domain = ParameterBox { nominal: vec![1.0, 0.0].into(), lower, upper, zones: Vec::new() };
         let squares = |p: &[f64]| (p[0] - 1.2).powi(2) + 2.0 * (p[1] - 0.1).powi(2);
         let bell = move |p: &[f64]| (-(squares(p) - 0.5).powi(2)).exp();
         let combination = Combination { parameters: vec![0, 1], first: Box::new(squares), last: Box::new(bell) };

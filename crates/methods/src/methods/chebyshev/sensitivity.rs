@@ -74,6 +74,8 @@ struct OverLines<'a> {
 pub(super) struct SensitivityAnalysis<'a> {
     /// ξ of the nominal parameters.
     nominal: Vec<f64>,
+    /// By parameter: those of its cause.
+    causes: Vec<Vec<usize>>,
     fine: Option<Fine>,
     lines: Option<OverLines<'a>>,
     own: SobolDecomposition,
@@ -86,10 +88,13 @@ impl<'a> SensitivityAnalysis<'a> {
     pub fn new(domain: &ParameterBox, surrogate: &Surrogate) -> Self {
         let k = domain.dimension();
         let nominal: Vec<f64> = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
-        let degree = k.checked_sub(1).and_then(|place| DEGREES.get(place));
+        // Fine polynomials hold one parameter at a time.
+        let degree = k.checked_sub(1).and_then(|place| DEGREES.get(place)).filter(|_| domain.zones.is_empty());
         let fine = degree.map(|&degree| Fine::new(degree, &nominal));
         let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
-        Self { nominal, fine, lines: None, own: SobolDecomposition::new(surrogate.basis()), varies }
+        let causes = (0..k).map(|axis| domain.cause(axis)).collect();
+        let own = SobolDecomposition::new(surrogate.basis(), &domain.zones);
+        Self { nominal, causes, fine, lines: None, own, varies }
     }
 
     /// For outputs that follow from surrogates over lines through a box: of the parameters of the box.
@@ -135,7 +140,7 @@ impl<'a> SensitivityAnalysis<'a> {
         let replaced = |place: &Vec<f64>| {
             let lines = self.lines.as_ref().map(|lines| lines.combined);
             let mut place = lines.map_or_else(|| place.clone(), |combined| combined.xi(place));
-            place[axis] = self.nominal[axis];
+            self.causes[axis].iter().for_each(|&own| place[own] = self.nominal[own]);
             lines.map_or(place.clone(), |combined| combined.project(&place))
         };
         let outputs: Vec<usize> = (0..found.len()).collect();
@@ -169,7 +174,7 @@ impl Fine {
         let orders = vec![usize::from(degree); k];
         let nodes: Vec<usize> = orders.iter().map(|order| order + 1).collect();
         let surrogate = Surrogate::tensor(&orders, &nodes);
-        let decomposition = SobolDecomposition::new(surrogate.basis());
+        let decomposition = SobolDecomposition::new(surrogate.basis(), &[]);
         let intervals = DENSITY * usize::from(degree);
         let axis: Vec<f64> = (0..=intervals).map(|l| -math::cos(PI * l as f64 / intervals as f64)).collect();
         let lattice = TensorGrid::new(vec![axis; k - 1]);

@@ -14,6 +14,8 @@ pub enum Analysis {
     Modes(LinearisedAt),
     /// There is no mechanism: a program answers, a black box.
     BlackBox,
+    /// There is no mechanism and no time: outputs are formulas of parameters.
+    Dimensions,
 }
 
 /// Where a mechanism's small vibrations are looked at.
@@ -37,6 +39,7 @@ impl Analysis {
             Self::Kinematics => "kinematics",
             Self::Modes(_) => "modes",
             Self::BlackBox => "black_box",
+            Self::Dimensions => "dimensions",
         }
     }
 
@@ -52,6 +55,7 @@ impl Analysis {
             }
             Self::Modes(LinearisedAt::Motion) => Some("modes: vibrations about every row of the motion"),
             Self::BlackBox => Some("black box: a program answers, row by row"),
+            Self::Dimensions => Some("dimensions: formulas of parameters, without a mechanism or time"),
         }
     }
 

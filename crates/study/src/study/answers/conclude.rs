@@ -182,6 +182,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             })
             .collect(),
         assemblies: Vec::new(),
+        chains: Vec::new(),
         methods: std::iter::once(results.bounded.nominal.summary)
             .chain(results.bounded.validation.map(|(_, summary)| summary))
             .chain(results.bounded.doubts.switches.map(|(_, summary)| summary))

@@ -8,6 +8,8 @@ use crate::numerics::{Derivatives, GradientFit, ParameterBox, Range, SobolDecomp
 pub(super) struct Surfaces {
     fit: GradientFit,
     decomposition: SobolDecomposition,
+    /// By parameter: those of its cause.
+    causes: Vec<Vec<usize>>,
     /// ξ of the nominal parameters.
     nominal: Vec<f64>,
 }
@@ -19,9 +21,10 @@ impl Surfaces {
     /// Through samples at these ξ, for functions with these derivatives there (in ξ); `None` where they are too few.
     pub fn new(domain: &ParameterBox, points: Vec<Vec<f64>>, functions: &[Derivatives<'_>]) -> Option<Self> {
         let fit = GradientFit::new(points, functions)?;
-        let decomposition = SobolDecomposition::new(fit.basis());
+        let decomposition = SobolDecomposition::new(fit.basis(), &domain.zones);
         let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
-        Some(Self { fit, decomposition, nominal })
+        let causes = (0..domain.dimension()).map(|axis| domain.cause(axis)).collect();
+        Some(Self { fit, decomposition, nominal, causes })
     }
 
     /// From values and gradients (in ξ) at the samples.
@@ -45,7 +48,7 @@ impl Surfaces {
         // What an end loses by a parameter is the polynomial's difference; its value there may be off.
         let moved = |end: &[f64], axis: usize| {
             let mut place = end.to_vec();
-            place[axis] = self.nominal[axis];
+            self.causes[axis].iter().for_each(|&own| place[own] = self.nominal[own]);
             self.fit.value(coefficients, &place) - self.fit.value(coefficients, end)
         };
         let without = |axis: usize| (range.width() + moved(ends[1], axis) - moved(ends[0], axis)).max(0.0);

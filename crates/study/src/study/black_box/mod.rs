@@ -12,15 +12,28 @@ pub(super) use repeated::repeat;
 
 use super::problem::Study;
 use crate::methods::Refusal;
-use crate::model::Description;
+use crate::model::{Analysis, Description};
 use crate::numerics::Sample;
 use crate::simulate::SimulationError;
 
-/// Refuses a question about bodies to a program.
+/// Refuses a question about bodies to a program and to dimensions alone.
 ///
 /// # Errors
-/// Where a program answers instead of a mechanism.
+/// Where there is no mechanism.
 pub(super) fn needs_mechanism(description: &Description, question: &str) -> Result<(), Refusal> {
+    match description.analysis {
+        Analysis::Dimensions => {
+            Err(Refusal(format!("{question} needs a mechanism, and here are formulas of dimensions alone")))
+        }
+        _ => needs_equations(description, question),
+    }
+}
+
+/// Refuses a question about equations to a program.
+///
+/// # Errors
+/// Where a program answers instead of equations.
+pub(super) fn needs_equations(description: &Description, question: &str) -> Result<(), Refusal> {
     match &description.black_box {
         None => Ok(()),
         Some(own) => {

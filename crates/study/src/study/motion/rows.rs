@@ -62,6 +62,7 @@ impl<'a> Rows<'a> {
             nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
             lower: parameters.iter().map(|parameter| parameter.lower).collect(),
             upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+            zones: Vec::new(),
         };
         Ok(Self { simulator, domain, interruption })
     }

@@ -1,5 +1,6 @@
 //! The joint law of all uncertain parameters of a model.
 
+use super::zones::LawInZone;
 use super::{intervals, law_summary};
 use crate::model::{Description, Law, ParameterValue};
 use crate::numerics::statistics::{Copula, Distribution, Quantiles, normal_quantile, replicate};
@@ -11,7 +12,7 @@ const REACH: f64 = 6.0;
 
 /// Laws and correlations of the uncertain parameters in the model's order.
 pub struct Laws {
-    names: Vec<String>,
+    pub names: Vec<String>,
     laws: Vec<Law>,
     /// Their values.
     quantiles: Vec<Quantiles>,
@@ -23,6 +24,8 @@ pub struct Laws {
     least: Vec<f64>,
     most: Vec<f64>,
     pub copula: Copula,
+    /// Joint laws of parameters in zones.
+    zones: Vec<LawInZone>,
 }
 
 impl Laws {
@@ -56,7 +59,19 @@ impl Laws {
         let (nominal, lower, upper) = (along(0), along(1), along(2));
         let laws: Vec<Law> = all.iter().map(of).collect();
         let quantiles = laws.iter().map(|law| Quantiles::new(&law.distribution)).collect();
-        Ok(Self { names, laws, quantiles, least: lower.clone(), most: upper.clone(), lower, upper, nominal, copula })
+        let zones = LawInZone::all(description, &names);
+        Ok(Self {
+            names,
+            laws,
+            quantiles,
+            zones,
+            least: lower.clone(),
+            most: upper.clone(),
+            lower,
+            upper,
+            nominal,
+            copula,
+        })
     }
 
     /// Number of parameters.
@@ -131,6 +146,7 @@ impl Laws {
                 let found = if is_correlated { quantiles.of_score(*value) } else { quantiles.of_share(*value) };
                 *value = found.clamp(self.least[place], self.most[place]);
             }
+            self.zones.iter().for_each(|zone| zone.place(sample));
         }
         samples
     }
@@ -142,7 +158,9 @@ impl Laws {
         let value = |(place, score): (usize, &f64)| {
             self.quantiles[place].of_score(*score).clamp(self.least[place], self.most[place])
         };
-        scores.iter().enumerate().map(value).collect()
+        let mut sample: Vec<f64> = scores.iter().enumerate().map(value).collect();
+        self.zones.iter().for_each(|zone| zone.place(&mut sample));
+        sample
     }
 
     /// As they are printed.

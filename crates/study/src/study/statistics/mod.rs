@@ -1,10 +1,13 @@
 //! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation,
 //! and the linearised tolerance stack.
 
+mod causes;
 mod laws;
 mod numbers;
 mod requirements;
 mod rows;
+mod stack;
+mod zones;
 
 use super::answers::Kept;
 use super::{Options, RunError, reduced, subsystems};
@@ -89,7 +92,7 @@ fn of_run(
         left_out: laws.left_out(),
         outside: laws.outside(),
         simulations,
-        outputs: outputs.iter().filter_map(|(place, output)| side_by_side(bounds, *place, output)).collect(),
+        outputs: outputs.iter().filter_map(|(place, output)| side_by_side(&rows, bounds, *place, output)).collect(),
         reduced,
         requirements,
         together,
@@ -114,11 +117,17 @@ fn quiet<'a>(options: &Options<'a>) -> Options<'a> {
 }
 
 /// Worst case, root sum square and statistics at the time at which the standard deviation is largest.
-fn side_by_side(bounds: &Bounds, place: usize, output: &OutputStatistics) -> Option<OutputStatisticsSummary> {
+fn side_by_side(
+    rows: &Rows,
+    bounds: &Bounds,
+    place: usize,
+    output: &OutputStatistics,
+) -> Option<OutputStatisticsSummary> {
     let known = (0..output.deviation.len()).filter(|&row| output.deviation[row].value.is_finite());
     let row = known.max_by(|&a, &b| output.deviation[a].value.total_cmp(&output.deviation[b].value).then(b.cmp(&a)))?;
     let of_bounds = &bounds.outputs[place];
     let band = of_bounds.bands.iter().find(|band| band.method == Method::Chebyshev)?;
+    let is_stack = stack::is_stack(rows.description, &output.name);
     Some(OutputStatisticsSummary {
         output: output.name.clone(),
         unit: output.unit.clone(),
@@ -132,6 +141,8 @@ fn side_by_side(bounds: &Bounds, place: usize, output: &OutputStatistics) -> Opt
         mean: output.mean[row],
         deviation: output.deviation[row],
         quantiles: output.quantiles.iter().map(|values| values[row]).collect(),
+        sensitivities: if is_stack { stack::sensitivities(rows, row, place) } else { Vec::new() },
+        histogram: if is_stack { stack::histogram(rows, row, place) } else { None },
     })
 }
 

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::rows::Rows;
-use crate::model::Requirement;
+use crate::model::{Analysis, Requirement};
 use crate::numerics::statistics::{REPLICATES, RareShare, normal_quantile, rare_share, replicate, share_interval};
 use crate::results::YieldSummary;
 use crate::study::reduced;
@@ -246,7 +246,8 @@ fn capability(
     let all: Result<Vec<_>, String> = all.collect();
     let known = all?.into_iter().filter(|(_, _, cpk)| cpk.is_finite());
     if let Some((row, cp, cpk)) = known.min_by(|a, b| a.2.total_cmp(&b.2)) {
-        (summary.cp, summary.cpk, summary.time) = (cp, Some(cpk), Some(times[row]));
+        let time = (rows.description.analysis != Analysis::Dimensions).then_some(times[row]);
+        (summary.cp, summary.cpk, summary.time) = (cp, Some(cpk), time);
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::INTERRUPTED;
+use super::causes::{Cause, causes};
 use super::laws::Laws;
 use crate::model::Description;
 use crate::numerics::largest;
@@ -189,7 +190,7 @@ impl<'a> Rows<'a> {
     }
 
     /// An output's values in a row, by its own polynomial or through the loop closure.
-    fn values(&self, row: usize, output: usize, (replicate, fewer): (usize, usize), by_own: bool) -> Vec<f64> {
+    pub fn values(&self, row: usize, output: usize, (replicate, fewer): (usize, usize), by_own: bool) -> Vec<f64> {
         if by_own {
             return self.kept.own_values(row, output, &self.points(replicate, fewer)).unwrap_or_default();
         }
@@ -198,7 +199,7 @@ impl<'a> Rows<'a> {
     }
 
     /// How far the polynomial through an output's own samples is from the closure, where it may take its place.
-    fn own_error(&self, row: usize, output: usize, stated: f64) -> Option<f64> {
+    pub fn own_error(&self, row: usize, output: usize, stated: f64) -> Option<f64> {
         if self.kept.is_polynomial(row, output) {
             return Some(0.0);
         }
@@ -213,12 +214,25 @@ impl<'a> Rows<'a> {
 
     /// The linearised worst case about the nominal value, and the root sum square.
     fn stack(&self, row: usize, output: usize) -> (f64, f64) {
+        let causes = self.causes(row, output);
+        let deviations: Vec<f64> = causes.iter().map(|(.., deviation)| *deviation).collect();
+        let linear = deviations.iter().map(|d| d.abs()).sum();
+        (linear, deviations.iter().map(|d| d * d).sum::<f64>().sqrt())
+    }
+
+    /// What an output does by each of its causes about the nominal values.
+    pub fn causes(&self, row: usize, output: usize) -> Vec<Cause> {
+        causes(&self.description.zones, self.laws, |at| self.derivatives(row, output, at))
+    }
+
+    /// By parameter: the derivative at a point, and that times the parameter's larger deviation.
+    fn derivatives(&self, row: usize, output: usize, at: &[f64]) -> Vec<(f64, f64)> {
         let Laws { nominal, lower, upper, .. } = self.laws;
         let mut points: Vec<Vec<f64>> = Vec::with_capacity(2 * nominal.len());
         for axis in 0..nominal.len() {
             let step = STEP * 0.5 * (upper[axis] - lower[axis]);
             for side in [-step, step] {
-                let mut point = nominal.clone();
+                let mut point = at.to_vec();
                 point[axis] = (point[axis] + side).clamp(lower[axis], upper[axis]);
                 points.push(point);
             }
@@ -227,10 +241,8 @@ impl<'a> Rows<'a> {
         let deviation = |axis: usize| {
             let between = points[2 * axis + 1][axis] - points[2 * axis][axis];
             let slope = (values[2 * axis + 1] - values[2 * axis]) / between;
-            slope * (upper[axis] - nominal[axis]).max(nominal[axis] - lower[axis])
+            (slope, slope * (upper[axis] - nominal[axis]).max(nominal[axis] - lower[axis]))
         };
-        let deviations: Vec<f64> = (0..nominal.len()).map(deviation).collect();
-        let linear = deviations.iter().map(|d| d.abs()).sum();
-        (linear, deviations.iter().map(|d| d * d).sum::<f64>().sqrt())
+        (0..nominal.len()).map(deviation).collect()
     }
 }

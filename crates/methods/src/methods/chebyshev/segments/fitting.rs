@@ -283,7 +283,12 @@ mod tests {
     #[test]
     fn layers_behind_a_surface_are_resolved() {
         for omega in [30.0, 300.0] {
-            let domain = ParameterBox { nominal: vec![5.0].into(), lower: vec![4.5], upper: vec![5.5] };
+            let domain = ParameterBox {
+                nominal: vec![5.0].into(),
+                lower: vec![4.5],
+                upper: vec![5.5],
+                ..ParameterBox::default()
+            };
             let throws = Throws { domain, omega };
             let grid = Surrogate::tensor(&[5], &[6]);
             let cut = |xi: &[Vec<f64>]| throws.segments(&throws.domain.samples(xi)).unwrap().unwrap();
