@@ -28,6 +28,12 @@ pub fn find(folder: &Path, name: &str, version: Version) -> Result<PathBuf, Faul
     Err(Fault::Library(format!("there is none for `{platform}`; the unit has {found}")))
 }
 
+/// An error with its reason, which is the system's.
+pub fn in_words(error: &libloading::Error) -> String {
+    let reason = std::error::Error::source(error).map(|reason| format!(": {reason}"));
+    format!("{error}{}", reason.unwrap_or_default())
+}
+
 /// Declares a struct of functions that are loaded from a library by their names; those of the other interface are not
 /// there.
 macro_rules! functions {
@@ -50,7 +56,7 @@ macro_rules! functions {
             /// # Errors
             /// Where the library cannot be loaded, or lacks one.
             pub fn load(path: &std::path::Path, interface: crate::unit::Interface) -> Result<Self, super::Fault> {
-                let fault = |error: libloading::Error| super::Fault::Library(error.to_string());
+                let fault = |error: libloading::Error| super::Fault::Library(super::library::in_words(&error));
                 // SAFETY: the library's initialisers run, which the user trusts by naming the unit.
                 let library = unsafe { libloading::Library::new(path) }.map_err(fault)?;
                 let steps = interface == crate::unit::Interface::CoSimulation;

@@ -105,7 +105,8 @@ impl Native {
     /// # Errors
     /// Where there is none, or it lacks a function.
     pub fn load(unit: &Unit, folder: &Path, interface: Interface) -> Result<Self, Fault> {
-        let name = unit.library(interface).ok_or_else(|| Fault::Library("it has none for this interface".to_owned()))?;
+        let name =
+            unit.library(interface).ok_or_else(|| Fault::Library("it has none for this interface".to_owned()))?;
         let path = library::find(folder, name, unit.version)?;
         let library = match unit.version {
             Version::Two => Library::Two(two::Functions::load(&path, interface)?),

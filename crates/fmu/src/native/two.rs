@@ -85,7 +85,15 @@ impl<'f> Two<'f> {
         let kind = c_int::from(interface == Interface::CoSimulation);
         // SAFETY: texts end with zero, and callbacks live as long as the instance.
         let instance = unsafe {
-            (functions.instantiate)(c"mbint".as_ptr(), kind, token.as_ptr(), resources.as_ptr(), &raw const *callbacks, 0, 0)
+            (functions.instantiate)(
+                c"mbint".as_ptr(),
+                kind,
+                token.as_ptr(),
+                resources.as_ptr(),
+                &raw const *callbacks,
+                0,
+                0,
+            )
         };
         if instance.is_null() {
             return Err(Fault::NoInstance("fmi2Instantiate"));
@@ -187,4 +195,3 @@ impl Instance for Two<'_> {
         if ends != 0 { Err(Fault::Terminated(time)) } else { Ok(event != 0) }
     }
 }
-

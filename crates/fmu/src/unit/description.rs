@@ -97,7 +97,8 @@ impl Unit {
             Version::Three => children(own, "ContinuousStateDerivative").count(),
         });
         let indicators = root.attribute("numberOfEventIndicators").map(|text| text.trim().parse());
-        let indicators = indicators.transpose().map_err(|_| wrong("`numberOfEventIndicators` is no number".to_owned()))?;
+        let indicators =
+            indicators.transpose().map_err(|_| wrong("`numberOfEventIndicators` is no number".to_owned()))?;
         Ok(Self {
             version,
             token: token.to_owned(),
