@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use mbint_fmu::{BaseUnit, Unit, Variable};
+use mbint_fmu::{BaseUnit, NotRead, Unit, Variable};
 
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
@@ -26,7 +26,8 @@ pub fn unit_of(report: &mut Report, node: &Node) -> Option<(PathBuf, Unit)> {
     match Unit::read(&path) {
         Ok(unit) => Some((path, unit)),
         Err(error) => {
-            report.error(node.span.clone(), format!("`{}` is no FMU: {error}", clip(&name)), None);
+            let what = if matches!(error, NotRead::File(_)) { "cannot be read" } else { "is no FMU" };
+            report.error(node.span.clone(), format!("`{}` {what}: {error}", clip(&name)), None);
             None
         }
     }

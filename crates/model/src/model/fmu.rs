@@ -56,9 +56,6 @@ pub fn read(
     }
     check_variables(reader, variables, &wanted);
     let parameters = parameters(reader, &unit, variables, entries);
-    let outputs: Vec<Option<(Access, BoxOutput)>> =
-        wanted.iter().map(|own| output(reader, &unit, named(variables, &own.name), own)).collect();
-    let (access, outputs) = outputs.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
     let step = fields.get("step").and_then(|node| {
         let step = reader.number(node, Dimension::TIME)?;
         if step <= 0.0 {
@@ -66,6 +63,9 @@ pub fn read(
         }
         (step > 0.0).then_some(step)
     });
+    let outputs: Vec<Option<(Access, BoxOutput)>> =
+        wanted.iter().map(|own| output(reader, &unit, named(variables, &own.name), own)).collect();
+    let (access, outputs) = outputs.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
     // Results are of its content.
     let digest = digest(&path).unwrap_or_default();
     reader.diagnostics.sources.add(path.display().to_string(), digest);

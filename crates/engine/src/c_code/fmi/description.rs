@@ -54,8 +54,9 @@ pub fn of_two(own: &Unit, token: &str) -> String {
   <DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>
   <VendorAnnotations>
     <Tool name=\"mbint\">
-      <Step size=\"{step}\"/>
-{}    </Tool>
+      <Parameters step=\"{step}\">
+{}      </Parameters>
+    </Tool>
   </VendorAnnotations>
   <ModelVariables>
     <ScalarVariable name=\"{time}\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"><Real unit=\"s\"/></ScalarVariable>
