@@ -20,7 +20,7 @@ use crate::model::Override;
 use crate::results::Method;
 pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
-pub(super) use export::ExportArgs;
+pub(super) use export::{ExportArgs, UnitVersion};
 pub(super) use gradient::GradientArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
@@ -83,6 +83,15 @@ pub(super) enum Command {
     Completions(CompletionsArgs),
     /// Print a manual page, or write all of them.
     Man(ManArgs),
+    /// Answer points by a unit of FMI in an unpacked folder: a process that a run starts.
+    #[command(hide = true)]
+    AnswerFmu(AnswerFmuArgs),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AnswerFmuArgs {
+    /// Folder of the unit.
+    pub folder: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -212,7 +212,7 @@ impl Counts {
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
             spatial_because: model.space.because().map(str::to_owned),
             analysis: model.analysis.in_words(),
-            black_box: model.black_box.as_ref().map(|own| own.command.clone()),
+            black_box: model.black_box.as_ref().map(model::BlackBox::words),
             not_simulated: left_out,
             asks: price.map(|price| price.to_string()),
             structure,

@@ -4,11 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::args::ExportArgs;
+use super::args::{ExportArgs, UnitVersion};
 use super::console::{BOLD, Console, file_names};
 use super::run::results_of;
 use super::{Failure, Status, interrupt, load};
-use crate::c_code::CModel;
+use crate::c_code::{CModel, FmiVersion};
 use crate::export::{prepare_folder, write_archive};
 use crate::study::{self, CodeError, RunError};
 
@@ -16,7 +16,11 @@ pub(super) fn export(args: &ExportArgs, console: &mut Console) -> Result<Status,
     let Some(model) = load::load(&args.model, &args.set.given()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let code = study::code(&model).map_err(|error| {
+    let version = match args.formats.fmu {
+        Some(UnitVersion::Two) => FmiVersion::Two,
+        Some(UnitVersion::Three) | None => FmiVersion::Three,
+    };
+    let code = study::code(&model, &args.inputs, version).map_err(|error| {
         let message = format!("{}: {error}", model.name);
         match error {
             CodeError::None(_) | CodeError::Run(RunError::Refused(_)) => Failure::Wrong(message),
@@ -30,8 +34,8 @@ pub(super) fn export(args: &ExportArgs, console: &mut Console) -> Result<Status,
     if args.formats.c {
         files.extend(written(&folder, &code.files)?);
     }
-    if args.formats.fmu {
-        files.push(unit(&folder, &code, console)?);
+    if args.formats.fmu.is_some() {
+        files.push(unit(&folder, &code, version, console)?);
     }
     console.print(&format!("{BOLD}{}{BOLD:#}: {}\n  {}\n", model.name, folder.display(), file_names(files.iter())))?;
     Ok(Status::Done)
@@ -47,10 +51,10 @@ fn written(folder: &Path, files: &[(String, String)]) -> Result<Vec<PathBuf>, Fa
 }
 
 /// Writes the unit, with a library for this platform where there is a C compiler.
-fn unit(folder: &Path, code: &CModel, console: &Console) -> Result<PathBuf, Failure> {
+fn unit(folder: &Path, code: &CModel, version: FmiVersion, console: &Console) -> Result<PathBuf, Failure> {
     let mut files: Vec<(String, Vec<u8>)> =
         code.unit.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())).collect();
-    match library(code) {
+    match library(code, version) {
         Ok(library) => files.push(library),
         Err(why) => console.warning(&format!("the unit has sources and no library: {why}")),
     }
@@ -60,7 +64,7 @@ fn unit(folder: &Path, code: &CModel, console: &Console) -> Result<PathBuf, Fail
 }
 
 /// The shared library of a unit, by the compiler that `CC` names, or `cc`, and its path in the unit.
-fn library(code: &CModel) -> Result<(String, Vec<u8>), String> {
+fn library(code: &CModel, version: FmiVersion) -> Result<(String, Vec<u8>), String> {
     let place = tempfile::tempdir().map_err(|error| error.to_string())?;
     let mut sources = Vec::new();
     for (name, text) in code.unit.iter().filter_map(|(name, text)| Some((name.strip_prefix("sources/")?, text))) {
@@ -78,5 +82,9 @@ fn library(code: &CModel) -> Result<(String, Vec<u8>), String> {
     }
     let bytes = fs::read(place.path().join(&file)).map_err(|error| error.to_string())?;
     let system = if cfg!(target_os = "macos") { "darwin" } else { std::env::consts::OS };
-    Ok((format!("binaries/{}-{system}/{file}", std::env::consts::ARCH), bytes))
+    let platform = match version {
+        FmiVersion::Two => format!("{}64", if cfg!(windows) { "win" } else { system }),
+        FmiVersion::Three => format!("{}-{system}", std::env::consts::ARCH),
+    };
+    Ok((format!("binaries/{platform}/{file}"), bytes))
 }

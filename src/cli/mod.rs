@@ -2,6 +2,7 @@
 //! codes.
 
 mod allocate;
+mod answer_fmu;
 mod args;
 mod assemblies;
 mod black_box;
@@ -162,6 +163,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
         Command::Man(args) => man::man(&args, console),
+        Command::AnswerFmu(args) => answer_fmu::answer(&args),
         Command::Completions(args) => {
             let mut script = Vec::new();
             clap_complete::generate(args.shell, &mut Cli::command(), "mbint", &mut script);

@@ -144,6 +144,123 @@ fn a_unit_repeats_the_nominal_motion() {
     }
 }
 
+/// A host of the C model: starts it with other parameters, and writes its rows.
+const OTHER_START: &str = r#"
+#include "NAME.h"
+#include <stdio.h>
+#include <stdlib.h>
+static PREFIX_model model;
+int main(int count, char **given)
+{
+    double parameters[PREFIX_parameter_count], outputs[PREFIX_output_count];
+    int row, k;
+    for (k = 0; k < PREFIX_parameter_count; k++) parameters[k] = k + 1 < count ? atof(given[k + 1]) : PREFIX_parameter_values[k];
+    if (PREFIX_start_at(&model, parameters)) return 9;
+    printf("t");
+    for (k = 0; k < PREFIX_output_count; k++) printf(",%s", PREFIX_output_names[k]);
+    printf("\n");
+    for (row = 0; row < PREFIX_rows; row++) {
+        if (row > 0 && PREFIX_row(&model, row)) return 8;
+        PREFIX_outputs(&model, outputs);
+        printf("%.17g", PREFIX_time(row));
+        for (k = 0; k < PREFIX_output_count; k++) printf(",%.17g", outputs[k]);
+        printf("\n");
+    }
+    return 0;
+}
+"#;
+
+/// At the upper ends of all parameters the C is that of `mbint sample`: linkages are assembled anew.
+#[test]
+fn a_start_of_other_parameters_is_that_of_a_sample() {
+    let place = Place::new();
+    for name in ["slider_crank", "four_bars", "car_axis", "andrews"] {
+        let model = format!("{}/models/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        place.run(&format!("export {model} --c --fmu -o {name}"), 0);
+        let folder = place.path().join(name);
+        let unit = fs::read_to_string(folder.join(format!("{name}.h"))).unwrap();
+        assert!(unit.contains("_start_at("), "{name}");
+        place.run(&format!("sample {model} --design sobol:3 -o {name}/samples.csv"), 0);
+        let text = fs::read_to_string(folder.join("samples.csv")).unwrap();
+        let samples = columns(&text);
+        let heading: Vec<&str> = samples.iter().map(|(name, _)| name.as_str()).collect();
+        fs::write(folder.join("host.c"), OTHER_START.replace("NAME", name).replace("PREFIX", name)).unwrap();
+        let compiled = Command::new("gcc")
+            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-o", "motion", "host.c"])
+            .args([format!("{name}.c"), "-lm".to_owned()])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert!(compiled.status.success(), "{name}: {}", String::from_utf8_lossy(&compiled.stderr));
+        let rows = samples[0].1.iter().filter(|number| **number == 0.0).count();
+        // Parameters stand between the number of the sample and the time.
+        let time = heading.iter().position(|own| *own == "t").unwrap();
+        for sample in 0..3 {
+            let point: Vec<String> = (1..time).map(|own| format!("{:?}", samples[own].1[sample * rows])).collect();
+            let found = Command::new(folder.join("motion")).args(&point).output().unwrap();
+            assert!(found.status.success(), "{name}: {:?}", found.status);
+            let found = columns(&String::from_utf8(found.stdout).unwrap());
+            for (output, values) in &found[1..] {
+                let (_, expected) = samples.iter().find(|(own, _)| own == output).unwrap();
+                let expected = &expected[sample * rows..][..rows];
+                let size = expected.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+                let off = values.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(off <= 1e-9 * size, "{name}, sample {sample}: {output} is off by {off} of {size}");
+            }
+        }
+    }
+}
+
+/// A force that changes from row to row moves a mass by parabolas.
+#[test]
+fn inputs_change_forces_during_the_motion() {
+    let place = Place::new();
+    let model = "model: mass
+parameters: { f: 3 N ± 1%, m: 2 kg ± 1% }
+bodies: { mass: { mass: m, coordinates: [x] } }
+effects: { push: { force: { on: mass, value: [f, 0] } } }
+initial: { mass.x: 0, mass.vx: 0 }
+outputs: { x: mass.x, a: mass.ax }
+simulation: { duration: 1, step: 1e-2, output_step: 0.1 }
+";
+    fs::write(place.path().join("mass.yaml"), model).unwrap();
+    let (_, message) = place.run("export mass.yaml --c --input m", 2);
+    assert!(message.contains("`m` cannot be an input: constraints or masses depend on it"), "{message}");
+    let (_, message) = place.run("export mass.yaml --c --input g", 2);
+    assert!(message.contains("`g` cannot be an input: inputs are uncertain parameters"), "{message}");
+    place.run("export mass.yaml --c --fmu --input f -o out", 0);
+    let host = OTHER_START.replace("NAME", "mass").replace("PREFIX", "mass");
+    let host = host
+        .replace("if (row > 0 &&", "if (row > 0) mass_set(&model, 0, row % 2 ? 4.0 : -2.0);\n        if (row > 0 &&");
+    let folder = place.path().join("out");
+    fs::write(folder.join("host.c"), host).unwrap();
+    let compiled = Command::new("gcc")
+        .args(["-std=c99", "-Werror", "-O1", "-o", "motion", "host.c", "mass.c", "-lm"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let found = Command::new(folder.join("motion")).output().unwrap();
+    let found = columns(&String::from_utf8(found.stdout).unwrap());
+    let (mut x, mut v) = (0.0, 0.0);
+    for row in 1..11 {
+        let a = if row % 2 == 1 { 2.0 } else { -1.0 };
+        (x, v) = (x + 0.1 * v + 0.005 * a, v + 0.1 * a);
+        assert!((found[1].1[row] - x).abs() < 1e-12, "row {row}: {} {x}", found[1].1[row]);
+        assert!((found[2].1[row] - a).abs() < 1e-11, "row {row}: {} {a}", found[2].1[row]);
+    }
+    let archive = Command::new("python3")
+        .args(["-m", "zipfile", "-e", "mass.fmu", "unit"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert!(archive.status.success());
+    let description = fs::read_to_string(folder.join("unit/modelDescription.xml")).unwrap();
+    assert!(description.contains("name=\"f\" valueReference=\"3\" causality=\"input\""), "{description}");
+    assert!(description.contains("name=\"m\" valueReference=\"4\" causality=\"parameter\""), "{description}");
+    assert!(description.contains("<Parameter name=\"f\" nominal=\"3"), "{description}");
+}
+
 #[test]
 fn what_is_not_written_is_refused() {
     let place = Place::new();

@@ -6,10 +6,11 @@ use std::fs;
 use std::path::Path;
 
 /// Sources of the crates with their rooms. Each room stands on those before it, and knows none after it.
-const CRATES: [(&str, &[&str]); 8] = [
+const CRATES: [(&str, &[&str]); 9] = [
     ("crates/numerics/src", &["numerics"]),
     ("crates/language/src", &["syntax", "grammar", "multibody"]),
     ("crates/methods/src", &["methods"]),
+    ("crates/fmu/src", &["unit", "native", "run"]),
     ("crates/model/src", &["robots", "elements", "keys", "expand", "model"]),
     ("crates/engine/src", &["reduce", "assemble", "compile", "simulate", "c_code"]),
     ("crates/study/src", &["results", "store", "black_box", "study"]),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::SetArgs;
 
@@ -24,6 +24,10 @@ pub(in crate::cli) struct ExportArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
+    /// An uncertain parameter of forces that may change during the motion; repeatable.
+    #[arg(long = "input", value_name = "NAME")]
+    pub inputs: Vec<String>,
+
     #[command(flatten)]
     pub set: SetArgs,
 }
@@ -36,9 +40,18 @@ pub(in crate::cli) struct Formats {
     #[arg(long)]
     pub c: bool,
 
-    /// As a unit of FMI 3.0 for co-simulation: sources, and a library for this platform where there is a C compiler.
-    #[arg(long)]
-    pub fmu: bool,
+    /// As a unit of FMI for co-simulation: sources, and a library for this platform where there is a C compiler.
+    #[arg(long, value_name = "VERSION", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "3.0")]
+    pub fmu: Option<UnitVersion>,
+}
+
+/// Versions of FMI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum UnitVersion {
+    #[value(name = "2.0")]
+    Two,
+    #[value(name = "3.0")]
+    Three,
 }
 
 const EXPORT_HELP: &str = "\

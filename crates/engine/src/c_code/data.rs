@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use symdiff::{Tile, c_number};
 
-use crate::compile::Tapes;
-use crate::simulate::{Schedule, Simulator};
+use super::Code;
+use crate::compile::{Residual, Tapes};
+use crate::simulate::{Schedule, allowed_residual};
 
 /// Steps that follow one another: begin, length and number.
 struct Run {
@@ -32,7 +33,8 @@ fn runs(schedule: &Schedule) -> Vec<Vec<Run>> {
 }
 
 /// What the runtime calls the model's parts.
-pub(super) fn macros(simulator: &Simulator, schedule: &Schedule, prefix: &str, solves: bool) -> String {
+pub(super) fn macros(code: &Code) -> String {
+    let Code { simulator, schedule, prefix, .. } = code;
     let program = &simulator.program;
     let layout = &program.layout;
     let watched: usize = program.watched.iter().map(|own| own.pivots.len()).sum();
@@ -42,9 +44,12 @@ pub(super) fn macros(simulator: &Simulator, schedule: &Schedule, prefix: &str, s
     for (name, value) in [
         ("N", layout.q.len()),
         ("M", layout.lambda.len()),
+        ("PARAMETERS", code.parameters),
+        ("PARAMETER", layout.parameters.start),
         ("STEP", layout.step),
         ("TIME", layout.time),
         ("Q", layout.q.start),
+        ("V", layout.v.start),
         ("A", layout.a.start),
         ("W", layout.w.start),
         ("LAMBDA", layout.lambda.start),
@@ -57,14 +62,25 @@ pub(super) fn macros(simulator: &Simulator, schedule: &Schedule, prefix: &str, s
         ("CONSTANTS", constants),
         ("SOLVER_CONSTANTS", solver),
         ("ROWS", schedule.rows),
+        ("CLOSURES", simulator.start.constraint.len()),
+        ("CLOSURE_RATES", simulator.start.constraint_rate.len()),
     ] {
         let _ = writeln!(text, "#define {name} {value}");
     }
-    let _ = writeln!(text, "#define SOLVES {}\n#define REFINES {refines}", i32::from(solves));
+    let _ = writeln!(text, "#define SOLVES {}\n#define REFINES {refines}", i32::from(code.solves));
     let _ = writeln!(text, "#define GAIN {}", c_number(program.coefficients.position_gain(1.0)));
+    let shift = program.coefficients.shift() * schedule.first_step();
+    let _ = writeln!(
+        text,
+        "#define START_SHIFT {}\n#define CLOSED {}",
+        c_number(shift),
+        c_number(allowed_residual(&program.scale))
+    );
     for (name, own) in [
         ("MODEL", "model"),
         ("MODEL_START", "start"),
+        ("MODEL_START_AT", "start_at"),
+        ("MODEL_SET", "set"),
         ("MODEL_ROW", "row"),
         ("MODEL_STEP", "step"),
         ("MODEL_TIME", "time"),
@@ -76,14 +92,8 @@ pub(super) fn macros(simulator: &Simulator, schedule: &Schedule, prefix: &str, s
 }
 
 /// The tables that the runtime names.
-pub(super) fn tables(
-    simulator: &Simulator,
-    schedule: &Schedule,
-    start: &Tile,
-    prefix: &str,
-    outputs: &[(&str, &str)],
-    solves: bool,
-) -> String {
+pub(super) fn tables(code: &Code, start: &Tile) -> String {
+    let Code { simulator, schedule, prefix, outputs, .. } = code;
     let program = &simulator.program;
     let mut text = String::from(
         "\ntypedef struct { int at; double value; } constant;\n\
@@ -112,7 +122,7 @@ pub(super) fn tables(
         structs(values.iter().map(|(at, value)| format!("{{ {at}, {} }}", c_number(*value))), "{ 0, 0.0 }")
     };
     let _ = writeln!(text, "static const constant constants[] = {};", constants(program.constants()));
-    if solves {
+    if code.has_solver() {
         let own = constants(simulator.start.constants());
         let _ = writeln!(text, "static const constant solver_constants[] = {own};");
     }
@@ -137,7 +147,22 @@ pub(super) fn tables(
     let names = quoted(&mut outputs.iter().map(|(name, _)| *name));
     let units = quoted(&mut outputs.iter().map(|(_, unit)| *unit));
     let _ = writeln!(text, "const char *const {prefix}_output_names[] = {names};");
-    let _ = writeln!(text, "const char *const {prefix}_output_units[] = {units};\n");
+    let _ = writeln!(text, "const char *const {prefix}_output_units[] = {units};");
+    if code.parameters > 0 {
+        let own = &simulator.system.parameters;
+        let names = quoted(&mut own.iter().map(|own| own.name.as_str()));
+        let units = quoted(&mut own.iter().map(|own| own.unit.as_str()));
+        let values = numbers(&mut own.iter().map(|own| own.nominal));
+        let rows = |rows: &[Residual]| list(rows.iter().map(|own| own.register.to_string()));
+        let (closures, rates) = (rows(&simulator.start.constraint), rows(&simulator.start.constraint_rate));
+        let _ = writeln!(text, "const char *const {prefix}_parameter_names[] = {names};");
+        let _ = writeln!(text, "const char *const {prefix}_parameter_units[] = {units};");
+        let _ = writeln!(text, "const double {prefix}_parameter_values[] = {values};");
+        let _ = writeln!(text, "#define parameter_values {prefix}_parameter_values");
+        let _ =
+            writeln!(text, "static const int closures[] = {closures};\nstatic const int closure_rates[] = {rates};");
+    }
+    text.push('\n');
     text
 }
 

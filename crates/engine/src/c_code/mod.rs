@@ -5,6 +5,8 @@
 
 mod data;
 mod fmi;
+mod header;
+mod inputs;
 
 use std::fmt::Write;
 
@@ -14,6 +16,8 @@ use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::{Integration, Schedule, SimulationError, Simulator};
 
+pub use fmi::FmiVersion;
+
 /// The iteration, with names of the model's parts as macros.
 const RUNTIME: &str = include_str!("runtime.c");
 
@@ -22,7 +26,7 @@ const RUNTIME: &str = include_str!("runtime.c");
 pub struct CModel {
     /// Names and texts: a header, the model, and an example that writes its outputs as a table.
     pub files: Vec<(String, String)>,
-    /// The same of a unit of FMI 3.0 for co-simulation, by paths in it, without a library.
+    /// The same of a unit of FMI for co-simulation, by paths in it, without a library.
     pub unit: Vec<(String, String)>,
     /// Name of the unit and of its library: one of C.
     pub identifier: String,
@@ -34,17 +38,56 @@ pub enum NoCode {
     /// The runtime lacks something that the model needs.
     #[error("it cannot be written as C: {0}")]
     NotWritten(&'static str),
+    /// A parameter cannot be an input.
+    #[error("`{name}` cannot be an input: {why}")]
+    NoInput {
+        /// Its name.
+        name: String,
+        /// The reason.
+        why: String,
+    },
     /// It has no start.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
 
-/// Writes a mechanism under a schedule; `name` is that of the files and, where it is no name of C, of the functions
-/// with underscores.
+/// What is wanted of a model's code.
+#[derive(Clone, Copy, Debug)]
+pub struct CodeRequest<'r> {
+    /// Name of the files and, where it is no name of C, of the functions with underscores.
+    pub name: &'r str,
+    /// Parameters of forces that may change during the motion.
+    pub inputs: &'r [String],
+    /// Version of the unit.
+    pub version: FmiVersion,
+}
+
+/// A model's code in the making: its sizes, and what runtime and unit offer.
+struct Code<'c> {
+    simulator: &'c Simulator,
+    schedule: &'c Schedule,
+    /// Of its functions.
+    prefix: &'c str,
+    /// Names and units of the outputs.
+    outputs: &'c [(&'c str, &'c str)],
+    /// Whether rows solve for accelerations and multipliers.
+    solves: bool,
+    /// Number of parameters that its start may have other values of.
+    parameters: usize,
+}
+
+impl Code<'_> {
+    /// Whether it has the programs of the start.
+    fn has_solver(&self) -> bool {
+        self.solves || self.parameters > 0
+    }
+}
+
+/// Writes a mechanism under a schedule.
 ///
 /// # Errors
-/// Where it takes more than fixed steps of HHT-I3, and where the nominal sample has no start.
-pub fn c_code(simulator: &Simulator, schedule: &Schedule, name: &str) -> Result<CModel, NoCode> {
+/// Where it takes more than fixed steps of HHT-I3, where the nominal sample has no start, and where an input is none.
+pub fn c_code(simulator: &Simulator, schedule: &Schedule, request: CodeRequest) -> Result<CModel, NoCode> {
     let system = &simulator.system;
     let refused = [
         (system.analysis.visits(), "its analysis is not a motion"),
@@ -54,36 +97,38 @@ pub fn c_code(simulator: &Simulator, schedule: &Schedule, name: &str) -> Result<
     if let Some((_, why)) = refused.into_iter().find(|(is_so, _)| *is_so) {
         return Err(NoCode::NotWritten(why));
     }
+    let name = request.name;
     let nominal: Sample = system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let start = simulator.assemble(1, schedule.first_step(), |_| nominal.clone())?;
     let prefix: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let prefix = if prefix.starts_with(|c: char| c.is_ascii_digit()) { format!("m_{prefix}") } else { prefix };
     let outputs: Vec<(&str, &str)> =
         system.outputs.iter().map(|output| (output.name.as_str(), output.unit.as_str())).collect();
+    // An equilibrium is not found anew.
+    let parameters = if simulator.equilibrium.is_some() { &[][..] } else { &system.parameters[..] };
+    let inputs = inputs::of(system, parameters, request.inputs)?;
     let solves = !system.lambda.is_empty() && system.observes_accelerations();
-    let header = header(simulator, schedule, &prefix, &outputs, solves);
+    let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, solves, parameters: parameters.len() };
     let mut writer = CWriter::default();
-    let functions = functions(simulator, solves, &mut writer);
+    let functions = functions(&code, &mut writer);
     let mut text = format!("/* {name}: written by mbint. Licence: that of the model. */\n\n");
-    let _ = write!(
-        text,
-        "#include \"{name}.h\"\n\n#include <math.h>\n#include <string.h>\n\n{}\n",
-        data::macros(simulator, schedule, &prefix, solves)
-    );
+    let _ =
+        write!(text, "#include \"{name}.h\"\n\n#include <math.h>\n#include <string.h>\n\n{}\n", data::macros(&code));
     text += &writer.helpers();
-    text += &data::tables(simulator, schedule, &start, &prefix, &outputs, solves);
+    text += &data::tables(&code, &start);
     text += &functions;
     text += RUNTIME;
     let example = EXAMPLE.replace("NAME", name).replace("PREFIX", &prefix);
-    let code = vec![(format!("{name}.h"), header), (format!("{name}.c"), text)];
-    let unit = fmi::files(&fmi::Unit { name, prefix: &prefix, outputs: &outputs, schedule }, &code);
-    let files = code.into_iter().chain([(format!("{name}_main.c"), example)]).collect();
+    let files = vec![(format!("{name}.h"), header::header(&code)), (format!("{name}.c"), text)];
+    let unit = fmi::Unit { name, prefix: &prefix, outputs: &outputs, parameters, inputs: &inputs, schedule };
+    let unit = fmi::files(&unit, request.version, &files);
+    let files = files.into_iter().chain([(format!("{name}_main.c"), example)]).collect();
     Ok(CModel { files, unit, identifier: prefix })
 }
 
 /// The tapes as functions of the memory.
-fn functions(simulator: &Simulator, solves: bool, writer: &mut CWriter) -> String {
-    let program = &simulator.program;
+fn functions(code: &Code, writer: &mut CWriter) -> String {
+    let (program, start) = (&code.simulator.program, &code.simulator.start);
     let mut tapes = vec![
         ("sample", program.sample()),
         ("step_size", program.step_size()),
@@ -94,10 +139,14 @@ fn functions(simulator: &Simulator, solves: bool, writer: &mut CWriter) -> Strin
         ("advance", program.advance()),
         ("observe", program.observe()),
     ];
-    if solves {
+    if code.has_solver() {
+        tapes.extend([("solver_sample", start.sample()), ("solver_acceleration", start.acceleration())]);
+    }
+    if code.parameters > 0 {
         tapes.extend([
-            ("solver_sample", simulator.start.sample()),
-            ("solver_acceleration", simulator.start.acceleration()),
+            ("solver_given", start.given()),
+            ("solver_position", start.position()),
+            ("solver_velocity", start.velocity()),
         ]);
     }
     let mut text = String::new();
@@ -105,70 +154,6 @@ fn functions(simulator: &Simulator, solves: bool, writer: &mut CWriter) -> Strin
         let _ = write!(text, "static void {name}(double *r)\n{{\n{}    (void)r;\n}}\n\n", writer.statements(tape));
     }
     text
-}
-
-fn header(simulator: &Simulator, schedule: &Schedule, prefix: &str, outputs: &[(&str, &str)], solves: bool) -> String {
-    let guard = format!("{}_H", prefix.to_uppercase());
-    let solver =
-        if solves { format!("\n    double solver[{}];", simulator.start.registers().max(1)) } else { String::new() };
-    let unknowns = simulator.program.layout.w.len() + simulator.program.layout.lambda.len() + 1;
-    let names: Vec<String> =
-        outputs.iter().map(|(name, unit)| format!("{name} [{unit}]").replace("*/", "* /")).collect();
-    format!(
-        "/* The nominal motion of a mechanism, by fixed steps of HHT-I3.
- *
- * {prefix}_start, then {prefix}_row for rows 1, 2, … in turn, and {prefix}_outputs whenever outputs are wanted:
- * {}.
- * No function allocates, and models are independent of each other. */
-
-#ifndef {guard}
-#define {guard}
-
-#ifdef __cplusplus
-extern \"C\" {{
-#endif
-
-enum {{ {prefix}_output_count = {}, {prefix}_rows = {} }};
-
-/* The memory of one motion. */
-typedef struct {{
-    double r[{}];{solver}
-    double now[{unknowns}], before[{unknowns}], before_that[{unknowns}];
-    double step_size, prepared_size, size_before, contraction;
-    int known;
-    unsigned steps;
-}} {prefix}_model;
-
-/* Names and SI units of the outputs. */
-extern const char *const {prefix}_output_names[];
-extern const char *const {prefix}_output_units[];
-
-/* At the nominal start, which is row 0. */
-void {prefix}_start({prefix}_model *model);
-
-/* On to a row, from the one before. Returns 0, or 1 where a step does not converge. */
-int {prefix}_row({prefix}_model *model, int row);
-
-/* One step of h to the time `end`, s; with `refines`, accelerations are as accurate as positions. Returns as above. */
-int {prefix}_step({prefix}_model *model, double h, double end, int refines);
-
-/* Time of a row, s. */
-double {prefix}_time(int row);
-
-/* Outputs of the state, SI. */
-void {prefix}_outputs({prefix}_model *model, double *outputs);
-
-#ifdef __cplusplus
-}}
-#endif
-
-#endif
-",
-        names.join(", "),
-        outputs.len(),
-        schedule.rows,
-        simulator.program.registers(),
-    )
 }
 
 /// The example's source: a table of the outputs.

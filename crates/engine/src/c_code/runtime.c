@@ -3,6 +3,11 @@
 
 enum { FROZEN_CORRECTIONS = 4, MOST_CORRECTIONS = 12, STEPS_BETWEEN_LOOKS = 16, MOST_HALVINGS = 10, UNKNOWNS = N + M };
 
+#if PARAMETERS
+enum { MOST_START_CORRECTIONS = 40, START_PARTS = 16 };
+static const double settled = 1e-14, stalled = 1e-8;
+#endif
+
 static const double tolerance = 1e-11, first_tolerance = 1e-14, first_contraction = 0.1, contraction_safety = 10.0, least_contraction = 1e-9,
                     round_off = 4.0 * 2.220446049250313e-16;
 
@@ -158,20 +163,161 @@ int MODEL_STEP(MODEL *m, double h, double end, int refines)
     return 1;
 }
 
-void MODEL_START(MODEL *m)
+#if SOLVES || PARAMETERS
+/* The memory of the start at the nominal state, with these parameters. */
+static void begin_solver(MODEL *m)
+{
+    int i;
+    for (i = 0; i < SOLVER_CONSTANTS; i++) m->solver[solver_constants[i].at] = solver_constants[i].value;
+    keep(start_values, m->solver, LAYOUT);
+    keep(m->r + PARAMETER, m->solver + PARAMETER, PARAMETERS);
+    solver_sample(m->solver);
+}
+#endif
+
+static void begin_motion(MODEL *m)
 {
     int i;
     memset(m, 0, sizeof *m);
     for (i = 0; i < CONSTANTS; i++) m->r[constants[i].at] = constants[i].value;
     keep(start_values, m->r, LAYOUT);
+}
+
+void MODEL_START(MODEL *m)
+{
+    begin_motion(m);
     sample(m->r);
     begin(m);
-#if SOLVES
-    for (i = 0; i < SOLVER_CONSTANTS; i++) m->solver[solver_constants[i].at] = solver_constants[i].value;
-    keep(start_values, m->solver, LAYOUT);
-    solver_sample(m->solver);
+#if SOLVES || PARAMETERS
+    begin_solver(m);
 #endif
 }
+
+#if PARAMETERS
+/* Corrections of values until they settle; returns whether they do. */
+static int settle(double *r, void (*correction)(double *), int at, int count)
+{
+    double last = NAN;
+    int k, i;
+    for (k = 0; k < MOST_START_CORRECTIONS; k++) {
+        double size = 0.0, relative;
+        correction(r);
+        for (i = 0; i < count; i++) {
+            double change = r[CORRECTION + i];
+            r[at + i] += change;
+            relative = fabs(change) / fmax(i < N ? scale[i] : 1.0, fabs(r[at + i]));
+            if (!(relative <= size)) size = relative;
+        }
+        if (!isfinite(size)) return 0;
+        if (size <= settled || (size <= stalled && size >= 0.5 * last)) return 1;
+        last = size;
+    }
+    return 0;
+}
+
+/* Whether the constraints hold. */
+static int is_closed(const double *r, const int *residuals, int count)
+{
+    int i;
+    for (i = 0; i < count; i++)
+        if (!(fabs(r[residuals[i]]) <= CLOSED)) return 0;
+    return 1;
+}
+
+static void fill(double *values, int count)
+{
+    int i;
+    for (i = 0; i < count; i++) values[i] = 0.0;
+}
+
+/* Accelerations and multipliers of a state; a = w(t + shift) to first order, as the scheme has it. */
+static void accelerate(double *r)
+{
+    saved state;
+    double now = r[TIME];
+    int i;
+    fill(r + W, N + M);
+    settle(r, solver_acceleration, W, N + M);
+    keep(r + Q, state.of, 4 * N + M);
+    for (i = 0; i < N; i++) {
+        double speed = r[V + i], acceleration = r[W + i];
+        r[Q + i] += START_SHIFT * (speed + 0.5 * START_SHIFT * acceleration);
+        r[V + i] += START_SHIFT * acceleration;
+    }
+    r[TIME] = now + START_SHIFT;
+    settle(r, solver_acceleration, W, N + M);
+    keep(r + W, state.of + (A - Q), N);
+    keep(state.of, r + Q, 4 * N + M);
+    r[TIME] = now;
+}
+
+/* The start of other parameters, from the nominal one by so many changes of them; returns 1 where there is none. */
+static int assemble(double *r, const double *parameters, int parts)
+{
+    int part, i;
+    for (part = 1; part <= parts; part++) {
+        for (i = 0; i < PARAMETERS; i++) {
+            double nominal = parameter_values[i];
+            r[PARAMETER + i] = part == parts ? parameters[i] : nominal + (double)part / parts * (parameters[i] - nominal);
+        }
+        solver_sample(r);
+        solver_given(r);
+        settle(r, solver_position, Q, N);
+    }
+    solver_position(r);
+    if (!is_closed(r, closures, CLOSURES)) return 1;
+    fill(r + V, N);
+    solver_given(r);
+    settle(r, solver_velocity, V, N);
+    solver_velocity(r);
+    if (!is_closed(r, closure_rates, CLOSURE_RATES)) return 1;
+    accelerate(r);
+    return 0;
+}
+
+static int is_far(const double *r)
+{
+    int i;
+    for (i = 0; i < N; i++)
+        if (!(fabs(r[Q + i] - start_values[Q + i]) <= 0.25 * scale[i])) return 1;
+    return 0;
+}
+
+/* A start that is far from the nominal one is reached by small changes, which keep it on its branch. */
+static int is_assembled(MODEL *m, const double *parameters)
+{
+    int is_open = assemble(m->solver, parameters, 1);
+    if (!is_open && !is_far(m->solver)) return 1;
+    begin_solver(m);
+    if (!assemble(m->solver, parameters, START_PARTS)) return 1;
+    begin_solver(m);
+    return !is_open && !assemble(m->solver, parameters, 1);
+}
+
+int MODEL_START_AT(MODEL *m, const double *parameters)
+{
+    int i, is_nominal = 1;
+    for (i = 0; i < PARAMETERS; i++) is_nominal = is_nominal && parameters[i] == parameter_values[i];
+    MODEL_START(m);
+    if (is_nominal) return 0;
+    if (!is_assembled(m, parameters)) return 1;
+    keep(m->solver, m->r, LAYOUT);
+    sample(m->r);
+    return 0;
+}
+
+/* Accelerations and multipliers jump with a force: the motion begins anew from its positions and velocities. */
+void MODEL_SET(MODEL *m, int parameter, double value)
+{
+    m->r[PARAMETER + parameter] = value;
+    keep(m->r, m->solver, LAYOUT);
+    solver_sample(m->solver);
+    accelerate(m->solver);
+    keep(m->solver, m->r, LAYOUT);
+    sample(m->r);
+    begin(m);
+}
+#endif
 
 void MODEL_OBSERVE(MODEL *m, double *outputs)
 {

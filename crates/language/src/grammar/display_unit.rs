@@ -20,6 +20,11 @@ impl DisplayUnit {
         Self { text: text.trim().to_owned(), unit }
     }
 
+    /// Of a pure number: `1`.
+    pub fn number() -> Self {
+        Self { text: "1".to_owned(), unit: Unit::ONE }
+    }
+
     /// Dimension.
     pub fn dimension(&self) -> Dimension {
         self.unit.dimension

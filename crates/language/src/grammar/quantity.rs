@@ -102,6 +102,11 @@ impl Dimension {
         powers.into_iter().fold(0, |mark, power| mark << 16 | bits(power))
     }
 
+    /// Whole powers of m, kg, s and rad; roots are cut off.
+    pub fn powers(self) -> [i32; 4] {
+        [self.length, self.mass, self.time, self.angle].map(|power| power / ONE)
+    }
+
     /// Of a mark.
     pub fn of_mark(mark: u64) -> Self {
         let power = |place: u32| i32::from((mark >> (16 * place)) as u16 as i16);

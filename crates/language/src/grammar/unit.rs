@@ -19,7 +19,8 @@ pub struct Unit {
 }
 
 impl Unit {
-    const ONE: Self = Self { times: 1.0, over: 1.0, dimension: Dimension::NUMBER };
+    /// Of a pure number.
+    pub const ONE: Self = Self { times: 1.0, over: 1.0, dimension: Dimension::NUMBER };
 
     /// A value in this unit, in SI.
     pub fn to_si(self, value: f64) -> f64 {

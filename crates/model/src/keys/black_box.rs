@@ -16,13 +16,34 @@ schema_only! {
     }
 }
 
+schema_only! {
+    #[schemars(rename_all = "snake_case", inline)]
+    pub enum InterfaceName {
+        /// The unit takes steps of its own.
+        CoSimulation,
+        /// The unit's equations are integrated by a method of fifth order with fixed steps.
+        ModelExchange,
+    }
+}
+
 grammar! {
     /// A program that is given points, values of the parameters, and answers with the rows of the outputs.
     BlackBoxFile is "`black_box`" {
         /// The program and its arguments, one by one: no shell reads them.
-        command: Vec<String>,
-        /// The outputs that it answers with, by name, each with the unit of its numbers; `1` of a number.
-        outputs: IndexMap<String, UnitName>,
+        command: Option<Vec<String>>,
+        /// A unit of FMI 2.0 or 3.0, instead of a command: a file in the model's folder or below. It is native code, and
+        /// running it is trusting it.
+        fmu: Option<String>,
+        /// How a unit moves on; by default by co-simulation, where it has that.
+        interface: Option<InterfaceName>,
+        /// Names of variables of the unit, by the names of parameters and outputs that stand for them here.
+        variables: Option<IndexMap<String, String>>,
+        /// The longest step, s, of model exchange (by default a tenth of `output_step`), and of the communication of
+        /// co-simulation (by default `output_step`).
+        step: Option<Number>,
+        /// The outputs that it answers with, by name, each with the unit of its numbers; `1` of a number. Those of a
+        /// unit are converted; by default they are all of its outputs.
+        outputs: Option<IndexMap<String, UnitName>>,
         /// How points and rows are written; by default `json`.
         protocol: Option<ProtocolName>,
         /// Whether a process stays for further calls; by default it does with `json`, and cannot with `csv`.

@@ -24,6 +24,8 @@ pub fn constrain(schema: &mut Schema) {
     with_ground(&mut definitions["Assembly"]["properties"]["bodies"]);
     of_table(&mut definitions["Table"]);
     of_bounds(definitions);
+    exactly_one(&mut definitions["BlackBoxFile"], &["command", "fmu"]);
+    insert(&mut definitions["BlackBoxFile"], "dependentRequired", json!({ "command": ["outputs"] }));
     exactly_one(&mut definitions["Rotation"], &["rpy", "axis", "quaternion"]);
     insert(&mut definitions["Rotation"], "dependentRequired", json!({ "axis": ["angle"], "angle": ["axis"] }));
     insert(&mut definitions["FlexibleBeam"]["properties"]["elements"], "minimum", json!(1));

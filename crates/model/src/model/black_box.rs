@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use symdiff::Formula;
 use symdiff::formula::Term;
 
-use super::description::{Analysis, BlackBox, BoxOutput, Description, Formulation, Output, Protocol, Refine};
+use super::description::{Analysis, BlackBox, BoxOutput, Description, Formulation, Output, Program, Protocol, Refine};
+use super::fmu;
 use super::parameters::unit;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
@@ -48,14 +49,12 @@ const YES_OR_NO: [(&str, bool); 2] = [("true", true), ("false", false)];
 /// Most processes, points of a call, and attempts: more must be a slip.
 const MOST: usize = 10_000;
 
-/// Reads the section, after the names of the parameters; `model` is the model's file.
-pub fn read(reader: &mut Reader, fields: &Fields, model: &Path) {
+/// Reads the section, after the names of the parameters, which are `entries`; `model` is the model's file.
+pub fn read(reader: &mut Reader, fields: &Fields, entries: &[Entry], model: &Path) {
     let Some(node) = fields.get("black_box") else { return };
     let at = fields.key_span("black_box");
     reader.model.analysis = Analysis::BlackBox;
     reader.model.simulation.formulation = Formulation::Absolute;
-    // The program gets all of them.
-    reader.used.iter_mut().for_each(|used| *used = true);
     for key in OF_MECHANISMS.into_iter().filter(|key| fields.get(key).is_some()) {
         let message = format!("a program answers instead of a mechanism, so `{key}` has no meaning");
         reader.error(fields.key_span(key), message, "leave out `black_box`, or this".to_owned());
@@ -71,8 +70,11 @@ pub fn read(reader: &mut Reader, fields: &Fields, model: &Path) {
         .locate(&at)
         .map_or_else(String::new, |(source, span)| format!("{}:{}", source.name, source.place(span.start).line));
     let Some(fields) = reader.fields::<keys::BlackBoxFile>(node, at) else { return };
-    let command = reader.required(&fields, "command").and_then(|node| command(reader, node));
-    let outputs = reader.required(&fields, "outputs").and_then(|node| outputs(reader, node));
+    fmu::refuse_others(reader, &fields);
+    let program = match fields.get("fmu") {
+        Some(file) => fmu::read(reader, &fields, file, entries).map(|(own, outputs)| (Program::Fmu(own), outputs)),
+        None => command_with_outputs(reader, &fields, model),
+    };
     let protocol = match fields.get("protocol") {
         Some(node) => reader.choice(node, &PROTOCOLS),
         None => Some(Protocol::Json),
@@ -98,14 +100,11 @@ pub fn read(reader: &mut Reader, fields: &Fields, model: &Path) {
         Some(value)
     });
     let refine = fields.get("refine").and_then(|node| refine(reader, node, &fields));
-    let directory = fields.get("directory").and_then(|node| directory(reader, node, model));
-    let (Some(command), Some(outputs), Some(protocol)) = (command, outputs, protocol) else { return };
+    let (Some((program, outputs)), Some(protocol)) = (program, protocol) else { return };
     let points = points.or(is_json.then_some(1));
-    note_files(reader, &command, directory.as_deref());
     reader.model.black_box = Some(BlackBox {
         place,
-        command,
-        directory,
+        program,
         outputs,
         protocol,
         persistent,
@@ -115,6 +114,18 @@ pub fn read(reader: &mut Reader, fields: &Fields, model: &Path) {
         retries,
         refine,
     });
+}
+
+/// A command with its folder, and its outputs.
+fn command_with_outputs(reader: &mut Reader, fields: &Fields, model: &Path) -> Option<(Program, Vec<BoxOutput>)> {
+    // The program gets all of them.
+    reader.used.iter_mut().for_each(|used| *used = true);
+    let words = reader.required(fields, "command").and_then(|node| command(reader, node));
+    let outputs = reader.required(fields, "outputs").and_then(|node| outputs(reader, node));
+    let directory = fields.get("directory").and_then(|node| directory(reader, node, model));
+    let (words, outputs) = (words?, outputs?);
+    note_files(reader, &words, directory.as_deref());
+    Some((Program::Command { words, directory }, outputs))
 }
 
 /// The outputs of a model that names none of its own: all that the program answers with.

@@ -24,7 +24,7 @@ use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
 pub use crate::robots::urdf::robot::{Shape, Visual};
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
-pub use black_box::{BlackBox, BoxOutput, Protocol, Refine};
+pub use black_box::{BlackBox, BoxOutput, FmuProgram, Program, Protocol, Refine};
 pub use body::{Body, FlexibleBeam, Inertia, Point, Standing};
 use index::NameIndex;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};

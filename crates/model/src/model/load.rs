@@ -5,15 +5,15 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, black_box, bodies, bounds, effects, instances, joints, motion_times, parameters, requests, requirements,
-    sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
+    analysis, black_box, bodies, bounds, effects, fmu, instances, joints, motion_times, parameters, requests,
+    requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
 };
 use crate::expand::dimensions::{self, Chain};
-use crate::expand::mjcf;
 use crate::expand::overrides::Override;
 use crate::expand::parts::{self, Parts, WrittenOut};
 use crate::expand::scenes::{Scenes, Variant};
 use crate::expand::zones::{self, Zone};
+use crate::expand::{fmu as units, mjcf};
 use crate::grammar::report::Report;
 use crate::keys;
 use crate::model::names::Reader;
@@ -176,6 +176,9 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
             _ => return Reading { description: None, scenes: Vec::new(), diagnostics },
         },
     };
+    let Some(root) = units::write_out(&mut origin.report(&mut diagnostics), &root) else {
+        return Reading { description: None, scenes: Vec::new(), diagnostics };
+    };
     let written = parts::write_out(&mut origin.report(&mut diagnostics), &root, text, &placed);
     let (root, parts) = match written {
         Some(WrittenOut { root, parts }) => (root, Some(parts)),
@@ -302,7 +305,7 @@ fn describe(
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
     parameters::read(&mut reader, parameter_entries, overrides);
-    black_box::read(&mut reader, &fields, Path::new(origin.name));
+    black_box::read(&mut reader, &fields, parameter_entries, Path::new(origin.name));
     trajectories::read(&mut reader, &fields);
     bodies::read(&mut reader, body_entries);
     zone_sizes::check(&mut reader);
@@ -346,6 +349,7 @@ fn describe(
     analysis::check_requests(&mut reader, &fields, [output_entries, requirement_entries]);
     sections::missing_sections(&mut reader, &fields, robot.is_some(), body_entries, output_entries);
     reader.warn_of_lengths();
+    fmu::check_parameters(&mut reader, &fields, parameter_entries);
     let is_count = |name: &str| parts.is_some_and(|parts| parts.is_count(name));
     let unused = parameters::unused(&reader, parameter_entries, is_count);
     let Reader { mut model, idle, .. } = reader;

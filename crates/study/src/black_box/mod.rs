@@ -7,6 +7,7 @@
 mod answers;
 mod csv;
 mod json;
+mod launch;
 mod pool;
 mod process;
 mod questions;

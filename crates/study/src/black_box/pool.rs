@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::answers::Answers;
 use super::csv::{self, Table};
+use super::launch::Launch;
 use super::process::{Process, Said};
 use super::trouble::Trouble;
 use super::{Answer, Questions, json};
@@ -37,6 +38,7 @@ pub enum Unanswered {
 #[derive(Debug)]
 pub struct Pool {
     own: BlackBox,
+    launch: Launch,
     questions: Questions,
     /// Processes that wait for a call.
     idle: Mutex<Vec<Process>>,
@@ -52,7 +54,13 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Pool {
     /// No process is started before there is a point.
     pub fn new(own: BlackBox, questions: Questions) -> Self {
-        Self { own, questions, idle: Mutex::default(), next: AtomicU64::new(0) }
+        Self {
+            launch: Launch::new(own.program.clone()),
+            own,
+            questions,
+            idle: Mutex::default(),
+            next: AtomicU64::new(0),
+        }
     }
 
     /// The questions that it answers.
@@ -140,10 +148,11 @@ impl Pool {
         let waiting = locked(&self.idle).pop();
         let mut process = match waiting {
             Some(process) => process,
-            None => Process::start(&self.own).map_err(|error| Unanswered::NotStarted {
-                program: self.own.command[0].clone(),
-                why: error.to_string(),
-            })?,
+            None => {
+                let started =
+                    self.launch.command().and_then(|command| Process::start(command).map_err(|e| e.to_string()));
+                started.map_err(|why| Unanswered::NotStarted { program: self.launch.name(), why })?
+            }
         };
         let first = self.next.fetch_add(points.len() as u64, Ordering::Relaxed);
         let values: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();

@@ -10,7 +10,6 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::trouble::Words;
-use crate::model::BlackBox;
 
 /// Bytes of standard error that are kept.
 const WORDS: usize = 4096;
@@ -48,16 +47,12 @@ pub(super) struct Process {
 }
 
 impl Process {
-    /// Starts the program, without a shell, in the user's environment.
+    /// Starts a program.
     ///
     /// # Errors
     /// Where it cannot be started.
-    pub fn start(own: &BlackBox) -> std::io::Result<Self> {
-        let mut command = Command::new(&own.command[0]);
-        command.args(&own.command[1..]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        if let Some(folder) = &own.directory {
-            command.current_dir(folder);
-        }
+    pub fn start(mut command: Command) -> std::io::Result<Self> {
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // An interruption of the terminal is for mbint, which ends its processes itself.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);

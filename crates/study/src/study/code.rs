@@ -5,7 +5,7 @@ use super::prepared::Prepared;
 use super::problem::Study;
 use super::sample::steps_of_samples;
 use super::{Options, RunError};
-use crate::c_code::{CModel, NoCode, c_code};
+use crate::c_code::{CModel, CodeRequest, FmiVersion, NoCode, c_code};
 use crate::model::Description;
 use crate::reduce::Reduction;
 
@@ -20,11 +20,13 @@ pub enum CodeError {
     None(#[from] NoCode),
 }
 
-/// C99 that repeats a model's nominal motion: its programs under the steps of a run, all subsystems as one.
+/// C99 that repeats a model's nominal motion: its programs under the steps of a run, all subsystems as one. `inputs` are
+/// parameters that may change during the motion, `version` is that of its unit of FMI.
 ///
 /// # Errors
-/// Where the model has no motion, or its steps are not fixed ones of HHT-I3.
-pub fn code(description: &Description) -> Result<CModel, CodeError> {
+/// Where the model has no motion, where its steps are not fixed ones of HHT-I3, and where an input cannot
+/// be one.
+pub fn code(description: &Description, inputs: &[String], version: FmiVersion) -> Result<CModel, CodeError> {
     needs_mechanism(description, "source code").map_err(RunError::from)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(0).build().map_err(RunError::from)?;
     pool.install(|| {
@@ -35,6 +37,7 @@ pub fn code(description: &Description) -> Result<CModel, CodeError> {
         if plan.controller.is_some() {
             return Err(NoCode::NotWritten("a tolerance chooses its steps; give a fixed `step`").into());
         }
-        Ok(c_code(&study.simulator, &plan.schedule, &description.name.replace('/', "_"))?)
+        let name = description.name.replace('/', "_");
+        Ok(c_code(&study.simulator, &plan.schedule, CodeRequest { name: &name, inputs, version })?)
     })
 }

@@ -8,7 +8,8 @@ mod orientation;
 mod rank;
 mod settling;
 
-pub(super) use assembly::{Assembly, ConstraintResidual, allowed_residual};
+pub(crate) use assembly::allowed_residual;
+pub(super) use assembly::{Assembly, ConstraintResidual};
 pub(super) use general_position::{guess_state, move_apart, pivot_samples, spread};
 pub use mobility::Mobility;
 pub(super) use mobility::{DEPENDENT, contradiction, jacobian_rows, mobility, usual_row_sizes};

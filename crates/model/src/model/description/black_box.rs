@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use mbint_fmu::Task;
+
 use crate::grammar::display_unit::DisplayUnit;
 
 /// A program that is given points and answers with rows.
@@ -9,10 +11,8 @@ use crate::grammar::display_unit::DisplayUnit;
 pub struct BlackBox {
     /// Place in the model file, for people: `box.yaml:4`.
     pub place: String,
-    /// The program, then its arguments.
-    pub command: Vec<String>,
-    /// The folder in which it works; that of mbint where it is absent.
-    pub directory: Option<PathBuf>,
+    /// What answers.
+    pub program: Program,
     /// Its outputs.
     pub outputs: Vec<BoxOutput>,
     /// How points and rows are written.
@@ -31,12 +31,55 @@ pub struct BlackBox {
     pub refine: Option<Refine>,
 }
 
+/// What answers instead of a mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Program {
+    /// A program.
+    Command {
+        /// The program, then its arguments.
+        words: Vec<String>,
+        /// The folder in which it works; that of mbint where it is absent.
+        directory: Option<PathBuf>,
+    },
+    /// A unit of FMI, in a process of mbint.
+    Fmu(FmuProgram),
+}
+
+/// A unit of FMI, and its variables that are set and wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FmuProgram {
+    /// Its file.
+    pub file: PathBuf,
+    /// Its variables.
+    pub task: Task,
+    /// Length of its steps, s, as far as the model says it.
+    pub step: Option<f64>,
+}
+
+impl BlackBox {
+    /// The program as people see it: its command, or the unit's file.
+    pub fn words(&self) -> Vec<String> {
+        match &self.program {
+            Program::Command { words, .. } => words.clone(),
+            Program::Fmu(own) => vec![own.file.display().to_string()],
+        }
+    }
+
+    /// The unit that answers, if one does.
+    pub fn fmu(&self) -> Option<&FmuProgram> {
+        match &self.program {
+            Program::Command { .. } => None,
+            Program::Fmu(own) => Some(own),
+        }
+    }
+}
+
 /// An output of a black box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoxOutput {
     /// Its name, in the protocol and in formulas.
     pub name: String,
-    /// Unit of its numbers.
+    /// Unit of its numbers; those of a unit of FMI are in SI, and shown in it.
     pub unit: DisplayUnit,
 }
 

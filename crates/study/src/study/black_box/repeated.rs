@@ -44,7 +44,7 @@ pub(in crate::study) fn repeat(study: &Study, validation: Option<&Validation>) -
     let named = study.description.outputs.iter().enumerate();
     let noisy = named.map(|(output, own)| (own, noise(output))).filter(|(_, noise)| *noise > 0.0);
     source.note(BlackBoxSummary {
-        command: source.own.command.clone(),
+        command: source.own.words(),
         repeated: both().count(),
         noise: noisy
             .map(|(own, noise)| NoiseSummary {
@@ -54,7 +54,7 @@ pub(in crate::study) fn repeat(study: &Study, validation: Option<&Validation>) -
                 noise,
             })
             .collect(),
-        refined_by: source.own.refine.map(|refine| study.description.parameters[refine.parameter].name.clone()),
+        refined_by: source.refined_by().map(str::to_owned),
     });
     Ok(())
 }

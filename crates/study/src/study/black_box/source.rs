@@ -5,15 +5,20 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use symdiff::{Formula, math};
 
+use mbint_fmu::{Interface, STEP};
+
 use crate::assemble::NumberFormulas;
 use crate::black_box::{Answer, Pool, Questions, Unanswered};
-use crate::model::{BlackBox, Description, Parameter, ParameterValue, Refine};
+use crate::model::{BlackBox, BoxOutput, Description, Parameter, ParameterValue, Refine};
 use crate::numerics::Sample;
 use crate::results::BlackBoxSummary;
 use crate::simulate::{Interruption, Schedule, SimulationError};
 
 /// Values that are kept of points that were asked, at most: a validation sample is asked under several schedules.
 const MOST_KEPT: usize = 1 << 22;
+
+/// Steps of model exchange between two rows, where the model does not say their length.
+const STEPS_A_ROW: f64 = 10.0;
 
 /// The time among the names that a formula of answers may use.
 const TIME: &str = "t";
@@ -24,6 +29,8 @@ pub(in crate::study) struct Source {
     parameters: Vec<Parameter>,
     pub(super) own: BlackBox,
     pool: Pool,
+    /// Steps of a unit of FMI.
+    steps: Option<UnitSteps>,
     /// The outputs as formulas of answers, the time and the parameters.
     outputs: NumberFormulas,
     output_count: usize,
@@ -32,6 +39,24 @@ pub(in crate::study) struct Source {
     known: Mutex<Known>,
     /// Findings of repeated points.
     summary: OnceLock<BlackBoxSummary>,
+}
+
+/// Steps of a unit of FMI.
+#[derive(Clone, Copy, Debug)]
+struct UnitSteps {
+    /// s
+    length: f64,
+    /// Whether they are integrated here, so that finer ones show their error.
+    are_own: bool,
+}
+
+impl UnitSteps {
+    fn of(own: &BlackBox, output_step: f64) -> Option<Self> {
+        let own = own.fmu()?;
+        let are_own = own.task.interface == Interface::ModelExchange;
+        let length = own.step.or(are_own.then_some(output_step / STEPS_A_ROW))?;
+        Some(Self { length, are_own })
+    }
 }
 
 /// Answers that are kept, by the bits of their points.
@@ -47,9 +72,13 @@ impl Source {
         let own = description.black_box.clone()?;
         let simulation = &description.simulation;
         let schedule = Schedule::fixed(simulation.duration, simulation.output_step, simulation.output_step);
+        let steps = UnitSteps::of(&own, simulation.output_step);
+        let names = description.parameters.iter().map(|parameter| parameter.name.clone());
+        // A unit answers in SI.
+        let si = |output: &BoxOutput| if own.fmu().is_some() { 1.0 } else { output.unit.si() };
         let questions = Questions {
-            parameters: description.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
-            outputs: own.outputs.iter().map(|output| (output.name.clone(), output.unit.si())).collect(),
+            parameters: names.chain(steps.map(|_| STEP.to_owned())).collect(),
+            outputs: own.outputs.iter().map(|output| (output.name.clone(), si(output))).collect(),
             times: (0..schedule.rows).map(|row| schedule.time(row)).collect(),
         };
         let names: Vec<&str> = own.outputs.iter().map(|output| output.name.as_str()).chain([TIME]).collect();
@@ -59,6 +88,7 @@ impl Source {
             output_count: formulas.len(),
             pool: Pool::new(own.clone(), questions),
             parameters: description.parameters.clone(),
+            steps,
             own,
             schedule,
             known: Mutex::default(),
@@ -90,7 +120,13 @@ impl Source {
     /// How many times finer than the model's the program's own steps shall be under a schedule; 1 where nothing
     /// refines them.
     pub fn refinement(&self, schedule: &Schedule) -> f64 {
-        if self.own.refine.is_none() { 1.0 } else { self.schedule.first_step() / schedule.first_step() }
+        if self.refined_by().is_none() { 1.0 } else { self.schedule.first_step() / schedule.first_step() }
+    }
+
+    /// Name of the parameter, or the key, that refines the program's own steps.
+    pub fn refined_by(&self) -> Option<&str> {
+        let by_parameter = self.own.refine.map(|refine| self.parameters[refine.parameter].name.as_str());
+        by_parameter.or(self.steps.filter(|steps| steps.are_own).map(|_| "step"))
     }
 
     /// The model's outputs (row, output) at samples, sample by sample. Known points are not asked again.
@@ -169,7 +205,9 @@ impl Source {
         }
         let names: Vec<Formula> = parameters.iter().map(|parameter| Formula::name(&parameter.name)).collect();
         let formulas = NumberFormulas::of(&parameters, &[], &names);
-        samples.iter().map(|sample| formulas.values(sample, &[])).collect()
+        let refines = self.own.refine.is_none() && self.steps.is_some_and(|steps| steps.are_own);
+        let length = self.steps.map(|steps| if refines { steps.length / refinement } else { steps.length });
+        samples.iter().map(|sample| formulas.values(sample, &[]).into_iter().chain(length).collect()).collect()
     }
 
     /// The model's outputs of a program's rows.

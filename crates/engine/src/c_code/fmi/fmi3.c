@@ -1,17 +1,5 @@
-/* FMI 3.0 for co-simulation, of a model that was written by mbint. */
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <math.h>
-
-#if defined _WIN32
-#define EXPORT __declspec(dllexport)
-#else
-#define EXPORT __attribute__((visibility("default")))
-#endif
+/* FMI 3.0 */
 
 typedef void *fmi3Instance;
 typedef void *fmi3InstanceEnvironment;
@@ -19,23 +7,13 @@ typedef void *fmi3FMUState;
 typedef uint32_t fmi3ValueReference;
 typedef const char *fmi3String;
 typedef int fmi3Status;
-typedef void (*fmi3LogMessageCallback)(fmi3InstanceEnvironment, fmi3Status, fmi3String, fmi3String);
+typedef LOG fmi3LogMessageCallback;
 typedef void (*fmi3Callback)(void);
 
-enum { OK = 0, ERROR = 3 };
-
-/* An instance: the motion, and the time that it has come to. */
-typedef struct {
-    MODEL_TYPE model;
-    double time;
-    fmi3InstanceEnvironment environment;
-    fmi3LogMessageCallback log;
-} instance;
-
-static fmi3Status failed(const instance *own, const char *message)
+static fmi3Status checked(const instance *own, const char *message)
 {
-    if (own->log) own->log(own->environment, ERROR, "error", message);
-    return ERROR;
+    if (message && own->log) own->log(own->environment, ERROR, "error", message);
+    return message ? ERROR : OK;
 }
 
 EXPORT const char *fmi3GetVersion(void) { return "3.0"; }
@@ -75,95 +53,50 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String toke
     if (!own) return NULL;
     own->environment = environment;
     own->log = log;
-    own->time = 0.0;
-    MODEL_START(&own->model);
+    begin(own);
     return own;
 }
 
 EXPORT void fmi3FreeInstance(fmi3Instance own) { free(own); }
 
-EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance of, bool tolerant, double tolerance, double start, bool stops, double stop)
+EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance own, bool tolerant, double tolerance, double start, bool stops, double stop)
 {
-    instance *own = of;
     (void)tolerant; (void)tolerance; (void)stops; (void)stop;
-    return start == 0.0 ? OK : failed(own, "the motion begins at t = 0");
+    return checked(own, start == 0.0 ? NULL : "the motion begins at t = 0");
 }
 
-EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance own) { (void)own; return OK; }
+EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance own) { return checked(own, run_from_start(own)); }
 EXPORT fmi3Status fmi3EnterConfigurationMode(fmi3Instance own) { (void)own; return OK; }
 EXPORT fmi3Status fmi3ExitConfigurationMode(fmi3Instance own) { (void)own; return OK; }
 EXPORT fmi3Status fmi3EnterStepMode(fmi3Instance own) { (void)own; return OK; }
 EXPORT fmi3Status fmi3Terminate(fmi3Instance own) { (void)own; return OK; }
 
-EXPORT fmi3Status fmi3Reset(fmi3Instance of)
-{
-    instance *own = of;
-    own->time = 0.0;
-    MODEL_START(&own->model);
-    return OK;
-}
+EXPORT fmi3Status fmi3Reset(fmi3Instance own) { begin(own); return OK; }
 
 EXPORT fmi3Status fmi3DoStep(fmi3Instance of, double now, double size, bool forward, bool *event, bool *terminate, bool *early, double *reached)
 {
     instance *own = of;
-    double count = ceil(size / MODEL_H - 1e-9), h, k;
+    fmi3Status status;
     (void)forward;
     *event = *terminate = *early = false;
+    status = checked(own, move_on(own, now, size));
     *reached = own->time;
-    if (fabs(now - own->time) > 1e-9 * (1.0 + fabs(now))) return failed(own, "a step begins where the last one ended");
-    h = size / count;
-    /* The model's own step, to the last bit: another length would make factors anew. */
-    if (fabs(h - MODEL_H) <= 1e-12 * MODEL_H) h = MODEL_H;
-    for (k = 1.0; k <= count; k += 1.0)
-        if (MODEL_STEP(&own->model, h, k < count ? now + k * h : now + size, k == count)) return failed(own, "a step does not converge");
-    *reached = own->time = now + size;
-    return OK;
+    return status;
 }
 
-EXPORT fmi3Status fmi3GetFloat64(fmi3Instance of, const fmi3ValueReference references[], size_t count, double values[], size_t size)
+EXPORT fmi3Status fmi3GetFloat64(fmi3Instance own, const fmi3ValueReference references[], size_t count, double values[], size_t size)
 {
-    instance *own = of;
-    double outputs[MODEL_OUTPUT_COUNT + 1];
-    size_t k;
-    if (size != count) return failed(own, "every variable is one number");
-    MODEL_OUTPUTS(&own->model, outputs);
-    for (k = 0; k < count; k++) {
-        if (references[k] > MODEL_OUTPUT_COUNT) return failed(own, "there is no such variable");
-        values[k] = references[k] == 0 ? own->time : outputs[references[k] - 1];
-    }
-    return OK;
+    return checked(own, size != count ? "every variable is one number" : read_values(own, references, count, values));
 }
 
-EXPORT fmi3Status fmi3SetFloat64(fmi3Instance of, const fmi3ValueReference references[], size_t count, const double values[], size_t size)
+EXPORT fmi3Status fmi3SetFloat64(fmi3Instance own, const fmi3ValueReference references[], size_t count, const double values[], size_t size)
 {
-    (void)references; (void)values; (void)size;
-    return count == 0 ? OK : failed(of, "the model has no inputs");
+    return checked(own, size != count ? "every variable is one number" : write_values(own, references, count, values));
 }
 
-EXPORT fmi3Status fmi3GetFMUState(fmi3Instance own, fmi3FMUState *state)
-{
-    if (!*state) *state = malloc(sizeof(instance));
-    if (!*state) return ERROR;
-    memcpy(*state, own, sizeof(instance));
-    return OK;
-}
-
-EXPORT fmi3Status fmi3SetFMUState(fmi3Instance of, fmi3FMUState state)
-{
-    instance *own = of;
-    const instance *from = state;
-    own->model = from->model;
-    own->time = from->time;
-    return OK;
-}
-
-EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance own, fmi3FMUState *state)
-{
-    (void)own;
-    free(*state);
-    *state = NULL;
-    return OK;
-}
+EXPORT fmi3Status fmi3GetFMUState(fmi3Instance own, fmi3FMUState *state) { return keep_state(own, state); }
+EXPORT fmi3Status fmi3SetFMUState(fmi3Instance own, fmi3FMUState state) { return restore_state(own, state); }
+EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance own, fmi3FMUState *state) { (void)own; free(*state); *state = NULL; return OK; }
 
 EXPORT fmi3Status fmi3SerializedFMUStateSize(fmi3Instance own, fmi3FMUState state, size_t *size)
 {
@@ -175,19 +108,13 @@ EXPORT fmi3Status fmi3SerializedFMUStateSize(fmi3Instance own, fmi3FMUState stat
 EXPORT fmi3Status fmi3SerializeFMUState(fmi3Instance own, fmi3FMUState state, uint8_t bytes[], size_t size)
 {
     (void)own;
-    if (size < sizeof(instance)) return ERROR;
-    memcpy(bytes, state, sizeof(instance));
-    return OK;
+    return write_state(state, bytes, size);
 }
 
 EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance own, const uint8_t bytes[], size_t size, fmi3FMUState *state)
 {
     (void)own;
-    if (size < sizeof(instance)) return ERROR;
-    if (!*state) *state = malloc(sizeof(instance));
-    if (!*state) return ERROR;
-    memcpy(*state, bytes, sizeof(instance));
-    return OK;
+    return read_state(bytes, size, state);
 }
 
 /* Variables of other types there are none, and no derivatives, dependencies, clocks or events. */

@@ -1,0 +1,203 @@
+//! Descriptions of a unit.
+
+use std::fmt::Write;
+
+use symdiff::c_number;
+
+use super::Unit;
+use crate::grammar::unit;
+
+/// Type of annotations.
+const ANNOTATION: &str = "org.mbint.parameters";
+
+/// Attributes of a variable that may change, and of one that is set before the motion.
+const INPUT: &str = "causality=\"input\" variability=\"continuous\"";
+const PARAMETER: &str = "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"";
+
+/// `modelDescription.xml` of 2.0.
+pub fn of_two(own: &Unit, token: &str) -> String {
+    let (name, step) = (escaped(own.name), c_number(own.step()));
+    let (mut variables, mut parameters, mut structure) = (String::new(), String::new(), String::new());
+    let time = time_name(own);
+    let first = own.outputs.len() + 1;
+    for (reference, (parameter, is_input)) in (first..).zip(own.parameters.iter().zip(own.inputs)) {
+        let _ = writeln!(
+            parameters,
+            "    <ScalarVariable name=\"{}\" valueReference=\"{reference}\" {}><Real start=\"{}\"{}/></ScalarVariable>",
+            escaped(&parameter_name(own, &parameter.name)),
+            if *is_input { INPUT } else { PARAMETER },
+            c_number(parameter.nominal),
+            unit_attribute(&parameter.unit)
+        );
+    }
+    for (reference, (name, unit)) in (1..).zip(own.outputs) {
+        let _ = writeln!(
+            variables,
+            "    <ScalarVariable name=\"{}\" valueReference=\"{reference}\" causality=\"output\" variability=\"continuous\" initial=\"calculated\"><Real{}/></ScalarVariable>",
+            escaped(name),
+            unit_attribute(unit)
+        );
+        // The time is the first variable.
+        let _ = writeln!(structure, "      <Unknown index=\"{}\"/>", reference + 1);
+    }
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{name}\" guid=\"{token}\" generationTool=\"mbint {}\" license=\"that of the model\" numberOfEventIndicators=\"0\">
+  <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\" canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\">
+    <SourceFiles>
+      <File name=\"{name}.c\"/>
+      <File name=\"fmi2.c\"/>
+    </SourceFiles>
+  </CoSimulation>
+  <UnitDefinitions>
+{}  </UnitDefinitions>
+  <DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>
+  <VendorAnnotations>
+    <Tool name=\"mbint\">
+      <Parameters step=\"{step}\">
+{}      </Parameters>
+    </Tool>
+  </VendorAnnotations>
+  <ModelVariables>
+    <ScalarVariable name=\"{time}\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"><Real unit=\"s\"/></ScalarVariable>
+{variables}{parameters}  </ModelVariables>
+  <ModelStructure>
+    <Outputs>
+{structure}    </Outputs>
+    <InitialUnknowns>
+{structure}    </InitialUnknowns>
+  </ModelStructure>
+</fmiModelDescription>
+",
+        env!("CARGO_PKG_VERSION"),
+        own.prefix,
+        units(own),
+        c_number(own.schedule.end()),
+        c_number(own.schedule.output_step),
+        intervals(own),
+    )
+}
+
+/// `modelDescription.xml` of 3.0.
+pub fn of_three(own: &Unit, token: &str) -> String {
+    let (name, step) = (escaped(own.name), c_number(own.step()));
+    let (mut variables, mut structure, mut unknowns) = (String::new(), String::new(), String::new());
+    for (reference, (name, unit)) in (1..).zip(own.outputs) {
+        let _ = writeln!(
+            variables,
+            "    <Float64 name=\"{}\" valueReference=\"{reference}\" causality=\"output\" variability=\"continuous\" initial=\"calculated\"{}/>",
+            escaped(name),
+            unit_attribute(unit)
+        );
+        let _ = writeln!(structure, "    <Output valueReference=\"{reference}\"/>");
+        let _ = writeln!(unknowns, "    <InitialUnknown valueReference=\"{reference}\"/>");
+    }
+    let first = own.outputs.len() + 1;
+    for (reference, (parameter, is_input)) in (first..).zip(own.parameters.iter().zip(own.inputs)) {
+        let _ = writeln!(
+            variables,
+            "    <Float64 name=\"{}\" valueReference=\"{reference}\" {} start=\"{}\"{}/>",
+            escaped(&parameter_name(own, &parameter.name)),
+            if *is_input { INPUT } else { PARAMETER },
+            c_number(parameter.nominal),
+            unit_attribute(&parameter.unit)
+        );
+    }
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\" generationTool=\"mbint {}\" license=\"that of the model\">
+  <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\" canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" fixedInternalStepSize=\"{step}\"/>
+  <UnitDefinitions>
+{}  </UnitDefinitions>
+  <DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>
+  <ModelVariables>
+    <Float64 name=\"{}\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\" unit=\"s\"/>
+{variables}  </ModelVariables>
+  <ModelStructure>
+{structure}{unknowns}  </ModelStructure>
+  <Annotations>
+    <Annotation type=\"{ANNOTATION}\">
+{}    </Annotation>
+  </Annotations>
+</fmiModelDescription>
+",
+        env!("CARGO_PKG_VERSION"),
+        own.prefix,
+        units(own),
+        c_number(own.schedule.end()),
+        c_number(own.schedule.output_step),
+        time_name(own),
+        intervals(own),
+    )
+}
+
+/// `buildDescription.xml` of 3.0.
+pub fn of_build(own: &Unit) -> String {
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<fmiBuildDescription fmiVersion=\"3.0\">
+  <BuildConfiguration modelIdentifier=\"{}\">
+    <SourceFileSet language=\"C99\">
+      <SourceFile name=\"{name}.c\"/>
+      <SourceFile name=\"fmi3.c\"/>
+    </SourceFileSet>
+    <Library name=\"m\"/>
+  </BuildConfiguration>
+</fmiBuildDescription>
+",
+        own.prefix,
+        name = escaped(own.name),
+    )
+}
+
+/// Name of a parameter, which no output may have.
+fn parameter_name(own: &Unit, name: &str) -> String {
+    let is_taken = own.outputs.iter().any(|(output, _)| *output == name) || name == "time";
+    if is_taken { format!("parameter {name}") } else { name.to_owned() }
+}
+
+/// Name of the time, which no output may have.
+fn time_name(own: &Unit) -> &'static str {
+    let is_taken = own.outputs.iter().any(|(name, _)| *name == "time");
+    if is_taken { "independent time" } else { "time" }
+}
+
+fn unit_attribute(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" unit=\"{}\"", escaped(unit)) }
+}
+
+/// Definitions of all units by powers of base units.
+fn units(own: &Unit) -> String {
+    let mut names: Vec<&str> = own.outputs.iter().map(|(_, unit)| *unit).filter(|unit| !unit.is_empty()).collect();
+    names.extend(own.parameters.iter().map(|own| own.unit.as_str()).filter(|unit| !unit.is_empty()));
+    names.push("s");
+    names.sort_unstable();
+    names.dedup();
+    let definition = |name: &str| {
+        let Ok(found) = unit::Unit::parse(name) else { return format!("    <Unit name=\"{}\"/>\n", escaped(name)) };
+        let powers = ["m", "kg", "s", "rad"].iter().zip(found.dimension.powers()).filter(|(_, power)| *power != 0);
+        let powers: String = powers.map(|(base, power)| format!(" {base}=\"{power}\"")).collect();
+        format!("    <Unit name=\"{}\"><BaseUnit{powers}/></Unit>\n", escaped(name))
+    };
+    names.into_iter().map(definition).collect()
+}
+
+/// Intervals of the uncertain parameters, for tools that know them: in SI.
+fn intervals(own: &Unit) -> String {
+    let line = |own: &crate::assemble::UncertainParameter| {
+        format!(
+            "      <Parameter name=\"{}\" nominal=\"{}\" min=\"{}\" max=\"{}\"{}/>\n",
+            escaped(&own.name),
+            c_number(own.nominal),
+            c_number(own.lower),
+            c_number(own.upper),
+            unit_attribute(&own.unit)
+        )
+    };
+    own.parameters.iter().map(line).collect()
+}
+
+/// A text of XML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

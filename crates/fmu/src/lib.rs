@@ -1,0 +1,15 @@
+//! Units of FMI 2.0 and 3.0 (FMUs): the file and its description (`unit`), its library (`native`), and answers to
+//! points, by co-simulation or by integrating its equations (`run`).
+//!
+//! A unit is native code that may do anything, and may end its process. So the room `run` is for a process of its own,
+//! which answers in the JSON lines of a black box. Standard: <https://fmi-standard.org>, 2.0.5 and 3.0.2.
+
+#![deny(unsafe_code)]
+
+mod native;
+mod run;
+mod unit;
+
+pub use native::Fault;
+pub use run::{Access, STEP, Task, Unpacked, answer};
+pub use unit::{BaseUnit, Interface, Kind, NotRead, Unit, Variable, Version, digest};

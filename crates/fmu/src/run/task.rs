@@ -1,0 +1,90 @@
+//! What a process is asked of a unit.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use tempfile::TempDir;
+
+use crate::unit::{Interface, Kind, NotRead, unpack};
+
+/// The name among parameters under which the length of steps comes, s; no parameter can have it.
+pub const STEP: &str = "length of a step";
+
+/// File of the task in the folder of an unpacked unit.
+const FILE: &str = "mbint-task.json";
+
+/// A variable of the unit, and how its numbers become those of SI.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Access {
+    /// Its name in points and answers.
+    pub name: String,
+    /// Its type.
+    pub kind: Kind,
+    /// Its number in the unit.
+    pub reference: u32,
+    /// What one of its unit is in SI.
+    pub factor: f64,
+    /// What nothing of its unit is in SI.
+    pub offset: f64,
+}
+
+impl Access {
+    /// A value of the unit, in SI.
+    pub fn to_si(&self, value: f64) -> f64 {
+        value * self.factor + self.offset
+    }
+
+    /// A value in SI, in the variable's unit.
+    pub fn of_si(&self, value: f64) -> f64 {
+        (value - self.offset) / self.factor
+    }
+}
+
+/// What a process is asked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// How the unit moves on.
+    pub interface: Interface,
+    /// Variables that are set.
+    pub parameters: Vec<Access>,
+    /// Variables that are wanted.
+    pub outputs: Vec<Access>,
+}
+
+/// A unit in a folder of its own, with its task; the folder goes with it.
+#[derive(Debug)]
+pub struct Unpacked(TempDir);
+
+impl Unpacked {
+    /// Unpacks a unit.
+    ///
+    /// # Errors
+    /// Where it cannot be read, or there is no folder for it.
+    pub fn new(unit: &Path, task: &Task) -> Result<Self, NotRead> {
+        let folder = tempfile::Builder::new().prefix("mbint-fmu-").tempdir()?;
+        unpack(unit, folder.path())?;
+        let text = serde_json::to_string(task).map_err(std::io::Error::from)?;
+        fs::write(folder.path().join(FILE), text)?;
+        Ok(Self(folder))
+    }
+
+    /// Its folder.
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl Task {
+    /// The task in the folder of an unpacked unit.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn read(folder: &Path) -> std::io::Result<Self> {
+        Ok(serde_json::from_str(&fs::read_to_string(folder.join(FILE))?)?)
+    }
+}
+
+/// Values of a point by names.
+pub type Values = BTreeMap<String, f64>;

@@ -1,0 +1,37 @@
+//! The file of a unit, and its `modelDescription.xml`.
+
+mod archive;
+mod description;
+mod variable;
+
+pub use archive::{digest, unpack};
+pub use description::{Interface, Unit, Version};
+pub use variable::{BaseUnit, Kind, Variable};
+
+/// Why a file is not read as a unit.
+#[derive(Debug, thiserror::Error)]
+pub enum NotRead {
+    /// It cannot be read.
+    #[error("{0}")]
+    File(#[from] std::io::Error),
+    /// It is no archive, or a damaged one.
+    #[error("it is not a zip archive: {0}")]
+    Archive(#[from] rawzip::Error),
+    /// An entry cannot be read.
+    #[error("`{name}` in it cannot be read: {why}")]
+    Entry {
+        /// Path in the archive.
+        name: String,
+        /// The reason.
+        why: String,
+    },
+    /// The archive has no description.
+    #[error("it has no `modelDescription.xml`")]
+    NoDescription,
+    /// The description is not XML.
+    #[error("`modelDescription.xml`: {0}")]
+    Xml(#[from] roxmltree::Error),
+    /// The description lacks something, or has something else in its place.
+    #[error("`modelDescription.xml`: {0}")]
+    Description(String),
+}
