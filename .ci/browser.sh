@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Reports in a browser: their scripts' types, then tests in Chromium. `.ci/browser.sh pictures` makes the book's
 # pictures of reports again instead. Needs node and npm; Chromium and two packages of npm are installed where they are
-# missing. MBINT is the program (target/debug/mbint, built here, by default), CHROMIUM the browser.
+# missing. MBINT is the program (target/release/mbint, built here, by default), CHROMIUM the browser.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -20,8 +20,8 @@ export CHROMIUM
 
 tests/browser/node_modules/.bin/tsc -p crates/export/src/export/report
 if [ -z "${MBINT:-}" ]; then
-    cargo build --locked
-    MBINT=target/debug/mbint
+    cargo build --locked --release
+    MBINT=target/release/mbint
 fi
 REPORTS=$(mktemp -d)
 export REPORTS

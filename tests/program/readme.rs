@@ -23,7 +23,7 @@ fn the_models_are_right() {
 #[test]
 fn the_first_screen_has_the_two_commands() {
     let first = blocks("sh").next().unwrap();
-    assert_eq!(first, "cargo run --release -- run models/slider_crank.yaml\ncargo test\n");
+    assert_eq!(first, "cargo run --release -- run models/slider_crank.yaml\ncargo test --release\n");
     let before = README.split("cargo test").next().unwrap();
     assert!(before.lines().count() < 24, "they have left the first screen");
 }
