@@ -218,6 +218,7 @@ mod tests {
             black_box: None,
             parameters: vec![],
             assemblies: vec![],
+            chains: Vec::new(),
             methods: vec![],
             errors: vec![],
             contributions: vec![],

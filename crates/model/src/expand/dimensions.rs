@@ -146,7 +146,7 @@ fn role(report: &mut Report, fields: &Fields) -> Option<Role> {
 fn without_faces(entry: &Entry) -> Node {
     let Value::Mapping(entries) = &entry.value.value else { return entry.value.clone() };
     let is_formula = entries.iter().any(|entry| entry.key == "formula");
-    let is_left = |key: &str| !matches!(key, "from" | "to") && !(is_formula && key == "description");
+    let is_left = |key: &str| !(matches!(key, "from" | "to") || is_formula && key == "description");
     let left = entries.iter().filter(|entry| is_left(&entry.key)).cloned().collect();
     Node { span: entry.value.span.clone(), value: Value::Mapping(left) }
 }

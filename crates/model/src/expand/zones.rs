@@ -267,15 +267,16 @@ impl Writer<'_> {
     }
 }
 
-/// The disc of radius 1, by a radius and a turn.
+/// The disc of radius 1, by a radius and a turn. It begins where neither coordinate is 0, nor their sum or difference:
+/// what is 0 at the first nodes of a grid is not looked at again.
 fn disc(u: &str, v: &str) -> [String; 2] {
-    [format!("(1 + {u})/2*cos(pi*{v})"), format!("(1 + {u})/2*sin(pi*{v})")]
+    [format!("(1 + {u})/2*cos(pi*{v} + 1)"), format!("(1 + {u})/2*sin(pi*{v} + 1)")]
 }
 
 /// The ball of radius 1: a radius, an elevation from the plane of x and y, and a turn about z.
 fn ball(u: &str, v: &str, w: &str) -> [String; 3] {
     let across = format!("(1 + {u})/2*cos(pi/2*{v})");
-    [format!("{across}*cos(pi*{w})"), format!("{across}*sin(pi*{w})"), format!("(1 + {u})/2*sin(pi/2*{v})")]
+    [format!("{across}*cos(pi*{w} + 1)"), format!("{across}*sin(pi*{w} + 1)"), format!("(1 + {u})/2*sin(pi/2*{v})")]
 }
 
 /// Deviations in an ellipse or an ellipsoid, by their names.
