@@ -328,10 +328,13 @@ fn studies_of_shards_are_those_of_a_run() {
     let place = place("right", "bounds: { chebyshev: { order: 3 } }");
     place.run("run spring.yaml -o alone", 0);
     place.run("plan spring.yaml -o study --at-once 0", 0);
-    for _ in 0..4 {
+    let mut simulated = 0;
+    for _ in 0..8 {
         let shards = fs::read_to_string(place.path().join("study/plan.json")).unwrap();
         let plan: Value = serde_json::from_str(&shards).unwrap();
-        for index in 0..plan["shards"].as_array().unwrap().len() {
+        let count = plan["shards"].as_array().unwrap().len();
+        simulated += count;
+        for index in 0..count {
             place.run(&format!("shard study --index {index}"), 0);
         }
         if place.command("merge study -o merged").output().unwrap().status.code() != Some(75) {
@@ -341,4 +344,5 @@ fn studies_of_shards_are_those_of_a_run() {
     let [alone, merged] =
         ["alone", "merged"].map(|folder| fs::read_to_string(place.path().join(folder).join("bounds.csv")).unwrap());
     assert_eq!(alone, merged);
+    assert!(simulated > 0, "the program was asked by shards");
 }

@@ -31,8 +31,8 @@ grammar! {
     BlackBoxFile is "`black_box`" {
         /// The program and its arguments, one by one: no shell reads them.
         command: Option<Vec<String>>,
-        /// A unit of FMI 2.0 or 3.0, instead of a command: a file in the model's folder or below. It is native code, and
-        /// running it is trusting it.
+        /// A unit of FMI 2.0 or 3.0, instead of a command: a file in the model's folder or below. It is native code,
+        /// and running it is trusting it.
         fmu: Option<String>,
         /// How a unit moves on; by default by co-simulation, where it has that.
         interface: Option<InterfaceName>,

@@ -20,8 +20,8 @@ pub enum CodeError {
     None(#[from] NoCode),
 }
 
-/// C99 that repeats a model's nominal motion: its programs under the steps of a run, all subsystems as one. `inputs` are
-/// parameters that may change during the motion, `version` is that of its unit of FMI.
+/// C99 that repeats a model's nominal motion: its programs under the steps of a run, all subsystems as one. `inputs`
+/// are parameters that may change during the motion, `version` is that of its unit of FMI.
 ///
 /// # Errors
 /// Where the model has no motion, where its steps are not fixed ones of HHT-I3, and where an input cannot

@@ -234,6 +234,9 @@ fn deliver(
 
 /// What a task is expected to take on one core, s.
 fn seconds_of(motions: &Motions, task: &Task) -> f64 {
+    if motions.source.is_some() {
+        return task.samples.len() as f64 * TUNING.answer_seconds;
+    }
     let schedule = motions.steps().schedule;
     let steps = (schedule.steps_before(schedule.rows.saturating_sub(1)) * schedule.integration.steps()) as f64;
     task.samples.len() as f64 * steps * motions.instructions_of_step() * TUNING.instruction_seconds

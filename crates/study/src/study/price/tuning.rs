@@ -10,6 +10,8 @@ tuning! {
         /// Time of an instruction of one sample, s: a processor of today with all its lanes, so that a refused study
         /// does take so long.
         instruction_seconds: f64 = 2e-10, moves "which runs ask before they begin";
+        /// Time of a point that a program answers, s: it is not known, and shards are to be cut.
+        answer_seconds: f64 = 1.0, moves "the size of shards";
         /// Corrections of a step after the first one.
         further_corrections: f64 = 1.0, moves "which runs ask before they begin";
         /// Most simulations that run unasked.
