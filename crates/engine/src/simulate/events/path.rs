@@ -334,6 +334,15 @@ impl<'s> Path<'s> {
         (0..count).filter_map(&mut found).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// Whether it can be followed beyond a time.
+    pub fn reaches(mut self, time: f64) -> bool {
+        while self.run.time < time {
+            let Ok(step) = self.step(f64::INFINITY) else { return false };
+            self.go_on(step);
+        }
+        true
+    }
+
     /// Prepares [`interpolate`](Self::interpolate) in the step that was taken.
     pub fn prepare_dense(&mut self, step: PathStep) {
         self.run.prepare_dense(&mut self.closure, step.end);

@@ -48,7 +48,12 @@ pub fn segments_of(
     let path = |sample: &Sample| Path::start(simulator, program, sample, (duration, tolerance));
     let follow = |sample: &Sample| {
         let followed = Followed::to(path(sample).ok()?, REACH * duration);
-        is_worthwhile(followed.known_to, followed.events.len(), duration).then_some(followed)
+        // Where words end, each sample goes on alone.
+        let goes_on = || {
+            is_worthwhile(followed.known_to, followed.events.len(), duration)
+                && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
+        };
+        (followed.known_to >= duration || goes_on()).then_some(followed)
     };
     let Some((first, others)) = samples.split_first() else { return Ok(None) };
     let nominal = path(first)?;
@@ -58,7 +63,7 @@ pub fn segments_of(
         // What is lost without an event is stiff, and a single motion has no bounds to gain.
         let has_bounds = !is_whole && !first.events.is_empty() && samples.len() > 1;
         let goes_on = has_bounds && is_worthwhile(first.known_to, first.events.len(), duration);
-        if !goes_on || Followed::to(nominal.behind_words(), duration).known_to < duration {
+        if !goes_on || !nominal.behind_words().reaches(duration) {
             return Ok(None);
         }
     }

@@ -122,8 +122,7 @@ fn grown(ensemble: &dyn Ensemble, goal: &Goal, validation: &Validation) -> Resul
             let result = finished(composed(ensemble, &pieces, Some(&surrogate), validation)?, count, &pieces);
             let excess = excess(&result, goal);
             best = Some(MethodResult { order: Some(growth.orders()), ..result });
-            // Written so that an unknown excess ends it, too.
-            if is_last || !(excess > 1.0) {
+            if is_last || excess <= 1.0 || excess.is_nan() {
                 break;
             }
             last = Some((excess, error));
