@@ -58,8 +58,6 @@ pub enum WordsEnd {
     MoreWords,
     /// A sample meets more events than are followed.
     MoreEvents,
-    /// A sample takes more steps than motions that are worth cutting.
-    MoreSteps,
 }
 
 /// The words of a box.

@@ -50,8 +50,7 @@ pub fn segments_of(
         let followed = Followed::to(path(sample).ok()?, REACH * duration);
         // Where words end, each sample goes on alone.
         let goes_on = || {
-            is_worthwhile(followed.known_to, followed.events.len(), duration)
-                && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
+            followed.events.len() >= MOST_EVENTS && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
         };
         (followed.known_to >= duration || goes_on()).then_some(followed)
     };
@@ -60,10 +59,9 @@ pub fn segments_of(
     let is_whole = is_cut_as_a_whole(simulator);
     let first = Followed::to(path(first)?, REACH * duration);
     if first.known_to < duration {
-        // What is lost without an event is stiff, and a single motion has no bounds to gain.
-        let has_bounds = !is_whole && !first.events.is_empty() && samples.len() > 1;
-        let goes_on = has_bounds && is_worthwhile(first.known_to, first.events.len(), duration);
-        if !goes_on || !nominal.behind_words().reaches(duration) {
+        // A single motion has no bounds to gain.
+        let has_bounds = !is_whole && first.events.len() >= MOST_EVENTS && samples.len() > 1;
+        if !has_bounds || !nominal.behind_words().reaches(duration) {
             return Ok(None);
         }
     }
@@ -137,8 +135,8 @@ fn groups(all: &[Followed], end: f64) -> Vec<Vec<usize>> {
 /// Words up to a time, why they end there if they do not last to the duration, and the indices of their samples.
 type Found = (f64, Option<WordsEnd>, Vec<(Word, Vec<usize>)>);
 
-/// The words up to the duration; where there are more than the budget, or a sample cannot be followed any more, up to
-/// the last event that all have, before which there are no more. `None` where that is too early.
+/// The words up to the duration; where there are more than the budget, or a sample meets more events than are followed,
+/// up to the last event that all have, before which there are no more. `None` where that is too early.
 fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     let members = |group: &[usize]| group.iter().map(|&sample| &all[sample]).collect::<Vec<&Followed>>();
     let shortest = all.iter().min_by(|a, b| a.known_to.total_cmp(&b.known_to))?;
@@ -157,11 +155,7 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     };
     let (count, groups) = (1..=fewest).rev().find_map(of_count)?;
     let horizon = all.iter().map(|followed| followed.events[count - 1].1).fold(duration, f64::min);
-    let end = match () {
-        () if is_whole || count < fewest => WordsEnd::MoreWords,
-        () if shortest.events.len() >= MOST_EVENTS => WordsEnd::MoreEvents,
-        () => WordsEnd::MoreSteps,
-    };
+    let end = if is_whole || count < fewest { WordsEnd::MoreWords } else { WordsEnd::MoreEvents };
     let word = |group: Vec<usize>| Some((of_extent(&members(&group), count, None, horizon)?, group));
     let words = groups.into_iter().map(word).collect::<Option<_>>()?;
     is_worthwhile(horizon, count, duration).then_some((horizon, Some(end), words))
@@ -279,12 +273,12 @@ mod tests {
         assert_eq!(groups(&all, 1.0), [vec![0, 2], vec![1], vec![3]]);
     }
 
-    /// A sample that cannot be followed to the end ends the time at the last event that all have.
+    /// A sample that meets more events than are followed ends the time at the last event that all have.
     #[test]
-    fn a_motion_that_takes_too_many_steps_ends_the_time() {
+    fn a_motion_of_too_many_events_ends_the_time() {
         let (long, short) = (followed(&[0.4, 0.7, 0.9]), Followed { known_to: 0.8, ..followed(&[0.45, 0.75]) });
         let (horizon, end, words) = within_budget(&[long, short], 1.0).unwrap();
-        assert_eq!((horizon, end, words.len()), (0.7, Some(WordsEnd::MoreSteps), 1));
+        assert_eq!((horizon, end, words.len()), (0.7, Some(WordsEnd::MoreEvents), 1));
         assert_eq!(words[0].0.events.len(), 2);
     }
 

@@ -68,7 +68,6 @@ pub fn events_followed(schedule: &Schedule) -> Option<EventsFollowed> {
     let why = match segments.end? {
         WordsEnd::MoreWords => "parameter values meet more sequences of events than are followed",
         WordsEnd::MoreEvents => "a sample meets more events than are followed",
-        WordsEnd::MoreSteps => "a sample takes more steps than are followed",
     };
     Some(EventsFollowed { until: segments.horizon, why: why.to_owned() })
 }
