@@ -10,7 +10,8 @@ use super::verdicts;
 use crate::export::rounded as rounded_number;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{
-    AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, EventSummary, ParameterSummary, Summary, TooDeep,
+    AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, EventSummary, EventsFollowed, ParameterSummary,
+    Summary, TooDeep,
 };
 use crate::simulate::is_one_number;
 
@@ -129,6 +130,8 @@ pub(super) fn unreliable(summary: &Summary) -> Option<String> {
     let help = if summary.unmet_switch.is_some_and(is_cause) {
         "some values meet a contact, a stop or a kink that no sample meets: narrow the intervals until all values meet it or none does, \
          or divide them where that changes (`--set`)"
+    } else if summary.events_followed.as_ref().is_some_and(|events| events.until <= *from) {
+        "events are not followed further: narrow the intervals, or shorten the duration"
     } else if summary.passed_force.is_some_and(is_cause) {
         "fixed steps pass over what a force does in time or space: shorten the step, or let `simulation: { tolerance: … }` choose it"
     } else {
@@ -198,6 +201,9 @@ fn singular(summary: &Summary) -> String {
         let at: Vec<String> = grazed_at.iter().filter_map(at).collect();
         let at = if at.is_empty() { String::new() } else { format!("; it is grazed at {}", at.join(", or ")) };
         text += &format!("  {event} switches in {met} of {samples} samples{at}\n");
+    }
+    if let Some(EventsFollowed { until, why }) = &summary.events_followed {
+        text += &format!("  events are followed to {} s: {why}\n", digits(*until));
     }
     if !summary.undetermined_outputs.is_empty() {
         text += &format!(
@@ -332,6 +338,7 @@ mod tests {
             singular_configurations: vec![],
             damped_mode: None,
             events: Vec::new(),
+            events_followed: None,
             unmet_switch: None,
             passed_force: None,
             too_deep: None,

@@ -83,6 +83,15 @@ fn over_box(line: usize, t: f64) -> [f64; 2] {
     range(points.map(|(a, b)| elastic(1.0 + 0.02 * a, 1e5 * (1.0 + 0.05 * b), t)[line]))
 }
 
+/// Widens ranges of height and velocity, row by row, to those of a motion.
+fn widen(truths: &mut [[[f64; 2]; 2]], motion: Vec<[f64; 2]>) {
+    for (truth, state) in truths.iter_mut().zip(motion) {
+        for ([lower, upper], value) in truth.iter_mut().zip(state) {
+            (*lower, *upper) = (lower.min(value), upper.max(value));
+        }
+    }
+}
+
 #[test]
 fn bounds_of_an_elastic_ball_are_those_of_its_closed_form() {
     let (bounds, summary) = run_methods(&read(ELASTIC), None);
@@ -103,11 +112,7 @@ fn a_dissipating_contact_is_as_another_integrator_has_it() {
         let (height, d) = (1.0 + 0.02 * a, 0.1 * (1.0 + 0.05 * b));
         let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + 1e5 * (-y).max(0.0) * (1.0 - d * v)];
         let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-12);
-        for (truth, state) in truths.iter_mut().zip(motion) {
-            for ([lower, upper], value) in truth.iter_mut().zip(state) {
-                (*lower, *upper) = (lower.min(value), upper.max(value));
-            }
-        }
+        widen(&mut truths, motion);
     }
     let row = |t: f64| (t / 0.02).round() as usize;
     // 25 samples need not be at the ends.
@@ -344,4 +349,72 @@ fn a_single_motion_takes_few_steps() {
 fn a_scheme_that_is_asked_for_is_taken() {
     let (_, summary) = run_methods(&read(ELASTIC).by_hht(), None);
     assert!(!integrated(&summary, "chebyshev").0);
+}
+
+/// A ball on a floor whose losses grow with the speed: it comes to rest, and rests for most of the time.
+#[test]
+fn a_ball_that_comes_to_rest_is_followed_to_the_end() {
+    let text = BOUNCE.replace("value: 1, unit: m, tolerance: 2%", "value: 10, unit: m, tolerance: 1%");
+    let text = text.replace("d: { value: 0.1, unit: s/m, tolerance: 5% }", "d: 0.5 s/m");
+    let text = text.replace("duration: 2, step: 1e-4, output_step: 0.02", "duration: 20, step: 1e-3, output_step: 0.1");
+    let (bounds, summary) = run_methods(&read(&text), None);
+    assert!(integrated(&summary, "chebyshev").0 && summary.events_followed.is_none());
+    let mut truths = vec![[[f64::INFINITY, f64::NEG_INFINITY]; 2]; bounds.times.len()];
+    for height in [9.9, 9.95, 10.0, 10.05, 10.1] {
+        let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + 1e5 * (-y).max(0.0) * (1.0 - 0.5 * v).max(0.0)];
+        let motion = dormand_prince(rate, [height, 0.0], 0.1, bounds.times.len(), 1e-13);
+        widen(&mut truths, motion);
+    }
+    let row = |t: f64| (t / 0.1).round() as usize;
+    assert_true(&bounds, "v", 1e-4, f64::INFINITY, |t| truths[row(t)][1]);
+    assert_true(&bounds, "y", 1e-5, f64::INFINITY, |t| truths[row(t)][0]);
+}
+
+/// A ball that bounces more often than events are followed: bounds are sharp up to the last of them, and the summary
+/// tells when that is.
+#[test]
+fn bounces_without_end_are_flagged_from_a_time() {
+    let text = ELASTIC.replace("K: { value: 1e5, unit: N/m, tolerance: 5% }", "K: 1e5 N/m");
+    let text = text.replace("order: 3", "order: 5");
+    let text = text.replace("duration: 2, step: 1e-3, output_step: 0.02", "duration: 80, step: 1e-3, output_step: 1");
+    let (bounds, summary) = run_methods(&read(&text), None);
+    let followed = summary.events_followed.as_ref().unwrap();
+    assert!(followed.why.contains("more events"), "{}", followed.why);
+    // 64 contacts, in the sample that falls from 0.98 m.
+    let (fall, omega) = ((2.0 * 0.98 / 9.81_f64).sqrt(), 1e5_f64.sqrt());
+    let contact = (PI + 2.0 * (9.81 / (9.81 * fall * omega)).atan()) / omega;
+    assert!((followed.until - (127.0 * fall + 64.0 * contact)).abs() < 1e-6, "{}", followed.until);
+    let band = band(output(&bounds, "v"), Method::Chebyshev);
+    for (row, &t) in bounds.times.iter().enumerate() {
+        assert_eq!(band.error.unresolved[row], t > followed.until, "at {t}: {:?}", band.error.total[row]);
+        let heights = (0..=400).map(|place| 1.0 + 0.02 * (f64::from(place) / 200.0 - 1.0));
+        let [lower, upper] = range(heights.map(|height| elastic(height, 1e5, t)[1]));
+        let error = band.error.total[row] + 1e-9;
+        let is_held = band.lower[row] - lower <= error && upper - band.upper[row] <= error;
+        assert!(is_held || t > followed.until, "at {t}: {error:e}");
+    }
+}
+
+/// Four parameters, of which the height matters most: terms are added where most is expected.
+#[test]
+fn four_parameters_take_few_simulations() {
+    let text = BOUNCE.replace("tolerance: 2%", "tolerance: 5%").replace("mass: 1,", "mass: m,");
+    let four = "K: { value: 1e5, unit: N/m, tolerance: 5% }, m: { value: 1, unit: kg, tolerance: 5% }, h0:";
+    let text = text.replace("h0: {", &format!("{four} {{")).replace("stiffness: 1e5", "stiffness: K");
+    let text = text.replace("chebyshev: { order: 3 }", "tolerance: 1e-4");
+    let (bounds, summary) = run_methods(&read(&text), None);
+    let (is_cut, simulations, _) = integrated(&summary, "chebyshev");
+    assert!(is_cut && simulations <= 100, "{simulations}");
+    let mut truths = vec![[[f64::INFINITY, f64::NEG_INFINITY]; 2]; bounds.times.len()];
+    // All corners, and the middle.
+    for corner in 0..17 {
+        let side = |bit: usize| if corner == 16 { 1.0 } else { 0.95 + 0.1 * f64::from(corner >> bit & 1) };
+        let (height, d, stiffness) = (side(0), 0.1 * side(1), 1e5 * side(2) / side(3));
+        let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + stiffness * (-y).max(0.0) * (1.0 - d * v)];
+        let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-11);
+        widen(&mut truths, motion);
+    }
+    let row = |t: f64| (t / 0.02).round() as usize;
+    assert_true(&bounds, "v", 1e-3, f64::INFINITY, |t| truths[row(t)][1]);
+    assert_true(&bounds, "y", 1e-3, f64::INFINITY, |t| truths[row(t)][0]);
 }

@@ -56,7 +56,7 @@ pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetBox, JetRun, Observed, Stop};
 pub use error::SimulationError;
-pub use events::{Boundary, SegmentRun, segment_jets, segments_of};
+pub use events::{Boundary, SegmentRun, WordsEnd, segment_jets, segments_of};
 pub use explicit::{ExplicitJets, ExplicitObstacle, explicit_schedule};
 pub use integrator::{Integrator, JetIntegrator};
 pub use integrators::{integrator, jet_integrator};

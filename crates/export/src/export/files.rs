@@ -207,6 +207,7 @@ mod tests {
             singular_configurations: vec![],
             damped_mode: None,
             events: Vec::new(),
+            events_followed: None,
             unmet_switch: None,
             passed_force: None,
             too_deep: None,

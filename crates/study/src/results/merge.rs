@@ -57,6 +57,9 @@ pub fn summary_of_subsystems(subsystems: Vec<Summary>) -> Summary {
         whole.shared_start.extend(other.shared_start);
         whole.singular_configurations.extend(other.singular_configurations);
         whole.damped_mode = whole.damped_mode.or(other.damped_mode);
+        whole.events.extend(other.events);
+        let followed = whole.events_followed.into_iter().chain(other.events_followed);
+        whole.events_followed = followed.min_by(|a, b| a.until.total_cmp(&b.until));
         whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
         whole.passed_force = whole.passed_force.into_iter().chain(other.passed_force).reduce(f64::min);
         whole.too_deep = TooDeep::first(whole.too_deep.iter().chain(&other.too_deep));

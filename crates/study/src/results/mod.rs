@@ -49,6 +49,6 @@ pub use statistics::{
 };
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
-    AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, EventSummary, MethodSummary, ParameterSummary,
-    PieceSummary, SingularSummary, SubsystemSummary, Summary,
+    AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, EventSummary, EventsFollowed, MethodSummary,
+    ParameterSummary, PieceSummary, SingularSummary, SubsystemSummary, Summary,
 };

@@ -46,6 +46,9 @@ pub struct Summary {
     /// Events that a part of the box meets: bounds are divided where one is just grazed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventSummary>,
+    /// The time up to which events are followed, where that is before the end of the rows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub events_followed: Option<EventsFollowed>,
     /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unmet_switch: Option<f64>,
@@ -309,6 +312,15 @@ impl ErrorSummary {
         };
         bounds.outputs.iter().flat_map(|output| output.bands.iter().map(move |band| of_band(output, band))).collect()
     }
+}
+
+/// The end of the motions that are cut at their events: rows from there on are ranges of simulated values.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EventsFollowed {
+    /// s
+    pub until: f64,
+    /// Reason why they are not followed further.
+    pub why: String,
 }
 
 /// An event that a part of the box meets.

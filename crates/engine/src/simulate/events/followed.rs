@@ -7,7 +7,7 @@ use super::segments::{Event, Segments, Word};
 pub(super) const REACH: f64 = 1.25;
 
 /// Most events of a motion.
-const MOST_EVENTS: usize = 128;
+pub(super) const MOST_EVENTS: usize = 128;
 
 /// The events of one sample, and the ends of its steps between them.
 #[derive(Clone, Debug, Default)]

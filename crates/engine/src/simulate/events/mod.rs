@@ -24,5 +24,5 @@ mod word;
 
 pub use jets::segment_jets;
 pub use run::SegmentRun;
-pub use segments::Boundary;
+pub use segments::{Boundary, WordsEnd};
 pub use word::segments_of;

@@ -14,6 +14,7 @@ use crate::simulate::ensemble::RowClosure;
 use crate::simulate::error::SimulationError;
 use crate::simulate::explicit::movement::Movement;
 use crate::simulate::explicit::runge_kutta::RungeKutta;
+use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 
 /// The first step and the longest, as shares of the duration.
@@ -56,8 +57,14 @@ const LARGEST_FACTOR: f64 = 6.0;
 const FOR_BEND: f64 = 1e-3;
 const FLAT: f64 = 1e-7;
 
-/// Steps that are tried at most: motions that are worth cutting take hundreds.
+/// Steps that are tried at most: without an event, since a smooth motion that takes more is stiff; after one, since a
+/// contact that stays closed takes as many as its spring asks for; and where words end.
 const MOST_STEPS: usize = 3000;
+const MOST_WITH_EVENTS: usize = 12_000;
+const MOST_BEHIND_WORDS: usize = 40_000;
+
+/// Of its length, a step that passes over what a force does in space is tried with this share.
+const PASSING_SHARE: f64 = 0.5;
 
 /// A motion that cannot be followed: it is stiff, not finite, or grazes a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +88,9 @@ pub struct Path<'s> {
     watch: SwitchWatch<'s>,
     movement: Movement,
     start: Vec<f64>,
+    features: Option<&'s Features>,
+    work: FeatureWork,
+    parameters: Sample,
     /// Largest value of each switch so far.
     sizes: Vec<f64>,
     duration: f64,
@@ -90,6 +100,7 @@ pub struct Path<'s> {
     /// When the last event was, s.
     event: f64,
     tries: usize,
+    most: usize,
 }
 
 impl<'s> Path<'s> {
@@ -112,8 +123,29 @@ impl<'s> Path<'s> {
         watch.begin(closure.tile());
         let sizes = (0..program.switches.len()).map(|switch| watch.at_beginning(switch, 0)[0].abs()).collect();
         let movement = Movement::new(&simulator.system.coordinates, duration);
-        let h = FIRST_STEP * duration;
-        Ok(Self { closure, run, watch, movement, start, sizes, duration, tolerance, h, event: 0.0, tries: 0 })
+        Ok(Self {
+            closure,
+            run,
+            watch,
+            movement,
+            start,
+            features: simulator.features(),
+            work: FeatureWork::default(),
+            parameters: sample.clone(),
+            sizes,
+            duration,
+            tolerance,
+            h: FIRST_STEP * duration,
+            event: 0.0,
+            tries: 0,
+            most: MOST_STEPS,
+        })
+    }
+
+    /// The same with steps enough to go on where words end.
+    #[must_use]
+    pub fn behind_words(self) -> Self {
+        Self { most: MOST_BEHIND_WORDS, ..self }
     }
 
     /// Takes a step that ends at `goal` at the latest, from which [`go_on`](Self::go_on) goes on.
@@ -126,7 +158,7 @@ impl<'s> Path<'s> {
         let mut cut: Option<(f64, usize)> = None;
         loop {
             self.tries += 1;
-            if self.tries > MOST_STEPS || self.h < SMALLEST * self.duration {
+            if self.tries > self.most || self.h < SMALLEST * self.duration {
                 return Err(Lost);
             }
             let step = self.h.min(LONGEST * self.duration);
@@ -161,9 +193,15 @@ impl<'s> Path<'s> {
                 }
             }
             let factor = SAFETY * math::pow(ratio.max(1e-12), -0.125);
-            if ratio > 1.0 {
+            let passes_over = ratio <= 1.0 && self.passes_over(begin, end);
+            if ratio > 1.0 || passes_over {
                 self.closure.forget();
-                self.h = step * if ratio.is_finite() { factor.clamp(LEAST_FACTOR, SAFETY) } else { LEAST_FACTOR };
+                self.h = step
+                    * match ratio {
+                        _ if passes_over => PASSING_SHARE,
+                        _ if ratio.is_finite() => factor.clamp(LEAST_FACTOR, SAFETY),
+                        _ => LEAST_FACTOR,
+                    };
                 cut = None;
                 continue;
             }
@@ -210,6 +248,14 @@ impl<'s> Path<'s> {
         watch.end(closure.tile());
         let sizes = self.movement.clone().reaching(&self.start, &self.run.next, 1).sizes();
         self.run.errors(end, &sizes, self.tolerance, 1)[0].ratio
+    }
+
+    /// Whether the step that was tried passes over what a force does in space.
+    fn passes_over(&mut self, begin: f64, end: f64) -> bool {
+        let Some(features) = self.features else { return false };
+        let states = [&self.run.state[..], &self.run.next[..]];
+        let passage = Passage { end, h: end - begin, parameters: &self.parameters, states, width: 1, lane: 0 };
+        features.are_hidden(passage, &mut self.work)
     }
 
     /// The first switch that crosses in the step that was tried, and when, as a share of it.
@@ -288,6 +334,15 @@ impl<'s> Path<'s> {
         (0..count).filter_map(&mut found).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// Whether it can be followed beyond a time.
+    pub fn reaches(mut self, time: f64) -> bool {
+        while self.run.time < time {
+            let Ok(step) = self.step(f64::INFINITY) else { return false };
+            self.go_on(step);
+        }
+        true
+    }
+
     /// Prepares [`interpolate`](Self::interpolate) in the step that was taken.
     pub fn prepare_dense(&mut self, step: PathStep) {
         self.run.prepare_dense(&mut self.closure, step.end);
@@ -306,6 +361,7 @@ impl<'s> Path<'s> {
         }
         if step.event.is_some() {
             self.event = step.end;
+            self.most = self.most.max(MOST_WITH_EVENTS);
         }
         self.run.accept(&mut self.closure, step.end);
         self.movement = self.movement.clone().reaching(&self.start, &self.run.state, 1);

@@ -51,6 +51,15 @@ pub struct Boundary {
     pub grazed_at: Vec<Option<f64>>,
 }
 
+/// Why words end before the rows do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum WordsEnd {
+    /// More words than the budget follow.
+    MoreWords,
+    /// A sample meets more events than are followed.
+    MoreEvents,
+}
+
 /// The words of a box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Segments {
@@ -59,6 +68,8 @@ pub struct Segments {
     /// Time up to which the words are followed, s: the end of the rows, or earlier where more words than a budget would
     /// follow.
     pub horizon: f64,
+    /// Why they end before the rows do.
+    pub end: Option<WordsEnd>,
     /// How closely events are located: a motion that is followed alone errs by this share of how far it has gone, in
     /// each of its steps.
     pub tolerance: f64,

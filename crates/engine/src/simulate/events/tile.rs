@@ -89,7 +89,7 @@ impl<'s> SegmentTile<'s> {
         let horizon = segments.horizon;
         let alone = |sample: &Sample| {
             let path = Path::start(simulator, program, sample, (duration, segments.tolerance))?;
-            Ok(Alone { path, step: None, lost: false })
+            Ok(Alone { path: path.behind_words(), step: None, lost: false })
         };
         let goes_alone = word.is_none() || horizon < duration;
         let alone: Vec<Alone> = samples

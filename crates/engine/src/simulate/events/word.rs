@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::boundary::{boundaries, grazed_at, margins};
-use super::followed::{Followed, REACH};
+use super::followed::{Followed, MOST_EVENTS, REACH};
 use super::path::Path;
-use super::segments::{Boundary, Event, Segments, Word};
+use super::segments::{Boundary, Event, Segments, Word, WordsEnd};
 use crate::numerics::{ParameterBox, Sample};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
@@ -27,11 +27,13 @@ const MOST_WORDS: usize = 6;
 /// long.
 const MOST_OF_PARTS: usize = 2;
 
-/// Motions are cut if their words can be followed for at least this share of the duration.
+/// Motions are cut if their words can be followed for at least this share of the duration, or through so many events: a
+/// polynomial that is not cut there ends at the first of them.
 const WORTHWHILE: f64 = 0.25;
+const WORTHWHILE_EVENTS: usize = 8;
 
 /// The words of samples up to a time, if there are events at different instants; `None` where there are none, or the
-/// explicit method cannot follow them.
+/// explicit method cannot follow them for a share of the time that is worthwhile.
 ///
 /// # Errors
 /// Where the first sample cannot be assembled.
@@ -46,12 +48,22 @@ pub fn segments_of(
     let path = |sample: &Sample| Path::start(simulator, program, sample, (duration, tolerance));
     let follow = |sample: &Sample| {
         let followed = Followed::to(path(sample).ok()?, REACH * duration);
-        (followed.known_to >= duration).then_some(followed)
+        // Where words end, each sample goes on alone.
+        let goes_on = || {
+            followed.events.len() >= MOST_EVENTS && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
+        };
+        (followed.known_to >= duration || goes_on()).then_some(followed)
     };
     let Some((first, others)) = samples.split_first() else { return Ok(None) };
+    let nominal = path(first)?;
+    let is_whole = is_cut_as_a_whole(simulator);
     let first = Followed::to(path(first)?, REACH * duration);
     if first.known_to < duration {
-        return Ok(None);
+        // A single motion has no bounds to gain.
+        let has_bounds = !is_whole && first.events.len() >= MOST_EVENTS && samples.len() > 1;
+        if !has_bounds || !nominal.behind_words().reaches(duration) {
+            return Ok(None);
+        }
     }
     // The first few, at the ends of the box, decide whether there is anything to cut.
     let mut all = vec![first];
@@ -62,8 +74,8 @@ pub fn segments_of(
             return Ok(None);
         }
     }
-    let Some((horizon, found)) = within_budget(&all, duration) else { return Ok(None) };
-    if found.len() > 1 && domain.dimension() > MOST_OF_PARTS {
+    let Some((horizon, end, found)) = within_budget(&all, duration) else { return Ok(None) };
+    if found.len() > 1 && (is_whole || domain.dimension() > MOST_OF_PARTS) || end.is_some() && is_whole {
         return Ok(None);
     }
     let (words, groups): (Vec<Word>, Vec<Vec<usize>>) = found.into_iter().unzip();
@@ -84,15 +96,18 @@ pub fn segments_of(
         Boundary { grazed_at, samples: [met.len(), missed.len()], ..boundary }
     };
     let boundaries = found.into_iter().map(described).collect();
-    Ok(Some(Segments { words, boundaries, horizon, tolerance }))
+    Ok(Some(Segments { words, boundaries, horizon, end, tolerance }))
 }
 
 /// Whether motions may be cut at all: what else steps have to resolve is left to the schedules that do.
 fn can_be_cut(simulator: &Simulator) -> bool {
-    Instants::of(simulator).is_empty()
-        && simulator.features().is_none()
-        && simulator.overlaps().is_none()
-        && !simulator.system.analysis.visits()
+    Instants::of(simulator).is_empty() && simulator.overlaps().is_none() && !simulator.system.analysis.visits()
+}
+
+/// Whether motions are cut only where one word lasts to the end. A contact whose normal turns in space rattles within a
+/// clearance: words are many, and their impacts so light that steps of one length for all follow the motion.
+fn is_cut_as_a_whole(simulator: &Simulator) -> bool {
+    simulator.features().is_some()
 }
 
 /// Indices below a count, group by group: each is in the first group whose first member is alike.
@@ -107,23 +122,30 @@ fn grouped(count: usize, are_alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<us
     groups
 }
 
+/// Whether motions are worth cutting that can be followed to a time and through so many events.
+fn is_worthwhile(reach: f64, events: usize, duration: f64) -> bool {
+    reach >= WORTHWHILE * duration || events >= WORTHWHILE_EVENTS
+}
+
 /// Indices of samples with the same events up to a time, group by group.
 fn groups(all: &[Followed], end: f64) -> Vec<Vec<usize>> {
     grouped(all.len(), |own, other| all[own].agrees(&all[other], end))
 }
 
-/// Words up to a time, with the indices of their samples.
-type Found = (f64, Vec<(Word, Vec<usize>)>);
+/// Words up to a time, why they end there if they do not last to the duration, and the indices of their samples.
+type Found = (f64, Option<WordsEnd>, Vec<(Word, Vec<usize>)>);
 
-/// The words up to the duration; where there are more than the budget, up to the last event that all have, before which
-/// there are no more. `None` where that is too early, or a motion does not go on.
+/// The words up to the duration; where there are more than the budget, or a sample meets more events than are followed,
+/// up to the last event that all have, before which there are no more. `None` where that is too early.
 fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     let members = |group: &[usize]| group.iter().map(|&sample| &all[sample]).collect::<Vec<&Followed>>();
+    let shortest = all.iter().min_by(|a, b| a.known_to.total_cmp(&b.known_to))?;
+    let is_whole = shortest.known_to >= duration;
     let whole = groups(all, duration);
-    if whole.len() <= MOST_WORDS {
+    if is_whole && whole.len() <= MOST_WORDS {
         let is_one = whole.len() == 1;
         let word = |group: Vec<usize>| Some((shared(&members(&group), duration, is_one)?, group));
-        return Some((duration, whole.into_iter().map(word).collect::<Option<_>>()?));
+        return Some((duration, None, whole.into_iter().map(word).collect::<Option<_>>()?));
     }
     let fewest = all.iter().map(|followed| followed.events.len()).min()?;
     let spelled = |sample: usize, count: usize| all[sample].events[..count].iter().map(|(event, _)| *event);
@@ -133,9 +155,10 @@ fn within_budget(all: &[Followed], duration: f64) -> Option<Found> {
     };
     let (count, groups) = (1..=fewest).rev().find_map(of_count)?;
     let horizon = all.iter().map(|followed| followed.events[count - 1].1).fold(duration, f64::min);
+    let end = if is_whole || count < fewest { WordsEnd::MoreWords } else { WordsEnd::MoreEvents };
     let word = |group: Vec<usize>| Some((of_extent(&members(&group), count, None, horizon)?, group));
     let words = groups.into_iter().map(word).collect::<Option<_>>()?;
-    (horizon >= WORTHWHILE * duration).then_some((horizon, words))
+    is_worthwhile(horizon, count, duration).then_some((horizon, Some(end), words))
 }
 
 /// What some motions share up to a time, if instants are to differ between them.
@@ -250,6 +273,15 @@ mod tests {
         assert_eq!(groups(&all, 1.0), [vec![0, 2], vec![1], vec![3]]);
     }
 
+    /// A sample that meets more events than are followed ends the time at the last event that all have.
+    #[test]
+    fn a_motion_of_too_many_events_ends_the_time() {
+        let (long, short) = (followed(&[0.4, 0.7, 0.9]), Followed { known_to: 0.8, ..followed(&[0.45, 0.75]) });
+        let (horizon, end, words) = within_budget(&[long, short], 1.0).unwrap();
+        assert_eq!((horizon, end, words.len()), (0.7, Some(WordsEnd::MoreEvents), 1));
+        assert_eq!(words[0].0.events.len(), 2);
+    }
+
     /// Eight words at the end: which of two switches three events are of. Two events make four of them.
     #[test]
     fn a_budget_of_words_ends_the_time() {
@@ -259,8 +291,8 @@ mod tests {
             own
         };
         let all: Vec<Followed> = (0..8).map(of_number).collect();
-        let (horizon, words) = within_budget(&all, 1.0).unwrap();
-        assert_eq!((horizon, words.len()), (0.5, 4));
+        let (horizon, end, words) = within_budget(&all, 1.0).unwrap();
+        assert_eq!((horizon, end, words.len()), (0.5, Some(WordsEnd::MoreWords), 4));
         assert!(words.iter().all(|(word, samples)| word.events.len() == 2 && samples.len() == 2));
     }
 }

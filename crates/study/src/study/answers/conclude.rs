@@ -7,7 +7,7 @@ use crate::study::black_box::no_answer;
 use crate::study::bounding::{bands, contributions};
 use crate::study::internal::{InternalError, caught};
 use crate::study::problem::Study;
-use crate::study::stepping::events_of_parts;
+use crate::study::stepping::{events_followed, events_of_parts};
 use symdiff::math;
 
 use crate::assemble::ConstraintId;
@@ -160,6 +160,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         singular_configurations: singular.collect(),
         damped_mode,
         events: events_of_parts(study, schedule),
+        events_followed: events_followed(schedule),
         unmet_switch,
         passed_force,
         too_deep: results.bounded.too_deep(),

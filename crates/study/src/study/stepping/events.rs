@@ -5,8 +5,8 @@ use super::validated::may_extrapolate;
 use crate::methods::Method;
 use crate::model::Stepping;
 use crate::numerics::{Sample, spread};
-use crate::results::{EventSummary, MethodSummary};
-use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, segments_of};
+use crate::results::{EventSummary, EventsFollowed, MethodSummary};
+use crate::simulate::{Boundary, Counters, Schedule, SimulationError, SwitchSearch, WordsEnd, segments_of};
 use crate::study::bounding::Switches;
 use crate::study::problem::{Study, problem};
 use crate::study::stepping::tuning::TUNING;
@@ -60,6 +60,16 @@ pub fn events_of_parts(study: &Study, schedule: &Schedule) -> Vec<EventSummary> 
         }
     };
     boundaries.iter().map(of_boundary).collect()
+}
+
+/// The time up to which events are followed, where that is before the end of the rows.
+pub fn events_followed(schedule: &Schedule) -> Option<EventsFollowed> {
+    let segments = schedule.segments()?;
+    let why = match segments.end? {
+        WordsEnd::MoreWords => "parameter values meet more sequences of events than are followed",
+        WordsEnd::MoreEvents => "a sample meets more events than are followed",
+    };
+    Some(EventsFollowed { until: segments.horizon, why: why.to_owned() })
 }
 
 /// Samples that show the events: the controlling ones, and some spread over the box.

@@ -7,6 +7,7 @@
 //! - `surrogate`: polynomials of the instants, and of the motion at the nodes of each segment, in one part of the box;
 //! - `piece`: a part of the box with its polynomials, `pieces`: all of them, `parts`: the samples in each;
 //! - `fitting`: polynomials by least squares, and `sampling`: the samples that these need;
+//! - `growth`: the terms of polynomials of many parameters;
 //! - `row`: the outputs at a time, and how far the polynomials' errors move them;
 //! - `seeds`: where a range is searched for, and `climb`: the search within the part of the box that is in a segment,
 //!   and on its surfaces.
@@ -14,6 +15,7 @@
 mod basis;
 mod climb;
 mod fitting;
+mod growth;
 mod parts;
 mod piece;
 mod pieces;
@@ -32,6 +34,7 @@ use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Simulated};
 use crate::methods::result::{BandBuilder, Estimate, MethodResult};
 use crate::methods::validation::Validation;
 use crate::numerics::{Extent, Range, SAFETY_OF_SURROGATE, Sample, Surrogate, largest, union};
+use growth::Growth;
 use piece::Piece;
 use pieces::Pieces;
 use row::{BoxRow, SensedRow};
@@ -39,6 +42,12 @@ use seeds::Lattice;
 
 /// Degrees that are tried to a tolerance.
 const DEGREES: [usize; 6] = [2, 3, 4, 6, 8, 12];
+
+/// Parameters from which on terms are added one by one: a full grid of fewer takes less time.
+const MANY: usize = 3;
+
+/// Of many parameters, rows are bounded again where polynomials err by no more than so many times as would meet a goal.
+const LIKELY: f64 = 2.0;
 
 /// By segments between events, where the ensemble's motions are cut there.
 ///
@@ -74,6 +83,9 @@ pub(super) fn adapted(
     if !can_compose(k, ensemble.scales().len()) {
         return Ok(None);
     }
+    if k >= MANY {
+        return grown(ensemble, goal, validation);
+    }
     for order in DEGREES {
         let count = (order + 1).checked_pow(k as u32);
         if count.is_none_or(|count| goal.spent + spent + count > goal.budget.simulations) {
@@ -83,16 +95,51 @@ pub(super) fn adapted(
         let samples = ensemble.domain().samples(surrogate.samples());
         let Some(result) = of_degree(ensemble, &surrogate, &samples, validation)? else { break };
         spent += result.simulations;
-        let rows = |(errors, allowed): (&Vec<f64>, &f64)| {
-            errors.iter().take(goal.rows).all(|error| SAFETY_OF_SURROGATE * error <= *allowed)
-        };
-        let is_enough = result.surrogate.iter().zip(&goal.allowed).all(rows);
+        let is_enough = excess(&result, goal) <= 1.0;
         best = Some(MethodResult { order: Some(vec![order; k]), simulations: spent, ..result });
         if is_enough || ensemble.is_interrupted() {
             break;
         }
     }
     Ok(best)
+}
+
+/// As `adapted`, for many parameters: terms are added until the goal is met.
+fn grown(ensemble: &dyn Ensemble, goal: &Goal, validation: &Validation) -> Result<Option<MethodResult>, EnsembleError> {
+    let Some(mut growth) = Growth::start(ensemble)? else { return Ok(None) };
+    let mut best: Option<MethodResult> = None;
+    // The excess when rows were last bounded, and the error of the polynomials then.
+    let mut last: Option<(f64, f64)> = None;
+    loop {
+        let count = growth.grid.len();
+        let surrogate = Surrogate::sparse(&growth.grid);
+        let Some(pieces) = Pieces::new(ensemble, &surrogate, growth.motions.clone(), validation)? else { break };
+        let error = largest(pieces.all.iter().map(|piece| growth.error(&piece.errors)));
+        let wanted = count + count / 2;
+        let is_last = goal.spent + wanted > goal.budget.simulations || ensemble.is_interrupted();
+        let is_likely = |(excess, before): (f64, f64)| excess * error <= LIKELY * before;
+        if is_last || last.is_none_or(is_likely) {
+            let result = finished(composed(ensemble, &pieces, Some(&surrogate), validation)?, count, &pieces);
+            let excess = excess(&result, goal);
+            best = Some(MethodResult { order: Some(growth.orders()), ..result });
+            if is_last || excess <= 1.0 || excess.is_nan() {
+                break;
+            }
+            last = Some((excess, error));
+        }
+        if !growth.grow(ensemble, wanted)? {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// Largest error of a surrogate over the one that is allowed; NaN where one is unknown.
+fn excess(result: &MethodResult, goal: &Goal) -> f64 {
+    let of_output = |(errors, allowed): (&Vec<f64>, &f64)| {
+        largest(errors.iter().take(goal.rows).map(|error| SAFETY_OF_SURROGATE * error)) / allowed
+    };
+    largest(result.surrogate.iter().zip(&goal.allowed).map(of_output))
 }
 
 /// By jets in segments between events, where the ensemble's motions are cut there.
