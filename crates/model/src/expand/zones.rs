@@ -1,8 +1,8 @@
 //! `zones:`, and zones of points: parameters in [-1, 1], and formulas of them that lie in the zone.
 //!
-//! Polar coordinates take the square onto the disc and the cube onto the ball, so that surrogates of boxes serve zones. The
-//! nominal radius is 0, an end of its interval: at the middle of the box every angle acts alone, which grids that grow
-//! axis by axis need.
+//! Polar coordinates take the square onto the disc and the cube onto the ball, so that surrogates of boxes serve zones.
+//! The nominal radius is 0, an end of its interval: at the middle of the box every angle acts alone, as grids that grow
+//! axis by axis need it.
 
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
