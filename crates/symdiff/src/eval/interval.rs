@@ -274,7 +274,9 @@ mod tests {
     fn no_end_is_a_subnormal_number() {
         let (zero, least) = (Interval::point(0.0), Interval::point(f64::from_bits(1)));
         let products = [zero * zero, zero * Interval::new(-3.0, 1e-200), least * least, -least * Interval::point(1e-9)];
-        for interval in products.into_iter().chain([zero + zero, least - Interval::point(1e-160), (zero * zero).square()]) {
+        for interval in
+            products.into_iter().chain([zero + zero, least - Interval::point(1e-160), (zero * zero).square()])
+        {
             for end in [interval.lower(), interval.upper()] {
                 assert!(end == 0.0 || end.abs() >= TINY, "{interval:?}");
                 assert!((end * end).is_normal() || end == 0.0, "{interval:?}");
