@@ -51,7 +51,7 @@ pub enum NoCode {
     Simulation(#[from] SimulationError),
 }
 
-/// What is wanted of a model's code.
+/// Options of a model's code.
 #[derive(Clone, Copy, Debug)]
 pub struct CodeRequest<'r> {
     /// Name of the files and, where it is no name of C, of the functions with underscores.

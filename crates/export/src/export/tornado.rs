@@ -53,7 +53,7 @@ fn bracketed(unit: &str) -> String {
     if unit.contains(['*', '/', ' ']) { format!("({unit})") } else { unit.to_owned() }
 }
 
-/// The bars, the largest first, as an SVG document; `across` is what they measure, and its unit.
+/// The bars, the largest first, as an SVG document; `across` names their quantity and its unit.
 pub(super) fn tornado(prefix: &str, title: &str, across: (&str, ShownUnit), bars: &[Bar]) -> String {
     let bars = &bars[..bars.len().min(MOST)];
     let most = bars.iter().fold(0.0_f64, |most, bar| most.max(bar.influence.abs()));

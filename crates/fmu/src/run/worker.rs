@@ -54,7 +54,7 @@ pub fn answer(folder: &Path, input: impl BufRead, mut output: impl Write) -> std
     Ok(())
 }
 
-/// Values of each output in each row; what is not finite is none.
+/// Values of each output in each row; numbers that are not finite are none.
 fn motion(task: &Task, unit: &Unit, native: &Native, asked: &Asked) -> Result<Vec<Vec<Option<f64>>>, Fault> {
     let mut instance = native.instance()?;
     for own in &task.parameters {

@@ -142,7 +142,7 @@ fn role(report: &mut Report, fields: &Fields) -> Option<Role> {
     }
 }
 
-/// What is left of a dimension for the section that it is written to.
+/// Keys of a dimension that go to the section it is written to.
 fn without_faces(entry: &Entry) -> Node {
     let Value::Mapping(entries) = &entry.value.value else { return entry.value.clone() };
     let is_formula = entries.iter().any(|entry| entry.key == "formula");

@@ -10,7 +10,7 @@ use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// Deviations that lie in a set together: one cause of what they do.
+/// Deviations that lie in a set together: one cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Zone {
     /// Its name; of a point's zone `BODY_POINT`.
@@ -59,7 +59,7 @@ const LAWS: [(&str, ZoneLaw); 2] = [("uniform", ZoneLaw::Uniform), ("radial_norm
 /// Names of kinds; exactly one is given.
 const KINDS: [&str; 6] = ["disc", "sphere", "cylinder", "flatness", "parallelism", "ellipsoid"];
 
-/// What is written out.
+/// Entries and zones that are written out.
 #[derive(Default)]
 struct Written {
     /// Entries of `parameters`.
@@ -268,7 +268,7 @@ impl Writer<'_> {
 }
 
 /// The disc of radius 1, by a radius and a turn. It begins where neither coordinate is 0, nor their sum or difference:
-/// what is 0 at the first nodes of a grid is not looked at again.
+/// a coordinate that is 0 at the first nodes of a grid is not looked at again.
 fn disc(u: &str, v: &str) -> [String; 2] {
     [format!("(1 + {u})/2*cos(pi*{v} + 1)"), format!("(1 + {u})/2*sin(pi*{v} + 1)")]
 }

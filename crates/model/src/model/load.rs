@@ -196,7 +196,7 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
     let (root, chains) = dimensions::write_out(&mut origin.report(&mut diagnostics), root);
     let (root, zones) = zones::write_out(&mut origin.report(&mut diagnostics), root);
     if diagnostics.len() > before {
-        // What is missing in the tree would be reported again.
+        // Missing keys of the tree would be reported again.
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     }
     let origin = Origin { chains, zones, ..origin };

@@ -24,8 +24,8 @@ const QUADRANTS: [u64; 3] = [0x3FF9_21FB_5440_0000, 0x3DD0_B461_1A60_0000, 0x3BA
 const TERMS: i32 = 10;
 const SERIES_TAIL: f64 = 2e-22;
 
-/// Least size of an end that is not zero: 2⁻⁵⁰⁰. Products of two ends are then no subnormal numbers, each of which costs a
-/// processor more than a hundred cycles.
+/// Least size of an end that is not zero: 2⁻⁵⁰⁰. Products of two ends are then no subnormal numbers, each of which
+/// costs a processor more than a hundred cycles.
 pub(super) const TINY: f64 = f64::from_bits((1023 - 500) << 52);
 
 impl Interval {
@@ -282,7 +282,7 @@ mod tests {
                 assert!((end * end).is_normal() || end == 0.0, "{interval:?}");
             }
         }
-        // The sign of what is not rounded to zero is known.
+        // Signs of products that are not rounded to zero are known.
         assert_eq!((Interval::point(-1e-200) * Interval::point(1e-9)).upper(), 0.0);
         assert_eq!((Interval::point(1e-200) * Interval::point(1e-9)).lower(), 0.0);
         assert!((zero * zero).contains(1e-320) && (zero * zero).contains(-1e-320));

@@ -11,7 +11,7 @@ use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
 
 impl Simulator {
-    /// The outputs of a sample, and what they are reduced to: themselves.
+    /// The outputs of a sample, which are their own reductions.
     pub(super) fn visit_formulas(&self, sample: &Sample, channels: &[Channel]) -> Visit {
         let mut assembly = Assembly::new(&self.start, &self.system, 1, |k, _| sample[k]);
         assembly.observe();
