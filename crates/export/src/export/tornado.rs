@@ -7,7 +7,7 @@ use super::figure::document::{Anchor, document, finished, group, heading, line, 
 use super::figure::panel::Panel;
 use super::figure::path::px;
 use super::figure::style::{Color, Hue};
-use super::rounded::rounded;
+use super::rounded::{rounded, significant};
 use crate::grammar::display_unit::ShownUnit;
 
 /// Most bars of a plot; parameters of less influence are left out.
@@ -32,7 +32,7 @@ pub(super) struct Bar {
 impl Bar {
     /// Of a parameter with its derivative in shown units, and its influence in SI.
     pub fn new(name: &str, derivative: (f64, &str), influence: f64) -> Self {
-        let label = format!("{} {}", rounded(significant(derivative.0)), derivative.1).trim_end().to_owned();
+        let label = format!("{} {}", rounded(significant(derivative.0, 4)), derivative.1).trim_end().to_owned();
         Self { name: name.to_owned(), label, influence }
     }
 }
@@ -88,9 +88,4 @@ pub(super) fn tornado(prefix: &str, title: &str, across: (&str, ShownUnit), bars
         .add(line((at(0.0), TOP), (at(0.0), bottom)).set("class", "frame"))
         .add(group("across").add(panel.time_axis(across.0)));
     finished(&figure)
-}
-
-/// Four significant digits.
-fn significant(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -49,8 +49,6 @@ pub struct Discrete {
     pub again: bool,
     /// Whether it ends its motion.
     pub terminates: bool,
-    /// Whether continuous states have other values.
-    pub has_new_states: bool,
     /// Time of the next event that is known before, s.
     pub next: Option<f64>,
 }

@@ -167,8 +167,8 @@ impl Instance for Three<'_> {
             known,
             next_at
         )?;
-        let [again, terminates, _, has_new_states, is_next_known] = found;
-        Ok(Discrete { again, terminates, has_new_states, next: is_next_known.then_some(next) })
+        let [again, terminates, _, _, is_next_known] = found;
+        Ok(Discrete { again, terminates, next: is_next_known.then_some(next) })
     }
 
     fn enter_continuous(&mut self) -> Result<(), Fault> {

@@ -159,7 +159,6 @@ impl Instance for Two<'_> {
         Ok(Discrete {
             again: info.again != 0,
             terminates: info.terminates != 0,
-            has_new_states: info.has_new_states != 0,
             next: (info.is_next_known != 0).then_some(info.next),
         })
     }

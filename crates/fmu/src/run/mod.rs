@@ -2,6 +2,7 @@
 
 mod co_simulation;
 mod model_exchange;
+mod steps;
 mod task;
 mod worker;
 

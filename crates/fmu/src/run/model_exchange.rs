@@ -4,7 +4,7 @@
 //!
 //! Source: Dormand, Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980) 19-26.
 
-use super::co_simulation::steps;
+use super::steps::Steps;
 use crate::native::{Fault, Instance};
 
 /// Rows of the method, without its seventh stage, which only an error would need.
@@ -70,11 +70,9 @@ pub fn run(
     motion.happen()?;
     row(motion.instance)?;
     for pair in times.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        let count = steps(to - from, step);
-        for index in 1..=count {
-            let end = if index == count { to } else { from + index as f64 * ((to - from) / count as f64) };
-            motion.go_to(end, (to - from) / count as f64)?;
+        let steps = Steps::between(pair[0], pair[1], step);
+        for index in 1..=steps.count {
+            motion.go_to(steps.time(index), steps.size())?;
         }
         row(motion.instance)?;
     }

@@ -6,6 +6,7 @@
 
 use std::collections::{HashMap, VecDeque};
 
+use super::sections::entries_of;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
 use crate::syntax::source::Span;
@@ -170,21 +171,6 @@ fn closing(entry: &Entry, chain: &Chain) -> Node {
         entries.extend(written.iter().filter(|entry| entry.key == "unit").cloned());
     }
     Node { span: entry.value.span.clone(), value: Value::Mapping(entries) }
-}
-
-/// The entries of a section, which is made if it is not there; `None` where it is no mapping.
-fn entries_of<'s>(sections: &'s mut Vec<Entry>, key: &str, at: &Span) -> Option<&'s mut Vec<Entry>> {
-    let found = sections.iter().position(|entry| entry.key == key && !entry.value.is_null());
-    let index = found.unwrap_or_else(|| {
-        sections.retain(|entry| entry.key != key);
-        let value = Node { span: at.clone(), value: Value::Mapping(Vec::new()) };
-        sections.push(Entry { key: key.to_owned(), key_span: at.clone(), value });
-        sections.len() - 1
-    });
-    match &mut sections[index].value.value {
-        Value::Mapping(entries) => Some(entries),
-        _ => None,
-    }
 }
 
 /// The dimensions that are known, as edges between faces.

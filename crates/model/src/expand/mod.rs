@@ -12,5 +12,6 @@ pub mod numbers;
 pub mod overrides;
 pub mod parts;
 pub mod scenes;
+mod sections;
 pub mod tuning;
 pub mod zones;

@@ -4,6 +4,7 @@
 //! The nominal radius is 0, an end of its interval: at the middle of the box every angle acts alone, as grids that grow
 //! axis by axis need it.
 
+use super::sections::entries_of;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
 use crate::syntax::source::Span;
@@ -28,6 +29,12 @@ pub struct Zone {
 }
 
 impl Zone {
+    /// Indices of its parameters in [-1, 1] among these names.
+    pub fn indices(&self, names: &[impl AsRef<str>]) -> Vec<usize> {
+        let index = |member: &String| names.iter().position(|name| name.as_ref() == member);
+        self.members.iter().filter_map(index).collect()
+    }
+
     /// Whether a parameter is one of the zone's, or a deviation in it.
     pub fn owns(&self, parameter: &str) -> bool {
         parameter.strip_prefix(self.name.as_str()).is_some_and(|rest| rest.starts_with('_'))
@@ -83,13 +90,7 @@ pub fn write_out(report: &mut Report, root: Node) -> (Node, Vec<Zone>) {
     let Some(at) = written.parameters.first().map(|first| first.key_span.clone()) else {
         return (with(&root, sections), Vec::new());
     };
-    if !sections.iter().any(|entry| entry.key == "parameters" && !entry.value.is_null()) {
-        sections.retain(|entry| entry.key != "parameters");
-        let value = Node { span: at.clone(), value: Value::Mapping(Vec::new()) };
-        sections.push(Entry { key: "parameters".to_owned(), key_span: at, value });
-    }
-    let parameters = sections.iter_mut().find(|entry| entry.key == "parameters");
-    if let Some(Value::Mapping(entries)) = parameters.map(|entry| &mut entry.value.value) {
+    if let Some(entries) = entries_of(&mut sections, "parameters", &at) {
         for entry in written.parameters {
             if entries.iter().any(|known| known.key == entry.key) {
                 let message = format!("`{}` is a parameter, and a deviation of a zone as well", clip(&entry.key));

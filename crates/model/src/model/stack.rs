@@ -8,15 +8,14 @@ use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node};
 
-/// Whether a section makes a model more than a stack of dimensions.
-fn is_of_others(key: &str) -> bool {
-    key == "simulation" || key != "analysis" && OF_MECHANISMS.contains(&key)
+/// Sections that make a model more than a stack of dimensions.
+fn of_others() -> impl Iterator<Item = &'static str> {
+    OF_MECHANISMS.into_iter().filter(|key| *key != "analysis").chain(["simulation"])
 }
 
 /// A model that has outputs, parameters, and nothing of a mechanism is one of dimensions; one that says so has nothing
 /// of a mechanism.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) {
-    let of_others = || OF_MECHANISMS.into_iter().chain(["simulation"]).filter(|key| is_of_others(key));
     let mut foreign = of_others().filter(|key| fields.get(key).is_some());
     let is_said = reader.model.analysis == Analysis::Dimensions;
     if !is_said {

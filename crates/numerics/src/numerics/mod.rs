@@ -79,7 +79,7 @@ pub use segments::{BoundaryMargins, CutMotions, STEP_NODES, SegmentMotions, step
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;
 pub use sparse_basis::{SparseBasis, SparseWork};
-pub use sparse_grid::SparseGrid;
+pub use sparse_grid::{SparseGrid, expected};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
 pub use time_shift::{TimeShift, Turning};

@@ -9,8 +9,7 @@ pub(super) fn of_names<'n>(description: &Description, names: impl Iterator<Item 
         return Vec::new();
     }
     let names: Vec<&str> = names.collect();
-    let index = |member: &String| names.iter().position(|name| name == member);
-    let zones = description.zones.iter().map(|zone| zone.members.iter().filter_map(index).collect::<Vec<usize>>());
+    let zones = description.zones.iter().map(|zone| zone.indices(&names));
     zones.filter(|zone| !zone.is_empty()).collect()
 }
 

@@ -1,45 +1,63 @@
 //! Descriptions of a unit.
 
-use std::fmt::Write;
-
 use symdiff::c_number;
 
 use super::Unit;
+use crate::assemble::UncertainParameter;
 use crate::grammar::unit;
 
 /// Type of annotations.
 const ANNOTATION: &str = "org.mbint.parameters";
 
-/// Attributes of a variable that may change, and of one that is set before the motion.
+/// Attributes of the time, of an output, of a variable that may change, and of one that is set before the motion.
+const TIME: &str = "causality=\"independent\" variability=\"continuous\"";
+const OUTPUT: &str = "causality=\"output\" variability=\"continuous\" initial=\"calculated\"";
 const INPUT: &str = "causality=\"input\" variability=\"continuous\"";
 const PARAMETER: &str = "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"";
+
+/// A variable of the unit.
+struct Variable {
+    reference: usize,
+    /// As it is in XML.
+    name: String,
+    /// How it changes.
+    kind: &'static str,
+    /// Attributes of its values: start and unit.
+    values: String,
+}
+
+/// The time, the outputs and the parameters, in the order of their references.
+fn variables(own: &Unit) -> Vec<Variable> {
+    let time = (time_name(own).to_owned(), TIME, unit_attribute("s"));
+    let output = |(name, unit): &(&str, &str)| ((*name).to_owned(), OUTPUT, unit_attribute(unit));
+    let parameter = |(parameter, is_input): (&UncertainParameter, &bool)| {
+        let values = format!(" start=\"{}\"{}", c_number(parameter.nominal), unit_attribute(&parameter.unit));
+        (parameter_name(own, &parameter.name), if *is_input { INPUT } else { PARAMETER }, values)
+    };
+    let outputs = own.outputs.iter().map(output);
+    let all = std::iter::once(time).chain(outputs).chain(own.parameters.iter().zip(own.inputs).map(parameter));
+    let numbered = all.enumerate();
+    numbered
+        .map(|(reference, (name, kind, values))| Variable { reference, name: escaped(&name), kind, values })
+        .collect()
+}
+
+/// Elements of all variables, in lines.
+fn listed(own: &Unit, element: impl Fn(&Variable) -> String) -> String {
+    variables(own).iter().map(|variable| format!("    {}\n", element(variable))).collect()
+}
 
 /// `modelDescription.xml` of 2.0.
 pub fn of_two(own: &Unit, token: &str) -> String {
     let (name, step) = (escaped(own.name), c_number(own.step()));
-    let (mut variables, mut parameters, mut structure) = (String::new(), String::new(), String::new());
-    let time = time_name(own);
-    let first = own.outputs.len() + 1;
-    for (reference, (parameter, is_input)) in (first..).zip(own.parameters.iter().zip(own.inputs)) {
-        let _ = writeln!(
-            parameters,
-            "    <ScalarVariable name=\"{}\" valueReference=\"{reference}\" {}><Real start=\"{}\"{}/></ScalarVariable>",
-            escaped(&parameter_name(own, &parameter.name)),
-            if *is_input { INPUT } else { PARAMETER },
-            c_number(parameter.nominal),
-            unit_attribute(&parameter.unit)
-        );
-    }
-    for (reference, (name, unit)) in (1..).zip(own.outputs) {
-        let _ = writeln!(
-            variables,
-            "    <ScalarVariable name=\"{}\" valueReference=\"{reference}\" causality=\"output\" variability=\"continuous\" initial=\"calculated\"><Real{}/></ScalarVariable>",
-            escaped(name),
-            unit_attribute(unit)
-        );
-        // The time is the first variable.
-        let _ = writeln!(structure, "      <Unknown index=\"{}\"/>", reference + 1);
-    }
+    let variables = listed(own, |Variable { reference, name, kind, values }| {
+        format!(
+            "<ScalarVariable name=\"{name}\" valueReference=\"{reference}\" {kind}><Real{values}/></ScalarVariable>"
+        )
+    });
+    // The time is the first variable.
+    let output = |reference: usize| format!("      <Unknown index=\"{}\"/>\n", reference + 1);
+    let structure: String = (1..=own.outputs.len()).map(output).collect();
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
 <fmiModelDescription fmiVersion=\"2.0\" modelName=\"{name}\" guid=\"{token}\" generationTool=\"mbint {}\" license=\"that of the model\" numberOfEventIndicators=\"0\">
@@ -59,8 +77,7 @@ pub fn of_two(own: &Unit, token: &str) -> String {
     </Tool>
   </VendorAnnotations>
   <ModelVariables>
-    <ScalarVariable name=\"{time}\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"><Real unit=\"s\"/></ScalarVariable>
-{variables}{parameters}  </ModelVariables>
+{variables}  </ModelVariables>
   <ModelStructure>
     <Outputs>
 {structure}    </Outputs>
@@ -81,28 +98,14 @@ pub fn of_two(own: &Unit, token: &str) -> String {
 /// `modelDescription.xml` of 3.0.
 pub fn of_three(own: &Unit, token: &str) -> String {
     let (name, step) = (escaped(own.name), c_number(own.step()));
-    let (mut variables, mut structure, mut unknowns) = (String::new(), String::new(), String::new());
-    for (reference, (name, unit)) in (1..).zip(own.outputs) {
-        let _ = writeln!(
-            variables,
-            "    <Float64 name=\"{}\" valueReference=\"{reference}\" causality=\"output\" variability=\"continuous\" initial=\"calculated\"{}/>",
-            escaped(name),
-            unit_attribute(unit)
-        );
-        let _ = writeln!(structure, "    <Output valueReference=\"{reference}\"/>");
-        let _ = writeln!(unknowns, "    <InitialUnknown valueReference=\"{reference}\"/>");
-    }
-    let first = own.outputs.len() + 1;
-    for (reference, (parameter, is_input)) in (first..).zip(own.parameters.iter().zip(own.inputs)) {
-        let _ = writeln!(
-            variables,
-            "    <Float64 name=\"{}\" valueReference=\"{reference}\" {} start=\"{}\"{}/>",
-            escaped(&parameter_name(own, &parameter.name)),
-            if *is_input { INPUT } else { PARAMETER },
-            c_number(parameter.nominal),
-            unit_attribute(&parameter.unit)
-        );
-    }
+    let variables = listed(own, |Variable { reference, name, kind, values }| {
+        format!("<Float64 name=\"{name}\" valueReference=\"{reference}\" {kind}{values}/>")
+    });
+    let of_outputs = |element: &str| -> String {
+        let line = |reference: usize| format!("    <{element} valueReference=\"{reference}\"/>\n");
+        (1..=own.outputs.len()).map(line).collect()
+    };
+    let (structure, unknowns) = (of_outputs("Output"), of_outputs("InitialUnknown"));
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
 <fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\" generationTool=\"mbint {}\" license=\"that of the model\">
@@ -111,7 +114,6 @@ pub fn of_three(own: &Unit, token: &str) -> String {
 {}  </UnitDefinitions>
   <DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>
   <ModelVariables>
-    <Float64 name=\"{}\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\" unit=\"s\"/>
 {variables}  </ModelVariables>
   <ModelStructure>
 {structure}{unknowns}  </ModelStructure>
@@ -126,7 +128,6 @@ pub fn of_three(own: &Unit, token: &str) -> String {
         units(own),
         c_number(own.schedule.end()),
         c_number(own.schedule.output_step),
-        time_name(own),
         intervals(own),
     )
 }
@@ -184,7 +185,7 @@ fn units(own: &Unit) -> String {
 
 /// Intervals of the uncertain parameters, for tools that know them: in SI.
 fn intervals(own: &Unit) -> String {
-    let line = |own: &crate::assemble::UncertainParameter| {
+    let line = |own: &UncertainParameter| {
         format!(
             "      <Parameter name=\"{}\" nominal=\"{}\" min=\"{}\" max=\"{}\"{}/>\n",
             escaped(&own.name),

@@ -46,25 +46,19 @@ pub fn segments_of(
 ) -> Result<Option<Segments>, SimulationError> {
     let Some(program) = simulator.switches().filter(|_| can_be_cut(simulator)) else { return Ok(None) };
     let path = |sample: &Sample| Path::start(simulator, program, sample, (duration, tolerance));
-    let follow = |sample: &Sample| {
-        let followed = Followed::to(path(sample).ok()?, REACH * duration);
-        // Where words end, each sample goes on alone.
+    let is_whole = is_cut_as_a_whole(simulator);
+    // Where words end, each sample goes on alone. A single motion has no bounds to gain.
+    let may_end = !is_whole && samples.len() > 1;
+    let kept = |sample: &Sample, followed: Followed| {
         let goes_on = || {
-            followed.events.len() >= MOST_EVENTS && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
+            let has_many = may_end && followed.events.len() >= MOST_EVENTS;
+            has_many && path(sample).is_ok_and(|path| path.behind_words().reaches(duration))
         };
         (followed.known_to >= duration || goes_on()).then_some(followed)
     };
+    let follow = |sample: &Sample| kept(sample, Followed::to(path(sample).ok()?, REACH * duration));
     let Some((first, others)) = samples.split_first() else { return Ok(None) };
-    let nominal = path(first)?;
-    let is_whole = is_cut_as_a_whole(simulator);
-    let first = Followed::to(path(first)?, REACH * duration);
-    if first.known_to < duration {
-        // A single motion has no bounds to gain.
-        let has_bounds = !is_whole && first.events.len() >= MOST_EVENTS && samples.len() > 1;
-        if !has_bounds || !nominal.behind_words().reaches(duration) {
-            return Ok(None);
-        }
-    }
+    let Some(first) = kept(first, Followed::to(path(first)?, REACH * duration)) else { return Ok(None) };
     // The first few, at the ends of the box, decide whether there is anything to cut.
     let mut all = vec![first];
     for others in [&others[..DECIDING.min(others.len())], &others[DECIDING.min(others.len())..]] {

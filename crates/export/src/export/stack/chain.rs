@@ -6,7 +6,7 @@ use crate::export::figure::axis::Axis;
 use crate::export::figure::document::{Anchor, document, finished, group, heading, line, shortened, text, text_width};
 use crate::export::figure::path::{Point, line_data, px};
 use crate::export::figure::style::{Color, Hue};
-use crate::export::rounded::rounded;
+use crate::export::rounded::shown;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{ChainSummary, LinkSummary};
 
@@ -27,12 +27,10 @@ pub(super) fn chain_svg(model: &str, chain: &ChainSummary, unit: ShownUnit) -> S
     let ends = ends(&chain.links);
     let scale = Axis::fit(ends.iter().copied().chain([0.0, chain.nominal]), unit, 5, 0.02, 0.0);
     let name = |link: &LinkSummary| shortened(&link.name, 28);
-    let value =
-        |nominal: f64| format!("{} {}", rounded(significant(unit.of_si(nominal))), unit.text).trim_end().to_owned();
     let names = chain.links.iter().map(name).chain([shortened(&chain.output, 28)]);
     let left = names.map(|name| text_width(&name)).fold(40.0, f64::max) + 24.0;
     let labels: Vec<String> =
-        chain.links.iter().map(|link| value(link.nominal)).chain([value(chain.nominal)]).collect();
+        chain.links.iter().map(|link| shown(unit, link.nominal)).chain([shown(unit, chain.nominal)]).collect();
     let right = WIDTH - labels.iter().map(|label| text_width(label)).fold(40.0, f64::max) - 20.0;
     let across = |length: f64| left + scale.place(length) * (right - left);
     let row = |index: usize| TOP + ROW * (index as f64 + 0.5);
@@ -84,11 +82,6 @@ fn arrow(hue: Hue, title: &str, from: Point, to: f64) -> Group {
     let shaft = line(from, (base, from.1)).set("class", "line").set("stroke-width", px(2.0));
     let head = Path::new().set("class", "area").set("d", line_data(&head) + "z");
     hue.paint(group("arrow").add(Title::new(title)).add(shaft).add(head), "arrow")
-}
-
-/// Six significant digits.
-fn significant(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]

@@ -2,13 +2,12 @@
 
 use svg::node::element::{Group, Rectangle, Title};
 
-use crate::export::figure::Caption;
 use crate::export::figure::axis::Axis;
 use crate::export::figure::document::{Anchor, document, finished, group, heading, line, shortened, text};
 use crate::export::figure::panel::Panel;
 use crate::export::figure::path::px;
 use crate::export::figure::style::{Color, Hue};
-use crate::export::rounded::rounded;
+use crate::export::rounded::shown;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Histogram, LimitLine, OutputStatisticsSummary, Summary};
 
@@ -32,7 +31,7 @@ pub(super) fn histogram_svg(summary: &Summary, output: &OutputStatisticsSummary,
     let x = Axis::fit(ends.chain(limits.iter().map(|line| line.value)), unit, 8, 0.03, 0.0);
     let most = found.shares.iter().copied().fold(0.0, f64::max);
     let y = Axis::fit([0.0, most].into_iter(), ShownUnit { text: "%", si: 0.01 }, 5, 0.0, 0.0);
-    let id = format!("{}-histogram", Caption { model: &summary.model, prefix: "stack" }.prefix);
+    let id = "stack-histogram".to_owned();
     let panel = Panel { id, left: LEFT, right: SIZE.0 - RIGHT, top: TOP, bottom: SIZE.1 - BOTTOM, x: &x, y: &y };
     let width = (found.upper - found.lower) / found.shares.len() as f64;
     let bar = |bars: Group, (index, share): (usize, &f64)| {
@@ -59,11 +58,6 @@ pub(super) fn histogram_svg(summary: &Summary, output: &OutputStatisticsSummary,
     finished(&figure)
 }
 
-fn shown(unit: ShownUnit, value: f64) -> String {
-    let digits: f64 = format!("{:.5e}", unit.of_si(value)).parse().unwrap_or(value);
-    format!("{} {}", rounded(digits), unit.text).trim_end().to_owned()
-}
-
 /// Worst case, and the capability of the requirement that limits the output, where there is one.
 fn in_words(summary: &Summary, output: &OutputStatisticsSummary) -> String {
     let unit = ShownUnit::of(&output.display, &output.unit);
@@ -82,15 +76,4 @@ fn in_words(summary: &Summary, output: &OutputStatisticsSummary) -> String {
         })
         .collect();
     shortened(&format!("worst case {lower} to {upper}{of_limits}"), 110)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        let unit = ShownUnit { text: "mm", si: 1e-3 };
-        assert_eq!(shown(unit, 0.001_234_567_8), "1.23457 mm");
-    }
 }

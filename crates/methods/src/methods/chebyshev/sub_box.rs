@@ -9,7 +9,7 @@ use symdiff::math;
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
 use crate::methods::validation::ValidationTable;
-use crate::numerics::{Course, ParameterBox, Range, SparseGrid, step_validation};
+use crate::numerics::{Course, ParameterBox, Range, SparseGrid, expected, step_validation};
 
 /// Highest degree in a parameter, by the number of parameters: one costs a node each, many their products.
 const HIGHEST: [u8; 3] = [128, 48, 24];
@@ -144,7 +144,7 @@ impl SubBox<'_> {
         let mut generations: Vec<Vec<Vec<u8>>> = Vec::new();
         let mut count = 0;
         while count < wanted {
-            let mut added = expected(&surplus, grid.candidates());
+            let mut added = by_expectation(&surplus, grid.candidates());
             let most = added.first().map_or(0.0, |(_, expected)| *expected);
             added.retain(|(_, expected)| *expected >= share * most);
             if added.is_empty() {
@@ -202,7 +202,7 @@ impl SubBox<'_> {
 }
 
 /// Indices with their expected surpluses, the largest first.
-fn expected(surplus: &Surpluses, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
+fn by_expectation(surplus: &Surpluses, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
     let expect = |levels: Vec<u8>| {
         let expected = extrapolated(surplus, &levels);
         (levels, expected)
@@ -213,8 +213,7 @@ fn expected(surplus: &Surpluses, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
     expected
 }
 
-/// The expected surplus of an index: the least that follows from the indices before it, as for a power of Σ aᵢ ξᵢ,
-/// where from ξ^(l − eᵢ) to ξ^l the multinomial coefficient times the weights changes by aᵢ |l|/lᵢ.
+/// The expected surplus of an index.
 fn extrapolated(surplus: &Surpluses, levels: &[u8]) -> f64 {
     let k = levels.len();
     let weight = |axis: usize| {
@@ -223,12 +222,6 @@ fn extrapolated(surplus: &Surpluses, levels: &[u8]) -> f64 {
         surplus.get(&first).copied()
     };
     let total: f64 = (0..k).filter_map(weight).sum();
-    let degree: f64 = levels.iter().map(|&level| f64::from(level)).sum();
-    let from = |axis: usize| {
-        let mut before = levels.to_vec();
-        before[axis] -= 1;
-        let share = weight(axis).map_or(1.0, |weight| if total > 0.0 { weight / total } else { 1.0 });
-        surplus.get(&before).map(|surplus| surplus * share * degree / f64::from(levels[axis]))
-    };
-    (0..k).filter(|&axis| levels[axis] > 0).filter_map(from).fold(f64::INFINITY, f64::min)
+    let share = |axis: usize| weight(axis).map_or(1.0, |weight| if total > 0.0 { weight / total } else { 1.0 });
+    expected(levels, share, |before| surplus.get(before).copied())
 }

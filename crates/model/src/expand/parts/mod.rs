@@ -23,6 +23,7 @@ use std::sync::Arc;
 
 use super::instance::Instance;
 use super::overrides::Override;
+use super::sections::entries_of;
 use crate::expand::tuning::TUNING;
 use crate::grammar::report::Report;
 use crate::syntax::diagnostic::Diagnostic;
@@ -125,17 +126,7 @@ struct Writer<'w, 'd> {
 impl Writer<'_, '_> {
     /// The entries of a section, which is made if it is not there.
     fn section(&mut self, key: &str, at: &Span) -> Option<&mut Vec<Entry>> {
-        let found = self.sections.iter().position(|entry| entry.key == key && !entry.value.is_null());
-        let place = found.unwrap_or_else(|| {
-            self.sections.retain(|entry| entry.key != key);
-            let value = Node { span: at.clone(), value: Value::Mapping(Vec::new()) };
-            self.sections.push(Entry { key: key.to_owned(), key_span: at.clone(), value });
-            self.sections.len() - 1
-        });
-        match &mut self.sections[place].value.value {
-            Value::Mapping(entries) => Some(entries),
-            _ => None,
-        }
+        entries_of(&mut self.sections, key, at)
     }
 
     /// Entries of a section that are there already.

@@ -14,8 +14,7 @@ pub(super) fn causes(zones: &[Zone], laws: &Laws, derivatives: impl Fn(&[f64]) -
     let alone = laws.names.iter().zip(&at_nominal).filter(|(name, _)| !is_member(name));
     let alone = alone.map(|(name, &(derivative, deviation))| (name.clone(), derivative, deviation));
     let of_zone = |zone: &Zone| {
-        let index = |member: &String| laws.names.iter().position(|name| name == member);
-        let members: Vec<usize> = zone.members.iter().filter_map(index).collect();
+        let members = zone.indices(&laws.names);
         // Along the radius, in directions at right angles: values of an angle, or of elevation and angle.
         let length = |members: &[usize]| {
             let directions: &[&[f64]] =

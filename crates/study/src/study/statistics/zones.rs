@@ -5,7 +5,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 use symdiff::math;
 
-use crate::model::{Description, ZoneLaw, ZoneShape};
+use crate::model::{Description, Zone, ZoneLaw, ZoneShape};
 
 /// Standard deviations to the edge of a normal law.
 const EDGE: f64 = 3.0;
@@ -24,13 +24,8 @@ pub(super) struct LawInZone {
 impl LawInZone {
     /// Of all zones of a model, whose uncertain parameters have these names.
     pub fn all(description: &Description, names: &[String]) -> Vec<Self> {
-        let index = |member: &String| names.iter().position(|name| name == member);
-        let zones = description.zones.iter().map(|zone| Self {
-            members: zone.members.iter().filter_map(index).collect(),
-            shape: zone.shape,
-            law: zone.law,
-        });
-        zones.collect()
+        let of = |zone: &Zone| Self { members: zone.indices(names), shape: zone.shape, law: zone.law };
+        description.zones.iter().map(of).collect()
     }
 
     /// Replaces independent uniform values of the parameters in [-1, 1] by those of the law.

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 
 use super::surrogate::SegmentErrors;
 use crate::methods::ensemble::{Ensemble, EnsembleError};
-use crate::numerics::{CutMotions, Range, SegmentMotions, SparseGrid, Surrogate, SurrogateWork, largest};
+use crate::numerics::{CutMotions, Range, SegmentMotions, SparseGrid, Surrogate, SurrogateWork, expected, largest};
 
 /// Total degree to begin with, highest degree in a parameter, and most terms.
 const FIRST_DEGREE: usize = 2;
@@ -58,7 +58,7 @@ impl Growth {
         let rates = self.rates(&sizes);
         while self.grid.len() < wanted.min(MOST_TERMS) {
             let candidates = self.grid.candidates().into_iter();
-            let all = candidates.map(|levels| (expected(&sizes, &rates, &levels), levels));
+            let all = candidates.map(|levels| (foreseen(&sizes, &rates, &levels), levels));
             let Some((size, levels)) = all.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
             self.grid.add(&levels);
             sizes.insert(levels, size);
@@ -132,15 +132,9 @@ fn motions_from(ensemble: &dyn Ensemble, grid: &SparseGrid, from: usize) -> Resu
     ensemble.segments(&ensemble.domain().samples(&points))
 }
 
-/// Size of a coefficient as for a power of a weighted sum of the parameters: the least of what the axes say.
-fn expected(sizes: &FxHashMap<Vec<u8>, f64>, rates: &[f64], levels: &[u8]) -> f64 {
-    let sum: f64 = levels.iter().map(|&level| f64::from(level)).sum();
-    let along = |(axis, &level): (usize, &u8)| {
-        let mut before = levels.to_vec();
-        before[axis] -= 1;
-        rates[axis] * sum / f64::from(level) * sizes.get(&before).copied().unwrap_or(0.0)
-    };
-    levels.iter().enumerate().filter(|(_, level)| **level > 0).map(along).fold(f64::INFINITY, f64::min)
+/// Size of a coefficient that is expected of the sizes before it.
+fn foreseen(sizes: &FxHashMap<Vec<u8>, f64>, rates: &[f64], levels: &[u8]) -> f64 {
+    expected(levels, |axis| rates[axis], |before| Some(sizes.get(before).copied().unwrap_or(0.0)))
 }
 
 #[cfg(test)]
@@ -155,7 +149,7 @@ mod tests {
             [(vec![0, 0], 1.0), (vec![1, 0], a), (vec![0, 1], b), (vec![2, 0], a * a), (vec![0, 2], b * b)]
                 .into_iter()
                 .collect();
-        assert!((expected(&sizes, &[a, b], &[1, 1]) - 2.0 * a * b).abs() < 1e-15);
-        assert!(expected(&sizes, &[a, b], &[3, 0]) > expected(&sizes, &[a, b], &[0, 3]));
+        assert!((foreseen(&sizes, &[a, b], &[1, 1]) - 2.0 * a * b).abs() < 1e-15);
+        assert!(foreseen(&sizes, &[a, b], &[3, 0]) > foreseen(&sizes, &[a, b], &[0, 3]));
     }
 }

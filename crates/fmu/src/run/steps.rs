@@ -1,0 +1,28 @@
+//! Equal steps between two rows.
+
+/// Steps of one size from one time to another.
+pub struct Steps {
+    from: f64,
+    to: f64,
+    /// Number of them.
+    pub count: usize,
+}
+
+impl Steps {
+    /// From one row to the next, s; none is longer than `longest`, s.
+    pub fn between(from: f64, to: f64, longest: f64) -> Self {
+        // A distance that is a multiple but for rounding is one.
+        let count = (((to - from) / longest - 1e-9).ceil()).max(1.0) as usize;
+        Self { from, to, count }
+    }
+
+    /// Size of each, s.
+    pub fn size(&self) -> f64 {
+        (self.to - self.from) / self.count as f64
+    }
+
+    /// Time after so many of them, s.
+    pub fn time(&self, index: usize) -> f64 {
+        if index == self.count { self.to } else { self.from + index as f64 * self.size() }
+    }
+}
