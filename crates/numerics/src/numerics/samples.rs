@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(TensorGrid::full_factorial(&[30; 14]).len(), usize::MAX);
     }
 
-    /// a + b x + c y − d z in five axes: of 32 corners those of the signs, first of the function with the largest slopes.
+    /// Linear functions in five axes: of 32 corners those of the signs, first of the function with the largest slopes.
     #[test]
     fn slopes_name_corners() {
         let at = |slopes: [f64; 5]| -> Vec<f64> {

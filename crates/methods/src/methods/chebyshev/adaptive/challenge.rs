@@ -64,8 +64,8 @@ impl Adaptation<'_> {
         // The rows are no neighbours.
         let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, 1), look)?;
         let found = found.into_iter().flatten();
-        // What hardly ranges is not off by what matters, but for what is all in one corner: of all that hardly range the
-        // one that ranges most tells. Of NaN there is no place.
+        // Outputs that hardly range are not off by much, unless all of it is in one corner: of these the one that
+        // ranges most tells. Of NaN there is no place.
         let widest = found.clone().map(|(width, _)| width).fold(0.0, f64::max).min(1.0);
         let matters = found.filter(|(width, _)| *width > 0.0 && *width >= widest);
         let places: Vec<Vec<f64>> = matters.flat_map(|(_, places)| places).collect();
