@@ -126,8 +126,8 @@ impl SkewPaving {
 pub struct Unexplained {
     /// With noise larger by this factor there are some, about the least-squares estimate.
     pub factor: f64,
-    /// Rows that no parameters of the model's box explain, each on its own, with the necessary excess over the noise, in
-    /// the output's SI unit; the largest excess relative to its noise first.
+    /// Rows that no parameters of the model's box explain, each on its own, with the necessary excess over the noise,
+    /// in the output's SI unit; the largest excess relative to its noise first.
     pub alone: Vec<(usize, f64)>,
     /// The row without which the others agree best, and by what factor the noise of these would have to be larger: up
     /// to 1 where they agree.

@@ -80,8 +80,8 @@ impl Part {
         self.rows.iter().map(|&row| row as usize).zip(ranges)
     }
 
-    /// The first quantity about its plane through averages of the corners: slopes by the shares of the edges (k), then the
-    /// value at the lower corner; and the largest distance from it.
+    /// The first quantity about its plane through averages of the corners: slopes by the shares of the edges (k), then
+    /// the value at the lower corner; and the largest distance from it.
     pub fn linear(&self, shape: &Shape) -> (Vec<f64>, f64) {
         let line = &self.coefficients[..shape.size];
         let k = shape.dimension();

@@ -1,7 +1,7 @@
 //! Measured values from a table: `time`, a column for each measured output, perhaps one for its noise.
 //!
-//! A heading is the output's name, and may have a unit: `x3 [mm]`. Without one, numbers are in the unit in which the model
-//! shows the output. An empty cell was not measured.
+//! A heading is the output's name, and may have a unit: `x3 [mm]`. Without one, numbers are in the unit in which the
+//! model shows the output. An empty cell was not measured.
 
 use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::{Description, Output};

@@ -2,9 +2,9 @@
 //!
 //! `data` reads a table. A run over the model's box gives surrogates of the outputs, with their errors, which
 //! `readings` evaluates at measured times (`interpolation`) and `local` makes polynomials of, along skew axes.
-//! `least_squares` estimates on them; the last residuals are those of simulations. `set` paves the set of all consistent
-//! parameters, with runs over narrower boxes as it shrinks; `projections` are its shadows on pairs of parameters. Where it
-//! is empty, `unexplained` finds the rows that no parameters explain.
+//! `least_squares` estimates on them; the last residuals are those of simulations. `set` paves the set of all
+//! consistent parameters, with runs over narrower boxes as it shrinks; `projections` are its shadows on pairs of
+//! parameters. Where it is empty, `unexplained` finds the rows that no parameters explain.
 
 mod data;
 mod interpolation;

@@ -126,8 +126,8 @@ impl<'a> Approach<'a> {
         Local::new(&self.run().readings(measurements)?, &self.frame, self.prior, measurements, fine)
     }
 
-    /// Better surrogates, where their error counts and they are worth it: over the box around a frame that has shrunk, or
-    /// of a higher order. Returns whether there are some.
+    /// Better surrogates, where their error counts and they are worth it: over the box around a frame that has shrunk,
+    /// or of a higher order. Returns whether there are some.
     fn improved(&mut self, roughness: f64, shrinks: bool) -> Result<bool, FitError> {
         let domain = self.frame.domain(self.prior);
         let is_narrower = is_narrower(&domain, &self.run().domain);
