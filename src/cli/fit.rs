@@ -87,13 +87,14 @@ pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failur
 fn overview(found: &Fit) -> String {
     let outputs: Vec<&str> = found.outputs.iter().map(|output| output.name.as_str()).collect();
     let mut text = format!(
-        "{BOLD}{}{BOLD:#}: {} of {}, {}\n  residuals of least squares: {} of the noise bounds (root mean square)\n\n",
+        "{BOLD}{}{BOLD:#}: {} of {}, {}\n  residuals of least squares: {} of the noise bounds (root mean square)\n",
         found.model,
         count(found.rows.len(), "measured value", "measured values"),
         outputs.join(", "),
         count(found.simulations, "simulation", "simulations"),
         short(found.residual),
     );
+    text += &errors(found);
     text += &parameters(found);
     if let Some(set) = &found.set {
         text += &consistent(found, set);
@@ -102,6 +103,18 @@ fn overview(found: &Fit) -> String {
         text += &format!("  the consistent set is paved for up to {} parameters\n", Fit::MOST_PARAMETERS);
     }
     text
+}
+
+/// The largest error of the model, and rows of which nothing is known.
+fn errors(found: &Fit) -> String {
+    let known = found.rows.iter().filter(|row| row.error.is_finite());
+    let largest = known.clone().map(|row| row.error / row.noise).fold(0.0, f64::max);
+    let lost = found.rows.len() - known.count();
+    let text = format!("  errors of simulation and surrogate: {largest:.1e} of the noise bounds at most\n");
+    match lost {
+        0 => text + "\n",
+        _ => text + &format!("  {} without a reliable value of the model: not used\n\n", count(lost, "row", "rows")),
+    }
 }
 
 fn parameters(found: &Fit) -> String {

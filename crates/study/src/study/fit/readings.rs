@@ -94,7 +94,8 @@ impl Readings<'_> {
             let at = |&(row, weight): &(usize, f64)| -> f64 {
                 let own = error.total.get(row).copied().unwrap_or(f64::INFINITY);
                 // A row whose error is large but known can be relied on.
-                let is_known = !error.unresolved[row] || error.coarse.get(row).copied().unwrap_or(false);
+                let flag = |flags: &[bool]| flags.get(row).copied();
+                let is_known = flag(&error.unresolved) == Some(false) || flag(&error.coarse) == Some(true);
                 if own.is_nan() || !is_known { f64::INFINITY } else { weight.abs() * own }
             };
             interpolation.fine.iter().map(at).sum()
