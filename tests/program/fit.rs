@@ -79,8 +79,8 @@ fn tables_that_cannot_be_used_say_where_and_why() {
         ),
         ("t, height, height_noise\n-0.1, 1, 1\n", "the time -0.1 s is outside of the simulation"),
         ("t, heigth\n0, 1\n", "data.csv: line 1, column 4: `heigth` is no output of the model; did you mean `height`?"),
-        ("t, height [kg]\n0, 1\n", "line 1, column 4: `kg` is a unit of a mass, but the column is a length"),
-        ("t [m], height\n0, 1\n", "line 1, column 1: `m` is a unit of a length"),
+        ("t, height [kg]\n0, 1\n", "line 1, column 4: `kg` is a unit of mass, but the column is length"),
+        ("t [m], height\n0, 1\n", "line 1, column 1: `m` is a unit of length"),
         ("height, height_noise\n1, 1\n", "data.csv: line 1, column 1: there is no column `time`"),
         ("t\n1\n", "no column is an output of the model; there is only `height`"),
         ("t, height, height\n0, 1, 1\n", "line 1, column 12: there are two columns `height`"),
@@ -96,7 +96,7 @@ fn tables_that_cannot_be_used_say_where_and_why() {
     let place = place("t, height\n0, 1\n");
     for (noise, message) in [
         ("heigth=1", "noise `heigth=1`: `heigth` is no output of the model; did you mean `height`?"),
-        ("height=1kg", "`kg` is a unit of a mass"),
+        ("height=1kg", "`kg` is a unit of mass"),
         ("height=-1", "a noise bound is greater than zero"),
         ("height=x", "it is no number with a unit, as `0.1 mm`"),
     ] {

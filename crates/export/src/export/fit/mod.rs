@@ -16,8 +16,8 @@ use crate::results::{Fit, FitParameter};
 /// The overlay's file.
 pub const FIT_OVERLAY: &str = "fit.yaml";
 
-/// Digits of the ends of intervals.
-const DIGITS: i32 = 7;
+/// Digits of deviations.
+const DIGITS: i32 = 4;
 
 /// Writes all files; the overlay where a parameter is consistent.
 ///
@@ -81,31 +81,17 @@ fn overlay(fit: &Fit) -> String {
     text
 }
 
-/// A value with its interval, which is not smaller than the hull.
-fn piece(own: &FitParameter, [lower, upper]: [f64; 2], middle: f64) -> String {
+/// A value with deviations, in one piece, that are not smaller than those of the hull.
+fn piece(own: &FitParameter, hull: [f64; 2], middle: f64) -> String {
     let unit = ShownUnit::of(&own.display, &own.unit);
-    let behind = if unit.text.is_empty() { String::new() } else { format!(", unit: {}", quoted(unit.text)) };
-    // At the limits of the model's interval nothing is added.
-    let end =
-        |end: f64, limit: f64, up: bool| if end == limit { unit.of_si(end) } else { outwards(unit.of_si(end), up) };
-    let (lower, upper) = (end(lower, own.prior[0], false), end(upper, own.prior[1], true));
-    let value = rounded(unit.of_si(middle).clamp(lower, upper));
-    format!("{{ value: {value}, interval: [{}, {}]{behind} }}", rounded(lower), rounded(upper))
-}
-
-/// A unit as a scalar in braces.
-fn quoted(unit: &str) -> String {
-    if unit.chars().all(|c| c.is_alphanumeric() || "*/^-_".contains(c)) { unit.to_owned() } else { format!("'{unit}'") }
-}
-
-/// A number of few digits that is not nearer to the middle.
-fn outwards(value: f64, up: bool) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    let digit = 10_f64.powi(symdiff::math::log10(value.abs()).floor() as i32 + 1 - DIGITS);
-    let whole = if up { (value / digit).ceil() } else { (value / digit).floor() };
-    whole * digit
+    let [lower, upper] = hull.map(|end| unit.of_si(end));
+    let digit = 10_f64.powi(symdiff::math::log10((upper - lower).max(f64::MIN_POSITIVE)).floor() as i32 + 1 - DIGITS);
+    let text = rounded((unit.of_si(middle) / digit).round() * digit);
+    let value: f64 = text.parse().unwrap_or(middle);
+    // A part in a million of the last digit covers the rounding of the differences.
+    let [above, below] = [upper - value, value - lower].map(|side| ((side / digit + 1e-6).ceil() * digit).max(0.0));
+    let behind = if unit.text.is_empty() { String::new() } else { format!(" {}", unit.text) };
+    format!("{text}{behind} +{} -{}", rounded(above), rounded(below))
 }
 
 #[cfg(test)]
@@ -125,8 +111,7 @@ mod tests {
             inner: None,
             middle: None,
         };
-        assert_eq!(piece(&own, [0.123_456_78, 0.2], 0.15), "{ value: 0.15, interval: [0.1234567, 0.2], unit: m }");
-        assert_eq!(piece(&own, [0.1, 0.123_456_712], 0.11), "{ value: 0.11, interval: [0.1, 0.1234568], unit: m }");
-        assert_eq!(outwards(-0.123_456_78, false), -0.123_456_8);
+        // Digits are those of the width: 0.0765.
+        assert_eq!(piece(&own, [0.123_456_78, 0.2], 0.15), "0.15 m +0.05001 -0.02655");
     }
 }

@@ -94,7 +94,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
         None
     };
     let errors = errors.unwrap_or_else(|| minimum.local.errors.clone());
-    let [inner, hull] = set.as_ref().map_or([None, None], Set::hulls);
+    let (inner, hull) = (set.as_ref().and_then(Set::inner_hull), set.as_ref().map(Set::hull));
     let middle = set.as_ref().map(Set::middle);
     let names: Vec<String> = parameters.iter().map(|own| own.name.clone()).collect();
     let of = |axis: usize| {
@@ -128,7 +128,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
 
 /// Where least squares begin: about the consistent set, which their estimate may lie outside of, or the model's box.
 fn around(set: Option<&Set>, k: usize) -> Frame {
-    let Some([_, Some(hull)]) = set.map(Set::hulls) else { return Frame::whole(k) };
+    let Some(hull) = set.map(Set::hull) else { return Frame::whole(k) };
     let middle: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect();
     let halves: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * AROUND * (upper - lower)).collect();
     Frame::around(&middle, &halves)

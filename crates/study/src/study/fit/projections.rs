@@ -1,8 +1,7 @@
 //! Shadows of the consistent set on pairs of parameters, as rows of a raster.
 
-use super::local::value;
-use super::set::Set;
-use crate::numerics::{Boxes, ParameterBox};
+use super::local::{Frame, value};
+use crate::numerics::{Boxes, ParameterBox, Paving};
 use crate::results::FitProjection;
 
 /// Cells of the raster along either parameter.
@@ -15,21 +14,20 @@ struct Raster {
     cells: Vec<bool>,
 }
 
-/// Of every pair of parameters.
-pub fn projections(set: &Set, prior: &ParameterBox) -> Vec<FitProjection> {
+/// Of every pair of parameters, within the hull of ξ.
+pub fn projections(frame: &Frame, paving: &Paving, hull: &[[f64; 2]], prior: &ParameterBox) -> Vec<FitProjection> {
     let k = prior.dimension();
-    let [_, Some(hull)] = set.hulls() else { return Vec::new() };
     let pairs = (0..k).flat_map(|first| (first + 1..k).map(move |second| [first, second]));
     let of = |pair: [usize; 2]| {
         let mut outer = Raster::over(pair.map(|axis| hull[axis]));
         let mut inner = Raster::over(pair.map(|axis| hull[axis]));
-        let shadow = |lower: &[f64], upper: &[f64]| shadow(set, pair, lower, upper);
+        let shadow = |lower: &[f64], upper: &[f64]| shadow(frame, pair, lower, upper);
         let each = |boxes: &Boxes, raster: &mut Raster, is_inner: bool| {
             boxes.iter().for_each(|(lower, upper)| raster.fill(&shadow(lower, upper), is_inner));
         };
-        each(&set.paving.inside, &mut inner, true);
-        each(&set.paving.inside, &mut outer, false);
-        each(&set.paving.undecided, &mut outer, false);
+        each(&paving.inside, &mut inner, true);
+        each(&paving.inside, &mut outer, false);
+        each(&paving.undecided, &mut outer, false);
         let in_units = |raster: &Raster| {
             let of = |ends: [f64; 4]| {
                 let at = |index: usize| value(prior, pair[index / 2], ends[index]);
@@ -43,9 +41,9 @@ pub fn projections(set: &Set, prior: &ParameterBox) -> Vec<FitProjection> {
 }
 
 /// The shadow of a box along skew axes: a convex polygon of ξ, as its corners in order.
-fn shadow(set: &Set, pair: [usize; 2], lower: &[f64], upper: &[f64]) -> Vec<[f64; 2]> {
-    let axes = &set.frame.axes;
-    let mut start = pair.map(|axis| set.frame.center[axis]);
+fn shadow(frame: &Frame, pair: [usize; 2], lower: &[f64], upper: &[f64]) -> Vec<[f64; 2]> {
+    let axes = &frame.axes;
+    let mut start = pair.map(|axis| frame.center[axis]);
     let mut edges: Vec<[f64; 2]> = Vec::with_capacity(2 * lower.len());
     for (index, (lower, upper)) in lower.iter().zip(upper).enumerate() {
         let own = pair.map(|axis| axes[(axis, index)]);

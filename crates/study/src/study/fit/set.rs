@@ -224,16 +224,20 @@ fn fitted(frame: &Frame, paving: &Paving) -> Frame {
 }
 
 impl Set {
-    /// Hulls of both pavings in ξ, by parameter; `None` for an empty one.
-    pub fn hulls(&self) -> [Option<Vec<[f64; 2]>>; 2] {
-        let in_xi = |extents: Vec<[f64; 2]>| {
-            let within = |extent: [f64; 2], center: f64| extent.map(|end| (center + end).clamp(-1.0, 1.0));
-            extents.into_iter().zip(self.frame.center.iter()).map(|own| within(own.0, *own.1)).collect::<Vec<_>>()
-        };
-        let directions = self.frame.axes.transpose();
+    /// Hull of the outer paving in ξ, by parameter.
+    pub fn hull(&self) -> Vec<[f64; 2]> {
+        self.in_xi(extents(outer(&self.paving), &self.frame.axes.transpose()))
+    }
+
+    /// The same of the boxes of the inner one, where there are some.
+    pub fn inner_hull(&self) -> Option<Vec<[f64; 2]>> {
         let inside = &self.paving.inside;
-        let inner = (!inside.is_empty()).then(|| in_xi(extents(inside.iter(), &directions)));
-        [inner, Some(in_xi(extents(outer(&self.paving), &directions)))]
+        (!inside.is_empty()).then(|| self.in_xi(extents(inside.iter(), &self.frame.axes.transpose())))
+    }
+
+    fn in_xi(&self, extents: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        let within = |extent: [f64; 2], center: f64| extent.map(|end| (center + end).clamp(-1.0, 1.0));
+        extents.into_iter().zip(self.frame.center.iter()).map(|own| within(own.0, *own.1)).collect()
     }
 
     /// Centroid in ξ.
@@ -258,16 +262,14 @@ impl Set {
         let mut axes: Vec<FitAxis> = (0..k).map(axis).collect();
         axes.sort_by(|a, b| b.extent.total_cmp(&a.extent));
         let volume = volume(&self.frame);
-        let [_, hull] = self.hulls();
-        let touches = |axis: &usize| {
-            hull.as_ref().is_some_and(|hull| hull[*axis][0] <= -1.0 + 1e-6 || hull[*axis][1] >= 1.0 - 1e-6)
-        };
+        let hull = self.hull();
+        let touches = |axis: &usize| hull[*axis][0] <= -1.0 + 1e-6 || hull[*axis][1] >= 1.0 - 1e-6;
         let inverse = self.frame.axes.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(k, k));
         ConsistentSet {
             volumes: self.paving.volumes().map(|own| own * volume),
             boxes: [self.paving.inside.len(), self.paving.undecided.len()],
             axes,
-            projections: projections(self, prior),
+            projections: projections(&self.frame, &self.paving, &hull, prior),
             at_limits: (0..k).filter(touches).map(|axis| names[axis].clone()).collect(),
             paving: SkewPaving {
                 center: self.frame.center.iter().copied().collect(),
