@@ -8,6 +8,7 @@ The command ``mbint`` does the work; this package writes its input and reads its
 """
 
 from ._command import MbintError, command, version
+from .fitting import Fit, fit
 from .functions import bounds
 from .gradients import gradient
 from .questions import Allocation, allocate, check, cost, snapshot, sweep
@@ -17,6 +18,7 @@ from .study import Study, run
 
 __all__ = [
     "Allocation",
+    "Fit",
     "MbintError",
     "Result",
     "Study",
@@ -25,6 +27,7 @@ __all__ = [
     "check",
     "command",
     "cost",
+    "fit",
     "gradient",
     "run",
     "sample",

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 import mbint
@@ -56,6 +57,29 @@ def test_tolerances_are_allocated() -> None:
     assert mbint.run(STACK, set=found.overlay).result.verdicts["verdict"][0] == "holds"
     tight = {"fits": {"output": "gap", "max": "0.9 mm"}}
     assert not mbint.allocate(STACK | {"requirements": tight}).met
+
+
+def test_parameters_are_fitted() -> None:
+    line = {
+        "model": "line",
+        "parameters": {"x0": {"interval": [-1, 1], "unit": "m"}, "v": {"interval": [-1, 1], "unit": "m/s"}},
+        "bodies": {"block": {"mass": 1, "coordinates": ["x"]}},
+        "initial": {"block.x": "x0", "block.vx": "v"},
+        "outputs": {"x": "block.x"},
+        "simulation": {"duration": 1, "step": 0.1, "output_step": 0.1},
+        "bounds": {"chebyshev": {"order": 1}},
+    }
+    # x0 within 0.29 and 0.31, x0 + v within 0.69 and 0.71.
+    table = pd.DataFrame({"time": [0, 1], "x": [0.3, 0.7]})
+    found = mbint.fit(line, table, noise={"x": "10 mm"})
+    assert found.consistent
+    assert found.parameters.loc["x0", "lower"] == pytest.approx(0.29, abs=1e-3)
+    assert found.parameters.loc["v", "estimate"] == pytest.approx(0.4)
+    assert found.overlay["v"] == pytest.approx((0.38, 0.42), abs=1e-3)
+    assert len(found.rows) == 2
+    wrong = mbint.fit(line, pd.DataFrame({"time": [0, 1], "x": [0.3, 5]}), noise={"x": 0.01})
+    assert not wrong.consistent
+    assert wrong.result["unexplained"]["worst"][0] in (0, 1)
 
 
 def test_bounds_are_recorded_and_compared(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::export::ExportError;
 use crate::model::UnknownScene;
-use crate::study::{AllocateError, CostError, GradientError, RunError};
+use crate::study::{AllocateError, CostError, DataError, FitError, GradientError, RunError};
 use crate::syntax::Diagnostics;
 
 /// Why there is no model, or nothing of it could be run.
@@ -40,6 +40,12 @@ pub enum Error {
     /// Outputs have no derivatives by the parameters.
     #[error(transparent)]
     Gradient(#[from] Box<GradientError>),
+    /// Measured values cannot be used.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// There is no fit.
+    #[error(transparent)]
+    Fit(Box<FitError>),
     /// The files could not be written.
     #[error(transparent)]
     Write(#[from] ExportError),
@@ -57,6 +63,16 @@ impl From<AllocateError> for Error {
         match error {
             AllocateError::Unsuitable(message) => Self::Unsuitable(message),
             AllocateError::Run(error) => Self::Run(error),
+        }
+    }
+}
+
+impl From<FitError> for Error {
+    fn from(error: FitError) -> Self {
+        match error {
+            FitError::Run(error) => Self::Run(error),
+            FitError::Interrupted => Self::Interrupted,
+            error => Self::Fit(Box::new(error)),
         }
     }
 }

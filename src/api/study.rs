@@ -3,8 +3,8 @@
 use super::{Error, Samples, StudyResult};
 use crate::methods::{BoundsRequest, Certified, Chebyshev, Scan, Taylor};
 use crate::model::{Description, Stepping};
-use crate::results::{Allocation, CostStudy, Criterion};
-use crate::study::{AllocateOptions, CostOptions, Options, allocate, cost, run};
+use crate::results::{Allocation, CostStudy, Criterion, Fit};
+use crate::study::{AllocateOptions, CostOptions, Measurements, NoiseBound, Options, allocate, cost, fit, run};
 
 /// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
 pub struct Study<'a> {
@@ -139,6 +139,20 @@ impl<'a> Study<'a> {
             Criterion::Share(share) => Some(share),
         };
         Ok(allocate(&self.description, AllocateOptions { share, widest }, &self.options)?)
+    }
+
+    /// The parameters that agree with measured values. `data` is a table: a heading with `time` and names of outputs,
+    /// perhaps with units (`x3 [mm]`) and columns `x3_noise`, then rows. `noise` has bounds for outputs without such a
+    /// column: name and quantity, as `("x3", "0.1 mm")`.
+    ///
+    /// # Errors
+    /// [`Error::Data`]: the table or a bound cannot be used. [`Error::Fit`]: no parameter is uncertain, or the model
+    /// cannot be run over its box.
+    pub fn fit(self, data: &str, noise: &[(&str, &str)]) -> Result<Fit, Error> {
+        let bound = |own: &(&str, &str)| NoiseBound { output: own.0.to_owned(), value: own.1.to_owned() };
+        let noise: Vec<NoiseBound> = noise.iter().map(bound).collect();
+        let measurements = Measurements::read(data, &self.description, &noise)?;
+        Ok(fit(&self.description, &measurements, &self.options)?)
     }
 
     /// Outputs over time at points: for each a value, SI, of each of [`Model::uncertain`](super::Model::uncertain).

@@ -3,6 +3,7 @@
 mod allocate;
 mod explain;
 mod export;
+mod fit;
 mod gradient;
 mod sample;
 mod shards;
@@ -21,6 +22,7 @@ use crate::results::Method;
 pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
 pub(super) use export::{ExportArgs, UnitVersion};
+pub(super) use fit::FitArgs;
 pub(super) use gradient::GradientArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
@@ -49,6 +51,8 @@ pub(super) enum Command {
     Allocate(AllocateArgs),
     /// Differentiate every output by every uncertain parameter, over time.
     Gradient(GradientArgs),
+    /// Find the parameters that agree with measured values.
+    Fit(FitArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Make report.html again from a folder of results.

@@ -12,6 +12,7 @@ mod cost;
 mod effects;
 mod explain;
 mod export_code;
+mod fit;
 mod gradient;
 mod interrupt;
 mod job;
@@ -147,6 +148,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Sweep(args) => sweep::sweep(args, console),
         Command::Allocate(args) => allocate::allocate(args, console),
         Command::Gradient(args) => gradient::gradient(args, console),
+        Command::Fit(args) => fit::fit(args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),

@@ -29,6 +29,7 @@ mod far;
 mod fast_functions;
 mod features;
 mod first_correction;
+mod fit;
 mod formulas;
 mod formulations;
 mod gradients;

@@ -17,6 +17,7 @@ mod docs_effects;
 mod everyday;
 mod export;
 mod faults;
+mod fit;
 mod fmu;
 mod old_models;
 mod parts;

@@ -163,7 +163,7 @@ fn corners(orders: &[usize]) -> impl Iterator<Item = usize> + '_ {
 }
 
 /// Splits a part in the middle of an axis: `right` goes in whole and comes out as the upper half, `left` as the lower.
-fn halve(orders: &[usize], axis: usize, right: &mut [f64], left: &mut Vec<f64>) {
+pub(super) fn halve(orders: &[usize], axis: usize, right: &mut [f64], left: &mut Vec<f64>) {
     left.clear();
     left.resize(right.len(), 0.0);
     let n = orders[axis];
@@ -180,7 +180,7 @@ fn halve(orders: &[usize], axis: usize, right: &mut [f64], left: &mut Vec<f64>) 
 }
 
 /// Column j: Bernstein coefficients of C_j in degree n on [−1, 1].
-fn from_chebyshev(n: usize) -> Matrix {
+pub(super) fn from_chebyshev(n: usize) -> Matrix {
     let columns: Vec<Vec<f64>> = (0..=n).map(|j| elevated(chebyshev_in_its_own_degree(j), n)).collect();
     Matrix::new(n + 1, n + 1, |i, j| columns[j][i])
 }

@@ -9,6 +9,7 @@
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`SegmentMotions`]: responses cut at events;
+//! - [`pave`]: polynomials and intervals for their values → parameters with which they have these;
 //! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
 
 mod along;
@@ -33,6 +34,7 @@ mod least_squares;
 mod ledger;
 mod leja;
 mod observed_order;
+mod paving;
 mod peak;
 mod polynomial_range;
 mod range;
@@ -68,6 +70,7 @@ pub use gradient_fit::{Derivatives, GradientFit};
 pub use least_squares::LeastSquares;
 pub use ledger::Ledger;
 pub use observed_order::{Correction, Differences, corrections};
+pub use paving::{Boxes, LeastExcess, Paving, PavingLimits, Tubes, least_excess, pave};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, limits, union};
 pub use row_space::{RowSpace, combined, dot};

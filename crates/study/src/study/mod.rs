@@ -9,6 +9,7 @@
 //! bounds the part of a box in which there is a motion, `cost` runs one model with many settings to find the cost of
 //! accuracy, `explain` lists what a model is compiled to, and `price` estimates a run. `drawing` and `motion` show the
 //! mechanism, `internal` confines a panic, `statistics` evaluates kept surrogates, and `allocate` searches tolerances.
+//! `fit` compares with measured values.
 //!
 //! A type has its methods in its own file; other files have functions that take it. So the imports of a file are
 //! all that it uses, and a test finds circles.
@@ -28,6 +29,7 @@ mod drawing;
 mod ensemble;
 mod explain;
 mod feasible;
+mod fit;
 mod formulation;
 mod gradient;
 mod internal;
@@ -65,6 +67,7 @@ pub use cost::{CostError, CostOptions, cost};
 pub use drawing::drawing;
 pub use explain::{explain, language_costs};
 pub use feasible::Survey;
+pub use fit::{DataError, FitError, Measurements, NoiseBound, fit};
 pub use gradient::{GradientError, gradient};
 pub use internal::{InternalError, caught, record_panics};
 pub use motion::{MotionOptions, motion};

@@ -21,7 +21,8 @@ use choose::{Chosen, choose};
 use items::{Choice, Item, items, with_tolerances};
 use share::Share;
 use surface::Surface;
-use wide::{Wide, largest_error, of, run_simulations, surrogate};
+use wide::{Wide, largest_error, of, surrogate};
+pub(in crate::study) use wide::{raise, run_simulations};
 use worst::{Slack, Worst};
 
 /// Studies that confirm, at most, and the share of a nominal margin they may leave before another round looks for more.

@@ -93,7 +93,7 @@ pub fn largest_error(surface: &Surface) -> f64 {
 }
 
 /// Raises the order, where it is given and the budget allows it.
-fn raise(model: &mut Description) -> bool {
+pub fn raise(model: &mut Description) -> bool {
     let budget = model.bounds.budget.simulations as f64;
     let Some(Chebyshev { degree: Degree::Fixed { order, nodes }, .. }) = &mut model.bounds.chebyshev else {
         return false;

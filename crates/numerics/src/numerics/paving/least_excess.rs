@@ -1,0 +1,90 @@
+//! The least by which some quantity misses its interval, over the whole box.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::Tubes;
+use super::parts::{Part, Shape};
+use crate::numerics::range::Range;
+
+/// The least largest excess.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LeastExcess {
+    /// No parameters have less, in units of the quantities' scales; negative where all lie within their intervals.
+    pub lower: f64,
+    /// Attained at `at`.
+    pub upper: f64,
+    /// ξ (k).
+    pub at: Vec<f64>,
+}
+
+/// A box by the least excess that is possible on it: the heap has the least on top.
+struct Candidate {
+    bound: f64,
+    part: Part,
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Candidate {}
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.bound.total_cmp(&self.bound)
+    }
+}
+
+/// Minimises, over the box, the largest excess of a quantity beyond its outer interval, in units of its scale: by
+/// branch and bound to a tolerance, or over so many boxes.
+pub fn least_excess(
+    tubes: &Tubes,
+    tolerance: f64,
+    boxes: usize,
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> LeastExcess {
+    let shape = Shape::new(&tubes.orders);
+    let mut best = LeastExcess { lower: f64::NEG_INFINITY, upper: f64::INFINITY, at: vec![0.0; shape.dimension()] };
+    let mut heap = BinaryHeap::new();
+    let whole = Part::whole(&shape, tubes);
+    heap.extend(examined(whole, &shape, tubes, &mut best));
+    for _ in 0..boxes {
+        let Some(Candidate { bound, part }) = heap.pop() else { break };
+        best.lower = bound;
+        if best.upper - bound <= tolerance || interrupted() {
+            return best;
+        }
+        for half in part.halves(&shape, tubes) {
+            heap.extend(examined(half, &shape, tubes, &mut best));
+        }
+    }
+    best.lower = heap.peek().map_or(best.upper, |least| least.bound.min(best.upper));
+    best
+}
+
+/// A box that may have less than the best so far, with the quantities that decide on it.
+fn examined(part: Part, shape: &Shape, tubes: &Tubes, best: &mut LeastExcess) -> Option<Candidate> {
+    let least = |row: usize, range: Range| {
+        let [lower, upper] = tubes.outer[row];
+        (lower - range.upper).max(range.lower - upper) / tubes.scales[row]
+    };
+    let most = |row: usize, range: Range| {
+        let [lower, upper] = tubes.outer[row];
+        (lower - range.lower).max(range.upper - upper) / tubes.scales[row]
+    };
+    let bound = part.ranges(shape).map(|(row, range)| least(row, range)).fold(f64::NEG_INFINITY, f64::max);
+    let attained = part.ranges(shape).map(|(row, range)| most(row, range)).fold(f64::NEG_INFINITY, f64::max);
+    if attained < best.upper {
+        // All of the box has at most this.
+        (best.upper, best.at) = (attained, part.middle());
+    }
+    // A quantity that has less everywhere than another has at least is never the largest.
+    let part = part.only(shape, |row, range| most(row, range) >= bound);
+    (bound < best.upper).then_some(Candidate { bound, part })
+}

@@ -1,0 +1,287 @@
+//! Measured values from a table: `time`, a column for each measured output, perhaps one for its noise.
+//!
+//! A heading is the output's name, and may have a unit: `x3 [mm]`. Without one, numbers are in the unit in which the
+//! model shows the output. An empty cell was not measured.
+
+use crate::grammar::unit::{Unit, number_and_unit};
+use crate::model::{Description, Output};
+use crate::syntax::suggest;
+
+/// (√5 − 1)/2
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
+
+/// Suffix of the columns of noise bounds.
+const NOISE: &str = "_noise";
+
+/// A noise bound for all values of an output: its name, and the text of a quantity, as `0.1 mm`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseBound {
+    /// Name of the output.
+    pub output: String,
+    /// A number with a unit.
+    pub value: String,
+}
+
+/// Why a table cannot be used, and where.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}{message}", Self::location(*.line, *.column))]
+pub struct DataError {
+    /// From 1; 0 where it is of the whole table.
+    pub line: usize,
+    /// Of the character with which the cell begins, from 1.
+    pub column: usize,
+    /// The error and the remedy.
+    pub message: String,
+}
+
+/// A measured value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Measured {
+    pub line: usize,
+    /// s
+    pub time: f64,
+    /// Index of the output in the model.
+    pub output: usize,
+    /// SI
+    pub value: f64,
+    /// SI, greater than zero.
+    pub noise: f64,
+}
+
+/// All measured values of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurements {
+    pub(super) values: Vec<Measured>,
+}
+
+/// What a column has.
+#[derive(Clone, Copy, PartialEq)]
+enum Quantity {
+    Time,
+    Value(usize),
+    Noise(usize),
+}
+
+/// A column.
+struct Column {
+    quantity: Quantity,
+    /// One of its unit in SI.
+    si: f64,
+}
+
+/// A cell, trimmed and without quotes, and the column of its first character, from 1.
+struct Cell<'t> {
+    text: &'t str,
+    column: usize,
+}
+
+impl DataError {
+    fn at(line: usize, column: usize, message: impl Into<String>) -> Self {
+        Self { line, column, message: message.into() }
+    }
+
+    fn location(line: usize, column: usize) -> String {
+        if line == 0 { String::new() } else { format!("line {line}, column {column}: ") }
+    }
+}
+
+impl Measurements {
+    /// At most so many of the values, spread over all by the golden ratio, so that no output is passed over.
+    pub(super) fn thinned(&self, most: usize) -> Self {
+        if self.values.len() <= most {
+            return self.clone();
+        }
+        let mut indices: Vec<usize> =
+            (0..most).map(|index| ((index as f64 * GOLDEN).fract() * self.values.len() as f64) as usize).collect();
+        indices.sort_unstable();
+        indices.dedup();
+        Self { values: indices.into_iter().map(|index| self.values[index].clone()).collect() }
+    }
+
+    /// Reads a table for a model.
+    ///
+    /// # Errors
+    /// At the first cell that cannot be used.
+    pub fn read(text: &str, description: &Description, noise: &[NoiseBound]) -> Result<Self, DataError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line));
+        let mut lines = lines.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+        let Some((line, heading)) = lines.next() else {
+            return Err(DataError::at(0, 0, "the table is empty: it needs a heading, as `time, x`, and rows"));
+        };
+        let columns = columns(line, &cells(heading), description)?;
+        let bounds = bounds(noise, description)?;
+        let mut values = Vec::new();
+        for (line, row) in lines {
+            values.extend(measured(line, &cells(row), &columns, description, &bounds)?);
+        }
+        if values.is_empty() {
+            return Err(DataError::at(0, 0, "the table has no measured values below its heading"));
+        }
+        Ok(Self { values })
+    }
+}
+
+fn cells(line: &str) -> Vec<Cell<'_>> {
+    let mut begin = 0;
+    let cell = |text: &'_ str| {
+        let trimmed = text.trim().trim_matches('"').trim();
+        let first = begin + text.find(trimmed).unwrap_or(0);
+        begin += text.len() + 1;
+        (trimmed.len(), first)
+    };
+    let spans: Vec<(usize, usize)> = line.split(',').map(cell).collect();
+    let of = |(length, first): (usize, usize)| Cell {
+        text: &line[first..first + length],
+        column: 1 + line[..first].chars().count(),
+    };
+    spans.into_iter().map(of).collect()
+}
+
+/// One of the unit in which the model shows an output, in SI.
+fn shown(output: &Output, description: &Description) -> f64 {
+    description.display.get(&output.name).map_or(1.0, |unit| unit.si())
+}
+
+fn columns(line: usize, heading: &[Cell], description: &Description) -> Result<Vec<Column>, DataError> {
+    let mut columns: Vec<Column> = Vec::new();
+    for cell in heading {
+        let wrong = |message: String| DataError::at(line, cell.column, message);
+        let (name, unit) = match cell.text.split_once('[') {
+            Some((name, unit)) => (name.trim(), Some(unit.trim_end().trim_end_matches(']').trim())),
+            None => (cell.text, None),
+        };
+        let quantity = quantity(name, description).map_err(wrong)?;
+        if columns.iter().any(|other| other.quantity == quantity) {
+            return Err(wrong(format!("there are two columns `{name}`")));
+        }
+        let si = match (quantity, unit) {
+            (_, Some(unit)) => of_unit(unit, quantity, description).map_err(wrong)?,
+            (Quantity::Time, None) => 1.0,
+            (Quantity::Value(output) | Quantity::Noise(output), None) => {
+                shown(&description.outputs[output], description)
+            }
+        };
+        columns.push(Column { quantity, si });
+    }
+    let has = |wanted: fn(&Quantity) -> bool| columns.iter().any(|column| wanted(&column.quantity));
+    if !has(|quantity| *quantity == Quantity::Time) {
+        return Err(DataError::at(line, 1, "there is no column `time`"));
+    }
+    if !has(|quantity| matches!(quantity, Quantity::Value(_))) {
+        let known = description.outputs.iter().map(|output| output.name.as_str());
+        let help = suggest::help("", "outputs", known).unwrap_or_default();
+        return Err(DataError::at(line, 1, format!("no column is an output of the model; {help}")));
+    }
+    Ok(columns)
+}
+
+fn quantity(name: &str, description: &Description) -> Result<Quantity, String> {
+    let output = |name: &str| description.outputs.iter().position(|output| output.name == name);
+    if matches!(name, "time" | "t") {
+        return Ok(Quantity::Time);
+    }
+    if let Some(output) = output(name) {
+        return Ok(Quantity::Value(output));
+    }
+    if let Some(output) = name.strip_suffix(NOISE).and_then(output) {
+        return Ok(Quantity::Noise(output));
+    }
+    let known = description.outputs.iter().map(|output| output.name.as_str()).chain(["time"]);
+    let help = suggest::help(name, "columns", known).map_or_else(String::new, |help| format!("; {help}"));
+    Err(format!("`{}` is no output of the model{help}", suggest::clip(name)))
+}
+
+/// One of a unit in SI, where it is of the column's dimension.
+fn of_unit(text: &str, quantity: Quantity, description: &Description) -> Result<f64, String> {
+    let unit = Unit::parse(text).map_err(|error| error.message)?;
+    let wanted = match quantity {
+        Quantity::Time => Unit::parse("s").ok().map(|second| second.dimension),
+        Quantity::Value(output) | Quantity::Noise(output) => description.outputs[output].dimension,
+    };
+    match wanted {
+        Some(wanted) if !unit.dimension.fits(wanted) => {
+            Err(format!("`{text}` is a unit of {}, but the column is {}", unit.dimension.noun(), wanted.noun()))
+        }
+        _ => Ok(unit.to_si(1.0)),
+    }
+}
+
+/// Noise bounds of outputs, by index, SI.
+fn bounds(noise: &[NoiseBound], description: &Description) -> Result<Vec<Option<f64>>, DataError> {
+    let mut bounds = vec![None; description.outputs.len()];
+    for bound in noise {
+        let wrong =
+            |message: String| DataError::at(0, 0, format!("noise `{}={}`: {message}", bound.output, bound.value));
+        let Quantity::Value(output) = quantity(&bound.output, description).map_err(wrong)? else {
+            return Err(wrong(format!("`{}` is no output of the model", bound.output)));
+        };
+        let own = match number_and_unit(&bound.value) {
+            Some((number, unit, _)) => number * of_unit(unit, Quantity::Noise(output), description).map_err(wrong)?,
+            None => {
+                let number: Result<f64, _> = bound.value.trim().parse();
+                let number = number.map_err(|_| wrong("it is no number with a unit, as `0.1 mm`".to_owned()))?;
+                number * shown(&description.outputs[output], description)
+            }
+        };
+        if !(own > 0.0 && own.is_finite()) {
+            return Err(wrong("a noise bound is greater than zero".to_owned()));
+        }
+        if bounds[output].replace(own).is_some() {
+            return Err(wrong("it is given twice".to_owned()));
+        }
+    }
+    Ok(bounds)
+}
+
+/// Measured values of a line.
+fn measured(
+    line: usize,
+    cells: &[Cell],
+    columns: &[Column],
+    description: &Description,
+    bounds: &[Option<f64>],
+) -> Result<Vec<Measured>, DataError> {
+    if cells.len() != columns.len() {
+        let message = format!("{} cells, but the heading has {}", cells.len(), columns.len());
+        return Err(DataError::at(line, 1, message));
+    }
+    let number = |index: usize| -> Result<Option<f64>, DataError> {
+        let Cell { text, column } = cells[index];
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+        let number =
+            number.ok_or_else(|| DataError::at(line, column, format!("`{}` is no number", suggest::clip(text))))?;
+        Ok(Some(number * columns[index].si))
+    };
+    let find = |wanted: Quantity| columns.iter().position(|column| column.quantity == wanted);
+    // `columns` has made sure that there is one.
+    let Some(of_time) = find(Quantity::Time) else { return Ok(Vec::new()) };
+    let at = cells[of_time].column;
+    let time = number(of_time)?.ok_or_else(|| DataError::at(line, at, "there is no time in this row"))?;
+    let end = description.simulation.duration;
+    if !(0.0..=end * (1.0 + 1e-9)).contains(&time) {
+        let message = format!("the time {time} s is outside of the simulation, which is from 0 to {end} s");
+        return Err(DataError::at(line, at, message));
+    }
+    let mut values = Vec::new();
+    for (index, column) in columns.iter().enumerate() {
+        let Quantity::Value(output) = column.quantity else { continue };
+        let Some(value) = number(index)? else { continue };
+        let of_noise = find(Quantity::Noise(output));
+        let noise = of_noise.map(number).transpose()?.flatten().or(bounds[output]).ok_or_else(|| {
+            let name = &description.outputs[output].name;
+            let message =
+                format!("the noise of `{name}` is not known: add a column `{name}{NOISE}`, or `--noise {name}=…`");
+            DataError::at(line, cells[index].column, message)
+        })?;
+        if noise <= 0.0 {
+            let column = of_noise.map_or(1, |index| cells[index].column);
+            return Err(DataError::at(line, column, "a noise bound is greater than zero"));
+        }
+        values.push(Measured { line, time: time.min(end), output, value, noise });
+    }
+    Ok(values)
+}

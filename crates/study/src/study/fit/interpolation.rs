@@ -1,0 +1,64 @@
+//! Values between output rows: a polynomial in time through the nearest rows.
+
+/// Rows of the polynomial, and of the coarser one that tells its error.
+const ROWS: usize = 6;
+const COARSE: usize = 4;
+
+/// Nearer than this share of a row's distance is in the row.
+const IN_ROW: f64 = 1e-9;
+
+/// A value at a time, as a sum over rows.
+#[derive(Clone, Debug)]
+pub struct Interpolation {
+    /// Rows with their weights.
+    pub fine: Vec<(usize, f64)>,
+    /// The same by fewer rows; the difference estimates the error. Empty where the time is that of a row.
+    pub coarse: Vec<(usize, f64)>,
+}
+
+impl Interpolation {
+    /// At a time among those of rows, which ascend; `None` where there are no rows, or it lies after the last.
+    pub fn new(times: &[f64], time: f64) -> Option<Self> {
+        let next = times.partition_point(|own| *own < time);
+        let is_near = |row: usize| {
+            let step = if times.len() > 1 { times[1] - times[0] } else { 1.0 };
+            (times[row] - time).abs() <= IN_ROW * step
+        };
+        let exact = [next, next.saturating_sub(1)].into_iter().find(|&row| row < times.len() && is_near(row));
+        if let Some(row) = exact {
+            return Some(Self { fine: vec![(row, 1.0)], coarse: Vec::new() });
+        }
+        (next < times.len())
+            .then(|| Self { fine: weights(times, time, next, ROWS), coarse: weights(times, time, next, COARSE) })
+    }
+}
+
+/// Lagrange's polynomials at a time through `count` rows, half of them before row `next`.
+fn weights(times: &[f64], time: f64, next: usize, count: usize) -> Vec<(usize, f64)> {
+    let count = count.min(times.len());
+    let first = next.saturating_sub(count / 2).min(times.len() - count);
+    let rows = first..first + count;
+    let weight = |row: usize| {
+        let others = rows.clone().filter(|other| *other != row);
+        others.map(|other| (time - times[other]) / (times[row] - times[other])).product()
+    };
+    rows.clone().map(|row| (row, weight(row))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_of_fifth_degree_is_met() {
+        let times: Vec<f64> = (0..20).map(|row| 0.1 * f64::from(row)).collect();
+        let course = |t: f64| 1.0 - t + 0.3 * t.powi(5);
+        for time in [0.0, 0.013, 0.3, 0.77, 1.899, 1.9] {
+            let found = Interpolation::new(&times, time).unwrap();
+            let value: f64 = found.fine.iter().map(|&(row, weight)| weight * course(times[row])).sum();
+            assert!((value - course(time)).abs() < 1e-13, "{time}");
+        }
+        assert!(Interpolation::new(&times, 0.3).unwrap().coarse.is_empty());
+        assert!(Interpolation::new(&times, 1.95).is_none());
+    }
+}

@@ -1,0 +1,149 @@
+//! Measured outputs at measured times as functions of the parameters, with the errors of a run's surrogates.
+
+use std::collections::BTreeMap;
+
+use super::data::Measured;
+use super::interpolation::Interpolation;
+use super::{FitError, Measurements};
+use crate::methods::Method;
+use crate::model::{Description, ParameterValue};
+use crate::numerics::ParameterBox;
+use crate::study::allocate::{raise, run_simulations};
+use crate::study::{Evaluator, Kept, Options, run_keeping};
+
+/// Surrogates over a box of the parameters.
+pub struct Run {
+    kept: Kept,
+    /// Their box, in the parameters' units.
+    pub domain: ParameterBox,
+    pub simulations: usize,
+}
+
+/// The measured rows of a run's surrogates.
+pub struct Readings<'r> {
+    kept: &'r Kept,
+    evaluator: Evaluator<'r>,
+    rows: Vec<Reading>,
+}
+
+/// A measured row.
+struct Reading {
+    output: usize,
+    /// `None` where the motion ends before.
+    interpolation: Option<Interpolation>,
+}
+
+/// Values at samples.
+pub struct Values {
+    /// By measured row, then sample.
+    pub values: Vec<Vec<f64>>,
+    /// By measured row: the largest difference of both interpolations in time.
+    pub interpolation: Vec<f64>,
+}
+
+impl Run {
+    /// Over a box within the model's; with a raised order where `raised` says how often.
+    ///
+    /// # Errors
+    /// Where the model cannot be run, or has no surrogate.
+    pub fn new(
+        description: &Description,
+        domain: &ParameterBox,
+        raised: usize,
+        options: &Options,
+    ) -> Result<Self, FitError> {
+        let mut model = description.clone();
+        let mut axis = 0;
+        for parameter in &mut model.parameters {
+            if let ParameterValue::Interval { nominal, lower, upper } = &mut parameter.value {
+                (*lower, *upper) = (domain.lower[axis], domain.upper[axis]);
+                *nominal = nominal.clamp(*lower, *upper);
+                axis += 1;
+            }
+        }
+        let is_raised = (0..raised).all(|_| raise(&mut model));
+        let (_, summary, kept) =
+            run_keeping(&model, Options { methods: Some(vec![Method::Chebyshev]), store: None, ..*options })?;
+        if (options.interrupted)() {
+            return Err(FitError::Interrupted);
+        }
+        let kept = kept.filter(|_| is_raised).ok_or(FitError::NoSurrogate)?;
+        Ok(Self { kept, domain: domain.clone(), simulations: run_simulations(&summary) })
+    }
+
+    /// Measured rows.
+    ///
+    /// # Errors
+    /// Where an output's equations have no finite values at the start.
+    pub fn readings(&self, measurements: &Measurements) -> Result<Readings<'_>, FitError> {
+        let evaluator = self.kept.evaluator().map_err(|error| FitError::Run(error.into()))?;
+        let reading = |own: &Measured| Reading {
+            output: own.output,
+            interpolation: Interpolation::new(self.kept.times(), own.time),
+        };
+        Ok(Readings { kept: &self.kept, evaluator, rows: measurements.values.iter().map(reading).collect() })
+    }
+}
+
+impl Readings<'_> {
+    /// Errors of simulation and surrogate anywhere in the box, by measured row; infinite where nothing is known.
+    pub fn errors(&self) -> Vec<f64> {
+        let of = |reading: &Reading| {
+            let Some(interpolation) = &reading.interpolation else { return f64::INFINITY };
+            let error = self.kept.error(reading.output);
+            let at = |&(row, weight): &(usize, f64)| -> f64 {
+                let own = error.total.get(row).copied().unwrap_or(f64::INFINITY);
+                // A row whose error is large but known can be relied on.
+                let flag = |flags: &[bool]| flags.get(row).copied();
+                let is_known = flag(&error.unresolved) == Some(false) || flag(&error.coarse) == Some(true);
+                if own.is_nan() || !is_known { f64::INFINITY } else { weight.abs() * own }
+            };
+            interpolation.fine.iter().map(at).sum()
+        };
+        self.rows.iter().map(of).collect()
+    }
+
+    /// Values at samples (values of all parameters in their units); NaN where one is not known.
+    pub fn at(&self, samples: &[Vec<f64>]) -> Values {
+        let mut wanted: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for reading in &self.rows {
+            let fine = reading.interpolation.iter().flat_map(|own| &own.fine);
+            for &(row, _) in fine {
+                let outputs = wanted.entry(row).or_default();
+                if !outputs.contains(&reading.output) {
+                    outputs.push(reading.output);
+                }
+            }
+        }
+        let of_row = |(row, outputs): (usize, Vec<usize>)| {
+            let values = self.evaluator.values(row, &outputs, samples);
+            let lines = values.chunks_exact(samples.len()).map(<[f64]>::to_vec);
+            outputs.into_iter().zip(lines).map(|(output, line)| ((row, output), line)).collect::<Vec<_>>()
+        };
+        let known: BTreeMap<(usize, usize), Vec<f64>> = wanted.into_iter().flat_map(of_row).collect();
+        let sum = |weights: &[(usize, f64)], output: usize| {
+            let mut sum = vec![0.0; samples.len()];
+            for (row, weight) in weights {
+                let line = &known[&(*row, output)];
+                sum.iter_mut().zip(line).for_each(|(sum, value)| *sum += weight * value);
+            }
+            sum
+        };
+        let of = |reading: &Reading| match &reading.interpolation {
+            None => (vec![f64::NAN; samples.len()], f64::INFINITY),
+            Some(own) => {
+                let fine = sum(&own.fine, reading.output);
+                let error = match own.coarse.is_empty() {
+                    true => 0.0,
+                    false => {
+                        let coarse = sum(&own.coarse, reading.output);
+                        fine.iter().zip(coarse).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                    }
+                };
+                (fine, error)
+            }
+        };
+        let (values, interpolation) = self.rows.iter().map(of).unzip();
+        Values { values, interpolation }
+    }
+}

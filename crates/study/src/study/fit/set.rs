@@ -1,0 +1,281 @@
+//! The consistent set: pavings along axes that follow the set as it shrinks.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::local::{COARSE, FINE, Frame, Local};
+use super::projections::projections;
+use super::readings::Run;
+use super::{FitError, Measurements};
+use crate::model::Description;
+use crate::numerics::{ParameterBox, Paving, PavingLimits, pave};
+use crate::results::{ConsistentSet, FitAxis, SkewPaving};
+use crate::study::Options;
+
+/// Pavings by which the set is approached.
+const APPROACH: PavingLimits = PavingLimits { undecided: 0.3, boxes: 1 << 12, numbers: 1 << 23 };
+/// The last one.
+const LAST: PavingLimits = PavingLimits { undecided: 0.02, boxes: 1 << 18, numbers: 1 << 25 };
+
+/// Axes that fit the set no better than this share of their volume are the last.
+const SHRUNK: f64 = 0.6;
+const ROUNDS: usize = 24;
+
+/// Measured values that are used at first.
+const FEW: usize = 40;
+
+/// Surrogates are made anew where their error is more than this share of the noise.
+const ROUGH: f64 = 3e-4;
+/// New ones with less than this share of the error are worth it, and so many of them.
+const BETTER: f64 = 0.7;
+const RUNS: usize = 8;
+/// Orders by which a surrogate of the whole box is raised where it tells nothing.
+const RAISED: usize = 3;
+
+/// The end of the approach.
+pub struct Found {
+    /// `None` where it is empty.
+    pub set: Option<Set>,
+    /// Simulations of narrower boxes.
+    pub simulations: usize,
+    /// Errors by measured row in the last round, SI; where the set is not empty.
+    pub errors: Option<Vec<f64>>,
+}
+
+/// A set that is not empty.
+pub struct Set {
+    pub frame: Frame,
+    pub paving: Paving,
+}
+
+/// Approaches the set from the model's box, in which `first` has surrogates.
+///
+/// # Errors
+/// Where a narrower box cannot be run.
+pub fn found(
+    description: &Description,
+    measurements: &Measurements,
+    prior: &ParameterBox,
+    first: &Run,
+    options: &Options,
+) -> Result<Found, FitError> {
+    let few = measurements.thinned(FEW);
+    let mut used = &few;
+    let mut approach = Approach::begun(description, prior, first, options);
+    for _ in 0..ROUNDS {
+        (options.stage)("consistent parameters");
+        let local = approach.local(used, COARSE)?;
+        let paving = pave(&local.tubes, APPROACH, options.interrupted);
+        if (options.interrupted)() {
+            return Err(FitError::Interrupted);
+        }
+        if paving.volumes()[1] == 0.0 {
+            return Ok(Found { set: None, simulations: approach.simulations, errors: None });
+        }
+        let next = fitted(&approach.frame, &paving);
+        let shrinks = volume(&next) < SHRUNK * volume(&approach.frame);
+        if shrinks {
+            approach.frame = next;
+        }
+        if approach.improved(local.roughness(used), shrinks)? || shrinks {
+            continue;
+        }
+        if std::ptr::eq(used, measurements) {
+            break;
+        }
+        used = measurements;
+    }
+    let local = approach.local(measurements, FINE)?;
+    let paving = pave(&local.tubes, LAST, options.interrupted);
+    if (options.interrupted)() {
+        return Err(FitError::Interrupted);
+    }
+    let is_empty = paving.volumes()[1] == 0.0;
+    let Approach { frame, simulations, .. } = approach;
+    Ok(Found { set: (!is_empty).then_some(Set { frame, paving }), simulations, errors: Some(local.errors) })
+}
+
+/// A set that is approached.
+struct Approach<'a> {
+    description: &'a Description,
+    prior: &'a ParameterBox,
+    options: &'a Options<'a>,
+    first: &'a Run,
+    /// Over a narrower box, where there is one.
+    narrower: Option<Run>,
+    frame: Frame,
+    runs: usize,
+    /// How often the order was raised.
+    raised: usize,
+    /// Error in the round before the last run, in multiples of the noise.
+    before: f64,
+    simulations: usize,
+}
+
+impl<'a> Approach<'a> {
+    fn begun(description: &'a Description, prior: &'a ParameterBox, first: &'a Run, options: &'a Options<'a>) -> Self {
+        let frame = Frame::whole(prior.dimension());
+        let before = f64::INFINITY;
+        Self { description, prior, options, first, narrower: None, frame, runs: 1, raised: 0, before, simulations: 0 }
+    }
+
+    fn run(&self) -> &Run {
+        self.narrower.as_ref().unwrap_or(self.first)
+    }
+
+    fn local(&self, measurements: &Measurements, fine: f64) -> Result<Local, FitError> {
+        Local::new(&self.run().readings(measurements)?, &self.frame, self.prior, measurements, fine)
+    }
+
+    /// Better surrogates, where their error counts and they are worth it: over the box around a frame that has shrunk,
+    /// or of a higher order. Returns whether there are some.
+    fn improved(&mut self, roughness: f64, shrinks: bool) -> Result<bool, FitError> {
+        let domain = self.frame.domain(self.prior);
+        let is_narrower = is_narrower(&domain, &self.run().domain);
+        if roughness <= ROUGH || self.runs == RUNS || (shrinks && !is_narrower) {
+            return Ok(false);
+        }
+        if !is_narrower {
+            // The last run was of no use, or the box cannot be made smaller.
+            if roughness > BETTER * self.before || self.raised == RAISED {
+                return Ok(false);
+            }
+            self.raised += 1;
+        }
+        self.before = roughness;
+        match Run::new(self.description, &domain, self.raised, self.options) {
+            Ok(run) => {
+                self.runs += 1;
+                self.simulations += run.simulations;
+                self.narrower = Some(run);
+                Ok(true)
+            }
+            // All that is known so far remains true.
+            Err(FitError::NoSurrogate) => {
+                self.runs = RUNS;
+                Ok(false)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Whether a box is much narrower than another along some axis.
+fn is_narrower(domain: &ParameterBox, than: &ParameterBox) -> bool {
+    (0..domain.dimension()).any(|axis| domain.half_width(axis) < SHRUNK * than.half_width(axis))
+}
+
+fn volume(frame: &Frame) -> f64 {
+    frame.axes.clone().lu().determinant().abs()
+}
+
+/// All boxes of a paving with their weights: lower and upper ends.
+fn outer(paving: &Paving) -> impl Iterator<Item = (&[f64], &[f64])> {
+    paving.inside.iter().chain(paving.undecided.iter())
+}
+
+/// Mean and covariance of a paving in η.
+fn moments(paving: &Paving, k: usize) -> (DVector<f64>, DMatrix<f64>) {
+    let (mut weight, mut mean, mut square) = (0.0, DVector::zeros(k), DMatrix::zeros(k, k));
+    for (lower, upper) in outer(paving) {
+        let middle = DVector::from_fn(k, |axis, _| 0.5 * (lower[axis] + upper[axis]));
+        let half = DVector::from_fn(k, |axis, _| 0.5 * (upper[axis] - lower[axis]));
+        let own: f64 = half.product();
+        weight += own;
+        mean += own * &middle;
+        square += own * (&middle * middle.transpose());
+        (0..k).for_each(|axis| square[(axis, axis)] += own * half[axis] * half[axis] / 3.0);
+    }
+    mean /= weight;
+    let covariance = square / weight - &mean * mean.transpose();
+    (mean, covariance)
+}
+
+/// Extent of boxes along directions, columns of k × m in η: lower and upper ends.
+fn extents<'b>(boxes: impl Iterator<Item = (&'b [f64], &'b [f64])>, directions: &DMatrix<f64>) -> Vec<[f64; 2]> {
+    let mut extents = vec![[f64::INFINITY, f64::NEG_INFINITY]; directions.ncols()];
+    for (lower, upper) in boxes {
+        for (extent, direction) in extents.iter_mut().zip(directions.column_iter()) {
+            let (mut least, mut most) = (0.0, 0.0);
+            for (axis, own) in direction.iter().enumerate() {
+                let ends = [own * lower[axis], own * upper[axis]];
+                least += ends[0].min(ends[1]);
+                most += ends[0].max(ends[1]);
+            }
+            (extent[0], extent[1]) = (extent[0].min(least), extent[1].max(most));
+        }
+    }
+    extents
+}
+
+/// Axes along the principal ones of a paving, as long as it is.
+fn fitted(frame: &Frame, paving: &Paving) -> Frame {
+    let k = frame.center.len();
+    let (_, covariance) = moments(paving, k);
+    let eigen = (&frame.axes * covariance * frame.axes.transpose()).symmetric_eigen();
+    let directions = eigen.eigenvectors;
+    // v · ξ = v · center + (axesᵀ v) · η
+    let extents = extents(outer(paving), &(frame.axes.transpose() * &directions));
+    let (mut center, mut axes) = (frame.center.clone(), directions.clone());
+    for (index, [lower, upper]) in extents.into_iter().enumerate() {
+        center += directions.column(index) * (0.5 * (lower + upper));
+        axes.column_mut(index).scale_mut(0.5 * (upper - lower).max(f64::EPSILON));
+    }
+    Frame { center, axes }
+}
+
+impl Set {
+    /// Hull of the outer paving in ξ, by parameter.
+    pub fn hull(&self) -> Vec<[f64; 2]> {
+        self.in_xi(extents(outer(&self.paving), &self.frame.axes.transpose()))
+    }
+
+    /// The same of the boxes of the inner one, where there are some.
+    pub fn inner_hull(&self) -> Option<Vec<[f64; 2]>> {
+        let inside = &self.paving.inside;
+        (!inside.is_empty()).then(|| self.in_xi(extents(inside.iter(), &self.frame.axes.transpose())))
+    }
+
+    fn in_xi(&self, extents: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        let within = |extent: [f64; 2], center: f64| extent.map(|end| (center + end).clamp(-1.0, 1.0));
+        extents.into_iter().zip(self.frame.center.iter()).map(|own| within(own.0, *own.1)).collect()
+    }
+
+    /// Centroid in ξ.
+    pub fn middle(&self) -> Vec<f64> {
+        let (mean, _) = moments(&self.paving, self.frame.center.len());
+        self.frame.xi(mean.as_slice()).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect()
+    }
+
+    /// As results have it.
+    pub fn described(&self, prior: &ParameterBox, names: &[String]) -> ConsistentSet {
+        let k = prior.dimension();
+        let (_, covariance) = moments(&self.paving, k);
+        let eigen = (&self.frame.axes * covariance * self.frame.axes.transpose()).symmetric_eigen();
+        let extents = extents(outer(&self.paving), &(self.frame.axes.transpose() * &eigen.eigenvectors));
+        let axis = |index: usize| {
+            let direction: Vec<f64> = eigen.eigenvectors.column(index).iter().copied().collect();
+            let largest = direction.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+            let sign = if largest < 0.0 { -1.0 } else { 1.0 };
+            let direction = direction.into_iter().map(|own| sign * own).collect();
+            FitAxis { direction, extent: extents[index][1] - extents[index][0] }
+        };
+        let mut axes: Vec<FitAxis> = (0..k).map(axis).collect();
+        axes.sort_by(|a, b| b.extent.total_cmp(&a.extent));
+        let volume = volume(&self.frame);
+        let hull = self.hull();
+        let touches = |axis: &usize| hull[*axis][0] <= -1.0 + 1e-6 || hull[*axis][1] >= 1.0 - 1e-6;
+        let inverse = self.frame.axes.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(k, k));
+        ConsistentSet {
+            volumes: self.paving.volumes().map(|own| own * volume),
+            boxes: [self.paving.inside.len(), self.paving.undecided.len()],
+            axes,
+            projections: projections(&self.frame, &self.paving, &hull, prior),
+            at_limits: (0..k).filter(touches).map(|axis| names[axis].clone()).collect(),
+            paving: SkewPaving {
+                center: self.frame.center.iter().copied().collect(),
+                inverse: inverse.transpose().iter().copied().collect(),
+                boxes: self.paving.clone(),
+            },
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! `mbint fit`: parameters that agree with measured values.
+
+use super::args::{FitArgs, Format};
+use super::console::{BOLD, Console, count, file_names, to_json};
+use super::progress::Progress;
+use super::run::with_folder;
+use super::table::{Align, Table};
+use super::verdicts::short;
+use super::{Failure, Status, interrupt, load};
+use crate::export::{FIT_OVERLAY, rounded, write_fit};
+use crate::grammar::display_unit::ShownUnit;
+use crate::model::{is_standard_input, shown};
+use crate::results::{ConsistentSet, Fit, Unexplained};
+use crate::study::{self, FitError, Measurements, RunError};
+
+/// Rows that are named where none explains them.
+const MOST: usize = 5;
+
+pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failure> {
+    let given = args.set.given()?;
+    load::input_once(&[args.model.clone(), args.data.clone()])?;
+    let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
+    let Some(model) = model else { return Ok(Status::Wrong) };
+    let table = match is_standard_input(&args.data) {
+        true => std::io::read_to_string(std::io::stdin()),
+        false => std::fs::read_to_string(&args.data),
+    };
+    let of_data = |error: &dyn std::fmt::Display| Failure::Wrong(format!("{}: {error}", shown(&args.data)));
+    let table = table.map_err(|error| of_data(&error))?;
+    let measurements = Measurements::read(&table, &model, &args.noise).map_err(|error| of_data(&error))?;
+    let Some((model, folder)) = with_folder(Some(model), args.output.as_ref())? else { return Ok(Status::Wrong) };
+    let progress = Progress::new(&model.name, !args.run.quiet);
+    let options = study::Options {
+        threads: args.run.threads.number(),
+        costly: args.yes,
+        stage: &|stage| progress.stage(stage),
+        interrupted: &interrupt::asked,
+        ..study::Options::default()
+    };
+    let found = match study::fit(&model, &measurements, &options) {
+        Ok(found) => found,
+        Err(_) if interrupt::asked() => return Ok(Status::Interrupted),
+        Err(error) => {
+            let message = format!("{}: {error}", model.name);
+            return Err(match error {
+                FitError::NoParameter | FitError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
+                    Failure::Wrong(message)
+                }
+                _ => Failure::Failed(message),
+            });
+        }
+    };
+    drop(progress);
+    interrupt::wait_for(&folder)?;
+    let files = write_fit(&folder, &found);
+    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    match args.format {
+        Format::Json => console.print(&to_json(&found)?)?,
+        Format::Text if args.run.quiet => {}
+        Format::Text => {
+            let mut text = overview(&found);
+            text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
+            if found.set.is_some() {
+                text +=
+                    &format!("  mbint run {} --with {}\n", args.model.display(), folder.join(FIT_OVERLAY).display());
+            }
+            console.print(&text)?;
+        }
+    }
+    Ok(match (&found.set, &found.unexplained) {
+        (_, Some(unexplained)) => {
+            console.error(&contradiction(&found, unexplained));
+            Status::NotMet
+        }
+        (Some(set), None) if set.volumes[0] == 0.0 => {
+            console.warning(&format!(
+                "{}: no parameters are known to agree with all rows: errors of the model are as large as the noise",
+                found.model
+            ));
+            Status::Unresolved
+        }
+        _ => Status::Done,
+    })
+}
+
+/// Prints the result for people.
+fn overview(found: &Fit) -> String {
+    let outputs: Vec<&str> = found.outputs.iter().map(|output| output.name.as_str()).collect();
+    let mut text = format!(
+        "{BOLD}{}{BOLD:#}: {} of {}, {}\n  residuals of least squares: {} of the noise bounds (root mean square)\n",
+        found.model,
+        count(found.rows.len(), "measured value", "measured values"),
+        outputs.join(", "),
+        count(found.simulations, "simulation", "simulations"),
+        short(found.residual),
+    );
+    text += &errors(found);
+    text += &parameters(found);
+    if let Some(set) = &found.set {
+        text += &consistent(found, set);
+    }
+    if found.parameters.len() > Fit::MOST_PARAMETERS {
+        text += &format!("  the consistent set is paved for up to {} parameters\n", Fit::MOST_PARAMETERS);
+    }
+    text
+}
+
+/// The largest error of the model, and rows of which nothing is known.
+fn errors(found: &Fit) -> String {
+    let known = found.rows.iter().filter(|row| row.error.is_finite());
+    let largest = known.clone().map(|row| row.error / row.noise).fold(0.0, f64::max);
+    let lost = found.rows.len() - known.count();
+    let text = format!("  errors of simulation and surrogate: {largest:.1e} of the noise bounds at most\n");
+    match lost {
+        0 => text + "\n",
+        _ => text + &format!("  {} without a reliable value of the model: not used\n\n", count(lost, "row", "rows")),
+    }
+}
+
+fn parameters(found: &Fit) -> String {
+    let mut table = Table::new([
+        ("parameter", Align::Left),
+        ("model", Align::Right),
+        ("", Align::Right),
+        ("least squares", Align::Right),
+        ("± std. dev.", Align::Right),
+        ("consistent", Align::Right),
+        ("", Align::Right),
+        ("unit", Align::Left),
+    ]);
+    for own in &found.parameters {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        let shown = |value: f64| short(unit.of_si(value));
+        let deviation = if own.deviation.is_finite() { shown(own.deviation) } else { "open".to_owned() };
+        let [lower, upper] = own.hull.map_or_else(|| ["none".to_owned(), String::new()], |hull| hull.map(shown));
+        let [from, to] = own.prior.map(shown);
+        table.row([own.name.clone(), from, to, shown(own.estimate), deviation, lower, upper, unit.text.to_owned()]);
+    }
+    table.render(2)
+}
+
+fn consistent(found: &Fit, set: &ConsistentSet) -> String {
+    let [inner, outer] = set.volumes;
+    let mut text = format!(
+        "  consistent: {:.4e} to {:.4e} of the model's box by volume ({:.1} % apart), {} boxes\n",
+        inner,
+        outer,
+        100.0 * (outer - inner) / outer,
+        set.boxes[0] + set.boxes[1]
+    );
+    if let (Some(axis), true) = (set.axes.first(), found.parameters.len() > 1) {
+        let terms = axis.direction.iter().zip(&found.parameters).filter(|(own, _)| own.abs() > 0.05);
+        let terms: Vec<String> = terms.map(|(own, parameter)| format!("{own:+.2} {}", parameter.name)).collect();
+        text += &format!(
+            "  most open: {} (in half intervals), {:.2} % of an interval\n",
+            terms.join(" "),
+            50.0 * axis.extent
+        );
+    }
+    if !set.at_limits.is_empty() {
+        text += &format!("  as far as the model's interval: {}; a wider one may show more\n", set.at_limits.join(", "));
+    }
+    text
+}
+
+/// Rows that no parameters explain.
+fn contradiction(found: &Fit, unexplained: &Unexplained) -> String {
+    let named = |row: usize| {
+        let row = &found.rows[row];
+        let output = &found.outputs[row.output];
+        format!("line {} ({} at t = {} s)", row.line, output.name, rounded(row.time))
+    };
+    let mut text = format!(
+        "{}: no parameters within the intervals agree with all rows; some would if the noise were {} times as large",
+        found.model,
+        short(unexplained.factor)
+    );
+    for &(row, excess) in unexplained.alone.iter().take(MOST) {
+        let output = &found.outputs[found.rows[row].output];
+        let unit = ShownUnit::of(&output.display, &output.unit);
+        text += &format!(
+            "\n  {} alone: missed by {} {} beyond its noise",
+            named(row),
+            short(unit.of_si(excess)),
+            unit.text
+        );
+    }
+    if unexplained.alone.len() > MOST {
+        text += &format!("\n  and {} more", unexplained.alone.len() - MOST);
+    }
+    if let Some((row, factor)) = unexplained.worst {
+        text += &match factor <= 1.0 {
+            true => format!("\n  without {} the others agree", named(row)),
+            false => {
+                format!("\n  without {} noise {} times as large is enough for the others", named(row), short(factor))
+            }
+        };
+    }
+    text
+}
