@@ -41,6 +41,8 @@ grammar! {
         tables: Option<IndexMap<String, Table>>,
         /// Functions of the time by points that they pass: `NAME`, `NAME.rate` and `NAME.acceleration` in formulas.
         trajectories: Option<IndexMap<String, Trajectory>>,
+        /// Functions of the time of which only limits are known: `NAME` in formulas, and `NAME.rate` of those with a rate.
+        excitations: Option<IndexMap<String, Excitation>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
         /// What constrains the bodies.
@@ -204,6 +206,16 @@ grammar! {
         /// With timing `trapezoidal`: how long it takes to reach its full rate, and again to rest, s; by default a
         /// quarter of each move.
         ramp: Option<Number>,
+    }
+
+    /// Any function of the time within limits.
+    Excitation is "an excitation" {
+        /// Limits of its value: `± 5 N`, `20 N ± 10%`, or `[lower, upper]`; formulas of t and parameters.
+        within: Option<WithinFile>,
+        /// Limit of its rate, either way; without `within` it begins at 0.
+        rate: Option<Number>,
+        /// It is constant over each period of this length, s, and jumps between them.
+        held: Option<Number>,
     }
 
     /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its

@@ -190,6 +190,14 @@ schema_only! {
     }
 
     #[schemars(untagged, inline)]
+    pub enum WithinFile {
+        /// Both limits, of t and parameters.
+        Ends([Number; 2]),
+        /// `± 5 N`, `20 N ± 10%`.
+        Text(String),
+    }
+
+    #[schemars(untagged, inline)]
     pub enum ParameterFile {
         /// A number, a formula, or a number with its unit, perhaps with its deviation: `0.5 m ± 1%`,
         /// `0.5 m +0.01 -0.02`, `[0.49, 0.51] m`.

@@ -14,6 +14,7 @@ mod bodies;
 mod bounds;
 mod display;
 mod effects;
+mod excitations;
 mod fmu;
 mod instances;
 mod joints;
