@@ -6,6 +6,7 @@ use rustc_hash::FxHashSet;
 use symdiff::taylor_model::encloses;
 use symdiff::{Builder, Expr, Graph, Scalar};
 
+use super::inputs::MechanismInput;
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
@@ -140,6 +141,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     let is_derived = description.black_box.is_some() || questions.outputs.iter().any(|output| output.of_results);
     let declared_parameters = if is_derived { description.parameters.clone() } else { Vec::new() };
     let mass_of_bodies = m.total_mass();
+    let inputs = m.inputs.iter().map(MechanismInput::info).collect();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
     let kinds = [constraints.positions, constraints.velocities];
@@ -160,6 +162,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
         let mut system = System {
             graph,
             parameters,
+            inputs,
             time,
             q,
             v,

@@ -29,6 +29,7 @@ mod extent;
 mod flexible;
 mod formulation;
 mod ids;
+mod inputs;
 mod inventory;
 mod joints;
 mod links;
@@ -68,6 +69,7 @@ pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inventory::Inventory;
 pub use number_formulas::NumberFormulas;
 pub use questions::Questions;
+pub use inputs::InputInfo;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,
     SampledState, StartCondition, System, UncertainParameter,

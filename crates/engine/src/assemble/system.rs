@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::inputs::InputInfo;
 use symdiff::{Expr, Formula, Graph};
 
 use crate::grammar::quantity::Dimension;
@@ -78,17 +79,6 @@ pub struct System {
     pub space: Space,
     /// By which coordinates, and why.
     pub formulation: FormulationInfo,
-}
-
-/// An excitation u(t) = level + slope · t, of which both numbers change from step to step.
-#[derive(Clone, Debug)]
-pub struct InputInfo {
-    /// Index of its trajectory in the model.
-    pub trajectory: usize,
-    /// The level, and the slope of one whose rate is limited: symbols.
-    pub level: Expr,
-    /// 1/s
-    pub slope: Expr,
 }
 
 /// By which coordinates a motion is described.
@@ -382,11 +372,6 @@ impl System {
     }
 
     /// They are noted as left out.
-    /// The symbols of all inputs, two each.
-    pub fn input_symbols(&self) -> Vec<Expr> {
-        self.inputs.iter().flat_map(|input| [input.level, input.slope]).collect()
-    }
-
     pub(super) fn note_unused_parameters(&mut self) {
         for number in self.unused_parameters() {
             let why = "nothing depends on it".to_owned();
