@@ -20,6 +20,11 @@ impl<'s> Instants<'s> {
         Self(&simulator.start.sampled)
     }
 
+    /// Of these states.
+    pub fn at(sampled: &'s [SampledValue]) -> Self {
+        Self(sampled)
+    }
+
     /// Whether there are none.
     pub fn is_empty(self) -> bool {
         self.0.is_empty()

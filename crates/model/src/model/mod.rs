@@ -43,7 +43,7 @@ mod tuning;
 mod urdf;
 mod zone_sizes;
 
-pub use crate::elements::JointKind;
+pub use crate::elements::{Class, Excitation, JointKind, Trajectory};
 pub use crate::elements::effects::*;
 pub use crate::expand::overrides::Override;
 pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotation, Symbol, TimeOrder};

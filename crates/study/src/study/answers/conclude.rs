@@ -188,6 +188,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .chain(results.bounded.validation.map(|(_, summary)| summary))
             .chain(results.bounded.doubts.switches.map(|(_, summary)| summary))
             .chain(results.attained.map(|(outcome, _)| outcome.summary))
+            .chain(results.searched.map(|outcome| outcome.summary))
             .chain(results.bounded.methods.into_iter().map(|(_, outcome)| MethodSummary {
                 expanded_outputs: outcome.result.expanded.iter().map(|&k| system.outputs[k].name.clone()).collect(),
                 ..outcome.summary
