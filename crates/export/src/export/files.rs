@@ -13,6 +13,7 @@ use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_j
 use crate::export::stack;
 use crate::export::statistics::{reduced_statistics_csv, statistics_csv};
 use crate::export::stems::unique_stems;
+use crate::export::function_witness::function_witness_csv;
 use crate::export::witnesses::{POINTS, points_csv, witnesses_csv};
 use crate::export::{
     Beside, bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg,
@@ -56,6 +57,11 @@ pub fn write_results(
     if !bounds.witnesses.is_empty() {
         files.add("witnesses.csv", &witnesses_csv(bounds, &summary.parameters)?)?;
         files.add(POINTS, &points_csv(bounds, &summary.parameters)?)?;
+    }
+    let outputs = bounds.functions.iter().map(|own| bounds.outputs[own.output].name.as_str());
+    for (stem, own) in unique_stems(outputs).into_iter().zip(&bounds.functions) {
+        let text = function_witness_csv(bounds, own, &summary.parameters);
+        files.add(&format!("witness.{stem}.csv"), text.as_bytes())?;
     }
     let is_alone = bounds.is_of_one_configuration();
     if is_alone {
@@ -230,6 +236,7 @@ mod tests {
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,
+            excitations: Vec::new(),
             is_cut: false,
         };
         (bounds, summary)

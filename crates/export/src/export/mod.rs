@@ -14,6 +14,7 @@ mod error;
 mod figure;
 mod files;
 mod folder;
+mod function_witness;
 mod gradients;
 mod junit;
 mod limits;

@@ -59,6 +59,8 @@ pub enum Timing {
     Spline,
     /// Any function within limits.
     Within(Box<Excitation>),
+    /// An excitation that is a known function: a formula of t.
+    Given(Formula),
 }
 
 /// Time, value and rate.
@@ -76,7 +78,11 @@ impl Trajectory {
         };
         let points = self.points.iter();
         let of_points = points.flat_map(|point| [&point.time, &point.value].into_iter().chain(&point.rate));
-        of_points.chain(ramp).chain(self.excitation().into_iter().flat_map(Excitation::formulas))
+        let given = match &self.timing {
+            Timing::Given(formula) => Some(formula),
+            _ => None,
+        };
+        of_points.chain(ramp).chain(given).chain(self.excitation().into_iter().flat_map(Excitation::formulas))
     }
 
     /// Its limits, where it is an excitation.
@@ -99,6 +105,9 @@ impl Trajectory {
         if let Some(excitation) = self.excitation() {
             return excitation.value(excitation.as_constant(number(&excitation.deviation)?, time), number);
         }
+        if let Timing::Given(formula) = &self.timing {
+            return number(formula);
+        }
         let zero = time.builder().number(0.0);
         let mut knots: Vec<Knot> = Vec::with_capacity(self.points.len());
         for Waypoint { time, value, rate } in &self.points {
@@ -119,8 +128,8 @@ impl Trajectory {
                 Timing::Cubic | Timing::Spline => pieces.push((to[0], cubic(u, h, from, to))),
                 Timing::Quintic => pieces.push((to[0], quintic(u, h, from, to))),
                 Timing::Trapezoidal(_) => trapezoidal(&mut pieces, u, ramp.map(|ramp| ramp / h), from, to),
-                // It has no points.
-                Timing::Within(_) => {}
+                // Without points there are no pieces.
+                Timing::Within(_) | Timing::Given(_) => {}
             }
         }
         let ([first, start, _], [_, end, _]) = (knots[0], knots[knots.len() - 1]);

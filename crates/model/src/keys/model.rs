@@ -219,7 +219,7 @@ grammar! {
     }
 
     /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its
-    /// ends, or a periodic one.
+    /// ends, a periodic one, or straight lines.
     Table is "a table" {
         /// A CSV file, beside the model; `#` begins a comment.
         file: Option<String>,
@@ -229,6 +229,8 @@ grammar! {
         points: Option<Vec<[f64; 2]>>,
         /// Whether the table is one period, after which it begins anew: first and last value are the same.
         periodic: Option<bool>,
+        /// How it goes from point to point; by default `cubic`.
+        interpolation: Option<InterpolationName>,
         /// Units of argument and value, e.g. [ms, mm]; by default they are in SI units and fit anywhere.
         units: Option<[UnitName; 2]>,
     }

@@ -57,6 +57,14 @@ schema_only! {
     }
 
     #[schemars(rename_all = "lowercase", inline)]
+    pub enum InterpolationName {
+        /// The natural cubic spline.
+        Cubic,
+        /// Straight lines: rates jump in the points.
+        Linear,
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
     pub enum TimingName {
         /// Polynomials of degree three: rates are given, accelerations jump.
         Cubic,

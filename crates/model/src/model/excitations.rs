@@ -19,7 +19,7 @@ use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
 
 /// Ending of the name of the parameter that an excitation is as a constant.
-const SUFFIX: &str = ".deviation";
+pub(super) const SUFFIX: &str = ".deviation";
 
 /// Sections whose names formulas may use too.
 const OTHERS: [&str; 6] = ["parameters", "bodies", "joints", "effects", "states", "trajectories"];

@@ -41,6 +41,7 @@ mod tests;
 mod trajectories;
 mod tuning;
 mod urdf;
+mod witness;
 mod zone_sizes;
 
 pub use crate::elements::{Class, Excitation, JointKind, Trajectory};
@@ -52,3 +53,4 @@ pub use description::*;
 pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
 pub use overlay::read_overlay;
 pub use tuning::tuning;
+pub use witness::{Witness, WitnessError};

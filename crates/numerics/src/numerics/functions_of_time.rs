@@ -40,6 +40,14 @@ impl FunctionClass {
         matches!(self, Self::Bounded | Self::Held(_))
     }
 
+    /// The function that goes as far as it can, upwards (1) or downwards (−1), as soon as it can, in so many cells.
+    pub fn constant(self, sign: f64, cells: usize) -> Vec<Cell> {
+        match self {
+            Self::Rate => vec![[0.0, sign]; cells],
+            _ => vec![[sign, 0.0]; cells],
+        }
+    }
+
     /// The function that makes the functional largest, cell by cell, over cells that end at these times (s, ascending,
     /// the first begins at 0); and the functional's value.
     pub fn worst(self, ends: &[f64], functional: &[Cell]) -> (f64, Vec<Cell>) {

@@ -9,6 +9,7 @@ mod cost;
 mod decisions;
 mod drawing;
 mod effect_cost;
+mod excitations;
 mod explanation;
 mod gradients;
 mod merge;
@@ -34,6 +35,7 @@ pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integ
 pub use decisions::{Decision, Each, Saving};
 pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint, DrawnSolid};
 pub use effect_cost::{EffectCost, StepInstructions};
+pub use excitations::{ExcitationSummary, FunctionWitness, WitnessFunction};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use gradients::{GradientParameter, Gradients, OutputGradients};
 pub use merge::{Piece, add_methods, bounds_of_pieces, explanation_of_subsystems, summary_of_subsystems};

@@ -18,8 +18,19 @@ use crate::eval::interval::Interval;
 #[derive(Clone, Copy)]
 pub struct Spline(&'static Pieces);
 
-/// Bits of the points' coordinates, and whether the spline is periodic.
-type Points = (Vec<u64>, bool);
+/// How the function goes from point to point.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Course {
+    /// With two continuous derivatives.
+    Natural,
+    /// The same, and begins anew where it ends.
+    Periodic,
+    /// Straight.
+    Linear,
+}
+
+/// Bits of the points' coordinates, and the course between them.
+type Points = (Vec<u64>, Course);
 
 /// Cubics: below the first knot, between each two, above the last.
 struct Pieces {
@@ -36,7 +47,7 @@ impl Spline {
     /// # Errors
     /// The first point that is wrong.
     pub fn through(points: &[(f64, f64)]) -> Result<Self, SplineError> {
-        Self::of(points, false)
+        Self::of(points, Course::Natural)
     }
 
     /// Through points (x, y), x ascending, over a period from the first to the last, which have the same y.
@@ -44,10 +55,18 @@ impl Spline {
     /// # Errors
     /// The first point that is wrong.
     pub fn periodic(points: &[(f64, f64)]) -> Result<Self, SplineError> {
-        Self::of(points, true)
+        Self::of(points, Course::Periodic)
     }
 
-    fn of(points: &[(f64, f64)], periodic: bool) -> Result<Self, SplineError> {
+    /// Straight from point (x, y) to point, x ascending: its derivatives jump there.
+    ///
+    /// # Errors
+    /// The first point that is wrong.
+    pub fn linear(points: &[(f64, f64)]) -> Result<Self, SplineError> {
+        Self::of(points, Course::Linear)
+    }
+
+    fn of(points: &[(f64, f64)], course: Course) -> Result<Self, SplineError> {
         static KNOWN: OnceLock<Mutex<HashMap<Points, Spline>>> = OnceLock::new();
         if points.len() < 2 {
             return Err(SplineError::TooFew);
@@ -60,15 +79,19 @@ impl Spline {
                 return Err(SplineError::NotAscending(place));
             }
         }
-        if periodic && points[0].1 != points[points.len() - 1].1 {
+        if course == Course::Periodic && points[0].1 != points[points.len() - 1].1 {
             return Err(SplineError::NotPeriodic);
         }
         let bits = points.iter().flat_map(|&(x, y)| [x.to_bits(), y.to_bits()]).collect();
         let known = KNOWN.get_or_init(Mutex::default);
         // A panic while the lock was held leaves the map as it was before.
         let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-        let pieces = || if periodic { Pieces::periodic(points) } else { Pieces::natural(points) };
-        Ok(*known.entry((bits, periodic)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
+        let pieces = || match course {
+            Course::Natural => Pieces::natural(points),
+            Course::Periodic => Pieces::periodic(points),
+            Course::Linear => Pieces::with_second(points, &vec![0.0; points.len()], false),
+        };
+        Ok(*known.entry((bits, course)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
     }
 
     /// Knots, cubics (below the first knot, between each two, above the last; of powers of x minus the knot before),

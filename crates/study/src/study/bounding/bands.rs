@@ -82,6 +82,13 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
     bands
 }
 
+/// The largest width of an output's bounds by the first method, with excitations that are constants.
+pub fn as_constants(bounded: &Bounded, output: usize, rows: usize) -> f64 {
+    let Some((_, outcome)) = bounded.methods.first() else { return f64::NAN };
+    let of_row = |row: usize| outcome.result.bands[output][row].with(bounded.seen.range(row, output)).width();
+    (0..rows).map(of_row).fold(0.0, f64::max)
+}
+
 /// The larger one; NaN wins.
 fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }

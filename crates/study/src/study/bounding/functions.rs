@@ -16,8 +16,6 @@ pub struct FunctionEnd {
 pub struct WorstFunction {
     /// Row of output.
     pub row: usize,
-    /// Whether it is the upper end.
-    pub is_upper: bool,
     /// The output there.
     pub value: f64,
     /// The parameters.

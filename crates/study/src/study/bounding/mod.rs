@@ -21,7 +21,7 @@ use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{ExcitedMode, Schedule, SimulationError, SwitchSearch};
 
-pub use bands::bands;
+pub use bands::{as_constants, bands};
 pub use contributions::contributions;
 pub use ends::Attained;
 pub use functions::{FunctionEnd, FunctionEnds, WorstFunction};

@@ -28,6 +28,9 @@ const AT_ONCE: usize = 128;
 /// Steps of a climb.
 const STEPS: usize = 24;
 
+/// How often ends are climbed to from elsewhere.
+const ROUNDS: usize = 2;
+
 /// Rows in which the steps' error is measured.
 const CHECKED: usize = 8;
 
@@ -63,7 +66,7 @@ pub(super) fn excited(study: &Study, schedule: &Schedule) -> Result<Option<(Outc
         Ok((result, search.found))
     });
     match found {
-        Err(SimulationError::Interrupted | SimulationError::Deferred) => Ok(None),
+        Err(SimulationError::Interrupted) => Ok(None),
         found => Ok(Some(found?)),
     }
 }
@@ -100,6 +103,7 @@ impl<'s, 'm> Search<'s, 'm> {
         for some in all.chunks(AT_ONCE) {
             let mut climbs = self.climbs(some)?;
             self.follow(&mut climbs)?;
+            self.start_elsewhere(&mut climbs, outputs)?;
             let errors = self.errors_of_steps(&climbs, &checked)?;
             for (climb, error) in climbs.iter().zip(errors) {
                 self.note(climb, error);
@@ -149,6 +153,39 @@ impl<'s, 'm> Search<'s, 'm> {
                 let Some(point) = &climb.next else { continue };
                 let classes = self.classes(&self.study.domain.sample(&point.xi));
                 climb.take(&found, &self.study.domain, &self.found.ends_of_cells, &classes);
+            }
+        }
+        Ok(())
+    }
+
+    /// Climbs once more to ends of which the output is not linear: from the best functions of the rows around and of the
+    /// other end, and from the two constants. Twice, since neighbours learn from one another.
+    fn start_elsewhere(&mut self, climbs: &mut [Climb], outputs: usize) -> Result<(), SimulationError> {
+        let cells = self.found.ends_of_cells.len();
+        for round in 0..ROUNDS {
+            let mut others = Vec::new();
+            for (number, climb) in climbs.iter().enumerate().filter(|(_, climb)| climb.is_bent) {
+                let row = 2 * outputs;
+                let around = [number.checked_sub(row), number.checked_add(row), Some(number ^ 1)];
+                let known = around.into_iter().flatten().filter_map(|other| climbs.get(other)?.best.as_ref());
+                let mut starts: Vec<Point> = known.map(|(point, _)| point.clone()).collect();
+                if let Some((best, _)) = climb.best.as_ref().filter(|_| round == 0) {
+                    let classes = self.classes(&self.study.domain.sample(&best.xi));
+                    starts.extend([-1.0, 1.0].map(|sign| Point {
+                        xi: best.xi.clone(),
+                        functions: classes.iter().map(|class| class.constant(sign, cells)).collect(),
+                    }));
+                }
+                let own = |start| (number, Climb::new(climb.row, climb.output, climb.sign, start));
+                others.extend(starts.into_iter().map(own));
+            }
+            let (numbers, mut others): (Vec<usize>, Vec<Climb>) = others.into_iter().unzip();
+            for some in others.chunks_mut(2 * AT_ONCE) {
+                self.follow(some)?;
+            }
+            climbs.iter_mut().for_each(|climb| climb.improved = 0.0);
+            for (number, other) in numbers.into_iter().zip(others) {
+                climbs[number].learn(other);
             }
         }
         Ok(())
@@ -212,14 +249,14 @@ impl<'s, 'm> Search<'s, 'm> {
         let is_upper = sign > 0.0;
         let Some((point, reached)) = &climb.best else { return };
         let value = sign * reached;
-        self.found.note(row, output, is_upper, FunctionEnd { value, open: climb.promise.max(0.0) + climb.cells });
+        self.found.note(row, output, is_upper, FunctionEnd { value, open: climb.open() });
         let known = self.found.steps(row, output);
         self.found.note_steps(row, output, if known > error_of_steps { known } else { error_of_steps });
         let worst = &mut self.found.worst[output];
         let gain = climb.gain();
         if worst.as_ref().is_none_or(|(known, _)| gain > *known) {
             let (sample, cells) = (self.study.domain.sample(&point.xi), point.functions.clone());
-            *worst = Some((gain, WorstFunction { row, is_upper, value, sample, cells }));
+            *worst = Some((gain, WorstFunction { row, value, sample, cells }));
         }
     }
 
