@@ -35,11 +35,6 @@ pub type Cell = [f64; 2];
 const SAME: f64 = 1e-9;
 
 impl FunctionClass {
-    /// Whether functions jump.
-    pub fn jumps(self) -> bool {
-        matches!(self, Self::Bounded | Self::Held(_))
-    }
-
     /// The function that goes as far as it can, upwards (1) or downwards (−1), as soon as it can, in so many cells.
     pub fn constant(self, sign: f64, cells: usize) -> Vec<Cell> {
         match self {
@@ -52,7 +47,7 @@ impl FunctionClass {
     /// the first begins at 0); and the functional's value.
     pub fn worst(self, ends: &[f64], functional: &[Cell]) -> (f64, Vec<Cell>) {
         let function = match self {
-            Self::Bounded => functional.iter().map(|[level, _]| [sign(*level), 0.0]).collect(),
+            Self::Bounded => with_signs(functional.iter().map(|[level, _]| *level)),
             Self::Held(period) => held(period, ends, functional),
             Self::Rate => by_rate(ends, functional),
             Self::BoundedRate(ratio) => by_bounded_rate(ratio, ends, functional),
@@ -81,6 +76,16 @@ pub fn value(functional: &[Cell], function: &[Cell]) -> f64 {
 /// 1, −1, or 0 of zero.
 fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
+}
+
+/// Levels with the signs of numbers; where one is zero, as before.
+fn with_signs(numbers: impl Iterator<Item = f64>) -> Vec<Cell> {
+    let mut level = 0.0;
+    let of_number = |number: f64| {
+        level = if number == 0.0 { level } else { number.signum() };
+        [level, 0.0]
+    };
+    numbers.map(of_number).collect()
 }
 
 fn held(period: f64, ends: &[f64], functional: &[Cell]) -> Vec<Cell> {

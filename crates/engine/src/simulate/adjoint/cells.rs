@@ -10,8 +10,6 @@ pub struct Functions<'f> {
     pub ends: &'f [f64],
     /// Of each gradient, the inputs (two an excitation: level and slope) cell by cell.
     pub values: &'f [Vec<f64>],
-    /// Whether any of the functions jumps between cells.
-    pub jumps: bool,
 }
 
 /// Functions of the lanes of a tile.
@@ -22,7 +20,6 @@ pub(in crate::simulate) struct TileInputs {
     values: Vec<f64>,
     /// Values of a cell.
     size: usize,
-    jumps: bool,
 }
 
 impl TileInputs {
@@ -34,7 +31,7 @@ impl TileInputs {
         for number in 0..cells * inputs {
             values.extend(lanes.iter().map(|&lane| functions.values[lane][number]));
         }
-        Self { ends: functions.ends.to_vec(), values, size: inputs * lanes.len(), jumps: functions.jumps }
+        Self { ends: functions.ends.to_vec(), values, size: inputs * lanes.len() }
     }
 
     /// The cell that holds what ends at a time, s.
@@ -47,9 +44,9 @@ impl TileInputs {
         &self.values[cell * self.size..][..self.size]
     }
 
-    /// Whether forces jump where what ends at a time begins, after what ended before it, if anything did.
-    pub fn jumps_before(&self, end: f64, before: Option<f64>) -> bool {
-        before.is_none_or(|before| self.jumps && self.cell(before) != self.cell(end))
+    /// Whether a cell begins where what ends at a time begins, after what ended before it, if anything did.
+    pub fn begins(&self, end: f64, before: Option<f64>) -> bool {
+        before.is_none_or(|before| self.cell(before) != self.cell(end))
     }
 
     /// Adjoints, all zero.

@@ -33,7 +33,7 @@ pub(super) struct Steps<'s> {
     /// The end of the first step that a lane did not take as its jet would: it did not converge, or its Newton matrix
     /// is singular.
     lost: Vec<Option<f64>>,
-    /// Functions of the time that are inputs, and what finds accelerations after they jump.
+    /// Functions of the time that are inputs, and what finds the accelerations that they begin with.
     inputs: Option<(&'s TileInputs, Assembly<'s>)>,
 }
 
@@ -56,26 +56,21 @@ impl<'s> Steps<'s> {
         Self { simulator, stepper, sampling: Sampling::new(simulator, start), steps, lost, inputs }
     }
 
-    /// Length of the step before another one, s; of the first its own.
-    fn size_before(&self, step: usize) -> f64 {
-        self.steps[step.saturating_sub(1)].0
-    }
-
-    /// Sets the inputs of a step. Where they jump, the step begins with the accelerations after that.
+    /// Sets the inputs of a step. The first begins with accelerations that follow from them. Later on, forces go from
+    /// the old value to the new one within a step, as the scheme has it.
     fn enter(&mut self, step: usize) {
         let Some((inputs, assembly)) = &mut self.inputs else { return };
         let layout = &self.simulator.program.layout;
         let (h, end) = self.steps[step];
         let values = inputs.values(inputs.cell(end));
         self.stepper.tile_mut().block_mut(layout.inputs.clone()).copy_from_slice(values);
-        if inputs.jumps_before(end, step.checked_sub(1).map(|before| self.steps[before].1)) {
-            let shift = self.simulator.program.coefficients.shift() * self.steps[step.saturating_sub(1)].0;
+        if step == 0 {
             let tile = assembly.tile_mut();
             tile.block_mut(layout.inputs.clone()).copy_from_slice(values);
             tile.block_mut(layout.state()).copy_from_slice(self.stepper.tile().block(layout.state()));
             tile.lane_mut(layout.time).fill(end - h);
             assembly.accelerate();
-            assembly.shift_accelerations(shift);
+            assembly.shift_accelerations(self.simulator.program.coefficients.shift() * h);
             self.stepper.begin_anew(assembly.tile());
         }
     }
@@ -202,8 +197,6 @@ impl<'s> StepAdjoints<'s> {
         }
         let inputs = self.path.stepping().inputs.as_ref().map(|(inputs, _)| *inputs);
         let cell = inputs.map_or(0, |inputs| inputs.cell(end));
-        let before_end = step.checked_sub(1).map(|before| self.path.stepping().steps[before].1);
-        let size_before = self.path.stepping().size_before(step);
         let (state, after, unchanged) = self.path.around(step);
         if let Some(inputs) = inputs {
             self.start.set_inputs(inputs.values(cell));
@@ -219,9 +212,9 @@ impl<'s> StepAdjoints<'s> {
             let pulled = self.start.take(layout.state());
             self.adjoints.block_mut(layout.state()).copy_from_slice(&pulled);
         }
-        // The state that the step begins with, where inputs jump before it.
-        let jumps = inputs.is_some_and(|inputs| inputs.jumps_before(end, before_end));
-        let anew = jumps.then(|| self.start.solve_anew(end - h, state, self.shift * size_before));
+        // The state that the first step begins with.
+        let is_first = inputs.is_some() && step == 0;
+        let anew = is_first.then(|| self.start.solve_anew(end - h, state, self.shift * h));
         let state = anew.as_deref().unwrap_or(state);
         let ratio = before.map_or(1.0, |before| h / before);
         let width = self.tile.width();
@@ -271,7 +264,7 @@ impl<'s> StepAdjoints<'s> {
         if let Some(anew) = &anew {
             let seeds = self.adjoints.block(layout.state()).to_vec();
             self.start.add(layout.q.start, &seeds);
-            self.start.pull_anew(end - h, anew, self.shift * size_before);
+            self.start.pull_anew(end - h, anew, self.shift * h);
             let pulled = self.start.take(layout.state());
             self.adjoints.block_mut(layout.state()).copy_from_slice(&pulled);
         }

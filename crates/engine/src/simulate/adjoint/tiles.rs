@@ -78,7 +78,7 @@ pub fn gradients(
     wanted: &[Wanted],
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
-    gradients_of_functions(simulator, schedule, samples, wanted, None, interruption)
+    of_tiles(simulator, schedule, samples, wanted, Under { functions: None, backwards: true }, interruption)
 }
 
 /// The same under functions of the time, one for each gradient, and by these.
@@ -90,7 +90,44 @@ pub fn gradients_of_functions(
     schedule: &Schedule,
     samples: &[Sample],
     wanted: &[Wanted],
-    functions: Option<Functions<'_>>,
+    functions: Functions<'_>,
+    interruption: Interruption<'_>,
+) -> Result<Vec<Gradient>, NoGradient> {
+    let under = Under { functions: Some(functions), backwards: true };
+    of_tiles(simulator, schedule, samples, wanted, under, interruption)
+}
+
+/// The values alone, which cost a simulation; NaN where a step does not converge.
+///
+/// # Errors
+/// As for [`gradients`].
+pub fn values_of_functions(
+    simulator: &Simulator,
+    schedule: &Schedule,
+    samples: &[Sample],
+    wanted: &[Wanted],
+    functions: Functions<'_>,
+    interruption: Interruption<'_>,
+) -> Result<Vec<f64>, NoGradient> {
+    let under = Under { functions: Some(functions), backwards: false };
+    let found = of_tiles(simulator, schedule, samples, wanted, under, interruption)?;
+    Ok(found.into_iter().map(|found| found.value).collect())
+}
+
+/// What motions are under, and whether they are followed backwards.
+#[derive(Clone, Copy)]
+struct Under<'f> {
+    functions: Option<Functions<'f>>,
+    backwards: bool,
+}
+
+/// Lanes of tiles.
+fn of_tiles(
+    simulator: &Simulator,
+    schedule: &Schedule,
+    samples: &[Sample],
+    wanted: &[Wanted],
+    Under { functions, backwards }: Under<'_>,
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
     if simulator.system.analysis == Analysis::Dimensions {
@@ -118,7 +155,7 @@ pub fn gradients_of_functions(
         let numbers: Vec<usize> = (0..width).map(|lane| order[first + lane.min(count - 1)]).collect();
         let lanes = numbers.iter().map(|&number| wanted[number]).collect();
         let inputs = functions.map(|functions| TileInputs::of(&functions, &numbers));
-        let tile = TileOf { simulator, schedule, samples, lanes, lost: vec![None; width], inputs };
+        let tile = TileOf { simulator, schedule, samples, lanes, lost: vec![None; width], inputs, backwards };
         let mut of_lanes = tile.gradients()?;
         of_lanes.truncate(count);
         Ok(of_lanes)
@@ -138,6 +175,7 @@ struct TileOf<'a> {
     lanes: Vec<Wanted>,
     lost: Vec<Option<f64>>,
     inputs: Option<TileInputs>,
+    backwards: bool,
 }
 
 /// Adjoints of the parameters (k lines) and of functions of the time.
@@ -239,6 +277,9 @@ impl TileOf<'_> {
         for (&row, motion) in rows.iter().zip(&motions) {
             by_motions.push(observer.pull(schedule.time(row), motion, &self.outputs(row), values));
         }
+        if !self.backwards {
+            return Ok(self.nothing());
+        }
         let mut total = observer.finish();
         let mut kernel = observer.kernel().clone();
         for ((mut run, ends_of_rows, start), weight) in runs.into_iter().zip(weights) {
@@ -252,6 +293,11 @@ impl TileOf<'_> {
             self.add_equilibrium(&start, &positions, &mut total);
         }
         Ok((total, kernel))
+    }
+
+    /// Adjoints of lanes that are not followed backwards.
+    fn nothing(&self) -> ByAll {
+        (vec![0.0; self.simulator.system.parameters.len() * self.lanes.len()], TileKernel::default())
     }
 
     /// By the explicit method.

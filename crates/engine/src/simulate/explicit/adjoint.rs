@@ -64,7 +64,7 @@ impl Stepping for ExplicitSteps<'_> {
         if let Some(inputs) = self.inputs {
             self.motion.set_inputs(inputs.values(inputs.cell(end)));
             let before = step.checked_sub(1).map(|before| self.ends[before]);
-            if inputs.jumps_before(end, before) {
+            if inputs.begins(end, before) {
                 let state = std::mem::take(&mut self.run.state);
                 self.run = RungeKutta::start(&mut self.motion, before.unwrap_or(0.0), state);
             }

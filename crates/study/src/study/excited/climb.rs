@@ -14,9 +14,6 @@ const HALVINGS: usize = 4;
 /// What a step gains at least, as a share of what the first one promised.
 const WORTH: f64 = 1e-4;
 
-/// A step that ends this share of what its gradient promised beside that is not one of a linear output.
-const BENT: f64 = 1e-3;
-
 /// Where an output can be: parameters (ξ), and a function for each input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
@@ -63,8 +60,6 @@ pub struct Climb {
     first: Option<(f64, f64)>,
     /// What cells cost at the best point.
     pub cells: f64,
-    /// Whether the first step did not end where the gradient had said.
-    pub is_bent: bool,
     /// By how much starts from elsewhere have improved the end.
     pub improved: f64,
     /// The point to go to.
@@ -83,7 +78,6 @@ impl Climb {
             promise: f64::NAN,
             first: None,
             cells: f64::NAN,
-            is_bent: false,
             improved: 0.0,
             next: Some(start),
             halvings: 0,
@@ -100,10 +94,28 @@ impl Climb {
         self.promise.max(0.0) + self.cells + self.improved
     }
 
+    /// The point to go to, with the output that is asked for there.
+    pub fn asked(&self) -> Option<(&Point, usize, usize)> {
+        self.next.as_ref().map(|point| (point, self.row, self.output))
+    }
+
+    /// The best value, upwards.
+    pub fn reached(&self) -> f64 {
+        self.best.as_ref().map_or(f64::NEG_INFINITY, |(_, value)| *value)
+    }
+
+    /// Takes the value at the point that it went to, which is where the gradient said: the end of an output that is
+    /// linear.
+    pub fn arrive(&mut self, value: f64) {
+        let reached = self.sign * value;
+        let (Some(point), Some((start, promise))) = (self.next.take(), self.first) else { return };
+        self.promise = (reached - start - promise).abs();
+        self.best = Some((point, reached));
+    }
+
     /// Takes what a climb to the same end from elsewhere found, if that is better.
     pub fn learn(&mut self, other: Self) {
-        let reached = |climb: &Self| climb.best.as_ref().map_or(f64::NEG_INFINITY, |(_, value)| *value);
-        let gain = reached(&other) - reached(self);
+        let gain = other.reached() - self.reached();
         if gain > 0.0 {
             self.improved = self.improved.max(if gain.is_finite() { gain } else { 0.0 });
             (self.best, self.promise, self.cells) = (other.best, other.promise, other.cells);
@@ -114,12 +126,7 @@ impl Climb {
     pub fn take(&mut self, found: &Gradient, domain: &ParameterBox, ends: &[f64], classes: &[FunctionClass]) {
         let Some(point) = self.next.take() else { return };
         let reached = self.sign * found.value;
-        if let Some((start, promise)) = self.first {
-            // NaN is bent.
-            let is_straight = (reached - start - promise).abs() <= BENT * promise;
-            self.is_bent |= self.halvings == 0 && !is_straight;
-        }
-        let before = self.best.as_ref().map_or(f64::NEG_INFINITY, |(_, value)| *value);
+        let before = self.reached();
         // A point that cannot be simulated is no better.
         let is_better = reached > before;
         if !is_better {

@@ -1,0 +1,240 @@
+//! Ends of all outputs in all rows over functions of the time.
+//!
+//! From the middle of all limits the kernel of each output in each row says how far either end is, and under which
+//! function. Where a simulation under it ends there, the output is linear in it, and that is the end. Of the others some
+//! are followed (`climb`), from the middle, from the constants and from the best functions of the ends around them; those
+//! between take over the functions of their neighbours.
+
+use super::climb::{Climb, Point};
+use super::motions::{Asked, ExcitedMotions};
+use crate::numerics::step_error;
+use crate::simulate::{Schedule, SimulationError, Simulator};
+use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
+use crate::study::problem::Study;
+
+/// Outputs and rows whose kernels are in memory at once.
+const AT_ONCE: usize = 128;
+
+/// A simulation that ends this share of what its gradient promised beside that is not one of a linear output.
+const BENT: f64 = 1e-3;
+
+/// Most ends that are followed; those between learn from them.
+const FOLLOWED: usize = 16;
+
+/// Steps of a climb, and how often ends are climbed to from elsewhere.
+const STEPS: usize = 24;
+const ROUNDS: usize = 2;
+
+/// Rows in which the steps' error of ends that are not followed is measured.
+const CHECKED: usize = 8;
+
+/// An end of an output that is not linear in the functions, with the best value so far.
+struct Bent {
+    row: usize,
+    output: usize,
+    sign: f64,
+    reached: f64,
+}
+
+/// All ends, and what the search took in simulations.
+///
+/// # Errors
+/// Where the nominal motion cannot be simulated, and at an interruption.
+pub fn ends(study: &Study, simulator: &Simulator, schedule: &Schedule) -> Result<(FunctionEnds, usize), SimulationError> {
+    let motions = ExcitedMotions::new(study, simulator, schedule);
+    let (rows, outputs) = (motions.schedule.rows, motions.outputs());
+    let found = FunctionEnds::new(rows, outputs, motions.inputs(), motions.ends.clone());
+    let mut search = Search { motions, found, bent: Vec::new() };
+    let checked: Vec<usize> = checked(rows);
+    let all: Vec<(usize, usize)> = (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output))).collect();
+    for some in all.chunks(AT_ONCE) {
+        search.straight(some, &checked)?;
+    }
+    search.follow_bent()?;
+    search.found.spread_steps();
+    Ok((search.found, search.motions.count))
+}
+
+/// Some rows, ascending, the last of all among them.
+fn checked(rows: usize) -> Vec<usize> {
+    let count = CHECKED.min(rows);
+    (1..=count).map(|number| (number * rows).div_ceil(count) - 1).collect()
+}
+
+struct Search<'s, 'm> {
+    motions: ExcitedMotions<'s, 'm>,
+    found: FunctionEnds,
+    bent: Vec<Bent>,
+}
+
+impl Search<'_, '_> {
+    /// Ends of some outputs in rows that are linear in the functions; the others are noted as bent.
+    fn straight(&mut self, some: &[(usize, usize)], checked: &[usize]) -> Result<(), SimulationError> {
+        let middle = self.motions.middle();
+        let asked: Vec<Asked> = some.iter().map(|&(row, output)| (&middle, row, output)).collect();
+        let kernels = self.motions.gradients(&asked)?;
+        let classes = self.motions.classes(&middle);
+        let mut climbs: Vec<Climb> = Vec::with_capacity(2 * some.len());
+        for (&(row, output), kernel) in some.iter().zip(&kernels) {
+            for sign in [-1.0, 1.0] {
+                let mut climb = Climb::new(row, output, sign, middle.clone());
+                climb.take(kernel, &self.motions.study.domain, &self.motions.ends, &classes);
+                climbs.push(climb);
+            }
+        }
+        drop(kernels);
+        let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
+        let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+        let values = self.motions.values(&asked, 1)?;
+        for (number, value) in going.into_iter().zip(values) {
+            let climb = &mut climbs[number];
+            let start = climb.reached();
+            let promise = climb.promise;
+            climb.arrive(value);
+            // NaN is bent.
+            let is_straight = climb.promise <= BENT * promise;
+            if !is_straight {
+                let reached = climb.reached().max(start);
+                self.bent.push(Bent { row: climb.row, output: climb.output, sign: climb.sign, reached });
+                climb.best = None;
+            }
+        }
+        climbs.retain(|climb| climb.best.is_some());
+        let (measured, others): (Vec<Climb>, Vec<Climb>) =
+            climbs.into_iter().partition(|climb| checked.contains(&climb.row));
+        others.iter().for_each(|climb| self.note(climb));
+        self.note_measured(&measured)
+    }
+
+    /// Follows some of the bent ends, evenly spread over the rows of an output's end; the others learn from these.
+    fn follow_bent(&mut self) -> Result<(), SimulationError> {
+        let mut bent = std::mem::take(&mut self.bent);
+        bent.sort_by(|a, b| (a.output, a.row).cmp(&(b.output, b.row)).then(a.sign.total_cmp(&b.sign)));
+        bent.sort_by(|a, b| a.output.cmp(&b.output).then(a.sign.total_cmp(&b.sign)));
+        let every = bent.len().div_ceil(FOLLOWED).max(1);
+        // The last row of each output's end, and every so many before it.
+        let (mut followed, mut between): (Vec<Climb>, Vec<Bent>) = (Vec::new(), Vec::new());
+        for of_end in bent.chunk_by(|a, b| a.output == b.output && a.sign == b.sign) {
+            for (number, own) in of_end.iter().enumerate() {
+                if (of_end.len() - 1 - number) % every == 0 {
+                    followed.push(Climb::new(own.row, own.output, own.sign, self.motions.middle()));
+                } else {
+                    between.push(Bent { ..*own });
+                }
+            }
+        }
+        self.follow(&mut followed)?;
+        self.start_elsewhere(&mut followed)?;
+        self.note_measured(&followed)?;
+        for some in between.chunks(AT_ONCE) {
+            self.learn(some, &followed)?;
+        }
+        Ok(())
+    }
+
+    /// Goes on with climbs until all are done.
+    fn follow(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
+        for _ in 0..STEPS {
+            let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
+            if going.is_empty() {
+                break;
+            }
+            let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+            let found = self.motions.gradients(&asked)?;
+            for (number, found) in going.into_iter().zip(found) {
+                let climb = &mut climbs[number];
+                let Some(point) = &climb.next else { continue };
+                let classes = self.motions.classes(point);
+                climb.take(&found, &self.motions.study.domain, &self.motions.ends, &classes);
+            }
+        }
+        Ok(())
+    }
+
+    /// Climbs once more from the best functions of the ends around, and from the two constants. Twice, since neighbours
+    /// learn from one another.
+    fn start_elsewhere(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
+        let cells = self.motions.ends.len();
+        for round in 0..ROUNDS {
+            let (mut numbers, mut others) = (Vec::new(), Vec::new());
+            for (number, climb) in climbs.iter().enumerate() {
+                let around = [number.checked_sub(1), Some(number + 1)].into_iter().flatten();
+                let known = around.filter_map(|other| climbs.get(other)?.best.as_ref());
+                let mut starts: Vec<Point> = known.map(|(point, _)| point.clone()).collect();
+                if let Some((best, _)) = climb.best.as_ref().filter(|_| round == 0) {
+                    let classes = self.motions.classes(best);
+                    starts.extend([-1.0, 1.0].map(|sign| Point {
+                        xi: best.xi.clone(),
+                        functions: classes.iter().map(|class| class.constant(sign, cells)).collect(),
+                    }));
+                }
+                numbers.extend(starts.iter().map(|_| number));
+                others.extend(starts.into_iter().map(|start| Climb::new(climb.row, climb.output, climb.sign, start)));
+            }
+            self.follow(&mut others)?;
+            climbs.iter_mut().for_each(|climb| climb.improved = 0.0);
+            numbers.into_iter().zip(others).for_each(|(number, other)| climbs[number].learn(other));
+        }
+        Ok(())
+    }
+
+    /// Bent ends that are not followed: under the functions of the followed ones around them. What is left open is the
+    /// distance of the second best function, and what is open of theirs.
+    fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
+        let mut asked: Vec<Asked> = Vec::new();
+        let mut of_asked: Vec<(usize, &Climb)> = Vec::new();
+        for (number, own) in some.iter().enumerate() {
+            let alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
+            let after = alike.clone().find(|climb| climb.row > own.row);
+            let before = alike.filter(|climb| climb.row < own.row).last();
+            for climb in [before, after].into_iter().flatten() {
+                if let Some((point, _)) = &climb.best {
+                    asked.push((point, own.row, own.output));
+                    of_asked.push((number, climb));
+                }
+            }
+        }
+        let values = self.motions.values(&asked, 1)?;
+        let mut learnt: Vec<Vec<(f64, &Climb)>> = vec![Vec::new(); some.len()];
+        for ((number, climb), value) in of_asked.into_iter().zip(values) {
+            learnt[number].push((some[number].sign * value, climb));
+        }
+        for (own, learnt) in some.iter().zip(learnt) {
+            let (mut best, mut second) = (own.reached, f64::NEG_INFINITY);
+            for (value, _) in &learnt {
+                (best, second) = if *value > best { (*value, best) } else { (best, second.max(*value)) };
+            }
+            let open = learnt.iter().map(|(_, climb)| climb.open()).fold(best - second, f64::max);
+            // Without anybody to learn from, nothing is known.
+            let open = if learnt.is_empty() { f64::NAN } else { open };
+            self.found.note(own.row, own.output, own.sign > 0.0, FunctionEnd { value: own.sign * best, open });
+        }
+        Ok(())
+    }
+
+    /// Notes what climbs found, with what halved steps change there.
+    fn note_measured(&mut self, climbs: &[Climb]) -> Result<(), SimulationError> {
+        let known: Vec<&Climb> = climbs.iter().filter(|climb| climb.best.is_some()).collect();
+        let point = |climb: &&'_ Climb| climb.best.as_ref().map(|(point, _)| point.clone());
+        let points: Vec<Point> = known.iter().filter_map(point).collect();
+        let asked: Vec<Asked> =
+            points.iter().zip(&known).map(|(point, climb)| (point, climb.row, climb.output)).collect();
+        let halved = self.motions.values(&asked, 2)?;
+        for (climb, halved) in known.into_iter().zip(halved) {
+            self.note(climb);
+            let error = step_error(&[climb.sign * climb.reached()], &[halved]);
+            self.found.note_steps(climb.row, climb.output, error);
+        }
+        Ok(())
+    }
+
+    /// Notes what a climb found.
+    fn note(&mut self, climb: &Climb) {
+        let Climb { row, output, sign, .. } = *climb;
+        let Some((point, reached)) = &climb.best else { return };
+        let value = sign * reached;
+        self.found.note(row, output, sign > 0.0, FunctionEnd { value, open: climb.open() });
+        let (sample, cells) = (self.motions.sample(point), &point.functions);
+        self.found.note_worst(output, climb.gain(), || WorstFunction { row, value, sample, cells: cells.clone() });
+    }
+}
