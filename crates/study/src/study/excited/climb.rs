@@ -5,11 +5,13 @@
 //! kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops growing. A step
 //! that is worse is halved.
 
+use std::hash::{DefaultHasher, Hasher};
+
 use crate::numerics::{Cell, FunctionClass, ParameterBox, value};
 use crate::simulate::Gradient;
 
 /// Halvings of a step that is worse.
-const HALVINGS: usize = 4;
+const HALVINGS: i32 = 6;
 
 /// What a step gains at least, as a share of what the first one promised.
 const WORTH: f64 = 1e-4;
@@ -32,6 +34,14 @@ impl Point {
     pub fn inputs(&self) -> Vec<f64> {
         let cells = self.functions.first().map_or(0, Vec::len);
         (0..cells).flat_map(|cell| self.functions.iter().flat_map(move |function| function[cell])).collect()
+    }
+
+    /// The same in the first cells, for comparisons.
+    pub fn mark(&self, cells: usize) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        let functions = self.functions.iter().flat_map(|function| function[..cells].iter().flatten());
+        self.xi.iter().chain(functions).for_each(|value| hasher.write_u64(value.to_bits()));
+        hasher.finish()
     }
 
     /// The middle between two points.
@@ -64,7 +74,7 @@ pub struct Climb {
     pub improved: f64,
     /// The point to go to.
     pub next: Option<Point>,
-    halvings: usize,
+    halvings: i32,
 }
 
 impl Climb {
@@ -134,6 +144,10 @@ impl Climb {
             self.halvings += 1;
             let worth = WORTH * self.first.map_or(0.0, |(_, promise)| promise);
             self.next = halved.filter(|_| self.halvings <= HALVINGS && before - reached > worth);
+            if self.next.is_none() {
+                // A part of the step that gains nothing bounds what the whole of it does, along its line.
+                self.promise *= 0.5_f64.powi(self.halvings - 1);
+            }
             return;
         }
         self.halvings = 0;

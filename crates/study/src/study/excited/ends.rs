@@ -18,8 +18,8 @@ const AT_ONCE: usize = 128;
 /// A simulation that ends this share of what its gradient promised beside that is not one of a linear output.
 const BENT: f64 = 1e-3;
 
-/// Most ends that are followed; those between learn from them.
-const FOLLOWED: usize = 16;
+/// Rows in which an output's end is followed first; those between learn from them.
+const FOLLOWED: usize = 8;
 
 /// Steps of a climb, and how often ends are climbed to from elsewhere.
 const STEPS: usize = 24;
@@ -34,6 +34,8 @@ struct Bent {
     output: usize,
     sign: f64,
     reached: f64,
+    /// Of the point there.
+    mark: u64,
 }
 
 /// All ends, and what the search took in simulations.
@@ -94,9 +96,12 @@ impl Search<'_, '_> {
             // NaN is bent.
             let is_straight = climb.promise <= BENT * promise;
             if !is_straight {
-                let reached = climb.reached().max(start);
-                self.bent.push(Bent { row: climb.row, output: climb.output, sign: climb.sign, reached });
-                climb.best = None;
+                let (row, output, sign) = (climb.row, climb.output, climb.sign);
+                // What is no better than the middle is not to be compared with.
+                let better = climb.best.take().filter(|(_, reached)| *reached > start);
+                let mark = better.as_ref().map_or(0, |(point, _)| point.mark(self.motions.cells_before(row)));
+                let reached = better.map_or(start, |(_, reached)| reached);
+                self.bent.push(Bent { row, output, sign, reached, mark });
             }
         }
         climbs.retain(|climb| climb.best.is_some());
@@ -111,10 +116,10 @@ impl Search<'_, '_> {
         let mut bent = std::mem::take(&mut self.bent);
         bent.sort_by(|a, b| (a.output, a.row).cmp(&(b.output, b.row)).then(a.sign.total_cmp(&b.sign)));
         bent.sort_by(|a, b| a.output.cmp(&b.output).then(a.sign.total_cmp(&b.sign)));
-        let every = bent.len().div_ceil(FOLLOWED).max(1);
         // The last row of each output's end, and every so many before it.
         let (mut followed, mut between): (Vec<Climb>, Vec<Bent>) = (Vec::new(), Vec::new());
         for of_end in bent.chunk_by(|a, b| a.output == b.output && a.sign == b.sign) {
+            let every = of_end.len().div_ceil(FOLLOWED);
             for (number, own) in of_end.iter().enumerate() {
                 if (of_end.len() - 1 - number) % every == 0 {
                     followed.push(Climb::new(own.row, own.output, own.sign, self.motions.middle()));
@@ -126,7 +131,7 @@ impl Search<'_, '_> {
         self.follow(&mut followed)?;
         self.start_elsewhere(&mut followed)?;
         self.note_measured(&followed)?;
-        for some in between.chunks(AT_ONCE) {
+        for some in between.chunks(AT_ONCE / 2) {
             self.learn(some, &followed)?;
         }
         Ok(())
@@ -178,37 +183,38 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Bent ends that are not followed: under the functions of the followed ones around them. What is left open is the
-    /// distance of the second best function, and what is open of theirs.
+    /// Bent ends between those that are followed: where the functions of both neighbours are the one that the kernel named,
+    /// that is the end. Others are climbed to from these, and from the middle.
     fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
-        let mut asked: Vec<Asked> = Vec::new();
-        let mut of_asked: Vec<(usize, &Climb)> = Vec::new();
+        let middle = self.motions.middle();
+        let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
         for (number, own) in some.iter().enumerate() {
             let alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
             let after = alike.clone().find(|climb| climb.row > own.row);
             let before = alike.filter(|climb| climb.row < own.row).last();
-            for climb in [before, after].into_iter().flatten() {
-                if let Some((point, _)) = &climb.best {
-                    asked.push((point, own.row, own.output));
-                    of_asked.push((number, climb));
-                }
+            let around: Vec<&Climb> = [before, after].into_iter().flatten().collect();
+            let known = around.iter().filter_map(|climb| climb.best.as_ref().map(|(point, _)| point));
+            let cells = self.motions.cells_before(own.row);
+            let others: Vec<&Point> = known.filter(|point| point.mark(cells) != own.mark).collect();
+            if others.is_empty() && !around.is_empty() {
+                let open = around.iter().map(|climb| climb.open()).fold(0.0, f64::max);
+                let end = FunctionEnd { value: own.sign * own.reached, open };
+                self.found.note(own.row, own.output, own.sign > 0.0, end);
+                continue;
+            }
+            for start in others.into_iter().chain([&middle]) {
+                numbers.push(number);
+                climbs.push(Climb::new(own.row, own.output, own.sign, start.clone()));
             }
         }
-        let values = self.motions.values(&asked, 1)?;
-        let mut learnt: Vec<Vec<(f64, &Climb)>> = vec![Vec::new(); some.len()];
-        for ((number, climb), value) in of_asked.into_iter().zip(values) {
-            learnt[number].push((some[number].sign * value, climb));
-        }
-        for (own, learnt) in some.iter().zip(learnt) {
-            let (mut best, mut second) = (own.reached, f64::NEG_INFINITY);
-            for (value, _) in &learnt {
-                (best, second) = if *value > best { (*value, best) } else { (best, second.max(*value)) };
+        self.follow(&mut climbs)?;
+        let mut best: Vec<Option<Climb>> = some.iter().map(|_| None).collect();
+        for (number, climb) in numbers.into_iter().zip(climbs) {
+            if best[number].as_ref().is_none_or(|known| climb.reached() > known.reached()) {
+                best[number] = Some(climb);
             }
-            let open = learnt.iter().map(|(_, climb)| climb.open()).fold(best - second, f64::max);
-            // Without anybody to learn from, nothing is known.
-            let open = if learnt.is_empty() { f64::NAN } else { open };
-            self.found.note(own.row, own.output, own.sign > 0.0, FunctionEnd { value: own.sign * best, open });
         }
+        best.iter().flatten().for_each(|climb| self.note(climb));
         Ok(())
     }
 
