@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_witness_leaves_nothing_uncertain() {
-        let mut model = load_str("m.yaml", MODEL).unwrap().0;
+        let mut model = load_str("m.yaml", MODEL, &[]).unwrap();
         assert_eq!(model.uncertain().count(), 2);
         let witness = Witness::parse("# parameter k = 66\nt,push\n0,2\n0.5,2\n0.500000001,-2\n1,-2\n").unwrap();
         witness.replay(&mut model).unwrap();
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn files_of_other_models_are_refused() {
-        let mut model = load_str("m.yaml", MODEL).unwrap().0;
+        let mut model = load_str("m.yaml", MODEL, &[]).unwrap();
         let error = |text: &str, model: &mut Description| {
             Witness::parse(text).and_then(|witness| witness.replay(model)).unwrap_err().to_string()
         };

@@ -5,16 +5,17 @@
 //! kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops growing. A step
 //! that is worse is halved.
 
-use std::hash::{DefaultHasher, Hasher};
-
 use crate::numerics::{Cell, FunctionClass, ParameterBox, value};
 use crate::simulate::Gradient;
 
 /// Halvings of a step that is worse.
-const HALVINGS: i32 = 6;
+const HALVINGS: i32 = 4;
 
 /// What a step gains at least, as a share of what the first one promised.
 const WORTH: f64 = 1e-4;
+
+/// A simulation that ends this share of what its gradient promised beside that is not one of a linear output.
+const BENT: f64 = 1e-3;
 
 /// Where an output can be: parameters (ξ), and a function for each input.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,14 +35,6 @@ impl Point {
     pub fn inputs(&self) -> Vec<f64> {
         let cells = self.functions.first().map_or(0, Vec::len);
         (0..cells).flat_map(|cell| self.functions.iter().flat_map(move |function| function[cell])).collect()
-    }
-
-    /// The same in the first cells, for comparisons.
-    pub fn mark(&self, cells: usize) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        let functions = self.functions.iter().flat_map(|function| function[..cells].iter().flatten());
-        self.xi.iter().chain(functions).for_each(|value| hasher.write_u64(value.to_bits()));
-        hasher.finish()
     }
 
     /// The middle between two points.
@@ -114,13 +107,18 @@ impl Climb {
         self.best.as_ref().map_or(f64::NEG_INFINITY, |(_, value)| *value)
     }
 
-    /// Takes the value at the point that it went to, which is where the gradient said: the end of an output that is
-    /// linear.
-    pub fn arrive(&mut self, value: f64) {
+    /// Takes the value at the point that it went to, if that is where the gradient said: the end of an output that is
+    /// linear. Whether it is.
+    pub fn arrive(&mut self, value: f64) -> bool {
         let reached = self.sign * value;
-        let (Some(point), Some((start, promise))) = (self.next.take(), self.first) else { return };
-        self.promise = (reached - start - promise).abs();
-        self.best = Some((point, reached));
+        let Some((start, promise)) = self.first else { return false };
+        let beside = (reached - start - promise).abs();
+        let arrives = beside <= BENT * promise;
+        if arrives && let Some(point) = self.next.take() {
+            self.promise = beside;
+            self.best = Some((point, reached));
+        }
+        arrives
     }
 
     /// Takes what a climb to the same end from elsewhere found, if that is better.
@@ -142,8 +140,7 @@ impl Climb {
         if !is_better {
             let halved = self.best.as_ref().map(|(best, _)| best.halfway(&point));
             self.halvings += 1;
-            let worth = WORTH * self.first.map_or(0.0, |(_, promise)| promise);
-            self.next = halved.filter(|_| self.halvings <= HALVINGS && before - reached > worth);
+            self.next = halved.filter(|_| self.halvings <= HALVINGS);
             if self.next.is_none() {
                 // A part of the step that gains nothing bounds what the whole of it does, along its line.
                 self.promise *= 0.5_f64.powi(self.halvings - 1);

@@ -1,9 +1,10 @@
 //! Ends of all outputs in all rows over functions of the time.
 //!
 //! From the middle of all limits the kernel of each output in each row says how far either end is, and under which
-//! function. Where a simulation under it ends there, the output is linear in it, and that is the end. Of the others some
-//! are followed (`climb`), from the middle, from the constants and from the best functions of the ends around them; those
-//! between take over the functions of their neighbours.
+//! function. Where a simulation under it ends there, the output is linear in it, and that is the end. Others are bent.
+//! Where the kernel under that function names it again, it is an end too. In some rows bent ends are followed (`climb`)
+//! from the middle, from the constants and from the best functions of the ends around them; those between learn from
+//! these.
 
 use super::climb::{Climb, Point};
 use super::motions::{Asked, ExcitedMotions};
@@ -15,27 +16,26 @@ use crate::study::problem::Study;
 /// Outputs and rows whose kernels are in memory at once.
 const AT_ONCE: usize = 128;
 
-/// A simulation that ends this share of what its gradient promised beside that is not one of a linear output.
-const BENT: f64 = 1e-3;
-
 /// Rows in which an output's end is followed first; those between learn from them.
 const FOLLOWED: usize = 8;
 
-/// Steps of a climb, and how often ends are climbed to from elsewhere.
+/// Steps of a climb, and of one from a neighbour's function.
 const STEPS: usize = 24;
+const LEARNT: usize = 8;
+
+/// How often ends are climbed to from elsewhere.
 const ROUNDS: usize = 2;
 
 /// Rows in which the steps' error of ends that are not followed is measured.
 const CHECKED: usize = 8;
 
-/// An end of an output that is not linear in the functions, with the best value so far.
+/// An end of an output that is not linear in the functions.
 struct Bent {
     row: usize,
     output: usize,
     sign: f64,
-    reached: f64,
-    /// Of the point there.
-    mark: u64,
+    /// Where the kernel under the first function names that function again: its value, upwards, and what is open.
+    settled: Option<(f64, f64)>,
 }
 
 /// All ends, and what the search took in simulations.
@@ -88,20 +88,16 @@ impl Search<'_, '_> {
         let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
         let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
         let values = self.motions.values(&asked, 1)?;
-        for (number, value) in going.into_iter().zip(values) {
+        let arrived = |(number, value): (usize, f64)| (!climbs[number].arrive(value)).then_some(number);
+        let bent: Vec<usize> = going.into_iter().zip(values).filter_map(arrived).collect();
+        self.step(&mut climbs, &bent)?;
+        for number in bent {
             let climb = &mut climbs[number];
-            let start = climb.reached();
-            let promise = climb.promise;
-            climb.arrive(value);
-            // NaN is bent.
-            let is_straight = climb.promise <= BENT * promise;
-            if !is_straight {
-                let (row, output, sign) = (climb.row, climb.output, climb.sign);
-                // What is no better than the middle is not to be compared with.
-                let better = climb.best.take().filter(|(_, reached)| *reached > start);
-                let mark = better.as_ref().map_or(0, |(point, _)| point.mark(self.motions.cells_before(row)));
-                let reached = better.map_or(start, |(_, reached)| reached);
-                self.bent.push(Bent { row, output, sign, reached, mark });
+            let (row, output, sign) = (climb.row, climb.output, climb.sign);
+            let settled = climb.next.is_none().then(|| (climb.reached(), climb.open()));
+            self.bent.push(Bent { row, output, sign, settled });
+            if settled.is_none() {
+                climb.best = None;
             }
         }
         climbs.retain(|climb| climb.best.is_some());
@@ -128,7 +124,7 @@ impl Search<'_, '_> {
                 }
             }
         }
-        self.follow(&mut followed)?;
+        self.follow(&mut followed, STEPS)?;
         self.start_elsewhere(&mut followed)?;
         self.note_measured(&followed)?;
         for some in between.chunks(AT_ONCE / 2) {
@@ -137,21 +133,27 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Goes on with climbs until all are done.
-    fn follow(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
-        for _ in 0..STEPS {
+    /// Goes on with climbs until all are done, in so many steps at most.
+    fn follow(&mut self, climbs: &mut [Climb], steps: usize) -> Result<(), SimulationError> {
+        for _ in 0..steps {
             let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
             if going.is_empty() {
                 break;
             }
-            let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
-            let found = self.motions.gradients(&asked)?;
-            for (number, found) in going.into_iter().zip(found) {
-                let climb = &mut climbs[number];
-                let Some(point) = &climb.next else { continue };
-                let classes = self.motions.classes(point);
-                climb.take(&found, &self.motions.study.domain, &self.motions.ends, &classes);
-            }
+            self.step(climbs, &going)?;
+        }
+        Ok(())
+    }
+
+    /// A step of some climbs.
+    fn step(&mut self, climbs: &mut [Climb], going: &[usize]) -> Result<(), SimulationError> {
+        let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+        let found = self.motions.gradients(&asked)?;
+        for (&number, found) in going.iter().zip(found) {
+            let climb = &mut climbs[number];
+            let Some(point) = &climb.next else { continue };
+            let classes = self.motions.classes(point);
+            climb.take(&found, &self.motions.study.domain, &self.motions.ends, &classes);
         }
         Ok(())
     }
@@ -176,38 +178,34 @@ impl Search<'_, '_> {
                 numbers.extend(starts.iter().map(|_| number));
                 others.extend(starts.into_iter().map(|start| Climb::new(climb.row, climb.output, climb.sign, start)));
             }
-            self.follow(&mut others)?;
+            self.follow(&mut others, STEPS)?;
             climbs.iter_mut().for_each(|climb| climb.improved = 0.0);
             numbers.into_iter().zip(others).for_each(|(number, other)| climbs[number].learn(other));
         }
         Ok(())
     }
 
-    /// Bent ends between those that are followed: where the functions of both neighbours are the one that the kernel named,
-    /// that is the end. Others are climbed to from these, and from the middle.
+    /// Bent ends between those that are followed. Where the kernel settled at once, starts from elsewhere improve them by no
+    /// more than their neighbours, as far as is known. Others are climbed to from their neighbours' functions.
     fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
-        let middle = self.motions.middle();
         let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
         for (number, own) in some.iter().enumerate() {
             let alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
             let after = alike.clone().find(|climb| climb.row > own.row);
             let before = alike.filter(|climb| climb.row < own.row).last();
-            let around: Vec<&Climb> = [before, after].into_iter().flatten().collect();
-            let known = around.iter().filter_map(|climb| climb.best.as_ref().map(|(point, _)| point));
-            let cells = self.motions.cells_before(own.row);
-            let others: Vec<&Point> = known.filter(|point| point.mark(cells) != own.mark).collect();
-            if others.is_empty() && !around.is_empty() {
-                let open = around.iter().map(|climb| climb.open()).fold(0.0, f64::max);
-                let end = FunctionEnd { value: own.sign * own.reached, open };
+            let around = [before, after].into_iter().flatten();
+            if let Some((reached, open)) = own.settled {
+                let improved = around.map(|climb| climb.improved).fold(0.0, f64::max);
+                let end = FunctionEnd { value: own.sign * reached, open: open + improved };
                 self.found.note(own.row, own.output, own.sign > 0.0, end);
                 continue;
             }
-            for start in others.into_iter().chain([&middle]) {
+            for (start, _) in around.filter_map(|climb| climb.best.as_ref()) {
                 numbers.push(number);
                 climbs.push(Climb::new(own.row, own.output, own.sign, start.clone()));
             }
         }
-        self.follow(&mut climbs)?;
+        self.follow(&mut climbs, LEARNT)?;
         let mut best: Vec<Option<Climb>> = some.iter().map(|_| None).collect();
         for (number, climb) in numbers.into_iter().zip(climbs) {
             if best[number].as_ref().is_none_or(|known| climb.reached() > known.reached()) {

@@ -10,9 +10,6 @@ use crate::simulate::{
 };
 use crate::study::problem::Study;
 
-/// Times are the same up to this share.
-const SAME: f64 = 1e-12;
-
 /// An output in a row at a point.
 pub type Asked<'p> = (&'p Point, usize, usize);
 
@@ -53,12 +50,6 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     /// Indices of the trajectories that inputs are.
     pub fn inputs(&self) -> Vec<usize> {
         self.simulator.system.inputs.iter().map(|input| input.trajectory).collect()
-    }
-
-    /// Cells that begin before a row.
-    pub fn cells_before(&self, row: usize) -> usize {
-        let time = self.schedule.time(row);
-        (self.ends.partition_point(|end| *end < time * (1.0 - SAME)) + 1).min(self.ends.len())
     }
 
     /// The nominal parameters with all functions in the middle of their limits.
