@@ -203,7 +203,11 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
 
 fn given(asked: &Asked) -> Result<Given, Failure> {
     let parse = |text: &String| Override::parse(text).map_err(|_| Failure::Failed(format!("`{text}` cannot be read")));
-    Ok(Given { overrides: asked.set.iter().map(parse).collect::<Result<_, _>>()?, root: asked.root.clone(), witness: None })
+    Ok(Given {
+        overrides: asked.set.iter().map(parse).collect::<Result<_, _>>()?,
+        root: asked.root.clone(),
+        witness: None,
+    })
 }
 
 /// Number of shards, their time on one core, and their size on the disk.

@@ -6,11 +6,11 @@ use rustc_hash::FxHashSet;
 use symdiff::taylor_model::encloses;
 use symdiff::{Builder, Expr, Graph, Scalar};
 
-use super::inputs::MechanismInput;
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
 use super::cuts::{cuts_of_several_axes, other_cuts};
+use super::inputs::MechanismInput;
 use super::links::links_of;
 use super::mechanism::Mechanism;
 use super::questions::Questions;

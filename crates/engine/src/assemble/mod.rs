@@ -66,10 +66,10 @@ pub use build::{
     build, closes_loops, has_joints_of_several_axes, in_absolute_coordinates, in_joint_coordinates, joint_elimination,
 };
 pub use cuts::{cuts_of_several_axes, other_cuts};
+pub use inputs::InputInfo;
 pub use inventory::Inventory;
 pub use number_formulas::NumberFormulas;
 pub use questions::Questions;
-pub use inputs::InputInfo;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,
     SampledState, StartCondition, System, UncertainParameter,

@@ -8,12 +8,12 @@ use crate::export::analysis::{configuration_csv, response_contributions_csv, res
 use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
+use crate::export::function_witness::function_witness_csv;
 use crate::export::owned::{PAGE, SCHEMA, SUMMARY};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
 use crate::export::stack;
 use crate::export::statistics::{reduced_statistics_csv, statistics_csv};
 use crate::export::stems::unique_stems;
-use crate::export::function_witness::function_witness_csv;
 use crate::export::witnesses::{POINTS, points_csv, witnesses_csv};
 use crate::export::{
     Beside, bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg,

@@ -14,7 +14,8 @@ pub fn function_witness_csv(bounds: &Bounds, witness: &FunctionWitness, paramete
     let mut text = format!("# {} is {} at t = {time} s under these functions\n", output.name, with(&value, unit.text));
     for (parameter, value) in parameters.iter().zip(&witness.parameters) {
         // What an excitation is as a constant has no value here.
-        let is_excitation = witness.functions.iter().any(|own| parameter.name.strip_prefix(&own.name) == Some(".deviation"));
+        let is_excitation =
+            witness.functions.iter().any(|own| parameter.name.strip_prefix(&own.name) == Some(".deviation"));
         if !is_excitation {
             text += &format!("# parameter {} = {}\n", parameter.name, number(*value));
         }
@@ -22,7 +23,8 @@ pub fn function_witness_csv(bounds: &Bounds, witness: &FunctionWitness, paramete
     text += "t";
     witness.functions.iter().for_each(|own| text += &format!(",{}", own.name));
     text += "\n";
-    let mut times: Vec<f64> = witness.functions.iter().flat_map(|own| own.points.iter().map(|(time, _)| *time)).collect();
+    let mut times: Vec<f64> =
+        witness.functions.iter().flat_map(|own| own.points.iter().map(|(time, _)| *time)).collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
     for time in times {
@@ -58,7 +60,8 @@ mod tests {
     fn functions_share_their_times() {
         let output = OutputBounds { name: "x".into(), unit: "m".into(), display: None, nominal: vec![], bands: vec![] };
         let bounds = Bounds { outputs: vec![output], ..Bounds::default() };
-        let function = |name: &str, points: &[(f64, f64)]| WitnessFunction { name: name.into(), points: points.to_vec() };
+        let function =
+            |name: &str, points: &[(f64, f64)]| WitnessFunction { name: name.into(), points: points.to_vec() };
         let functions = vec![function("road", &[(0.0, 0.0), (2.0, 1.0)]), function("gust", &[(0.0, 5.0), (1.0, 5.0)])];
         let witness = FunctionWitness { output: 0, time: 2.0, value: 0.5, parameters: vec![3.0, 0.0], functions };
         let parameter = |name: &str| ParameterSummary {
@@ -70,7 +73,8 @@ mod tests {
             upper: 4.0,
         };
         let text = function_witness_csv(&bounds, &witness, &[parameter("k"), parameter("road.deviation")]);
-        let expected = "# x is 0.5 m at t = 2 s under these functions\n# parameter k = 3\nt,road,gust\n0,0,5\n1,0.5,5\n2,1,5\n";
+        let expected =
+            "# x is 0.5 m at t = 2 s under these functions\n# parameter k = 3\nt,road,gust\n0,0,5\n1,0.5,5\n2,1,5\n";
         assert_eq!(text, expected);
     }
 }

@@ -81,7 +81,11 @@ fn excitation(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
     let (limits, class) = match (limits, rate, held) {
         (_, Some(_), Some(_)) => {
             let help = "leave out `held`, or `rate`".to_owned();
-            reader.error(fields.key_span("held"), "what is constant over periods jumps, and has no limit of its rate", help);
+            reader.error(
+                fields.key_span("held"),
+                "what is constant over periods jumps, and has no limit of its rate",
+                help,
+            );
             return None;
         }
         (Some(limits), None, None) => (limits, Class::Bounded),
@@ -216,7 +220,8 @@ fn rate(reader: &mut Reader, node: &Node, dimension: &mut Option<Dimension>) -> 
 
 /// A period, s.
 fn period(reader: &mut Reader, node: &Node) -> Option<f64> {
-    let formula = reader.formula_that(node, Context::Constant, Dimension::TIME, |held| held > 0.0, "must be positive")?;
+    let formula =
+        reader.formula_that(node, Context::Constant, Dimension::TIME, |held| held > 0.0, "must be positive")?;
     if reader.is_uncertain(&formula) {
         reader.error(node.span.clone(), "a period is the same for all samples", None);
         return None;
@@ -252,7 +257,8 @@ pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
         found.extend(excitation.zip(entry).map(|(excitation, entry)| (entry.key_span.clone(), excitation)));
     }
     for (place, excitation) in found {
-        let message = format!("a joint cannot follow the excitation `{}`: its acceleration is not known", clip(&excitation));
+        let message =
+            format!("a joint cannot follow the excitation `{}`: its acceleration is not known", clip(&excitation));
         reader.error(place, message, "let a force follow it, or a `servo`".to_owned());
     }
 }

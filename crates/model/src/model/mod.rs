@@ -44,8 +44,8 @@ mod urdf;
 mod witness;
 mod zone_sizes;
 
-pub use crate::elements::{Class, Excitation, JointKind, Trajectory};
 pub use crate::elements::effects::*;
+pub use crate::elements::{Class, Excitation, JointKind, Trajectory};
 pub use crate::expand::overrides::Override;
 pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotation, Symbol, TimeOrder};
 pub use crate::keys::{SCHEMA_VERSION, schema};

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::statistics::StatisticsResult;
 use super::{
-    AnalysisSummary, Band, BlackBoxSummary, Bounds, ChainSummary, Contribution, ExcitationSummary, OutputBounds, ReducedSummary,
-    RequirementSummary,
+    AnalysisSummary, Band, BlackBoxSummary, Bounds, ChainSummary, Contribution, ExcitationSummary, OutputBounds,
+    ReducedSummary, RequirementSummary,
 };
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;

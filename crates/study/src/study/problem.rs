@@ -70,7 +70,8 @@ impl<'a> Study<'a> {
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
         let excited = || description.trajectories.iter().any(|own| own.excitation().is_some());
         if request.certified.is_some() && excited() {
-            let why = "`certified` bounds are of constants, and the model has excitations that are functions of the time";
+            let why =
+                "`certified` bounds are of constants, and the model has excitations that are functions of the time";
             return Err(Refusal(why.to_owned()).into());
         }
         let Options { certify_time, progress, stage, interrupted, .. } = *options;

@@ -15,8 +15,8 @@ use crate::model::{Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
 use crate::results::{
-    Bounds, Contribution, ContributionSummary, ErrorSummary, FunctionWitness, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
-    Witness, summary_of_subsystems,
+    Bounds, Contribution, ContributionSummary, ErrorSummary, FunctionWitness, OutputBounds, ParameterSummary,
+    SubsystemSummary, Summary, Witness, summary_of_subsystems,
 };
 use crate::simulate::SimulationError;
 

@@ -23,14 +23,26 @@ impl<'s> RowAdjoints<'s> {
     /// For states that steps by the scheme end with: as [`RowAccelerations`](super::super::ensemble) observes them.
     pub fn of_steps(simulator: &'s Simulator, start: &Tile) -> Self {
         let memory = StartAdjoints::new(simulator, &simulator.start, start);
-        Self { memory, closes: false, accelerates: simulator.solves_row_accelerations(), inputs: None, kernel: TileKernel::default() }
+        Self {
+            memory,
+            closes: false,
+            accelerates: simulator.solves_row_accelerations(),
+            inputs: None,
+            kernel: TileKernel::default(),
+        }
     }
 
     /// For motions that are combined or interpolated: as [`RowClosure`](super::super::ensemble) closes them.
     pub fn closing(simulator: &'s Simulator, program: &'s StartProgram, start: &Tile) -> Self {
         let needs = Needs::of(simulator);
         let memory = StartAdjoints::new(simulator, program, start);
-        Self { memory, closes: needs.closure, accelerates: needs.accelerations, inputs: None, kernel: TileKernel::default() }
+        Self {
+            memory,
+            closes: needs.closure,
+            accelerates: needs.accelerations,
+            inputs: None,
+            kernel: TileKernel::default(),
+        }
     }
 
     /// The same under functions of the time.

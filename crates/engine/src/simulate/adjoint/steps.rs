@@ -39,12 +39,7 @@ pub(super) struct Steps<'s> {
 
 impl<'s> Steps<'s> {
     /// From an assembled tile.
-    pub fn new(
-        simulator: &'s Simulator,
-        start: &Tile,
-        steps: Vec<(f64, f64)>,
-        inputs: Option<&'s TileInputs>,
-    ) -> Self {
+    pub fn new(simulator: &'s Simulator, start: &Tile, steps: Vec<(f64, f64)>, inputs: Option<&'s TileInputs>) -> Self {
         let mut stepper = Stepper::new(&simulator.program, start);
         // Rounding of accelerations is that of positions over h², and so is that of derivatives.
         stepper.refine(true);

@@ -32,9 +32,7 @@ pub(super) fn check_rate<S: SymbolTable>(
 ) {
     let Some(key) = keys.iter().find(|key| fields.get(key).is_some()) else { return };
     let has_no_rate = |name: &str| match reader.resolve(name, Context::Time) {
-        Ok(Symbol::Trajectory { trajectory, .. }) => {
-            reader.model.derivatives(trajectory) == Some(TimeOrder::Position)
-        }
+        Ok(Symbol::Trajectory { trajectory, .. }) => reader.model.derivatives(trajectory) == Some(TimeOrder::Position),
         known => known.is_err(),
     };
     let moving = target.names().find(|(name, _)| has_no_rate(name));

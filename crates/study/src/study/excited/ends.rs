@@ -42,7 +42,11 @@ struct Bent {
 ///
 /// # Errors
 /// Where the nominal motion cannot be simulated, and at an interruption.
-pub fn ends(study: &Study, simulator: &Simulator, schedule: &Schedule) -> Result<(FunctionEnds, usize), SimulationError> {
+pub fn ends(
+    study: &Study,
+    simulator: &Simulator,
+    schedule: &Schedule,
+) -> Result<(FunctionEnds, usize), SimulationError> {
     let motions = ExcitedMotions::new(study, simulator, schedule);
     let (rows, outputs) = (motions.schedule.rows, motions.outputs());
     let found = FunctionEnds::new(rows, outputs, motions.inputs(), motions.ends.clone());

@@ -55,4 +55,3 @@ pub(super) fn excited(study: &Study, schedule: &Schedule) -> Result<Option<(Outc
         found => Ok(Some(found?)),
     }
 }
-

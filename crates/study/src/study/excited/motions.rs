@@ -77,8 +77,7 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         let (samples, wanted, values) = self.split(asked);
         let functions = Functions { ends: &self.ends, values: &values };
         let interruption = self.study.interruption;
-        let found =
-            gradients_of_functions(self.simulator, &self.schedule, &samples, &wanted, functions, interruption);
+        let found = gradients_of_functions(self.simulator, &self.schedule, &samples, &wanted, functions, interruption);
         found.map_err(simulation)
     }
 
