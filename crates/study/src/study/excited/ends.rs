@@ -90,10 +90,15 @@ impl Search<'_, '_> {
         }
         drop(kernels);
         let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
-        let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
-        let values = self.motions.values(&asked, 1)?;
-        let arrived = |(number, value): (usize, f64)| (!climbs[number].arrive(value)).then_some(number);
-        let bent: Vec<usize> = going.into_iter().zip(values).filter_map(arrived).collect();
+        let bent = if self.motions.has_parameters() {
+            // Those may matter under a function only: their derivatives are known there.
+            going
+        } else {
+            let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+            let values = self.motions.values(&asked, 1)?;
+            let bent = |(number, value): (usize, f64)| (!climbs[number].arrive(value)).then_some(number);
+            going.into_iter().zip(values).filter_map(bent).collect()
+        };
         self.step(&mut climbs, &bent)?;
         for number in bent {
             let climb = &mut climbs[number];

@@ -47,6 +47,11 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         self.simulator.program.outputs.len()
     }
 
+    /// Whether there are uncertain parameters beside those that excitations are as constants.
+    pub fn has_parameters(&self) -> bool {
+        self.simulator.system.parameters.len() > self.excitations.len()
+    }
+
     /// Indices of the trajectories that inputs are.
     pub fn inputs(&self) -> Vec<usize> {
         self.simulator.system.inputs.iter().map(|input| input.trajectory).collect()
