@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Reports in a browser: their scripts' types, then tests in Chromium. `.ci/browser.sh pictures` makes the book's
-# pictures of reports again instead. Needs node and npm; Chromium and two packages of npm are installed where they are
-# missing. MBINT is the program (target/release/mbint, built here, by default), CHROMIUM the browser.
+# pictures of reports again instead, `.ci/browser.sh install` ends when all is installed. Needs node and npm; Chromium
+# and two packages of npm are installed where they are missing. MBINT is the program (target/release/mbint, built here,
+# by default), CHROMIUM the browser.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -15,6 +16,7 @@ if ! install; then
     echo "note: node, Chromium or packages of npm could not be installed; reports are not opened in a browser"
     exit 0
 fi
+[ "${1:-}" != install ] || exit 0
 : "${CHROMIUM:=$(command -v chromium)}"
 export CHROMIUM
 

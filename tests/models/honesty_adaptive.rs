@@ -62,6 +62,35 @@ bounds: { chebyshev: {}, tolerance: 0.001, budget: { solves: 1000 } }
     assert_honest(&bounds, "x", Method::Chebyshev, truth);
 }
 
+/// A stiffness that only one corner of 128 changes, by 4 %, and no sample nearer to the middle: the surrogate ranges
+/// less than its error may be. The number is written in two ways, so that it does not stand for the parameters.
+#[test]
+fn one_corner_of_seven_parameters_is_covered() {
+    let signs = [1, -1, -1, 1, -1, 1, 1];
+    let product = |term: fn(usize, i32) -> String| {
+        signs.iter().enumerate().map(|(i, &sign)| term(i, sign)).collect::<Vec<String>>().join("*")
+    };
+    let one = product(|i, sign| format!("(1 + {sign}*p{i})/2"));
+    let other = product(|i, sign| format!("(0.5 + {sign}*p{i}/2)"));
+    let parameters: String = (0..signs.len()).map(|i| format!("  p{i}: {{ interval: [-1, 1] }}\n")).collect();
+    let bounds = run(&read(&format!(
+        "
+parameters:
+{parameters}
+bodies: {{ m: {{ mass: 1 kg, coordinates: [x] }} }}
+effects:
+  one: {{ force: {{ on: m, value: [\"-(1 + 0.02*{one})*m.x\", 0] }} }}
+  other: {{ force: {{ on: m, value: [\"-0.02*{other}*m.x\", 0] }} }}
+initial: {{ m.x: 0.1, m.vx: 0 }}
+outputs: {{ x: m.x }}
+simulation: {{ duration: 3, step: 0.01, output_step: 0.25 }}
+bounds: {{ chebyshev: {{}}, tolerance: 1e-2, budget: {{ solves: 600 }} }}
+"
+    )));
+    let counted = assert_honest(&bounds, "x", Method::Chebyshev, softened_range((1.0, 1.04)));
+    assert_eq!(counted, 13);
+}
+
 /// A bell on a shell of four parameters and a step across eight, of which a stiffness sees one number: no budget is
 /// enough for polynomials in all of them, and one parameter is left. No row is flagged.
 #[test]

@@ -108,3 +108,24 @@ fn workflows_name_actions_by_commit() {
     let others: Vec<&&str> = used.iter().filter(|action| !is_commit(action)).collect();
     assert!(used.len() > 10 && others.is_empty(), "{others:?}");
 }
+
+/// Crates that `cargo tree` lists with these arguments, each with its features.
+fn features(arguments: &[&str]) -> BTreeSet<String> {
+    let tree = Command::new(env!("CARGO"))
+        .args(["tree", "--locked", "--target", "all", "--prefix", "none", "--no-dedupe", "--format", "{p} {f}"])
+        .args(arguments)
+        .current_dir(ROOT)
+        .output()
+        .unwrap();
+    assert!(tree.status.success(), "{}", String::from_utf8_lossy(&tree.stderr));
+    String::from_utf8(tree.stdout).unwrap().lines().map(str::to_owned).collect()
+}
+
+/// The program that is tested is then the one that is built, and it is compiled once.
+#[test]
+fn tests_and_the_program_share_features_of_their_dependencies() {
+    let program = features(&["--package", "mbint", "--edges", "normal,build"]);
+    let tests = features(&["--workspace", "--edges", "normal,build,dev"]);
+    let others: Vec<&String> = program.difference(&tests).collect();
+    assert!(program.len() > 50 && others.is_empty(), "of the program alone: {others:#?}");
+}

@@ -3,13 +3,16 @@
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
-    BandError, Correction, Differences, Ledger, Range, Sample, TimeShift, Turning, corrections, largest,
-    step_validation, time_error, validation,
+    BandError, Correction, Differences, Ledger, Range, Sample, TimeShift, Turning, corners_by_slopes, corrections,
+    largest, step_validation, time_error, validation,
 };
 
 /// An output whose span halved steps make smaller than this share of it is conserved: a scheme of second order takes
 /// away three quarters of what is its error alone.
 const CONSERVED: f64 = 0.3;
+
+/// Corners, at most, that slopes name as further samples.
+const CORNERS: usize = 8;
 
 /// Width of an output's range, relative to its values, that is rounding.
 const ROUNDING: f64 = 1e-10;
@@ -97,6 +100,15 @@ impl ValidationTable {
         TimeShift::of((0..halved.samples).map(|sample| window.clone().map(|row| at(row, sample)).collect()))
     }
 
+    /// Corners that the outputs' slopes name in some row, where not all corners are among the samples, which begin with
+    /// [`step_validation`].
+    fn corners(&self, k: usize) -> Vec<Vec<f64>> {
+        let all: Vec<usize> = (0..self.samples).collect();
+        let spans: Vec<f64> = (0..self.outputs).map(|output| self.span(output, &all, 0.0)).collect();
+        let lines = self.of_outputs().flat_map(|row| spans.iter().copied().zip(row.chunks_exact(self.samples)));
+        corners_by_slopes(k, CORNERS, lines.filter(|(span, _)| *span > 0.0))
+    }
+
     /// Rows that were reached.
     pub fn rows(&self) -> usize {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
@@ -160,7 +172,7 @@ pub struct Ensembles<'e> {
 pub struct Validation {
     /// ξ of each.
     pub points: Vec<Vec<f64>>,
-    /// How many of them are spread over the box; they come last.
+    /// How many of them are spread over the box.
     pub spread: usize,
     /// With the schedule's steps.
     pub direct: ValidationTable,
@@ -214,9 +226,17 @@ impl Validation {
         // Steps err most where parameters that act through one number are fastest, which may be in any corner.
         points.extend(ends);
         let first = points.len();
+        let spread = spread_over_box.len();
         points.extend(spread_over_box);
         let samples = domain.samples(&points);
-        let (direct, simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
+        let (mut direct, mut simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
+        let corners = direct.corners(domain.dimension());
+        if !corners.is_empty() {
+            let (at_corners, others) = ValidationTable::of(ensemble, &domain.samples(&corners), observed, false)?;
+            direct = direct.with(&at_corners);
+            simulated.add(points.len(), others);
+            points.extend(corners);
+        }
         let (halved, with_halved_steps) = ValidationTable::of(halved, &samples[..first], observed, false)?;
         let (odd, with_odd_steps) = OddSteps::run(ensembles, &points[..first], false)?;
         let mut effort = simulated.effort;
@@ -224,7 +244,6 @@ impl Validation {
         effort += with_odd_steps;
         let simulations = points.len() + first + odd.places.len();
         let spans = direct.spans(&halved, &odd, ensemble);
-        let spread = points.len() - first;
         Ok(Self { points, spread, direct, halved, odd, simulations, effort, simulated, spans })
     }
 

@@ -73,7 +73,7 @@ pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, limits, union};
 pub use row_space::{RowSpace, combined, dot};
-pub use samples::{TensorGrid, corners, spread, step_validation, validation};
+pub use samples::{TensorGrid, corners, corners_by_slopes, spread, step_validation, validation};
 pub use scan::ScanBounds;
 pub use scan_grid::ScanGrid;
 pub use search::{ExtremeSearch, Extremes};

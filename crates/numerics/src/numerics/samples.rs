@@ -1,6 +1,13 @@
 //! Tensor grids of samples in [−1, 1]^k: which parameter values a method runs.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::tensor::cos_pi;
+
+/// Up to so many axes all combinations of middle and ends are simulated;
+const FEW: usize = 3;
+/// of more, so many corners.
+const CORNERS: usize = 16;
 
 /// All combinations of one coordinate from each axis. Samples are numbered with the last axis fastest and made one at
 /// a time, so that a plan of any size can be split by ranges of numbers.
@@ -99,15 +106,52 @@ pub fn validation(k: usize, degree: usize) -> Vec<Vec<f64>> {
 /// Points at which steps are halved, and a surrogate is held against the simulation too: centre, faces and corners, all
 /// 3^k of them for up to three axes, else the centre, both ends of every axis and 16 corners.
 pub fn step_validation(k: usize) -> Vec<Vec<f64>> {
-    if k <= 3 {
+    if k <= FEW {
         let lattice = TensorGrid::full_factorial(&vec![3; k]);
         return (0..lattice.len()).map(|index| lattice.sample(index)).collect();
     }
     let on_axis = |axis: usize, xi: f64| (0..k).map(|other| if other == axis { xi } else { 0.0 }).collect();
     let mut points = vec![vec![0.0; k]];
     points.extend((0..k).flat_map(|axis| [on_axis(axis, -1.0), on_axis(axis, 1.0)]));
-    points.extend(corners(k, 16));
+    points.extend(corners(k, CORNERS));
     points
+}
+
+/// Corners at which functions are largest and least by their slopes along the axes from the middle of the box, the
+/// farthest of them first and at most so many: no sample near to the middle tells of what one corner alone changes.
+///
+/// Functions are given by a scale and by their values at [`step_validation`]; none is asked of up to three axes, all of
+/// whose corners are among these.
+pub fn corners_by_slopes<'v>(
+    k: usize,
+    most: usize,
+    functions: impl Iterator<Item = (f64, &'v [f64])>,
+) -> Vec<Vec<f64>> {
+    if k <= FEW {
+        return Vec::new();
+    }
+    let mut reached: BTreeMap<Vec<bool>, f64> = BTreeMap::new();
+    for (scale, values) in functions {
+        // The middle, then both ends of every axis.
+        let slopes: Vec<f64> = values[1..=2 * k].chunks_exact(2).map(|ends| ends[1] - ends[0]).collect();
+        let reach = slopes.iter().map(|slope| slope.abs()).sum::<f64>() / scale;
+        if reach > 0.0 && reach.is_finite() {
+            for is_largest in [false, true] {
+                let corner = slopes.iter().map(|slope| (*slope < 0.0) != is_largest).collect();
+                let known = reached.entry(corner).or_insert(reach);
+                *known = known.max(reach);
+            }
+        }
+    }
+    let known: BTreeSet<Vec<bool>> = corners(k, CORNERS).iter().map(|corner| signs(corner)).collect();
+    let mut named: Vec<(Vec<bool>, f64)> = reached.into_iter().filter(|(corner, _)| !known.contains(corner)).collect();
+    named.sort_by(|a, b| b.1.total_cmp(&a.1));
+    named.truncate(most);
+    named.into_iter().map(|(corner, _)| corner.iter().map(|&up| if up { 1.0 } else { -1.0 }).collect()).collect()
+}
+
+fn signs(corner: &[f64]) -> Vec<bool> {
+    corner.iter().map(|xi| *xi > 0.0).collect()
 }
 
 #[cfg(test)]
@@ -157,5 +201,23 @@ mod tests {
     fn no_parameters_make_one_sample_and_too_many_are_still_counted() {
         assert_eq!(TensorGrid::full_factorial(&[]).len(), 1);
         assert_eq!(TensorGrid::full_factorial(&[30; 14]).len(), usize::MAX);
+    }
+
+    /// Linear functions in five axes: of 32 corners those of the signs, first of the function with the largest slopes.
+    #[test]
+    fn slopes_name_corners() {
+        let at = |slopes: [f64; 5]| -> Vec<f64> {
+            let value = |xi: &Vec<f64>| 7.0 + xi.iter().zip(slopes).map(|(xi, slope)| xi * slope).sum::<f64>();
+            step_validation(5).iter().map(value).collect()
+        };
+        let functions = [at([1e-3, 1e-3, 1e-3, -1e-3, 0.0]), at([1.0, -2.0, 3.0, 4.0, 5.0]), vec![f64::NAN; 27]];
+        let named = corners_by_slopes(5, 9, functions.iter().map(|values| (1.0, values.as_slice())));
+        let known = corners(5, CORNERS);
+        let wanted = [[-1.0, 1.0, -1.0, -1.0, -1.0], [1.0, -1.0, 1.0, 1.0, 1.0]];
+        assert!(wanted.iter().all(|corner| named.contains(&corner.to_vec()) != known.contains(&corner.to_vec())));
+        assert!(named.iter().all(|corner| !known.contains(corner)), "{named:?}");
+        assert!(named.contains(&vec![1.0, 1.0, 1.0, -1.0, 1.0]) != known.contains(&vec![1.0, 1.0, 1.0, -1.0, 1.0]));
+        assert_eq!(corners_by_slopes(5, 1, functions.iter().map(|values| (1.0, values.as_slice()))).len(), 1);
+        assert!(corners_by_slopes(3, 9, [(1.0, &[0.0; 27][..])].into_iter()).is_empty());
     }
 }

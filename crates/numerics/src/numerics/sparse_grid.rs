@@ -23,13 +23,18 @@ pub struct SparseGrid {
 
 /// Size that is expected of an index: the least that follows from the indices before it, as for a power of Σ aᵢ ξᵢ,
 /// where from ξ^(l − eᵢ) to ξ^l the multinomial coefficient times the weights changes by aᵢ |l|/lᵢ. `share` is aᵢ,
-/// `size` that of an index before; infinite where none of these is known.
-pub fn expected(levels: &[u8], share: impl Fn(usize) -> f64, size: impl Fn(&[u8]) -> Option<f64>) -> f64 {
+/// `size` that of an index before; infinite where none of these is known. Where every other degree may be missing, the
+/// index before is the larger one of two (`back`), else the next one.
+pub fn expected(levels: &[u8], back: u8, share: impl Fn(usize) -> f64, size: impl Fn(&[u8]) -> Option<f64>) -> f64 {
     let degree: f64 = levels.iter().map(|&level| f64::from(level)).sum();
     let from = |axis: usize| {
         let mut before = levels.to_vec();
-        before[axis] -= 1;
-        size(&before).map(|size| size * share(axis) * degree / f64::from(levels[axis]))
+        let mut sizes = (0..back.min(levels[axis])).filter_map(|_| {
+            before[axis] -= 1;
+            size(&before)
+        });
+        let first = sizes.next()?;
+        Some(sizes.fold(first, f64::max) * share(axis) * degree / f64::from(levels[axis]))
     };
     (0..levels.len()).filter(|&axis| levels[axis] > 0).filter_map(from).fold(f64::INFINITY, f64::min)
 }

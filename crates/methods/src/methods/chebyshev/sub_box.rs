@@ -139,12 +139,16 @@ impl SubBox<'_> {
     /// Indices to be added next, generation by generation, at least `wanted` as far as there are any: of each
     /// generation those whose expected surplus is at least a share of the largest. Surpluses of an earlier generation
     /// are believed to be the expected ones.
+    ///
+    /// Where no surplus is expected that matters, but the error is too large, indices are expected to be as large as
+    /// those two degrees lower: of a response without even or without odd terms every other surplus is zero, and what
+    /// a sparse set lacks is estimated so too (`numerics::truncation`).
     pub fn next(&self, share: f64, wanted: usize) -> Vec<Vec<Vec<u8>>> {
         let (mut grid, mut surplus) = (self.grid.clone(), self.surplus.clone());
         let mut generations: Vec<Vec<Vec<u8>>> = Vec::new();
         let mut count = 0;
         while count < wanted {
-            let mut added = by_expectation(&surplus, grid.candidates());
+            let mut added = by_expectation(&surplus, grid.candidates(), generations.is_empty());
             let most = added.first().map_or(0.0, |(_, expected)| *expected);
             added.retain(|(_, expected)| *expected >= share * most);
             if added.is_empty() {
@@ -169,11 +173,11 @@ impl SubBox<'_> {
             let axis = levels.iter().position(|&level| level == highest)?;
             let mut higher = levels.clone();
             higher[axis] += 1;
-            Some((axis, extrapolated(&self.surplus, &higher)))
+            Some((axis, extrapolated(&self.surplus, &higher, 1)))
         };
         let most = self.surplus.keys().filter_map(beyond).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
-        let candidates = self.grid.candidates();
-        let allowed = candidates.iter().map(|levels| extrapolated(&self.surplus, levels)).fold(0.0, f64::max);
+        let candidates = by_expectation(&self.surplus, self.grid.candidates(), true);
+        let allowed = candidates.first().map_or(0.0, |(_, expected)| *expected);
         match most {
             Some((axis, beyond)) if candidates.is_empty() || beyond > SPLIT * allowed => Some(axis),
             _ => (0..self.grid.dimension()).find(|&axis| self.falls_slowly(axis, highest)),
@@ -201,20 +205,26 @@ impl SubBox<'_> {
     }
 }
 
-/// Indices with their expected surpluses, the largest first.
-fn by_expectation(surplus: &Surpluses, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
-    let expect = |levels: Vec<u8>| {
-        let expected = extrapolated(surplus, &levels);
-        (levels, expected)
+/// Indices with their expected surpluses, the largest first. Where none matters and `in_pairs`, those that are expected
+/// if every other degree may be missing.
+fn by_expectation(surplus: &Surpluses, indices: Vec<Vec<u8>>, in_pairs: bool) -> Vec<(Vec<u8>, f64)> {
+    let expect = |back: u8| {
+        let expected = |levels: &Vec<u8>| (levels.clone(), extrapolated(surplus, levels, back));
+        let mut expected: Vec<(Vec<u8>, f64)> = indices.iter().map(expected).collect();
+        // Of equals, the first in the alphabet.
+        expected.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+        expected
     };
-    let mut expected: Vec<(Vec<u8>, f64)> = indices.into_iter().map(expect).collect();
-    // Of equals, the first in the alphabet.
-    expected.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    expected
+    let expected = expect(1);
+    let matters = |expected: &[(Vec<u8>, f64)]| expected.first().is_some_and(|(_, expected)| *expected > MET);
+    if !in_pairs || matters(&expected) {
+        return expected;
+    }
+    Some(expect(2)).filter(|in_pairs| matters(in_pairs)).unwrap_or(expected)
 }
 
-/// The expected surplus of an index.
-fn extrapolated(surplus: &Surpluses, levels: &[u8]) -> f64 {
+/// The expected surplus of an index, from the largest of so many degrees `back` along each axis.
+fn extrapolated(surplus: &Surpluses, levels: &[u8], back: u8) -> f64 {
     let k = levels.len();
     let weight = |axis: usize| {
         let mut first = vec![0; k];
@@ -223,5 +233,5 @@ fn extrapolated(surplus: &Surpluses, levels: &[u8]) -> f64 {
     };
     let total: f64 = (0..k).filter_map(weight).sum();
     let share = |axis: usize| weight(axis).map_or(1.0, |weight| if total > 0.0 { weight / total } else { 1.0 });
-    expected(levels, share, |before| surplus.get(before).copied())
+    expected(levels, back, share, |before| surplus.get(before).copied())
 }

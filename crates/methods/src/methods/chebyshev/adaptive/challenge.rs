@@ -56,17 +56,22 @@ impl Adaptation<'_> {
         let rows = self.looked_at(sub_box);
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let (search, allowed) = (&self.search, &self.goal.allowed);
+        // Of each output how often its range is what is allowed, and where its ends are.
         let look = |_: usize, row: &Row, previous: &mut Previous| {
-            let found = row.range(search, previous).extents;
-            // What hardly ranges is not off by what matters, and of NaN there is no place.
-            let matters = found.into_iter().zip(allowed).filter(|(found, allowed)| found.range.width() > **allowed);
-            matters.flat_map(|(found, _)| found.places).collect::<Vec<_>>()
+            let found = row.range(search, previous).extents.into_iter().zip(allowed);
+            found.map(|(found, allowed)| (found.range.width() / allowed, found.places)).collect::<Vec<_>>()
         };
         // The rows are no neighbours.
-        let places = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, 1), look)?;
+        let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, 1), look)?;
+        let found = found.into_iter().flatten();
+        // Outputs that hardly range are not off by much, unless all of it is in one corner: of these the one that
+        // ranges most tells. Of NaN there is no place.
+        let widest = found.clone().map(|(width, _)| width).fold(0.0, f64::max).min(1.0);
+        let matters = found.filter(|(width, _)| *width > 0.0 && *width >= widest);
+        let places: Vec<Vec<f64>> = matters.flat_map(|(_, places)| places).collect();
         let known = surrogate.samples().iter().chain(sub_box.points.iter());
         let scale = Scale::of(sub_box);
-        Ok(scale.cover(&places.concat(), known, most_ends(sub_box)))
+        Ok(scale.cover(&places, known, most_ends(sub_box)))
     }
 }
 

@@ -134,7 +134,7 @@ fn motions_from(ensemble: &dyn Ensemble, grid: &SparseGrid, from: usize) -> Resu
 
 /// Size of a coefficient that is expected of the sizes before it.
 fn foreseen(sizes: &FxHashMap<Vec<u8>, f64>, rates: &[f64], levels: &[u8]) -> f64 {
-    expected(levels, |axis| rates[axis], |before| Some(sizes.get(before).copied().unwrap_or(0.0)))
+    expected(levels, 1, |axis| rates[axis], |before| Some(sizes.get(before).copied().unwrap_or(0.0)))
 }
 
 #[cfg(test)]
