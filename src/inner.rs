@@ -31,7 +31,7 @@ pub mod methods {
 pub mod model {
     pub use crate::model::{
         Analysis, Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading,
-        SchemeChoice, Stepping, load, load_str, read, read_str, schema,
+        SchemeChoice, Stepping, Witness, load, load_str, read, read_str, schema,
     };
 }
 
@@ -45,7 +45,7 @@ pub mod reduce {
 
 pub mod results {
     pub use crate::results::{
-        Allocation, Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics,
+        Allocation, Band, Bounds, CostStudy, FunctionWitness, Method, MethodSummary, OutputBounds, OutputStatistics,
         OutputStatisticsSummary, ReducedBand, ReducedSummary, RequirementSummary, StatisticsResult, Summary, Uncertain,
         Verdict,
     };

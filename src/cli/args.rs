@@ -115,6 +115,10 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     pub threads: Threads,
 
+    /// Replace excitations by the functions in this file, and parameters by its values: a witness.NAME.csv of a run.
+    #[arg(long, value_name = "FILE")]
+    pub witness: Option<PathBuf>,
+
     /// Print nothing but errors.
     #[arg(short, long)]
     pub quiet: bool,

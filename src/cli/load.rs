@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::Failure;
 use super::console::Console;
-use crate::model::{self, Description, Override, Reading};
+use crate::model::{self, Description, Override, Reading, Witness};
 use crate::results::ModelFile;
 use crate::study;
 
@@ -18,6 +18,8 @@ pub(super) struct Given {
     pub overrides: Vec<Override>,
     /// Folder whose files models may name, beside those of their own folders.
     pub root: Option<PathBuf>,
+    /// Functions of the time that excitations are.
+    pub witness: Option<Witness>,
 }
 
 /// The models that could be read.
@@ -132,7 +134,15 @@ fn files(reading: &Reading) -> (Vec<ModelFile>, Vec<(String, String)>) {
 
 /// Reads a file and reports its errors and warnings; `None` if it has errors.
 fn read(path: &Path, given: &Given, console: &Console) -> Option<Reading> {
-    let reading = model::read_rooted(path, &given.overrides, given.root.as_deref());
+    let mut reading = model::read_rooted(path, &given.overrides, given.root.as_deref());
     console.diagnostics(&reading.diagnostics);
+    if let Some(witness) = &given.witness {
+        let scenes = reading.scenes.iter_mut().map(|scene| &mut scene.description);
+        let replayed = scenes.chain(&mut reading.description).try_for_each(|model| witness.replay(model));
+        if let Err(error) = replayed {
+            console.error(&format!("{}: the witness is not one of this model: {error}", model::shown(path)));
+            return None;
+        }
+    }
     reading.description.is_some().then_some(reading)
 }

@@ -10,6 +10,7 @@ mod check;
 mod console;
 mod cost;
 mod effects;
+mod excitations;
 mod explain;
 mod export_code;
 mod fit;

@@ -291,6 +291,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         }
     }
     text += &summary.black_box.as_ref().map_or_else(String::new, |own| black_box::lines(own, &summary.errors));
+    text += &super::excitations::lines(&summary.excitations);
     text += &contributions(&summary.contributions);
     text += &verdicts::tables(summary);
     text += &super::statistics::statistics(summary);
@@ -371,6 +372,7 @@ mod tests {
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,
+            excitations: Vec::new(),
             is_cut: false,
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));

@@ -1,6 +1,6 @@
 //! The request to `mbint run`: its arguments, checked, and a job for each model or scene.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::Failure;
@@ -9,7 +9,7 @@ use super::kept_run::KeptRun;
 use super::load::Given;
 use super::profile::Profile;
 use super::verdicts::Junit;
-use crate::model::Description;
+use crate::model::{Description, Witness, shown};
 use crate::results::{Method, ModelFile, RunRequest};
 use crate::store::Missing;
 
@@ -19,6 +19,8 @@ pub(super) struct Request {
     /// The same models as results name them.
     pub named: Vec<PathBuf>,
     pub given: Given,
+    /// The file of functions of the time, as results name it.
+    pub witness: Option<String>,
     /// Empty for all scenes.
     pub scenes: Vec<String>,
     pub certify: bool,
@@ -79,10 +81,12 @@ impl Request {
     pub fn check(args: RunArgs) -> Result<Self, Failure> {
         let AskedArgs { method: methods, certify, set, scene: scenes, skip_infeasible, certify_time } =
             args.asked.in_order();
+        let witness = args.witness.as_deref().map(read_witness).transpose()?;
         Ok(Self {
+            witness: args.witness.as_deref().map(|path| shown(path).to_string()),
             named: args.models.clone(),
             models: args.models,
-            given: set.given()?,
+            given: Given { witness, ..set.given()? },
             scenes,
             certify,
             output: args.output,
@@ -110,9 +114,20 @@ impl Request {
         RunRequest {
             set: self.given.overrides.iter().map(|setting| setting.text.clone()).collect(),
             methods: methods.map(|methods| methods.iter().map(|method| method.name().to_owned()).collect()),
+            witness: self.witness.clone(),
             certify: self.certify,
             certify_time: self.settings.certify_time,
             skip_infeasible: self.settings.skip_infeasible,
         }
     }
+}
+
+/// Reads functions of the time.
+///
+/// # Errors
+/// Where the file cannot be read, or is none.
+fn read_witness(path: &Path) -> Result<Witness, Failure> {
+    let wrong = |why: String| Failure::Wrong(format!("{}: {why}", shown(path)));
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    Witness::parse(&text).map_err(|error| wrong(error.to_string()))
 }

@@ -68,7 +68,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     let mut points = Vec::with_capacity(runs);
     let mut name = String::new();
     for values in Axis::combinations(&axes) {
-        let mut given = Given { overrides: others.clone(), root: args.files.root.clone() };
+        let mut given = Given { overrides: others.clone(), root: args.files.root.clone(), witness: None };
         for (parameter, value) in Axis::settings(&axes, &values) {
             given.overrides.push(setting(&format!("{parameter}={value}"))?);
         }

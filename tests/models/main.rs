@@ -23,6 +23,7 @@ mod controllers;
 mod convergence;
 mod deep_trees;
 mod drawing_linkages;
+mod excitations;
 mod explicit;
 mod extrapolation;
 mod far;

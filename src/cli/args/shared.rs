@@ -116,7 +116,7 @@ impl SetArgs {
     /// # Errors
     /// For the first that is set twice, and for errors of a file.
     pub fn given(&self) -> Result<Given, Failure> {
-        Ok(Given { overrides: overlaid(&self.with, &self.set)?, root: self.files.root.clone() })
+        Ok(Given { overrides: overlaid(&self.with, &self.set)?, root: self.files.root.clone(), witness: None })
     }
 }
 

@@ -163,6 +163,7 @@ pub(super) fn status(args: &StatusArgs, console: &mut Console) -> Result<Status,
 /// What `mbint run` would be asked for.
 fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Failure> {
     Ok(Request {
+        witness: None,
         models: asked.models.clone(),
         named: asked.named.clone(),
         given: given(asked)?,
@@ -202,7 +203,11 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
 
 fn given(asked: &Asked) -> Result<Given, Failure> {
     let parse = |text: &String| Override::parse(text).map_err(|_| Failure::Failed(format!("`{text}` cannot be read")));
-    Ok(Given { overrides: asked.set.iter().map(parse).collect::<Result<_, _>>()?, root: asked.root.clone() })
+    Ok(Given {
+        overrides: asked.set.iter().map(parse).collect::<Result<_, _>>()?,
+        root: asked.root.clone(),
+        witness: None,
+    })
 }
 
 /// Number of shards, their time on one core, and their size on the disk.

@@ -10,6 +10,7 @@ use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
 use super::cuts::{cuts_of_several_axes, other_cuts};
+use super::inputs::MechanismInput;
 use super::links::links_of;
 use super::mechanism::Mechanism;
 use super::questions::Questions;
@@ -140,6 +141,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     let is_derived = description.black_box.is_some() || questions.outputs.iter().any(|output| output.of_results);
     let declared_parameters = if is_derived { description.parameters.clone() } else { Vec::new() };
     let mass_of_bodies = m.total_mass();
+    let inputs = m.inputs.iter().map(MechanismInput::info).collect();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
     let kinds = [constraints.positions, constraints.velocities];
@@ -160,6 +162,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
         let mut system = System {
             graph,
             parameters,
+            inputs,
             time,
             q,
             v,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use symdiff::{Builder, Formula};
 
 use super::coordinates;
+use super::inputs::inputs;
 use super::mechanism::{Mechanism, Owner, dof};
 use super::names::Names;
 use super::questions::Questions;
@@ -32,6 +33,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             line_masses: description.effects.iter().filter_map(|effect| effect.kind.inertia()).collect(),
             superelements: superelements(description),
             time,
+            inputs: inputs(g, questions, time),
             uncertain: Vec::new(),
             child_guesses: Vec::new(),
             starts_assembled: false,

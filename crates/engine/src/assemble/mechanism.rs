@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use symdiff::{Builder, Expr, Scalar};
 
+use super::inputs::MechanismInput;
 use super::names::Names;
 use super::questions::Questions;
 use super::reaction::Reaction;
@@ -106,6 +107,8 @@ pub struct Mechanism<'g, 'd> {
     pub superelements: Vec<Superelement<'d>>,
     /// t, s.
     pub time: Scalar<'g>,
+    /// Excitations that are functions.
+    pub inputs: Vec<MechanismInput<'g>>,
     /// The parameters that are symbols.
     pub uncertain: Vec<UncertainParameter>,
     /// Places in q of inboard joints' coordinates, and where to look for them.

@@ -21,6 +21,8 @@ pub struct Questions<'d> {
     /// Joints that close loops in joint coordinates, though a body could move with them, and no others that could be
     /// inboard joints. Without any, the cut is open.
     pub cut: Vec<usize>,
+    /// Whether excitations are functions of the time, which inputs give, and not constants.
+    pub as_functions: bool,
 }
 
 impl<'d> Questions<'d> {
@@ -33,6 +35,7 @@ impl<'d> Questions<'d> {
             formulation: description.simulation.formulation,
             merged: Cow::Borrowed(&[]),
             cut: Vec::new(),
+            as_functions: false,
         }
     }
 

@@ -107,12 +107,16 @@ impl<'g> Mechanism<'g, '_> {
         }
     }
 
-    /// A trajectory or its derivative, exactly: kinks are those of its timing. Its formulas are of parameters, as the
-    /// reader saw to.
+    /// A trajectory or its derivative, exactly: kinks are those of its timing. Its formulas are of parameters, of an
+    /// excitation of t too, as the reader saw to.
     fn trajectory(&self, trajectory: usize, order: TimeOrder) -> Scalar<'g> {
-        let number = |formula: &Formula| self.formula(formula, Context::Parameters);
-        let value =
-            self.names.trajectory(trajectory).value(self.time, number).unwrap_or_else(|_| self.g.number(f64::NAN));
+        let number = |formula: &Formula| self.formula(formula, Context::Time);
+        let own = self.names.trajectory(trajectory);
+        let value = match (own.excitation(), self.input(trajectory)) {
+            (Some(excitation), Some(u)) => excitation.value(u, number),
+            _ => own.value(self.time, number),
+        };
+        let value = value.unwrap_or_else(|_| self.g.number(f64::NAN));
         (0..order as usize).fold(value, |value, _| value.derivative(self.time))
     }
 

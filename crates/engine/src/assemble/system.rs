@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::inputs::InputInfo;
 use symdiff::{Expr, Formula, Graph};
 
 use crate::grammar::quantity::Dimension;
@@ -18,6 +19,8 @@ pub struct System {
     pub graph: Graph,
     /// The uncertain parameters, each a symbol; all other parameters have been folded in.
     pub parameters: Vec<UncertainParameter>,
+    /// Excitations that are functions of the time.
+    pub inputs: Vec<InputInfo>,
     /// t, s.
     pub time: Expr,
     /// Positions, n symbols.

@@ -74,7 +74,7 @@ impl EquationsProgram {
 
 /// Compiles a system's equations.
 pub fn compile_equations(system: &System) -> EquationsProgram {
-    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+    let layout = Layout::of(system);
     let mut graph = system.graph.clone();
     let (motion, jacobian) = equations_of_motion(system, &mut graph);
     let rate = constraint_rates(system, &mut graph);

@@ -12,6 +12,8 @@ use crate::assemble::System;
 pub struct Layout {
     /// Uncertain parameters, k.
     pub parameters: Range<usize>,
+    /// Levels and slopes of excitations that are functions, two each.
+    pub inputs: Range<usize>,
     /// Step size h, s.
     pub step: usize,
     /// Time that the state belongs to; t₊ while a step is solved, s.
@@ -33,15 +35,17 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// For k parameters, n coordinates, m constraints.
-    pub fn new(k: usize, n: usize, m: usize) -> Self {
+    /// Of a system.
+    pub fn of(system: &System) -> Self {
+        let (n, m) = (system.q.len(), system.lambda.len());
         let mut next = 0;
         let mut block = |length: usize| {
             next += length;
             next - length..next
         };
         Self {
-            parameters: block(k),
+            parameters: block(system.parameters.len()),
+            inputs: block(2 * system.inputs.len()),
             step: block(1).start,
             time: block(1).start,
             q: block(n),
@@ -76,6 +80,8 @@ impl Layout {
         };
         let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
         add(&parameters, self.parameters.start, 0);
+        let of_inputs: Vec<Expr> = system.inputs.iter().flat_map(|input| input.symbols).collect();
+        add(&of_inputs, self.inputs.start, 1);
         add(&[system.time], self.time, 1);
         add(&system.q, self.q.start, 1);
         add(&system.v, self.v.start, 1);

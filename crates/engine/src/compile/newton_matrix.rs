@@ -107,6 +107,8 @@ impl StepSymbols {
         };
         let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
         add(&parameters, layout.parameters.start, SAMPLE);
+        let of_inputs: Vec<Expr> = system.inputs.iter().flat_map(|input| input.symbols).collect();
+        add(&of_inputs, layout.inputs.start, STEP);
         add(&[self.h], layout.step, STEP_SIZE);
         add(&[self.t], layout.time, STEP);
         add(&self.q, layout.q.start, STEP);
@@ -334,7 +336,7 @@ mod tests {
         }
         let system = m.build();
         let (n, count) = (system.q.len(), system.lambda.len());
-        let layout = Layout::new(0, n, count);
+        let layout = Layout::of(&system);
         let mut graph = system.graph.clone();
         let (newton, inputs) =
             newton_system(&system, &mut graph, &layout, Scheme::Hht { alpha: -0.1 }.coefficients(), false);

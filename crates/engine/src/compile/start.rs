@@ -69,7 +69,7 @@ pub fn compile_nearest_start(
     sample: &[f64],
     open: OpenStart,
 ) -> Result<StartProgram, NoFactors<Equation>> {
-    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+    let layout = Layout::of(system);
     let inputs = layout.inputs(system);
     let mut graph = match &system.start.nearest {
         Some(nearest) if open.is_any() => nearest.graph.as_ref().unwrap_or(&system.graph).clone(),

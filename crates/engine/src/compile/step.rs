@@ -49,7 +49,7 @@ fn compile_as(
     samples: &[PivotSample; PIVOT_SAMPLES],
     by_links: bool,
 ) -> Result<Program, NoFactors<Equation>> {
-    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+    let layout = Layout::of(system);
     let coefficients = scheme.coefficients();
     let mut graph = system.graph.clone();
     let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients, by_links);

@@ -76,7 +76,7 @@ fn compile_values(
     if values.is_empty() {
         return None;
     }
-    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+    let layout = Layout::of(system);
     let inputs = layout.inputs(system);
     let rates = time_derivative(system, &mut graph, values);
     let jumps: Vec<Expr> = system.w.iter().chain(&system.lambda).copied().collect();

@@ -9,8 +9,9 @@ use crate::compile::Layout;
 /// Values of the parameters, positions and velocities in `state` (the layout's registers), and of the time in s.
 pub fn motion_values(system: &System, layout: &Layout, state: &[f64], time: f64) -> FxHashMap<Expr, f64> {
     let parameters = system.parameters.iter().map(|parameter| parameter.symbol).zip(layout.parameters.clone());
+    let inputs = system.inputs.iter().flat_map(|input| input.symbols).zip(layout.inputs.clone());
     let positions = system.q.iter().copied().zip(layout.q.clone());
     let velocities = system.v.iter().copied().zip(layout.v.clone());
-    let registers = parameters.chain(positions).chain(velocities);
+    let registers = parameters.chain(inputs).chain(positions).chain(velocities);
     registers.map(|(symbol, register)| (symbol, state[register])).chain([(system.time, time)]).collect()
 }

@@ -20,6 +20,11 @@ impl<'s> Instants<'s> {
         Self(&simulator.start.sampled)
     }
 
+    /// Of these states.
+    pub fn at(sampled: &'s [SampledValue]) -> Self {
+        Self(sampled)
+    }
+
     /// Whether there are none.
     pub fn is_empty(self) -> bool {
         self.0.is_empty()
@@ -80,6 +85,7 @@ impl<'s> Sampling<'s> {
         let state = layout.q.start * width..layout.lambda.end * width;
         let tile = self.assembly.tile_mut();
         tile.values_mut()[state.clone()].copy_from_slice(&stepper.tile().values()[state]);
+        tile.block_mut(layout.inputs.clone()).copy_from_slice(stepper.tile().block(layout.inputs.clone()));
         tile.lane_mut(layout.time).fill(time);
         self.assembly.sample();
         self.assembly.accelerate();

@@ -74,7 +74,7 @@ impl Assembled {
     ) -> Result<Self, SimulationError> {
         system.graph.limit(operations.map(|operations| system.graph.len() + operations));
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
-        let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
+        let layout = Layout::of(&system);
         let guess = guess_state(&system, &layout, &parameters);
         let no_number = |state: &[f64]| {
             let names = system.parameters.iter().map(|parameter| parameter.name.clone());
@@ -164,7 +164,9 @@ fn outputs_in(system: &System, layout: &Layout, state: &[f64], which: Range<usiz
     let registers = [&layout.q, &layout.v, &layout.w, &layout.lambda].into_iter().flat_map(Clone::clone);
     let values = symbols.zip(registers.map(|register| state[register]));
     let parameters = system.parameters.iter().map(|parameter| parameter.symbol).zip(sample.iter().copied());
-    let values: FxHashMap<Expr, f64> = values.chain(parameters).chain([(system.time, 0.0)]).collect();
+    let inputs = system.inputs.iter().flat_map(|input| input.symbols).zip(layout.inputs.clone());
+    let inputs = inputs.map(|(symbol, register)| (symbol, state[register]));
+    let values: FxHashMap<Expr, f64> = values.chain(parameters).chain(inputs).chain([(system.time, 0.0)]).collect();
     let outputs: Vec<Expr> = system.outputs[which].iter().map(|output| output.expr).collect();
     system.graph.evaluate(&outputs, |symbol| values.get(&symbol).copied().unwrap_or(f64::NAN))
 }

@@ -8,6 +8,7 @@ use crate::export::analysis::{configuration_csv, response_contributions_csv, res
 use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
+use crate::export::function_witness::function_witness_csv;
 use crate::export::owned::{PAGE, SCHEMA, SUMMARY};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
 use crate::export::stack;
@@ -56,6 +57,11 @@ pub fn write_results(
     if !bounds.witnesses.is_empty() {
         files.add("witnesses.csv", &witnesses_csv(bounds, &summary.parameters)?)?;
         files.add(POINTS, &points_csv(bounds, &summary.parameters)?)?;
+    }
+    let outputs = bounds.functions.iter().map(|own| bounds.outputs[own.output].name.as_str());
+    for (stem, own) in unique_stems(outputs).into_iter().zip(&bounds.functions) {
+        let text = function_witness_csv(bounds, own, &summary.parameters);
+        files.add(&format!("witness.{stem}.csv"), text.as_bytes())?;
     }
     let is_alone = bounds.is_of_one_configuration();
     if is_alone {
@@ -230,6 +236,7 @@ mod tests {
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,
+            excitations: Vec::new(),
             is_cut: false,
         };
         (bounds, summary)

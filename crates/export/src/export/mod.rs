@@ -15,6 +15,7 @@ mod figure;
 mod files;
 mod fit;
 mod folder;
+mod function_witness;
 mod gradients;
 mod junit;
 mod limits;

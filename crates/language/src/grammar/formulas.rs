@@ -154,6 +154,18 @@ impl<S: SymbolTable> Reader<'_, S> {
                         *used = true;
                     }
                 }
+                Ok(Symbol::Trajectory { trajectory, order }) => {
+                    self.used_trajectories.insert(trajectory);
+                    if self.model.derivatives(trajectory).is_some_and(|most| order > most) {
+                        all_known = false;
+                        let part = offset + span.start..offset + span.end;
+                        let place =
+                            node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
+                        let message = format!("`{}` is not known: only limits of the function are", clip(name));
+                        let help = "an excitation has a rate where its `rate` is limited, and no acceleration";
+                        self.error(place, message, help.to_owned());
+                    }
+                }
                 Ok(symbol) if self.is_of_model(node, symbol) => {
                     all_known = false;
                     let part = offset + span.start..offset + span.end;

@@ -43,6 +43,8 @@ pub struct Reader<'d, S> {
     pub broken: bool,
     /// Parameters that something speaks of, other parameters aside.
     pub used: Vec<bool>,
+    /// Trajectories that something speaks of.
+    pub used_trajectories: HashSet<usize>,
     /// Parameters that others speak of.
     pub used_by_parameters: Vec<bool>,
     /// Parameters that vary in omitted parts only.
@@ -104,6 +106,7 @@ impl<'d, S> Reader<'d, S> {
             varies: Vec::new(),
             broken: false,
             used: Vec::new(),
+            used_trajectories: HashSet::new(),
             used_by_parameters: Vec::new(),
             idle: HashSet::new(),
             certain: HashSet::new(),

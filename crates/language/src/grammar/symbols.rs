@@ -31,6 +31,8 @@ pub trait SymbolTable {
     fn trajectory(&self, name: &str) -> Option<usize>;
     /// The dimension of a trajectory's value, where it is known.
     fn trajectory_dimension(&self, trajectory: usize) -> Option<Dimension>;
+    /// The highest derivative that a trajectory has without jumps being lost, where only limits of it are known.
+    fn derivatives(&self, trajectory: usize) -> Option<TimeOrder>;
     /// What an effect measures.
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
     /// Where a link of the robot is.

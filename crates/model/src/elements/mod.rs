@@ -1,6 +1,7 @@
 //! The elements of the language: one file each, and one line in a registry.
 
 pub mod effects;
+mod excitation;
 mod form;
 mod glyph;
 pub mod joints;
@@ -8,6 +9,7 @@ pub mod meshing;
 pub mod shapes;
 mod trajectory;
 
+pub use excitation::{Class, Excitation};
 pub use form::{Bend, Form, Shape, SurfaceAt, Surroundings};
 pub use glyph::Glyph;
 pub use joints::JointKind;

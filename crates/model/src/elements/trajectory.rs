@@ -16,6 +16,7 @@
 
 use symdiff::{Formula, Scalar};
 
+use super::excitation::Excitation;
 use crate::grammar::quantity::Dimension;
 
 /// Shares of a move that two ramps leave are none below this.
@@ -26,7 +27,7 @@ const NEGLIGIBLE: f64 = 1e-9;
 pub struct Trajectory {
     /// Its name.
     pub name: String,
-    /// At least two, times ascending.
+    /// At least two, times ascending; none of an excitation.
     pub points: Vec<Waypoint>,
     /// How it moves from one point to the next.
     pub timing: Timing,
@@ -56,6 +57,10 @@ pub enum Timing {
     Trapezoidal(Option<Formula>),
     /// A cubic spline.
     Spline,
+    /// Any function within limits.
+    Within(Box<Excitation>),
+    /// An excitation that is a known function: a formula of t.
+    Given(Formula),
 }
 
 /// Time, value and rate.
@@ -72,10 +77,23 @@ impl Trajectory {
             _ => None,
         };
         let points = self.points.iter();
-        points.flat_map(|point| [&point.time, &point.value].into_iter().chain(&point.rate)).chain(ramp)
+        let of_points = points.flat_map(|point| [&point.time, &point.value].into_iter().chain(&point.rate));
+        let given = match &self.timing {
+            Timing::Given(formula) => Some(formula),
+            _ => None,
+        };
+        of_points.chain(ramp).chain(given).chain(self.excitation().into_iter().flat_map(Excitation::formulas))
     }
 
-    /// x(t); `number` makes expressions of formulas of parameters.
+    /// Its limits, where it is an excitation.
+    pub fn excitation(&self) -> Option<&Excitation> {
+        match &self.timing {
+            Timing::Within(excitation) => Some(excitation),
+            _ => None,
+        }
+    }
+
+    /// x(t), of an excitation as a constant; `number` makes expressions of formulas.
     ///
     /// # Errors
     /// Whatever `number` says.
@@ -84,6 +102,12 @@ impl Trajectory {
         time: Scalar<'g>,
         number: impl Fn(&Formula) -> Result<Scalar<'g>, E>,
     ) -> Result<Scalar<'g>, E> {
+        if let Some(excitation) = self.excitation() {
+            return excitation.value(excitation.as_constant(number(&excitation.deviation)?, time), number);
+        }
+        if let Timing::Given(formula) = &self.timing {
+            return number(formula);
+        }
         let zero = time.builder().number(0.0);
         let mut knots: Vec<Knot> = Vec::with_capacity(self.points.len());
         for Waypoint { time, value, rate } in &self.points {
@@ -104,6 +128,8 @@ impl Trajectory {
                 Timing::Cubic | Timing::Spline => pieces.push((to[0], cubic(u, h, from, to))),
                 Timing::Quintic => pieces.push((to[0], quintic(u, h, from, to))),
                 Timing::Trapezoidal(_) => trapezoidal(&mut pieces, u, ramp.map(|ramp| ramp / h), from, to),
+                // Without points there are no pieces.
+                Timing::Within(_) | Timing::Given(_) => {}
             }
         }
         let ([first, start, _], [_, end, _]) = (knots[0], knots[knots.len() - 1]);

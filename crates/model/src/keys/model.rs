@@ -41,6 +41,8 @@ grammar! {
         tables: Option<IndexMap<String, Table>>,
         /// Functions of the time by points that they pass: `NAME`, `NAME.rate` and `NAME.acceleration` in formulas.
         trajectories: Option<IndexMap<String, Trajectory>>,
+        /// Functions of the time of which only limits are known: `NAME` in formulas, and `NAME.rate` of those with a rate.
+        excitations: Option<IndexMap<String, Excitation>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
         /// What constrains the bodies.
@@ -206,8 +208,18 @@ grammar! {
         ramp: Option<Number>,
     }
 
+    /// Any function of the time within limits.
+    Excitation is "an excitation" {
+        /// Limits of its value: `± 5 N`, `20 N ± 10%`, or `[lower, upper]`; formulas of t and parameters.
+        within: Option<WithinFile>,
+        /// Limit of its rate, either way; without `within` it begins at 0.
+        rate: Option<Number>,
+        /// It is constant over each period of this length, s, and jumps between them.
+        held: Option<Number>,
+    }
+
     /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its
-    /// ends, or a periodic one.
+    /// ends, a periodic one, or straight lines.
     Table is "a table" {
         /// A CSV file, beside the model; `#` begins a comment.
         file: Option<String>,
@@ -217,6 +229,8 @@ grammar! {
         points: Option<Vec<[f64; 2]>>,
         /// Whether the table is one period, after which it begins anew: first and last value are the same.
         periodic: Option<bool>,
+        /// How it goes from point to point; by default `cubic`.
+        interpolation: Option<InterpolationName>,
         /// Units of argument and value, e.g. [ms, mm]; by default they are in SI units and fit anywhere.
         units: Option<[UnitName; 2]>,
     }

@@ -57,6 +57,14 @@ schema_only! {
     }
 
     #[schemars(rename_all = "lowercase", inline)]
+    pub enum InterpolationName {
+        /// The natural cubic spline.
+        Cubic,
+        /// Straight lines: rates jump in the points.
+        Linear,
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
     pub enum TimingName {
         /// Polynomials of degree three: rates are given, accelerations jump.
         Cubic,
@@ -186,6 +194,14 @@ schema_only! {
     pub enum IntervalFile {
         Ends([Number; 2]),
         /// `[490, 510] mm`
+        Text(String),
+    }
+
+    #[schemars(untagged, inline)]
+    pub enum WithinFile {
+        /// Both limits, of t and parameters.
+        Ends([Number; 2]),
+        /// `± 5 N`, `20 N ± 10%`.
         Text(String),
     }
 

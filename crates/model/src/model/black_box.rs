@@ -19,12 +19,13 @@ use crate::syntax::tuning::TUNING;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Sections of a mechanism.
-pub(super) const OF_MECHANISMS: [&str; 17] = [
+pub(super) const OF_MECHANISMS: [&str; 18] = [
     "bodies",
     "joints",
     "effects",
     "states",
     "trajectories",
+    "excitations",
     "urdf",
     "mjcf",
     "base",

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, black_box, bodies, bounds, effects, fmu, instances, joints, motion_times, parameters, requests,
-    requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
+    analysis, black_box, bodies, bounds, effects, excitations, fmu, instances, joints, motion_times, parameters,
+    requests, requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
 };
 use crate::expand::dimensions::{self, Chain};
 use crate::expand::overrides::Override;
@@ -307,6 +307,7 @@ fn describe(
     parameters::read(&mut reader, parameter_entries, overrides);
     black_box::read(&mut reader, &fields, parameter_entries, Path::new(origin.name));
     trajectories::read(&mut reader, &fields);
+    excitations::read(&mut reader, &fields);
     bodies::read(&mut reader, body_entries);
     zone_sizes::check(&mut reader);
     robot.iter().for_each(|robot| robot.read_points(&mut reader));
@@ -336,6 +337,8 @@ fn describe(
     if variant.partial {
         reader.idle = parameters::idle(&reader);
     }
+    excitations::check_limits(&mut reader, &fields);
+    let unused_excitations = excitations::unused(&mut reader, &fields);
     let bounds_section = fields.get("bounds").map(|node| (node, fields.key_span("bounds")));
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
         reader.model.bounds = bounds;
@@ -345,13 +348,15 @@ fn describe(
     states::check(&mut reader, &fields, effect_entries);
     states::check_instants(&mut reader, effect_entries);
     analysis::check_joints(&mut reader, joint_entries);
+    excitations::check_joints(&mut reader, joint_entries);
     analysis::check_speeds(&mut reader, joint_entries);
     analysis::check_requests(&mut reader, &fields, [output_entries, requirement_entries]);
     sections::missing_sections(&mut reader, &fields, robot.is_some(), body_entries, output_entries);
     reader.warn_of_lengths();
     fmu::check_parameters(&mut reader, &fields, parameter_entries);
     let is_count = |name: &str| parts.is_some_and(|parts| parts.is_count(name));
-    let unused = parameters::unused(&reader, parameter_entries, is_count);
+    let mut unused = parameters::unused(&reader, parameter_entries, is_count);
+    unused.extend(unused_excitations);
     let Reader { mut model, idle, .. } = reader;
     model.parameters.retain(|parameter| !idle.contains(&parameter.name));
     (model, unused)

@@ -5,7 +5,7 @@ use symdiff::Formula;
 use super::description::Description;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{self, FrictionMode, JointCoordinate, MeshKind, PointRef, Sensor, Symbol, SymbolTable};
+use crate::grammar::{self, FrictionMode, JointCoordinate, MeshKind, PointRef, Sensor, Symbol, SymbolTable, TimeOrder};
 
 /// Reads a description.
 pub type Reader<'d> = grammar::reader::Reader<'d, Description>;
@@ -75,6 +75,11 @@ impl SymbolTable for Description {
 
     fn trajectory_dimension(&self, trajectory: usize) -> Option<Dimension> {
         self.trajectories[trajectory].dimension
+    }
+
+    fn derivatives(&self, trajectory: usize) -> Option<TimeOrder> {
+        let class = &self.trajectories[trajectory].excitation()?.class;
+        Some(if class.jumps() { TimeOrder::Position } else { TimeOrder::Velocity })
     }
 
     fn black_box(&self, name: &str) -> Option<usize> {

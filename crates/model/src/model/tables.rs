@@ -47,7 +47,21 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
         Some(node) => reader.choice(node, &[("true", true), ("false", false)])?,
         None => false,
     };
-    match if periodic { Spline::periodic(&values) } else { Spline::through(&values) } {
+    let linear = match fields.get("interpolation") {
+        Some(node) => reader.choice(node, &[("cubic", false), ("linear", true)])?,
+        None => false,
+    };
+    let spline = match (linear, periodic) {
+        (false, false) => Spline::through(&values),
+        (false, true) => Spline::periodic(&values),
+        (true, false) => Spline::linear(&values),
+        (true, true) => {
+            let help = "leave out `periodic`, or `interpolation: linear`".to_owned();
+            reader.error(fields.key_span("interpolation"), "a periodic table is smooth, not linear", help);
+            return None;
+        }
+    };
+    match spline {
         Ok(spline) => {
             let dimensions = units.map(|unit| unit.map(|unit| unit.dimension));
             Some(Table { name: entry.key.clone(), spline, dimensions })

@@ -18,6 +18,8 @@ tuning! {
         same_time: f64 = 1e-12, moves "which times are refused";
         /// Most points of a trajectory; a table takes more.
         trajectory_points: usize = 1000, moves "which models are refused";
+        /// Times of a motion at which limits of excitations are compared.
+        times_of_limits: usize = 101, moves "which models are refused";
         /// Most steps of a simulation: a shorter step must be a slip.
         steps: f64 = 1e9, moves "which models are refused";
         /// Most rows of output: a shorter output step must be a slip.

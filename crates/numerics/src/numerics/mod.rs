@@ -27,6 +27,7 @@ mod error;
 mod evaluation;
 mod extent;
 mod extremes;
+mod functions_of_time;
 mod gradient_fit;
 pub mod iso286;
 mod lattice;
@@ -66,6 +67,7 @@ pub use error::{
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
+pub use functions_of_time::{Cell, FunctionClass, value};
 pub use gradient_fit::{Derivatives, GradientFit};
 pub use least_squares::LeastSquares;
 pub use ledger::Ledger;

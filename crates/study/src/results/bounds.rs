@@ -1,5 +1,6 @@
 //! What a run yields: bounds of every output over time.
 
+use super::FunctionWitness;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::Method;
 use crate::model::Analysis;
@@ -22,6 +23,8 @@ pub struct Bounds {
     pub responses: Vec<ResponsePoint>,
     /// Samples at which outputs are least and largest, where they were searched for.
     pub witnesses: Vec<Witness>,
+    /// Functions of excitations under which outputs go the furthest, where something is excited.
+    pub functions: Vec<FunctionWitness>,
 }
 
 /// A simulated sample at which an output is the least or the largest in a row of all that were simulated in the search

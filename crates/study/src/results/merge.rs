@@ -58,6 +58,7 @@ pub fn summary_of_subsystems(subsystems: Vec<Summary>) -> Summary {
         whole.singular_configurations.extend(other.singular_configurations);
         whole.damped_mode = whole.damped_mode.or(other.damped_mode);
         whole.events.extend(other.events);
+        whole.excitations.extend(other.excitations);
         let followed = whole.events_followed.into_iter().chain(other.events_followed);
         whole.events_followed = followed.min_by(|a, b| a.until.total_cmp(&b.until));
         whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
@@ -108,6 +109,7 @@ pub fn bounds_of_pieces(pieces: &[Piece]) -> Bounds {
         responses: Vec::new(),
         // Those of a piece are ends of the piece.
         witnesses: Vec::new(),
+        functions: Vec::new(),
     }
 }
 

@@ -9,6 +9,7 @@ mod cost;
 mod decisions;
 mod drawing;
 mod effect_cost;
+mod excitations;
 mod explanation;
 mod fit;
 mod gradients;
@@ -35,6 +36,7 @@ pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integ
 pub use decisions::{Decision, Each, Saving};
 pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint, DrawnSolid};
 pub use effect_cost::{EffectCost, StepInstructions};
+pub use excitations::{ExcitationSummary, FunctionWitness, WitnessFunction};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use fit::{ConsistentSet, Fit, FitAxis, FitOutput, FitParameter, FitProjection, FitRow, SkewPaving, Unexplained};
 pub use gradients::{GradientParameter, Gradients, OutputGradients};

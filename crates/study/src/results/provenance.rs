@@ -30,6 +30,9 @@ pub struct RunRequest {
     /// Names of the methods instead of the model's; absent for the model's own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub methods: Option<Vec<String>>,
+    /// File of functions of the time that excitations were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub witness: Option<String>,
     /// Whether certified bounds were added.
     pub certify: bool,
     /// Whether every sample was simulated with halved steps too.

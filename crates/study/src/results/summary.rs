@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::statistics::StatisticsResult;
 use super::{
-    AnalysisSummary, Band, BlackBoxSummary, Bounds, ChainSummary, Contribution, OutputBounds, ReducedSummary,
-    RequirementSummary,
+    AnalysisSummary, Band, BlackBoxSummary, Bounds, ChainSummary, Contribution, ExcitationSummary, OutputBounds,
+    ReducedSummary, RequirementSummary,
 };
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;
@@ -87,6 +87,9 @@ pub struct Summary {
     pub methods: Vec<MethodSummary>,
     /// Of every band.
     pub errors: Vec<ErrorSummary>,
+    /// What excitations do to outputs, as constants and as functions of the time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub excitations: Vec<ExcitationSummary>,
     /// Which tolerance matters: output by output, the parameters that contribute most first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<ContributionSummary>,

@@ -46,7 +46,7 @@ pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, S
         let doubts = Doubts { unresolved_from, switches: None, damped };
         let bounded = Bounded::new(plan.clone(), nominal, seen, doubts);
         let (internal, found) = (Vec::new(), Found::default());
-        let mut results = Results { bounded, singular, attained: None, internal, found };
+        let mut results = Results { bounded, singular, attained: None, searched: None, internal, found };
         if study.request.is_empty() {
             return Ok(results);
         }

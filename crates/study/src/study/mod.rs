@@ -27,6 +27,7 @@ mod cost;
 mod deterministic;
 mod drawing;
 mod ensemble;
+mod excited;
 mod explain;
 mod feasible;
 mod fit;

@@ -6,7 +6,7 @@ use super::black_box::source::Source;
 use super::ensemble::{Motions, Progress, Stored};
 use super::reduced::Store;
 use super::{Options, RunError, zones};
-use crate::methods::{BoundsRequest, Problem, can_compose};
+use crate::methods::{BoundsRequest, Problem, Refusal, can_compose};
 use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::ParameterBox;
 use crate::simulate::{Interruption, Schedule, Simulator, Steps, TimeFunctions};
@@ -68,6 +68,12 @@ impl<'a> Study<'a> {
         };
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
+        let excited = || description.trajectories.iter().any(|own| own.excitation().is_some());
+        if request.certified.is_some() && excited() {
+            let why =
+                "`certified` bounds are of constants, and the model has excitations that are functions of the time";
+            return Err(Refusal(why.to_owned()).into());
+        }
         let Options { certify_time, progress, stage, interrupted, .. } = *options;
         let has_steps = !simulator.system.analysis.is_without_steps();
         let time_functions =

@@ -7,6 +7,7 @@ use super::black_box::{ask_nominal, repeat};
 use super::bounding::{Bounded, Doubts, note_nominal, timed, unknown};
 use super::deterministic::deterministic;
 use super::ensemble::{Progress, nominal};
+use super::excited::{excited, is_excited};
 use super::internal::{InternalError, caught};
 use super::price::total_work;
 use super::problem::Study;
@@ -32,7 +33,9 @@ pub(super) struct Tried {
 
 /// Runs every method.
 pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
-    if let Some(schedule) = segmented(study)? {
+    // Functions are searched by gradients, which do not pass through events.
+    let excited = is_excited(study);
+    if let Some(schedule) = if excited { None } else { segmented(study)? } {
         return Ok(conclude(study, methods(study, StepPlan::fixed(schedule))?, None));
     }
     if matches!(study.description.simulation.stepping, Stepping::Tolerance(_)) {
@@ -48,10 +51,10 @@ pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
 
 /// The nominal motion, the validation samples, then every method asked for. With a tolerance for the bounds, the
 /// validation samples decide how the plan's steps are divided or joined.
-fn methods(study: &Study, plan: StepPlan) -> Result<Results, SimulationError> {
+fn methods(study: &Study, plan: StepPlan) -> Result<Results, RunError> {
     plan_reduction(study, &plan)?;
     if study.domain.dimension() == 0 {
-        return deterministic(study, &plan);
+        return Ok(deterministic(study, &plan)?);
     }
     let progress = Progress::new(total_work(study, &plan.schedule), study.progress);
     let mut internal = Vec::new();
@@ -94,9 +97,11 @@ fn methods(study: &Study, plan: StepPlan) -> Result<Results, SimulationError> {
         }
     }
     drop(motions);
+    let functions = if validation.is_some() { excited(study, schedule)? } else { None };
+    let (searched, functions) = functions.unzip();
     let damped = damped_modes(study, schedule);
     let doubts = Doubts { unresolved_from, switches, damped };
-    let bounded = Bounded { validation, methods, halved, ..Bounded::new(plan, nominal, seen, doubts) };
+    let bounded = Bounded { validation, methods, halved, functions, ..Bounded::new(plan, nominal, seen, doubts) };
     let found = match study.interruption.is_asked() {
         true => Found::default(),
         false => match reduced(study, &bounded, &progress) {
@@ -104,7 +109,7 @@ fn methods(study: &Study, plan: StepPlan) -> Result<Results, SimulationError> {
             found => found?,
         },
     };
-    Ok(Results { bounded, singular, attained, internal, found })
+    Ok(Results { bounded, singular, attained, searched, internal, found })
 }
 
 /// Result of a subsystem of which nothing is known: its study panicked, or was interrupted.
@@ -115,7 +120,7 @@ pub(super) fn lost(study: &Study, error: Option<InternalError>) -> Result<Ran, S
     let bounded = Bounded::new(StepPlan::fixed(schedule), nominal, Ledger::default(), Doubts::default());
     let internal = error.into_iter().collect();
     let found = Found::nothing(study.description);
-    let results = Results { bounded, singular: Vec::new(), attained: None, internal, found };
+    let results = Results { bounded, singular: Vec::new(), attained: None, searched: None, internal, found };
     Ok(conclude(study, results, None))
 }
 /// Whether samples reach the end: the validation samples, or with a tolerance the controlling samples.

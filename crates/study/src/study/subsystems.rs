@@ -15,8 +15,8 @@ use crate::model::{Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
 use crate::results::{
-    Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
-    Witness, summary_of_subsystems,
+    Bounds, Contribution, ContributionSummary, ErrorSummary, FunctionWitness, OutputBounds, ParameterSummary,
+    SubsystemSummary, Summary, Witness, summary_of_subsystems,
 };
 use crate::simulate::SimulationError;
 
@@ -168,6 +168,7 @@ impl<'a> Whole<'a> {
             analysis: self.description.analysis,
             responses: Vec::new(),
             witnesses: ran.iter().flat_map(|done| self.witnesses(done)).collect(),
+            functions: ran.iter().flat_map(|done| self.functions(done)).collect(),
         };
         let summary = self.summary(ran, &bounds);
         (bounds, summary)
@@ -181,6 +182,16 @@ impl<'a> Whole<'a> {
             Some(Witness { output, parameters, ..own.clone() })
         };
         done.bounds.witnesses.iter().filter_map(of_whole).collect()
+    }
+
+    /// The same of functions of excitations.
+    fn functions(&self, done: &Done) -> Vec<FunctionWitness> {
+        let of_whole = |own: &FunctionWitness| {
+            let output = *done.subsystem.outputs.get(own.output)?;
+            let parameters = self.spread(done.subsystem, &own.parameters, &self.domain.nominal);
+            Some(FunctionWitness { output, parameters, ..own.clone() })
+        };
+        done.bounds.functions.iter().filter_map(of_whole).collect()
     }
 
     /// Every parameter's contribution to an output; zero for one on which its subsystem does not depend.

@@ -9,6 +9,7 @@ mod passes;
 mod scalar;
 mod spline;
 mod spline_error;
+mod spline_pieces;
 mod visits;
 
 pub use derivative::SparseMatrix;

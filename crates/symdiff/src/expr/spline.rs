@@ -12,23 +12,26 @@ use std::hash::{Hash, Hasher};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::spline_error::SplineError;
+use super::spline_pieces::Pieces;
 use crate::eval::interval::Interval;
 
 /// A spline; equal if its points are.
 #[derive(Clone, Copy)]
 pub struct Spline(&'static Pieces);
 
-/// Bits of the points' coordinates, and whether the spline is periodic.
-type Points = (Vec<u64>, bool);
-
-/// Cubics: below the first knot, between each two, above the last.
-struct Pieces {
-    knots: Vec<f64>,
-    /// Of powers of x − knot; the knot is the one before, but for the first piece.
-    cubics: Vec<[f64; 4]>,
-    /// Whether the spline repeats beyond its first and last knots.
-    periodic: bool,
+/// How the function goes from point to point.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Course {
+    /// With two continuous derivatives.
+    Natural,
+    /// The same, and begins anew where it ends.
+    Periodic,
+    /// Straight.
+    Linear,
 }
+
+/// Bits of the points' coordinates, and the course between them.
+type Points = (Vec<u64>, Course);
 
 impl Spline {
     /// Through points (x, y), x ascending.
@@ -36,7 +39,7 @@ impl Spline {
     /// # Errors
     /// The first point that is wrong.
     pub fn through(points: &[(f64, f64)]) -> Result<Self, SplineError> {
-        Self::of(points, false)
+        Self::of(points, Course::Natural)
     }
 
     /// Through points (x, y), x ascending, over a period from the first to the last, which have the same y.
@@ -44,10 +47,18 @@ impl Spline {
     /// # Errors
     /// The first point that is wrong.
     pub fn periodic(points: &[(f64, f64)]) -> Result<Self, SplineError> {
-        Self::of(points, true)
+        Self::of(points, Course::Periodic)
     }
 
-    fn of(points: &[(f64, f64)], periodic: bool) -> Result<Self, SplineError> {
+    /// Straight from point (x, y) to point, x ascending: its derivatives jump there.
+    ///
+    /// # Errors
+    /// The first point that is wrong.
+    pub fn linear(points: &[(f64, f64)]) -> Result<Self, SplineError> {
+        Self::of(points, Course::Linear)
+    }
+
+    fn of(points: &[(f64, f64)], course: Course) -> Result<Self, SplineError> {
         static KNOWN: OnceLock<Mutex<HashMap<Points, Spline>>> = OnceLock::new();
         if points.len() < 2 {
             return Err(SplineError::TooFew);
@@ -60,15 +71,19 @@ impl Spline {
                 return Err(SplineError::NotAscending(place));
             }
         }
-        if periodic && points[0].1 != points[points.len() - 1].1 {
+        if course == Course::Periodic && points[0].1 != points[points.len() - 1].1 {
             return Err(SplineError::NotPeriodic);
         }
         let bits = points.iter().flat_map(|&(x, y)| [x.to_bits(), y.to_bits()]).collect();
         let known = KNOWN.get_or_init(Mutex::default);
         // A panic while the lock was held leaves the map as it was before.
         let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-        let pieces = || if periodic { Pieces::periodic(points) } else { Pieces::natural(points) };
-        Ok(*known.entry((bits, periodic)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
+        let pieces = || match course {
+            Course::Natural => Pieces::natural(points),
+            Course::Periodic => Pieces::periodic(points),
+            Course::Linear => Pieces::with_second(points, &vec![0.0; points.len()], false),
+        };
+        Ok(*known.entry((bits, course)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
     }
 
     /// Knots, cubics (below the first knot, between each two, above the last; of powers of x minus the knot before),
@@ -172,75 +187,6 @@ impl Spline {
     pub fn range(self) -> (f64, f64) {
         let knots = &self.0.knots;
         (knots[0], knots[knots.len() - 1])
-    }
-}
-
-impl Pieces {
-    /// The second derivatives m solve hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (slopeᵢ − slopeᵢ₋₁), m = 0 at the
-    /// ends.
-    fn natural(points: &[(f64, f64)]) -> Self {
-        let n = points.len();
-        let widths: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
-        let slopes: Vec<f64> = points.windows(2).zip(&widths).map(|(pair, h)| (pair[1].1 - pair[0].1) / h).collect();
-        // Thomas' elimination: diagonal and right side.
-        let (mut diagonal, mut right) = (vec![1.0; n], vec![0.0; n]);
-        for i in 1..n - 1 {
-            let factor = if i > 1 { widths[i - 1] / diagonal[i - 1] } else { 0.0 };
-            diagonal[i] = 2.0 * (widths[i - 1] + widths[i]) - factor * widths[i - 1];
-            right[i] = 6.0 * (slopes[i] - slopes[i - 1]) - factor * right[i - 1];
-        }
-        let mut second = vec![0.0; n];
-        for i in (1..n - 1).rev() {
-            second[i] = (right[i] - widths[i] * second[i + 1]) / diagonal[i];
-        }
-        Self::with_second(points, &second, false)
-    }
-
-    /// As natural ones, but m₀ = mₙ₋₁, and what holds at inner knots holds there: the matrix is cyclic. With m₀ known
-    /// the others solve a tridiagonal system, of which m₀ is a factor on the right side; the row of knot 0 gives it.
-    fn periodic(points: &[(f64, f64)]) -> Self {
-        let n = points.len();
-        let widths: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
-        let slopes: Vec<f64> = points.windows(2).zip(&widths).map(|(pair, h)| (pair[1].1 - pair[0].1) / h).collect();
-        // Rows of knots 1 to n − 2, each with its right sides: of the data, and of m₀ = mₙ₋₁.
-        let (mut diagonal, mut data, mut of_first) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
-        for i in 1..n - 1 {
-            let factor = if i > 1 { widths[i - 1] / diagonal[i - 1] } else { 0.0 };
-            diagonal[i] = 2.0 * (widths[i - 1] + widths[i]) - factor * widths[i - 1];
-            let ends = if i == 1 { -widths[0] } else { 0.0 } + if i == n - 2 { -widths[n - 2] } else { 0.0 };
-            data[i] = 6.0 * (slopes[i] - slopes[i - 1]) - factor * data[i - 1];
-            of_first[i] = ends - factor * of_first[i - 1];
-        }
-        let (mut of_data, mut per_first) = (vec![0.0; n], vec![0.0; n]);
-        for i in (1..n - 1).rev() {
-            of_data[i] = (data[i] - widths[i] * of_data[i + 1]) / diagonal[i];
-            per_first[i] = (of_first[i] - widths[i] * per_first[i + 1]) / diagonal[i];
-        }
-        // hₙ₋₂ mₙ₋₂ + 2 (hₙ₋₂ + h₀) m₀ + h₀ m₁ = 6 (slope₀ − slopeₙ₋₂), m₁ = mₙ₋₁ where there are two points.
-        let (h, last) = (widths[0], widths[n - 2]);
-        let right = 6.0 * (slopes[0] - slopes[n - 2]) - last * of_data[n - 2] - h * of_data[1];
-        let first = if n > 2 { right / (2.0 * (last + h) + last * per_first[n - 2] + h * per_first[1]) } else { 0.0 };
-        let mut second: Vec<f64> = of_data.iter().zip(&per_first).map(|(own, per)| own + per * first).collect();
-        (second[0], second[n - 1]) = (first, first);
-        Self::with_second(points, &second, true)
-    }
-
-    /// From second derivatives at the knots.
-    fn with_second(points: &[(f64, f64)], second: &[f64], periodic: bool) -> Self {
-        let n = points.len();
-        let mut cubics = Vec::with_capacity(n + 1);
-        for i in 0..n - 1 {
-            let (h, m, next) = (points[i + 1].0 - points[i].0, second[i], second[i + 1]);
-            let slope = (points[i + 1].1 - points[i].1) / h - h * (2.0 * m + next) / 6.0;
-            if i == 0 {
-                cubics.push([points[0].1, slope, 0.0, 0.0]);
-            }
-            cubics.push([points[i].1, slope, 0.5 * m, (next - m) / (6.0 * h)]);
-        }
-        let (h, m) = (points[n - 1].0 - points[n - 2].0, second[n - 2]);
-        let slope = (points[n - 1].1 - points[n - 2].1) / h;
-        cubics.push([points[n - 1].1, slope + h * m / 6.0, 0.0, 0.0]);
-        Self { knots: points.iter().map(|point| point.0).collect(), cubics, periodic }
     }
 }
 

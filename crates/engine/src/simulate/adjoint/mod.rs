@@ -10,8 +10,10 @@
 //! - `path`: states between steps, in bounded memory;
 //! - `steps`: the scheme, on one level or several; `explicit::adjoint` has the explicit method;
 //! - `rows`: outputs of a row;
+//! - `cells`: functions of the time that are inputs, and adjoints of these;
 //! - `tiles`: gradients in lanes.
 
+mod cells;
 mod formulas;
 mod path;
 mod rows;
@@ -19,10 +21,12 @@ mod start;
 mod steps;
 mod tiles;
 
+pub use cells::Functions;
+pub(in crate::simulate) use cells::{TileInputs, TileKernel};
 pub(in crate::simulate) use path::{Path, Stepping};
 pub(in crate::simulate) use rows::RowAdjoints;
 pub(in crate::simulate) use start::StartAdjoints;
-pub use tiles::{Gradient, NoGradient, Wanted, gradients};
+pub use tiles::{Gradient, NoGradient, Wanted, gradients, gradients_of_functions, values_of_functions};
 
 /// Adds values times a factor.
 pub(in crate::simulate) fn add(to: &mut [f64], factor: f64, values: &[f64]) {

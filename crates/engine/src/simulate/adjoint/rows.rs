@@ -1,5 +1,6 @@
 //! Adjoints of a row of outputs.
 
+use super::cells::{TileInputs, TileKernel};
 use super::start::StartAdjoints;
 use crate::compile::StartProgram;
 use crate::simulate::ensemble::{Needs, corrections};
@@ -14,26 +15,53 @@ pub(in crate::simulate) struct RowAdjoints<'s> {
     closes: bool,
     /// Whether accelerations and multipliers follow from them.
     accelerates: bool,
+    inputs: Option<&'s TileInputs>,
+    kernel: TileKernel,
 }
 
 impl<'s> RowAdjoints<'s> {
     /// For states that steps by the scheme end with: as [`RowAccelerations`](super::super::ensemble) observes them.
     pub fn of_steps(simulator: &'s Simulator, start: &Tile) -> Self {
         let memory = StartAdjoints::new(simulator, &simulator.start, start);
-        Self { memory, closes: false, accelerates: simulator.solves_row_accelerations() }
+        Self {
+            memory,
+            closes: false,
+            accelerates: simulator.solves_row_accelerations(),
+            inputs: None,
+            kernel: TileKernel::default(),
+        }
     }
 
     /// For motions that are combined or interpolated: as [`RowClosure`](super::super::ensemble) closes them.
     pub fn closing(simulator: &'s Simulator, program: &'s StartProgram, start: &Tile) -> Self {
         let needs = Needs::of(simulator);
         let memory = StartAdjoints::new(simulator, program, start);
-        Self { memory, closes: needs.closure, accelerates: needs.accelerations }
+        Self {
+            memory,
+            closes: needs.closure,
+            accelerates: needs.accelerations,
+            inputs: None,
+            kernel: TileKernel::default(),
+        }
+    }
+
+    /// The same under functions of the time.
+    pub fn under(self, inputs: Option<&'s TileInputs>) -> Self {
+        Self { inputs, kernel: inputs.map_or_else(TileKernel::default, TileInputs::kernel), ..self }
+    }
+
+    /// Adjoints of the functions so far.
+    pub fn kernel(&self) -> &TileKernel {
+        &self.kernel
     }
 
     /// Adjoints of a state (q, v, a, w, λ) of the outputs there, one of each lane, if any; the outputs' values are
     /// added to `values` (lane by lane).
     pub fn pull(&mut self, time: f64, state: &[f64], outputs: &[Option<usize>], values: &mut [f64]) -> Vec<f64> {
         let (program, layout) = (self.memory.program(), self.memory.layout());
+        if let Some(inputs) = self.inputs {
+            self.memory.set_inputs(inputs.values(inputs.cell(time)));
+        }
         self.memory.set(time, layout.q.start, state);
         let closing = self.closes.then(|| self.memory.close(corrections(1)));
         let assembly = self.memory.assembly();
@@ -57,6 +85,9 @@ impl<'s> RowAdjoints<'s> {
         }
         if let Some(closing) = &closing {
             self.memory.pull_closing(closing);
+        }
+        if let Some(inputs) = self.inputs {
+            self.kernel.add(inputs.cell(time), &self.memory.take(layout.inputs.clone()));
         }
         self.memory.take(layout.state())
     }

@@ -59,6 +59,12 @@ impl<'s> StartAdjoints<'s> {
         self.assembly.tile_mut().lane_mut(self.program.layout.time).fill(time);
     }
 
+    /// Sets the inputs.
+    pub fn set_inputs(&mut self, values: &[f64]) {
+        let inputs = self.program.layout.inputs.clone();
+        self.assembly.tile_mut().block_mut(inputs).copy_from_slice(values);
+    }
+
     fn set_values(&mut self, first: usize, values: &[f64]) {
         let tile = self.assembly.tile_mut();
         let start = first * tile.width();
@@ -195,6 +201,15 @@ impl<'s> StartAdjoints<'s> {
         let by_acceleration: Vec<f64> = by_v.iter().zip(&by_q).map(|(v, q)| shift * (v + 0.5 * shift * q)).collect();
         self.add(v.start, &by_speed);
         self.add(w.start, &by_acceleration);
+    }
+
+    /// A state (q, v, a, w, λ) with accelerations and multipliers that follow from its positions and velocities.
+    pub fn solve_anew(&mut self, time: f64, state: &[f64], shift: f64) -> Vec<f64> {
+        let layout = self.layout();
+        self.set(time, layout.q.start, state);
+        self.assembly.accelerate();
+        self.assembly.shift_accelerations(shift);
+        self.values(layout.state()).to_vec()
     }
 
     /// Through accelerations that follow from the positions and velocities of a state (q, v, a, w, λ), and a. Their

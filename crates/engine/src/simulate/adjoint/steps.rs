@@ -13,11 +13,13 @@
 
 use symdiff::{Adjoints, Tile};
 
+use super::cells::{TileInputs, TileKernel};
 use super::path::{Path, Stepping};
 use super::start::StartAdjoints;
 use crate::compile::{Program, Tapes};
 use crate::simulate::sampling::{Instants, Sampling};
 use crate::simulate::simulator::Simulator;
+use crate::simulate::start::Assembly;
 use crate::simulate::step::Stepper;
 
 /// A tile of samples that takes the steps of a list.
@@ -31,16 +33,41 @@ pub(super) struct Steps<'s> {
     /// The end of the first step that a lane did not take as its jet would: it did not converge, or its Newton matrix
     /// is singular.
     lost: Vec<Option<f64>>,
+    /// Functions of the time that are inputs, and what finds the accelerations that they begin with.
+    inputs: Option<(&'s TileInputs, Assembly<'s>)>,
 }
 
 impl<'s> Steps<'s> {
     /// From an assembled tile.
-    pub fn new(simulator: &'s Simulator, start: &Tile, steps: Vec<(f64, f64)>) -> Self {
+    pub fn new(simulator: &'s Simulator, start: &Tile, steps: Vec<(f64, f64)>, inputs: Option<&'s TileInputs>) -> Self {
         let mut stepper = Stepper::new(&simulator.program, start);
         // Rounding of accelerations is that of positions over h², and so is that of derivatives.
         stepper.refine(true);
         let lost = vec![None; start.width()];
-        Self { simulator, stepper, sampling: Sampling::new(simulator, start), steps, lost }
+        let parameters = simulator.start.layout.parameters.start;
+        let parameter = |parameter: usize, lane: usize| start.lane(parameters + parameter)[lane];
+        let assembly = || Assembly::new(&simulator.start, &simulator.system, start.width(), parameter);
+        let inputs = inputs.map(|inputs| (inputs, assembly()));
+        Self { simulator, stepper, sampling: Sampling::new(simulator, start), steps, lost, inputs }
+    }
+
+    /// Sets the inputs of a step. The first begins with accelerations that follow from them. Later on, forces go from
+    /// the old value to the new one within a step, as the scheme has it.
+    fn enter(&mut self, step: usize) {
+        let Some((inputs, assembly)) = &mut self.inputs else { return };
+        let layout = &self.simulator.program.layout;
+        let (h, end) = self.steps[step];
+        let values = inputs.values(inputs.cell(end));
+        self.stepper.tile_mut().block_mut(layout.inputs.clone()).copy_from_slice(values);
+        if step == 0 {
+            let tile = assembly.tile_mut();
+            tile.block_mut(layout.inputs.clone()).copy_from_slice(values);
+            tile.block_mut(layout.state()).copy_from_slice(self.stepper.tile().block(layout.state()));
+            tile.lane_mut(layout.time).fill(end - h);
+            assembly.accelerate();
+            assembly.shift_accelerations(self.simulator.program.coefficients.shift() * h);
+            self.stepper.begin_anew(assembly.tile());
+        }
     }
 
     /// Where lanes were lost.
@@ -59,6 +86,7 @@ impl Stepping for Steps<'_> {
     }
 
     fn advance(&mut self, step: usize) -> Option<Vec<f64>> {
+        self.enter(step);
         let (h, end) = self.steps[step];
         let converged = self.stepper.try_step(h, end);
         for (lane, converged) in converged.into_iter().enumerate() {
@@ -92,6 +120,8 @@ pub(super) struct StepAdjoints<'s> {
     shift: f64,
     /// Adjoints of the step's solution.
     seeds: Vec<f64>,
+    /// Adjoints of functions of the time.
+    kernel: TileKernel,
 }
 
 impl<'s> StepAdjoints<'s> {
@@ -101,6 +131,7 @@ impl<'s> StepAdjoints<'s> {
         let tile = path.stepping().stepper.tile().clone();
         let adjoints = Adjoints::new(&tile);
         let shift = program.coefficients.shift();
+        let kernel = path.stepping().inputs.as_ref().map_or_else(TileKernel::default, |(inputs, _)| inputs.kernel());
         Self {
             program,
             path,
@@ -109,7 +140,13 @@ impl<'s> StepAdjoints<'s> {
             start: StartAdjoints::new(simulator, &simulator.start, start),
             shift,
             seeds: Vec::new(),
+            kernel,
         }
+    }
+
+    /// Adjoints of the functions of the time.
+    pub fn kernel(&self) -> &TileKernel {
+        &self.kernel
     }
 
     /// From the rows, the last first, to the start: adjoints of the start's positions (n lines) and of the parameters
@@ -132,6 +169,9 @@ impl<'s> StepAdjoints<'s> {
         let first_step = self.path.stepping().steps.first().map_or(0.0, |&(h, _)| h);
         let seeds = self.adjoints.block(layout.state()).to_vec();
         self.start.add(layout.q.start, &seeds);
+        // Samples are assembled without inputs.
+        let nothing = vec![0.0; layout.inputs.len() * self.tile.width()];
+        self.start.set_inputs(&nothing);
         self.start.pull_start(self.path.start(), Some(self.shift * first_step));
         let positions = self.start.take(layout.q.clone());
         let mut parameters = self.start.finish();
@@ -150,7 +190,13 @@ impl<'s> StepAdjoints<'s> {
             self.tile.run(self.program.step_size());
             *size = h;
         }
+        let inputs = self.path.stepping().inputs.as_ref().map(|(inputs, _)| *inputs);
+        let cell = inputs.map_or(0, |inputs| inputs.cell(end));
         let (state, after, unchanged) = self.path.around(step);
+        if let Some(inputs) = inputs {
+            self.start.set_inputs(inputs.values(cell));
+            self.tile.block_mut(layout.inputs.clone()).copy_from_slice(inputs.values(cell));
+        }
         if let Some(unchanged) = unchanged {
             // As the path samples: new accelerations of the new states, which follow from the old state.
             let seeds = self.adjoints.block(layout.state()).to_vec();
@@ -161,6 +207,10 @@ impl<'s> StepAdjoints<'s> {
             let pulled = self.start.take(layout.state());
             self.adjoints.block_mut(layout.state()).copy_from_slice(&pulled);
         }
+        // The state that the first step begins with.
+        let is_first = inputs.is_some() && step == 0;
+        let anew = is_first.then(|| self.start.solve_anew(end - h, state, self.shift * h));
+        let state = anew.as_deref().unwrap_or(state);
         let ratio = before.map_or(1.0, |before| h / before);
         let width = self.tile.width();
         let block = |registers: &std::ops::Range<usize>| {
@@ -205,6 +255,19 @@ impl<'s> StepAdjoints<'s> {
                     self.adjoints.lane_mut(a)[lane] = ratio * by_a;
                 }
             }
+        }
+        if let Some(anew) = &anew {
+            let seeds = self.adjoints.block(layout.state()).to_vec();
+            self.start.add(layout.q.start, &seeds);
+            self.start.pull_anew(end - h, anew, self.shift * h);
+            let pulled = self.start.take(layout.state());
+            self.adjoints.block_mut(layout.state()).copy_from_slice(&pulled);
+        }
+        if inputs.is_some() {
+            self.kernel.add(cell, &self.start.take(layout.inputs.clone()));
+            let own = self.adjoints.block_mut(layout.inputs.clone());
+            self.kernel.add(cell, own);
+            own.fill(0.0);
         }
     }
 

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use symdiff::Tile;
 
 use super::add;
+use super::cells::{Functions, TileInputs, TileKernel};
 use super::formulas::derivatives_of_formulas;
 use super::path::Path;
 use super::rows::RowAdjoints;
@@ -41,6 +42,8 @@ pub struct Gradient {
     pub value: f64,
     /// By each parameter (k), SI. Not finite where the output has no derivative.
     pub by_parameters: Vec<f64>,
+    /// By the inputs in each cell, where functions of the time are given.
+    pub by_inputs: Vec<f64>,
     /// End of the first step, s, that does not converge or is singular, where there is one: then neither is known.
     pub lost: Option<f64>,
 }
@@ -75,12 +78,64 @@ pub fn gradients(
     wanted: &[Wanted],
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
+    of_tiles(simulator, schedule, samples, wanted, Under { functions: None, backwards: true }, interruption)
+}
+
+/// The same under functions of the time, one for each gradient, and by these.
+///
+/// # Errors
+/// As for [`gradients`].
+pub fn gradients_of_functions(
+    simulator: &Simulator,
+    schedule: &Schedule,
+    samples: &[Sample],
+    wanted: &[Wanted],
+    functions: Functions<'_>,
+    interruption: Interruption<'_>,
+) -> Result<Vec<Gradient>, NoGradient> {
+    let under = Under { functions: Some(functions), backwards: true };
+    of_tiles(simulator, schedule, samples, wanted, under, interruption)
+}
+
+/// The values alone, which cost a simulation; NaN where a step does not converge.
+///
+/// # Errors
+/// As for [`gradients`].
+pub fn values_of_functions(
+    simulator: &Simulator,
+    schedule: &Schedule,
+    samples: &[Sample],
+    wanted: &[Wanted],
+    functions: Functions<'_>,
+    interruption: Interruption<'_>,
+) -> Result<Vec<f64>, NoGradient> {
+    let under = Under { functions: Some(functions), backwards: false };
+    let found = of_tiles(simulator, schedule, samples, wanted, under, interruption)?;
+    Ok(found.into_iter().map(|found| found.value).collect())
+}
+
+/// What motions are under, and whether they are followed backwards.
+#[derive(Clone, Copy)]
+struct Under<'f> {
+    functions: Option<Functions<'f>>,
+    backwards: bool,
+}
+
+/// Lanes of tiles.
+fn of_tiles(
+    simulator: &Simulator,
+    schedule: &Schedule,
+    samples: &[Sample],
+    wanted: &[Wanted],
+    Under { functions, backwards }: Under<'_>,
+    interruption: Interruption<'_>,
+) -> Result<Vec<Gradient>, NoGradient> {
     if simulator.system.analysis == Analysis::Dimensions {
         let asked = wanted.iter().map(|wanted| (wanted.sample, wanted.output));
         let found = derivatives_of_formulas(&simulator.system, samples, asked);
         return Ok(found
             .into_iter()
-            .map(|(value, by_parameters)| Gradient { value, by_parameters, lost: None })
+            .map(|(value, by_parameters)| Gradient { value, by_parameters, by_inputs: Vec::new(), lost: None })
             .collect());
     }
     if simulator.system.analysis.visits() {
@@ -97,8 +152,11 @@ pub fn gradients(
         if interruption.is_asked() {
             return Err(NoGradient::from(SimulationError::Interrupted));
         }
-        let lanes = (0..width).map(|lane| wanted[order[first + lane.min(count - 1)]]).collect();
-        let mut of_lanes = TileOf { simulator, schedule, samples, lanes, lost: vec![None; width] }.gradients()?;
+        let numbers: Vec<usize> = (0..width).map(|lane| order[first + lane.min(count - 1)]).collect();
+        let lanes = numbers.iter().map(|&number| wanted[number]).collect();
+        let inputs = functions.map(|functions| TileInputs::of(&functions, &numbers));
+        let tile = TileOf { simulator, schedule, samples, lanes, lost: vec![None; width], inputs, backwards };
+        let mut of_lanes = tile.gradients()?;
         of_lanes.truncate(count);
         Ok(of_lanes)
     });
@@ -116,7 +174,12 @@ struct TileOf<'a> {
     samples: &'a [Sample],
     lanes: Vec<Wanted>,
     lost: Vec<Option<f64>>,
+    inputs: Option<TileInputs>,
+    backwards: bool,
 }
+
+/// Adjoints of the parameters (k lines) and of functions of the time.
+type ByAll = (Vec<f64>, TileKernel);
 
 impl TileOf<'_> {
     /// The gradients, one a lane.
@@ -125,16 +188,22 @@ impl TileOf<'_> {
     /// Where a lane cannot be assembled.
     fn gradients(mut self) -> Result<Vec<Gradient>, NoGradient> {
         let mut values = vec![0.0; self.lanes.len()];
-        let by_parameters = match self.schedule.integration {
-            Integration::Plain => self.of_scheme(1, &mut values),
-            Integration::Extrapolated { levels } => self.of_scheme(levels, &mut values),
-            Integration::Explicit | Integration::Segments => self.of_explicit(&mut values),
+        // What is lost is noted while the functions are borrowed.
+        let inputs = self.inputs.take();
+        let (by_parameters, kernel) = match self.schedule.integration {
+            Integration::Plain => self.of_scheme(1, &mut values, inputs.as_ref()),
+            Integration::Extrapolated { levels } => self.of_scheme(levels, &mut values, inputs.as_ref()),
+            Integration::Explicit | Integration::Segments => self.of_explicit(&mut values, inputs.as_ref()),
         }?;
         let of_lane = |(lane, value): (usize, f64)| {
             let by_parameters = by_parameters.iter().skip(lane).step_by(self.lanes.len()).copied();
+            let by_inputs = kernel.of_lane(lane, self.lanes.len());
             match self.lost[lane] {
-                None => Gradient { value, by_parameters: by_parameters.collect(), lost: None },
-                lost => Gradient { value: f64::NAN, by_parameters: by_parameters.map(|_| f64::NAN).collect(), lost },
+                None => Gradient { value, by_parameters: by_parameters.collect(), by_inputs, lost: None },
+                lost => {
+                    let by_parameters = by_parameters.map(|_| f64::NAN).collect();
+                    Gradient { value: f64::NAN, by_parameters, by_inputs, lost }
+                }
             }
         };
         Ok(values.into_iter().enumerate().map(of_lane).collect())
@@ -159,8 +228,13 @@ impl TileOf<'_> {
         self.lanes.iter().map(|wanted| (wanted.row == row).then_some(wanted.output)).collect()
     }
 
-    /// By the scheme on so many levels: adjoints of the parameters, k lines.
-    fn of_scheme(&mut self, levels: usize, values: &mut [f64]) -> Result<Vec<f64>, NoGradient> {
+    /// By the scheme on so many levels.
+    fn of_scheme(
+        &mut self,
+        levels: usize,
+        values: &mut [f64],
+        inputs: Option<&TileInputs>,
+    ) -> Result<ByAll, NoGradient> {
         let Self { simulator, schedule, .. } = *self;
         let (layout, rows) = (&simulator.program.layout, self.rows());
         let schedule = &*schedule.ending_at(Instants::of(simulator));
@@ -187,7 +261,7 @@ impl TileOf<'_> {
                 let at_end = motions.iter_mut().zip(&ends_of_rows).filter(|(_, end)| **end == steps);
                 at_end.for_each(|(sum, _)| sum.iter_mut().zip(state).for_each(|(sum, value)| *sum += weight * value));
             };
-            let path = Path::new(Steps::new(simulator, &start, steps), count, &mut visit);
+            let path = Path::new(Steps::new(simulator, &start, steps, inputs), count, &mut visit);
             for (lost, of_level) in self.lost.iter_mut().zip(path.stepping().lost()) {
                 *lost = lost.or(*of_level);
             }
@@ -197,12 +271,17 @@ impl TileOf<'_> {
         let mut observer = match levels {
             1 => RowAdjoints::of_steps(simulator, start),
             _ => RowAdjoints::closing(simulator, simulator.free_closure()?, start),
-        };
+        }
+        .under(inputs);
         let mut by_motions = Vec::with_capacity(rows.len());
         for (&row, motion) in rows.iter().zip(&motions) {
             by_motions.push(observer.pull(schedule.time(row), motion, &self.outputs(row), values));
         }
+        if !self.backwards {
+            return Ok(self.nothing());
+        }
         let mut total = observer.finish();
+        let mut kernel = observer.kernel().clone();
         for ((mut run, ends_of_rows, start), weight) in runs.into_iter().zip(weights) {
             let seeds: Vec<Vec<f64>> =
                 by_motions.iter().map(|adjoints| adjoints.iter().map(|value| weight * value).collect()).collect();
@@ -210,13 +289,19 @@ impl TileOf<'_> {
                 ends_of_rows.iter().copied().zip(seeds.iter().map(Vec::as_slice)).collect();
             let (positions, parameters) = run.pull(&seeds);
             add(&mut total, 1.0, &parameters);
+            kernel.merge(run.kernel());
             self.add_equilibrium(&start, &positions, &mut total);
         }
-        Ok(total)
+        Ok((total, kernel))
     }
 
-    /// By the explicit method: adjoints of the parameters, k lines.
-    fn of_explicit(&self, values: &mut [f64]) -> Result<Vec<f64>, NoGradient> {
+    /// Adjoints of lanes that are not followed backwards.
+    fn nothing(&self) -> ByAll {
+        (vec![0.0; self.simulator.system.parameters.len() * self.lanes.len()], TileKernel::default())
+    }
+
+    /// By the explicit method.
+    fn of_explicit(&self, values: &mut [f64], inputs: Option<&TileInputs>) -> Result<ByAll, NoGradient> {
         let Self { simulator, schedule, .. } = *self;
         let start = self.assemble(0.0)?;
         let rows: Vec<ExplicitRow> = self
@@ -229,9 +314,9 @@ impl TileOf<'_> {
         let needed = ends.partition_point(|&end| end < last) + 1;
         ends.truncate(needed);
         let count = ends.len();
-        let steps = ExplicitSteps::new(simulator, &start, ends)?;
+        let steps = ExplicitSteps::new(simulator, &start, ends, inputs)?;
         let path = Path::new(steps, count, &mut |_, _| {});
-        let mut closing = RowAdjoints::closing(simulator, simulator.free_closure()?, &start);
+        let mut closing = RowAdjoints::closing(simulator, simulator.free_closure()?, &start).under(inputs);
         let mut run = ExplicitAdjoints::new(simulator, &start, path)?;
         let by_start = run.pull(&rows, &mut closing, values);
         let mut total = run.finish();
@@ -243,7 +328,9 @@ impl TileOf<'_> {
         let positions = beginning.take(layout.q.clone());
         add(&mut total, 1.0, &beginning.finish());
         self.add_equilibrium(&start, &positions, &mut total);
-        Ok(total)
+        let mut kernel = run.kernel().clone();
+        kernel.merge(closing.kernel());
+        Ok((total, kernel))
     }
 
     /// Adds what an equilibrium, with which the motion begins, does to adjoints of the parameters.

@@ -3,12 +3,21 @@
 use std::borrow::Cow;
 
 use super::schedule::Schedule;
+use crate::compile::SampledValue;
 use crate::simulate::sampling::Instants;
 
 /// Times that differ by this share of the output step are the same.
 const ROUNDING: f64 = 1e-9;
 
 impl Schedule {
+    /// The same with steps that end at all multiples of periods, s, too.
+    #[must_use]
+    pub fn ending_at_multiples(&self, periods: &[f64]) -> Self {
+        let multiples = |&period: &f64| SampledValue { state: 0, value: 0, period };
+        let multiples: Vec<SampledValue> = periods.iter().map(multiples).collect();
+        self.ending_at(Instants::at(&multiples)).into_owned()
+    }
+
     /// The same with each step divided at the instants in it, so that all parts of a step that are halved later end
     /// there too.
     pub(in crate::simulate) fn ending_at(&self, instants: Instants<'_>) -> Cow<'_, Self> {

@@ -73,6 +73,12 @@ impl<'s> RowClosure<'s> {
         &self.program.layout
     }
 
+    /// Sets the inputs.
+    pub fn set_inputs(&mut self, values: &[f64]) {
+        let inputs = self.program.layout.inputs.clone();
+        self.assembly.tile_mut().block_mut(inputs).copy_from_slice(values);
+    }
+
     /// The lanes' times, s.
     pub fn times_mut(&mut self) -> &mut [f64] {
         self.assembly.tile_mut().lane_mut(self.program.layout.time)

@@ -8,7 +8,7 @@ use symdiff::Tile;
 
 use super::runge_kutta::RungeKutta;
 use super::tableau::{DENSE, Row, STAGES, TIMES, WEIGHTS, WITH_DENSE};
-use crate::simulate::adjoint::{Path, RowAdjoints, StartAdjoints, Stepping, add};
+use crate::simulate::adjoint::{Path, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, add};
 use crate::simulate::ensemble::{Needs, RowClosure};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
@@ -22,6 +22,7 @@ pub(in crate::simulate) struct ExplicitSteps<'s> {
     run: RungeKutta,
     /// Times at which steps end, s.
     ends: Vec<f64>,
+    inputs: Option<&'s TileInputs>,
 }
 
 impl<'s> ExplicitSteps<'s> {
@@ -29,12 +30,17 @@ impl<'s> ExplicitSteps<'s> {
     ///
     /// # Errors
     /// Where the closure's equations have no factors.
-    pub fn new(simulator: &'s Simulator, start: &Tile, ends: Vec<f64>) -> Result<Self, SimulationError> {
+    pub fn new(
+        simulator: &'s Simulator,
+        start: &Tile,
+        ends: Vec<f64>,
+        inputs: Option<&'s TileInputs>,
+    ) -> Result<Self, SimulationError> {
         let mut motion = RowClosure::new(simulator, start)?;
         let layout = &simulator.start.layout;
         let state = start.block(layout.q.start..layout.v.end).to_vec();
         let run = RungeKutta::start(&mut motion, 0.0, state);
-        Ok(Self { simulator, motion, run, ends })
+        Ok(Self { simulator, motion, run, ends, inputs })
     }
 
     /// When a step begins, s.
@@ -55,6 +61,14 @@ impl Stepping for ExplicitSteps<'_> {
 
     fn advance(&mut self, step: usize) -> Option<Vec<f64>> {
         let end = self.ends[step];
+        if let Some(inputs) = self.inputs {
+            self.motion.set_inputs(inputs.values(inputs.cell(end)));
+            let before = step.checked_sub(1).map(|before| self.ends[before]);
+            if inputs.begins(end, before) {
+                let state = std::mem::take(&mut self.run.state);
+                self.run = RungeKutta::start(&mut self.motion, before.unwrap_or(0.0), state);
+            }
+        }
         self.run.attempt(&mut self.motion, end);
         self.run.finish(&mut self.motion, end);
         let unchanged = Instants::of(self.simulator).contain(end).then(|| self.run.next.clone());
@@ -89,6 +103,8 @@ pub(in crate::simulate) struct ExplicitAdjoints<'s> {
     guesses: Vec<Vec<f64>>,
     /// Adjoints of the stages' rates.
     by_rates: Vec<Vec<f64>>,
+    /// Adjoints of functions of the time.
+    kernel: TileKernel,
 }
 
 impl<'s> ExplicitAdjoints<'s> {
@@ -101,7 +117,9 @@ impl<'s> ExplicitAdjoints<'s> {
         let program = simulator.free_closure()?;
         let [memory, closures] = [0, 1].map(|_| StartAdjoints::new(simulator, program, start));
         let unknowns = (memory.layout().lambda.end - memory.layout().w.start) * start.width();
+        let kernel = path.stepping().inputs.map_or_else(TileKernel::default, TileInputs::kernel);
         Ok(Self {
+            kernel,
             path,
             memory,
             closures,
@@ -121,6 +139,7 @@ impl<'s> ExplicitAdjoints<'s> {
         let mut rows = rows.iter().peekable();
         for step in (0..self.path.steps()).rev() {
             let (begin, end) = (self.path.stepping().begin(step), self.path.stepping().ends[step]);
+            let inputs = self.path.stepping().inputs;
             let mut of_row = |row: &ExplicitRow, motion: &[f64]| {
                 let mut by_motion = closing.pull(row.time, motion, &row.outputs, values);
                 by_motion.truncate(motion.len());
@@ -130,6 +149,11 @@ impl<'s> ExplicitAdjoints<'s> {
             let (state, after, unchanged) = (state.to_vec(), after.to_vec(), unchanged.map(<[f64]>::to_vec));
             while let Some(row) = rows.next_if(|row| row.time >= end) {
                 add(&mut adjoints, 1.0, &of_row(row, &after));
+            }
+            if let Some(inputs) = inputs {
+                let values = inputs.values(inputs.cell(end));
+                self.memory.set_inputs(values);
+                self.closures.set_inputs(values);
             }
             if let Some(unchanged) = &unchanged {
                 self.pull_sampling(end, unchanged, &mut adjoints);
@@ -169,6 +193,11 @@ impl<'s> ExplicitAdjoints<'s> {
                 self.share(stage, h, &by_stage, &mut by_state);
             }
             adjoints = by_state;
+            if let Some(inputs) = inputs {
+                for memory in [&mut self.memory, &mut self.closures] {
+                    self.kernel.add(inputs.cell(end), &memory.take(memory.layout().inputs.clone()));
+                }
+            }
         }
         let start = self.path.start().to_vec();
         for row in rows {
@@ -177,6 +206,11 @@ impl<'s> ExplicitAdjoints<'s> {
             add(&mut adjoints, 1.0, &by_motion);
         }
         adjoints
+    }
+
+    /// Adjoints of the functions of the time.
+    pub fn kernel(&self) -> &TileKernel {
+        &self.kernel
     }
 
     /// The adjoints of the parameters, k lines.

@@ -114,7 +114,7 @@ impl Features {
                 })
             })
             .unzip();
-        let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+        let layout = Layout::of(system);
         let ranges = Ranges::new(&graph, &symbols, &roots);
         (!functions.is_empty()).then_some(Self { layout, functions, ranges })
     }

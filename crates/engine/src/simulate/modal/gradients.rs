@@ -25,7 +25,7 @@ impl Gradients {
         let of: Vec<Expr> = system.outputs[..outputs].iter().map(|output| output.expr).collect();
         let by = [&system.q, &system.v, &system.w, &system.lambda];
         let entries = by.map(|symbols| graph.jacobian(&of, symbols).entries().collect());
-        let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+        let layout = Layout::of(system);
         let registers = [&layout.q, &layout.v, &layout.w, &layout.lambda];
         let mut symbols: Vec<(Expr, usize)> =
             by.into_iter().zip(registers).flat_map(|(s, r)| s.iter().copied().zip(r.clone())).collect();

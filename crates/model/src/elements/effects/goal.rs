@@ -6,7 +6,7 @@
 use symdiff::{Formula, Scalar};
 
 use super::Forces;
-use crate::grammar::{Context, Fields, Reader, SymbolTable};
+use crate::grammar::{Context, Fields, Reader, Symbol, SymbolTable, TimeOrder};
 use crate::multibody::BuildError;
 
 /// A target and its rate.
@@ -31,7 +31,11 @@ pub(super) fn check_rate<S: SymbolTable>(
     keys: &[&str],
 ) {
     let Some(key) = keys.iter().find(|key| fields.get(key).is_some()) else { return };
-    let moving = target.names().find(|(name, _)| reader.resolve(name, Context::Time).is_err());
+    let has_no_rate = |name: &str| match reader.resolve(name, Context::Time) {
+        Ok(Symbol::Trajectory { trajectory, .. }) => reader.model.derivatives(trajectory) == Some(TimeOrder::Position),
+        known => known.is_err(),
+    };
+    let moving = target.names().find(|(name, _)| has_no_rate(name));
     if let Some((name, _)) = moving.filter(|_| fields.get("target_rate").is_none()) {
         let message = format!("`target` follows `{}`, so its rate is not known", crate::syntax::suggest::clip(name));
         let help = format!("`{key}` needs it: say `target_rate`");

@@ -1,6 +1,7 @@
 //! From what methods found under one schedule to bounds and a summary.
 
 use super::analysis::analysis_summary;
+use super::functions::{excitations, function_witnesses};
 use super::keeping::kept;
 use super::results::{Ran, Results};
 use crate::study::black_box::no_answer;
@@ -53,6 +54,7 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ra
         analysis: study.simulator.system.analysis,
         responses: Vec::new(),
         witnesses: witnesses(&results, rows),
+        functions: function_witnesses(study, &results.bounded),
     };
     let notes = || results.bounded.outcomes().find_map(|outcome| outcome.result.note.clone());
     let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());
@@ -139,6 +141,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
     let mobility = &study.simulator.mobility;
     let names = |constraints: &[ConstraintId]| system.constraint_names(constraints);
     let damped_mode = damped_mode(&results, bounds);
+    let excitations = excitations(study, &results.bounded, bounds);
     let schedule = &results.bounded.plan.schedule;
     let before = |row: usize| schedule.time(row.saturating_sub(1));
     let unmet_switch = results.bounded.unmet_switch_from().map(before);
@@ -188,6 +191,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .chain(results.bounded.validation.map(|(_, summary)| summary))
             .chain(results.bounded.doubts.switches.map(|(_, summary)| summary))
             .chain(results.attained.map(|(outcome, _)| outcome.summary))
+            .chain(results.searched.map(|outcome| outcome.summary))
             .chain(results.bounded.methods.into_iter().map(|(_, outcome)| MethodSummary {
                 expanded_outputs: outcome.result.expanded.iter().map(|&k| system.outputs[k].name.clone()).collect(),
                 ..outcome.summary
@@ -199,6 +203,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .chain(results.found.summary)
             .collect(),
         errors: ErrorSummary::of(bounds),
+        excitations,
         contributions: ContributionSummary::of(bounds),
         reduced: results.found.reduced,
         requirements: results.found.requirements,

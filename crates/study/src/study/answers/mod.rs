@@ -6,6 +6,7 @@
 mod analysis;
 mod assemblies;
 mod conclude;
+mod functions;
 mod keeping;
 mod kept;
 mod results;

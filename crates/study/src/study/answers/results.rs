@@ -14,6 +14,8 @@ pub struct Results {
     pub singular: Vec<SingularPass>,
     /// Ends that were found along gradients, where they were searched for.
     pub attained: Option<(Outcome, Attained)>,
+    /// Cost of the search over functions of the time, where there was one.
+    pub searched: Option<Outcome>,
     /// Errors of this program; of what failed nothing is known.
     pub internal: Vec<InternalError>,
     /// Reduced outputs.

@@ -3,7 +3,7 @@
 
 use super::{Bounded, Outcome};
 use crate::methods::Method;
-use crate::numerics::{BandError, Range, carries, time_error, time_error_certified};
+use crate::numerics::{BandError, EMPTY, Range, carries, time_error, time_error_certified};
 use crate::results::Band;
 use crate::study::problem::Study;
 
@@ -13,7 +13,12 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
     let corrections = validation.corrections(output, rows, bounded.switched_from());
     let simulated: Vec<Range> = (0..rows).map(|row| bounded.seen.range(row, output)).collect();
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
-        let found = &outcome.result.bands[output][..rows];
+        // As constants, then as functions of the time.
+        let constant = &outcome.result.bands[output][..rows];
+        let functions = bounded.functions.as_ref();
+        let of_functions = |row: usize| functions.map_or(EMPTY, |functions| functions.range(row, output));
+        let found: Vec<Range> = (0..rows).map(|row| constant[row].with(of_functions(row))).collect();
+        let found = &found[..];
         let is_sampled = method.about().is_sampled;
         // A proven band needs no samples. (It may miss them by the rounding of the steps' equations.)
         let widened = |(range, simulated): (&Range, &Range)| if is_sampled { range.with(*simulated) } else { *range };
@@ -21,14 +26,14 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
         let halved = bounded.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
         let by_halving = |row: usize| {
             if let Some(halved) = halved {
-                return time_error_certified(found[row], halved[row]);
+                return time_error_certified(constant[row], halved[row]);
             }
             let (direct, halved) = (validation.direct.at(row, output), validation.halved.at(row, output));
             let by_coordinates = outcome.result.steps[output][row];
-            let by_samples = time_error(found[row], &direct, &halved);
+            let by_samples = time_error(constant[row], &direct, &halved);
             // Either is enough: what the validation samples near the ends show, if there are any, and what the
             // coordinates' errors do to the ends, which is nothing where a range is saturated. (`min` passes over NaN.)
-            if by_coordinates.is_nan() || carries(found[row], &direct[..halved.len()]) {
+            if by_coordinates.is_nan() || carries(constant[row], &direct[..halved.len()]) {
                 by_samples.min(by_coordinates)
             } else {
                 by_coordinates
@@ -38,11 +43,18 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
         let damped = |row: usize| -> f64 {
             bounded.doubts.damped.iter().map(|mode| mode.lost(output, bounded.plan.schedule.time(row))).sum()
         };
-        let time: Vec<f64> = (0..rows).map(|row| corrections[row].of(by_halving(row)) + damped(row)).collect();
-        let with = |surrogate: &[f64]| {
-            BandError::new(&ranges, surrogate, &time, validation.spans[output], study.request.tolerance)
-        };
-        let surrogate = &outcome.result.surrogate[output][..rows];
+        let mut time: Vec<f64> = (0..rows).map(|row| corrections[row].of(by_halving(row)) + damped(row)).collect();
+        let mut surrogate = outcome.result.surrogate[output][..rows].to_vec();
+        let mut span = validation.spans[output];
+        if let Some(functions) = functions {
+            for row in 0..rows {
+                surrogate[row] += functions.open(row, output);
+                time[row] = larger(time[row], functions.steps(row, output));
+                span = span.max(found[row].width());
+            }
+        }
+        let with = |surrogate: &[f64]| BandError::new(&ranges, surrogate, &time, span, study.request.tolerance);
+        let surrogate = &surrogate[..];
         let mut error = with(surrogate);
         let held: Vec<Range> = match is_sampled {
             true => simulated.clone(),
@@ -68,6 +80,18 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
     let mut bands: Vec<Band> = bounded.methods.iter().enumerate().map(band).collect();
     flag_exclusions(&mut bands);
     bands
+}
+
+/// The largest width of an output's bounds by the first method, with excitations that are constants.
+pub fn as_constants(bounded: &Bounded, output: usize, rows: usize) -> f64 {
+    let Some((_, outcome)) = bounded.methods.first() else { return f64::NAN };
+    let of_row = |row: usize| outcome.result.bands[output][row].with(bounded.seen.range(row, output)).width();
+    (0..rows).map(of_row).fold(0.0, f64::max)
+}
+
+/// The larger one; NaN wins.
+fn larger(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
 }
 
 /// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. What is proven is

@@ -7,6 +7,7 @@
 mod bands;
 mod contributions;
 mod ends;
+mod functions;
 
 use super::ensemble::Motions;
 use super::internal::{InternalError, caught};
@@ -20,9 +21,10 @@ use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{ExcitedMode, Schedule, SimulationError, SwitchSearch};
 
-pub use bands::bands;
+pub use bands::{as_constants, bands};
 pub use contributions::contributions;
 pub use ends::Attained;
+pub use functions::{FunctionEnd, FunctionEnds, WorstFunction};
 
 /// A method's result and its line in the summary.
 pub struct Outcome {
@@ -46,6 +48,8 @@ pub struct Bounded {
     /// The same with halved steps, where asked for.
     pub halved: Vec<(Method, Outcome)>,
     pub doubts: Doubts,
+    /// Ends over functions of the time, where something is excited.
+    pub functions: Option<FunctionEnds>,
 }
 
 /// Errors of the steps that validation samples do not show.
@@ -62,7 +66,7 @@ pub struct Doubts {
 impl Bounded {
     /// The nominal motion, before any method is asked.
     pub fn new(plan: StepPlan, nominal: Outcome, seen: Ledger, doubts: Doubts) -> Self {
-        Self { plan, nominal, seen, validation: None, methods: Vec::new(), halved: Vec::new(), doubts }
+        Self { plan, nominal, seen, validation: None, methods: Vec::new(), halved: Vec::new(), doubts, functions: None }
     }
 
     /// The nominal motion and every method.

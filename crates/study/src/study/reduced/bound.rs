@@ -80,8 +80,9 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
     let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(odd) };
     let mut results = bounds_of(study, ensembles, plan, halved)?;
-    let kept = kept_reduced(study, &mut results, &store.plan.values, rows.unreliable_from().is_some());
-    let unreliable = rows.unreliable_from().is_some();
+    // Samples are of constants, and say nothing of excitations that are functions.
+    let unreliable = rows.unreliable_from().is_some() || rows.functions.is_some();
+    let kept = kept_reduced(study, &mut results, &store.plan.values, unreliable);
     results.note(&direct);
     let values = Evaluated::new(study, &results, unreliable, store);
     (study.stage)("requirements");

@@ -56,7 +56,9 @@ fn verdict(
     let mut parts: Vec<Part> =
         ensembles[0].plan().values.parts(number).map(|place| part(study, values, place)).collect();
     let decided = |parts: &[Part]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
-    if !decided(&parts) && !values.unreliable {
+    if rows.functions.is_some() {
+        parts = by_rows(study, own, rows, f64::INFINITY).map_or(parts, |part| vec![part]);
+    } else if !decided(&parts) && !values.unreliable {
         let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().values.margin(number, |place| all[place]);
         // NaN stays, and contradicts.
         let simulated = values.samples.iter().map(margin).fold(f64::INFINITY, smaller);
@@ -70,10 +72,13 @@ fn verdict(
     let error = lower - least;
     // The part that decides.
     let part = parts.iter().min_by(|a, b| a.reached().total_cmp(&b.reached()));
-    let is_known = parts.iter().all(|part| part.is_known) && !values.unreliable;
+    let by_functions = rows.functions.is_some() && parts.iter().all(|part| part.is_known) && parts.len() == 1;
+    let is_known = parts.iter().all(|part| part.is_known) && (by_functions || !values.unreliable);
     let holds = is_known && least >= 0.0;
     let nearest = nearest(study, (number, own), values, holds, ensembles)?;
     let fails = nearest.as_ref().is_some_and(|case| case.margin.is_nan() || case.margin + case.error < 0.0);
+    // An end over functions is attained.
+    let fails = fails || by_functions && lower + error < 0.0;
     let verdict = match (fails, holds) {
         (true, _) => Verdict::Violated,
         (false, true) => Verdict::Holds,

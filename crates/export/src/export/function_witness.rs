@@ -1,0 +1,80 @@
+//! `witness.NAME.csv`: the functions of excitations under which an output goes the furthest.
+
+use crate::grammar::display_unit::ShownUnit;
+use crate::results::{Bounds, FunctionWitness, ParameterSummary};
+
+use super::csv::number;
+
+/// A table with a column for each excitation, which `mbint run --witness` replays and `tables` read (`interpolation:
+/// linear`). Comments say of what it is the witness, and have the values of parameters.
+pub fn function_witness_csv(bounds: &Bounds, witness: &FunctionWitness, parameters: &[ParameterSummary]) -> String {
+    let output = &bounds.outputs[witness.output];
+    let unit = ShownUnit::of(&output.display, &output.unit);
+    let (value, time) = (number(unit.of_si(witness.value)), number(witness.time));
+    let mut text = format!("# {} is {} at t = {time} s under these functions\n", output.name, with(&value, unit.text));
+    for (parameter, value) in parameters.iter().zip(&witness.parameters) {
+        // What an excitation is as a constant has no value here.
+        let is_excitation =
+            witness.functions.iter().any(|own| parameter.name.strip_prefix(&own.name) == Some(".deviation"));
+        if !is_excitation {
+            text += &format!("# parameter {} = {}\n", parameter.name, number(*value));
+        }
+    }
+    text += "t";
+    witness.functions.iter().for_each(|own| text += &format!(",{}", own.name));
+    text += "\n";
+    let mut times: Vec<f64> =
+        witness.functions.iter().flat_map(|own| own.points.iter().map(|(time, _)| *time)).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    for time in times {
+        text += &number(time);
+        witness.functions.iter().for_each(|own| text += &format!(",{}", number(at(&own.points, time))));
+        text += "\n";
+    }
+    text
+}
+
+/// A number with its unit, if it has one.
+fn with(value: &str, unit: &str) -> String {
+    if unit.is_empty() { value.to_owned() } else { format!("{value} {unit}") }
+}
+
+/// The value at a time, on the straight line between the points around it.
+fn at(points: &[(f64, f64)], time: f64) -> f64 {
+    let after = points.partition_point(|(own, _)| *own < time);
+    match (after.checked_sub(1).map(|before| points[before]), points.get(after)) {
+        (_, Some(&(own, value))) if own == time => value,
+        (Some((from, a)), Some(&(to, b))) => a + (b - a) * (time - from) / (to - from),
+        (Some((_, value)), None) | (None, Some(&(_, value))) => value,
+        (None, None) => f64::NAN,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{OutputBounds, WitnessFunction};
+
+    #[test]
+    fn functions_share_their_times() {
+        let output = OutputBounds { name: "x".into(), unit: "m".into(), display: None, nominal: vec![], bands: vec![] };
+        let bounds = Bounds { outputs: vec![output], ..Bounds::default() };
+        let function =
+            |name: &str, points: &[(f64, f64)]| WitnessFunction { name: name.into(), points: points.to_vec() };
+        let functions = vec![function("road", &[(0.0, 0.0), (2.0, 1.0)]), function("gust", &[(0.0, 5.0), (1.0, 5.0)])];
+        let witness = FunctionWitness { output: 0, time: 2.0, value: 0.5, parameters: vec![3.0, 0.0], functions };
+        let parameter = |name: &str| ParameterSummary {
+            name: name.into(),
+            unit: String::new(),
+            display: None,
+            nominal: 1.0,
+            lower: 0.0,
+            upper: 4.0,
+        };
+        let text = function_witness_csv(&bounds, &witness, &[parameter("k"), parameter("road.deviation")]);
+        let expected =
+            "# x is 0.5 m at t = 2 s under these functions\n# parameter k = 3\nt,road,gust\n0,0,5\n1,0.5,5\n2,1,5\n";
+        assert_eq!(text, expected);
+    }
+}

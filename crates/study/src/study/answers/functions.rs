@@ -1,0 +1,108 @@
+//! Results of a search over functions of the time: how much further they move outputs than constants do, and the worst.
+
+use crate::numerics::Cell;
+use crate::results::{Bounds, ExcitationSummary, FunctionWitness, OutputBounds, WitnessFunction};
+use crate::study::bounding::{Bounded, FunctionEnds, WorstFunction, as_constants};
+use crate::study::excited::Limits;
+use crate::study::problem::Study;
+
+/// How long a jump takes, as a share of the duration.
+const JUMP: f64 = 1e-9;
+
+/// Points that lie this close to a straight line are on it, as a share of how far the function ranges.
+const STRAIGHT: f64 = 1e-9;
+
+/// How far each output is moved; of those of which that is known.
+pub fn excitations(study: &Study, bounded: &Bounded, bounds: &Bounds) -> Vec<ExcitationSummary> {
+    let Some(functions) = &bounded.functions else { return Vec::new() };
+    let of_output = |(place, output): (usize, &OutputBounds)| {
+        let (_, worst) = functions.worst[place].as_ref()?;
+        let band = output.bands.first()?;
+        let widths = band.upper.iter().zip(&band.lower).map(|(upper, lower)| upper - lower);
+        Some(ExcitationSummary {
+            output: output.name.clone(),
+            unit: output.unit.clone(),
+            display: study.description.display.get(&output.name).cloned(),
+            as_constant: 0.5 * as_constants(bounded, place, bounds.times.len()),
+            as_function: 0.5 * widths.fold(0.0, f64::max),
+            time: bounded.plan.schedule.time(worst.row),
+            value: worst.value,
+        })
+    };
+    bounds.outputs.iter().enumerate().filter_map(of_output).collect()
+}
+
+/// The functions under which each output goes the furthest.
+pub fn function_witnesses(study: &Study, bounded: &Bounded) -> Vec<FunctionWitness> {
+    let Some(functions) = &bounded.functions else { return Vec::new() };
+    let of_output = |(output, worst): (usize, &Option<(f64, WorstFunction)>)| {
+        let (_, worst) = worst.as_ref()?;
+        Some(FunctionWitness {
+            output,
+            time: bounded.plan.schedule.time(worst.row),
+            value: worst.value,
+            parameters: worst.sample.to_vec(),
+            functions: of_excitations(study, functions, worst, bounded.plan.schedule.time(worst.row)),
+        })
+    };
+    functions.worst.iter().enumerate().filter_map(of_output).collect()
+}
+
+/// The excitations up to a time, s.
+fn of_excitations(study: &Study, functions: &FunctionEnds, worst: &WorstFunction, end: f64) -> Vec<WitnessFunction> {
+    let limits = Limits::of(study.description, &worst.sample);
+    let duration = study.description.simulation.duration;
+    let of_input = |(&trajectory, cells): (&usize, &Vec<Cell>)| {
+        let own = &study.description.trajectories[trajectory];
+        let excitation = own.excitation()?;
+        let mut points: Vec<(f64, f64)> = Vec::new();
+        let mut begin = 0.0;
+        for (cell, &to) in cells.iter().zip(&functions.ends_of_cells) {
+            if begin >= end * (1.0 - JUMP) && begin > 0.0 {
+                break;
+            }
+            let [from, until] = [begin, to].map(|time| limits.value_at(excitation, *cell, time));
+            let jumps = points.last().is_some_and(|(_, value)| (value - from).abs() > STRAIGHT * from.abs());
+            match points.is_empty() || jumps {
+                true if points.is_empty() => points.push((0.0, from)),
+                true => points.push((begin + JUMP * duration, from)),
+                false => {}
+            }
+            points.push((to, until));
+            begin = to;
+        }
+        Some(WitnessFunction { name: own.name.clone(), points: without_those_between(points) })
+    };
+    functions.inputs.iter().zip(&worst.cells).filter_map(of_input).collect()
+}
+
+/// The points without those on a straight line between their neighbours.
+fn without_those_between(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let reach = points.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
+    let mut kept: Vec<(f64, f64)> = Vec::with_capacity(points.len());
+    for (index, &(time, value)) in points.iter().enumerate() {
+        let is_between = match (kept.last(), points.get(index + 1)) {
+            (Some(&(before, from)), Some(&(after, to))) => {
+                let on_line = from + (to - from) * (time - before) / (after - before);
+                (on_line - value).abs() <= STRAIGHT * reach
+            }
+            _ => false,
+        };
+        if !is_between {
+            kept.push((time, value));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_and_jumps_stay() {
+        let points = vec![(0.0, 1.0), (1.0, 1.0), (2.0, 1.0), (2.000_000_01, -1.0), (3.0, -1.0), (4.0, 0.0)];
+        let kept = without_those_between(points);
+        assert_eq!(kept, [(0.0, 1.0), (2.0, 1.0), (2.000_000_01, -1.0), (3.0, -1.0), (4.0, 0.0)]);
+    }
+}

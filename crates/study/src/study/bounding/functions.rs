@@ -1,0 +1,108 @@
+//! Ends of outputs over functions of the time: what a search found of excitations of which only limits are known.
+
+use crate::numerics::{Cell, Range, Sample};
+
+/// An end that a function attains.
+#[derive(Clone, Copy, Debug)]
+pub struct FunctionEnd {
+    /// The output under the worst function found; NaN where none could be simulated.
+    pub value: f64,
+    /// How much further the end may be: what the gradient at that function still promises, and what cells cost.
+    pub open: f64,
+}
+
+/// The function under which an output goes furthest.
+#[derive(Clone, Debug)]
+pub struct WorstFunction {
+    /// Row of output.
+    pub row: usize,
+    /// The output there.
+    pub value: f64,
+    /// The parameters.
+    pub sample: Sample,
+    /// Of each input of the equations, its cells.
+    pub cells: Vec<Vec<Cell>>,
+}
+
+/// What a search over functions found.
+#[derive(Clone, Debug)]
+pub struct FunctionEnds {
+    outputs: usize,
+    /// By row and output, the lower end first.
+    ends: Vec<[FunctionEnd; 2]>,
+    /// Error of the steps, by row and output, where it was measured.
+    steps: Vec<Option<f64>>,
+    /// By output, with how far it goes from the middle of all limits.
+    pub worst: Vec<Option<(f64, WorstFunction)>>,
+    /// The excitation that each input is, by index of its trajectory.
+    pub inputs: Vec<usize>,
+    /// Times at which cells end, s.
+    pub ends_of_cells: Vec<f64>,
+}
+
+impl FunctionEnds {
+    /// Of so many rows and outputs, of which nothing is known.
+    pub fn new(rows: usize, outputs: usize, inputs: Vec<usize>, ends_of_cells: Vec<f64>) -> Self {
+        let unknown = FunctionEnd { value: f64::NAN, open: f64::NAN };
+        let (ends, steps) = (vec![[unknown; 2]; rows * outputs], vec![None; rows * outputs]);
+        Self { outputs, ends, steps, worst: vec![None; outputs], inputs, ends_of_cells }
+    }
+
+    /// Notes an end.
+    pub fn note(&mut self, row: usize, output: usize, is_upper: bool, end: FunctionEnd) {
+        self.ends[row * self.outputs + output][usize::from(is_upper)] = end;
+    }
+
+    /// Notes the error of the steps of an output in a row; the largest counts.
+    pub fn note_steps(&mut self, row: usize, output: usize, error: f64) {
+        let known = &mut self.steps[row * self.outputs + output];
+        // NaN stays.
+        if known.is_none_or(|known| !(error <= known)) {
+            *known = Some(error);
+        }
+    }
+
+    /// Notes a function that moves an output this far from the middle of all limits, if none moves it further.
+    pub fn note_worst(&mut self, output: usize, gain: f64, function: impl FnOnce() -> WorstFunction) {
+        let worst = &mut self.worst[output];
+        if worst.as_ref().is_none_or(|(known, _)| gain > *known) {
+            *worst = Some((gain, function()));
+        }
+    }
+
+    /// Gives rows whose steps' error is not measured that of the worse of the two around them.
+    pub fn spread_steps(&mut self) {
+        let rows = self.ends.len() / self.outputs.max(1);
+        for output in 0..self.outputs {
+            let at = |row: usize| row * self.outputs + output;
+            let measured: Vec<(usize, f64)> =
+                (0..rows).filter_map(|row| self.steps[at(row)].map(|error| (row, error))).collect();
+            for row in 0..rows {
+                let after = measured.partition_point(|(own, _)| *own < row);
+                let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
+                let errors = around.filter_map(|number| measured.get(number)).map(|(_, error)| *error);
+                // NaN wins, and so does nothing.
+                let worse = errors.reduce(|a, b| if a >= b || a.is_nan() { a } else { b });
+                self.steps[at(row)] = Some(self.steps[at(row)].or(worse).unwrap_or(f64::NAN));
+            }
+        }
+    }
+
+    /// From the lower to the upper end of an output in a row.
+    pub fn range(&self, row: usize, output: usize) -> Range {
+        let [lower, upper] = self.ends[row * self.outputs + output];
+        Range { lower: lower.value, upper: upper.value }
+    }
+
+    /// How much further one of them may be.
+    pub fn open(&self, row: usize, output: usize) -> f64 {
+        let [lower, upper] = self.ends[row * self.outputs + output];
+        // NaN stays.
+        if lower.open >= upper.open { lower.open } else { upper.open }
+    }
+
+    /// Error of the steps under such functions.
+    pub fn steps(&self, row: usize, output: usize) -> f64 {
+        self.steps[row * self.outputs + output].unwrap_or(f64::NAN)
+    }
+}

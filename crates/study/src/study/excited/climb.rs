@@ -1,0 +1,186 @@
+//! A climb to an end of an output over functions of the time and over the box: to where its gradient points.
+//!
+//! Of an output that is linear in the functions the first step ends there: the worst function has the sign of the kernel,
+//! h(t, τ) = ∂y(t)/∂u(τ), and the end is ∫ b |h| dτ (Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265). Else the
+//! kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops growing. A step
+//! that is worse is halved.
+
+use crate::numerics::{Cell, FunctionClass, ParameterBox, value};
+use crate::simulate::Gradient;
+
+/// Halvings of a step that is worse.
+const HALVINGS: i32 = 4;
+
+/// What a step gains at least, as a share of what the first one promised.
+const WORTH: f64 = 1e-4;
+
+/// A simulation that ends this share of what its gradient promised beside that is not one of a linear output.
+const BENT: f64 = 1e-3;
+
+/// Where an output can be: parameters (ξ), and a function for each input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    pub xi: Vec<f64>,
+    /// Input by input, its cells.
+    pub functions: Vec<Vec<Cell>>,
+}
+
+impl Point {
+    /// Parameters with all functions in the middle of their limits.
+    pub fn middle(xi: Vec<f64>, inputs: usize, cells: usize) -> Self {
+        Self { xi, functions: vec![vec![[0.0; 2]; cells]; inputs] }
+    }
+
+    /// Levels and slopes, cell by cell, input by input.
+    pub fn inputs(&self) -> Vec<f64> {
+        let cells = self.functions.first().map_or(0, Vec::len);
+        (0..cells).flat_map(|cell| self.functions.iter().flat_map(move |function| function[cell])).collect()
+    }
+
+    /// The middle between two points.
+    fn halfway(&self, other: &Self) -> Self {
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        let of_function = |(a, b): (&Vec<Cell>, &Vec<Cell>)| {
+            a.iter().zip(b).map(|(a, b)| [mean(a[0], b[0]), mean(a[1], b[1])]).collect()
+        };
+        Self {
+            xi: self.xi.iter().zip(&other.xi).map(|(a, b)| mean(*a, *b)).collect(),
+            functions: self.functions.iter().zip(&other.functions).map(of_function).collect(),
+        }
+    }
+}
+
+/// A climb to an end.
+pub struct Climb {
+    pub row: usize,
+    pub output: usize,
+    /// 1 of the upper end, −1 of the lower.
+    pub sign: f64,
+    /// The best point, the value there (upwards), and what gradients promise from there on.
+    pub best: Option<(Point, f64)>,
+    pub promise: f64,
+    /// The value at its start, upwards, and what the gradient promised there.
+    first: Option<(f64, f64)>,
+    /// What cells cost at the best point.
+    pub cells: f64,
+    /// By how much starts from elsewhere have improved the end.
+    pub improved: f64,
+    /// The point to go to.
+    pub next: Option<Point>,
+    halvings: i32,
+}
+
+impl Climb {
+    /// From a point.
+    pub fn new(row: usize, output: usize, sign: f64, start: Point) -> Self {
+        Self {
+            row,
+            output,
+            sign,
+            best: None,
+            promise: f64::NAN,
+            first: None,
+            cells: f64::NAN,
+            improved: 0.0,
+            next: Some(start),
+            halvings: 0,
+        }
+    }
+
+    /// How far the best point is from the start.
+    pub fn gain(&self) -> f64 {
+        self.best.as_ref().zip(self.first).map_or(0.0, |((_, reached), (start, _))| reached - start)
+    }
+
+    /// How much further the end may be.
+    pub fn open(&self) -> f64 {
+        self.promise.max(0.0) + self.cells + self.improved
+    }
+
+    /// The point to go to, with the output that is asked for there.
+    pub fn asked(&self) -> Option<(&Point, usize, usize)> {
+        self.next.as_ref().map(|point| (point, self.row, self.output))
+    }
+
+    /// The best value, upwards.
+    pub fn reached(&self) -> f64 {
+        self.best.as_ref().map_or(f64::NEG_INFINITY, |(_, value)| *value)
+    }
+
+    /// Takes the value at the point that it went to, if that is where the gradient said: the end of an output that is
+    /// linear. Whether it is.
+    pub fn arrive(&mut self, value: f64) -> bool {
+        let reached = self.sign * value;
+        let Some((start, promise)) = self.first else { return false };
+        let beside = (reached - start - promise).abs();
+        let arrives = beside <= BENT * promise;
+        if arrives && let Some(point) = self.next.take() {
+            self.promise = beside;
+            self.best = Some((point, reached));
+        }
+        arrives
+    }
+
+    /// Takes what a climb to the same end from elsewhere found, if that is better.
+    pub fn learn(&mut self, other: Self) {
+        let gain = other.reached() - self.reached();
+        if gain > 0.0 {
+            self.improved = self.improved.max(if gain.is_finite() { gain } else { 0.0 });
+            (self.best, self.promise, self.cells) = (other.best, other.promise, other.cells);
+        }
+    }
+
+    /// Takes the value and the gradient at the point that it went to.
+    pub fn take(&mut self, found: &Gradient, domain: &ParameterBox, ends: &[f64], classes: &[FunctionClass]) {
+        let Some(point) = self.next.take() else { return };
+        let reached = self.sign * found.value;
+        let before = self.reached();
+        // A point that cannot be simulated is no better.
+        let is_better = reached > before;
+        if !is_better {
+            let halved = self.best.as_ref().map(|(best, _)| best.halfway(&point));
+            self.halvings += 1;
+            self.next = halved.filter(|_| self.halvings <= HALVINGS);
+            if self.next.is_none() {
+                // A part of the step that gains nothing bounds what the whole of it does, along its line.
+                self.promise *= 0.5_f64.powi(self.halvings - 1);
+            }
+            return;
+        }
+        self.halvings = 0;
+        let (worst, promise, cells) = self.along(found, &point, domain, ends, classes);
+        let (_, first) = *self.first.get_or_insert((reached, promise));
+        self.next = (promise > WORTH * first).then_some(worst);
+        (self.promise, self.cells) = (promise, cells);
+        self.best = Some((point, reached));
+    }
+
+    /// The point to which a gradient points, what it promises there, and what cells cost of that.
+    fn along(
+        &self,
+        found: &Gradient,
+        from: &Point,
+        domain: &ParameterBox,
+        ends: &[f64],
+        classes: &[FunctionClass],
+    ) -> (Point, f64, f64) {
+        let mut worst = from.clone();
+        let (mut promise, mut cost) = (0.0, 0.0);
+        for (axis, by) in found.by_parameters.iter().enumerate() {
+            let by = self.sign * by * domain.half_width(axis);
+            if by != 0.0 {
+                worst.xi[axis] = by.signum();
+                promise += by * (worst.xi[axis] - from.xi[axis]);
+            }
+        }
+        for (input, class) in classes.iter().enumerate() {
+            let of_cell = |by: &[f64]| [self.sign * by[2 * input], self.sign * by[2 * input + 1]];
+            let functional: Vec<Cell> = found.by_inputs.chunks_exact(2 * classes.len()).map(of_cell).collect();
+            let (largest, function) = class.worst(ends, &functional);
+            promise += largest - value(&functional, &from.functions[input]);
+            cost += class.loss_of_cells(ends, &functional);
+            worst.functions[input] = function;
+        }
+        (worst, promise, cost)
+    }
+}

@@ -1,0 +1,253 @@
+//! Ends of all outputs in all rows over functions of the time.
+//!
+//! From the middle of all limits the kernel of each output in each row says how far either end is, and under which
+//! function. Where a simulation under it ends there, the output is linear in it, and that is the end. Others are bent.
+//! Where the kernel under that function names it again, it is an end too. In some rows bent ends are followed (`climb`)
+//! from the middle, from the constants and from the best functions of the ends around them; those between learn from
+//! these.
+
+use super::climb::{Climb, Point};
+use super::motions::{Asked, ExcitedMotions};
+use crate::numerics::step_error;
+use crate::simulate::{Schedule, SimulationError, Simulator};
+use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
+use crate::study::problem::Study;
+
+/// Outputs and rows whose kernels are in memory at once.
+const AT_ONCE: usize = 128;
+
+/// Rows in which an output's end is followed first; those between learn from them.
+const FOLLOWED: usize = 8;
+
+/// Steps of a climb, and of one from a neighbour's function.
+const STEPS: usize = 24;
+const LEARNT: usize = 8;
+
+/// How often ends are climbed to from elsewhere.
+const ROUNDS: usize = 2;
+
+/// Rows in which the steps' error of ends that are not followed is measured.
+const CHECKED: usize = 8;
+
+/// An end of an output that is not linear in the functions.
+struct Bent {
+    row: usize,
+    output: usize,
+    sign: f64,
+    /// Where the kernel under the first function names that function again: its value, upwards, and what is open.
+    settled: Option<(f64, f64)>,
+}
+
+/// All ends, and what the search took in simulations.
+///
+/// # Errors
+/// Where the nominal motion cannot be simulated, and at an interruption.
+pub fn ends(
+    study: &Study,
+    simulator: &Simulator,
+    schedule: &Schedule,
+) -> Result<(FunctionEnds, usize), SimulationError> {
+    let motions = ExcitedMotions::new(study, simulator, schedule);
+    let (rows, outputs) = (motions.schedule.rows, motions.outputs());
+    let found = FunctionEnds::new(rows, outputs, motions.inputs(), motions.ends.clone());
+    let mut search = Search { motions, found, bent: Vec::new() };
+    let checked: Vec<usize> = checked(rows);
+    let all: Vec<(usize, usize)> = (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output))).collect();
+    for some in all.chunks(AT_ONCE) {
+        search.straight(some, &checked)?;
+    }
+    search.follow_bent()?;
+    search.found.spread_steps();
+    Ok((search.found, search.motions.count))
+}
+
+/// Some rows, ascending, the last of all among them.
+fn checked(rows: usize) -> Vec<usize> {
+    let count = CHECKED.min(rows);
+    (1..=count).map(|number| (number * rows).div_ceil(count) - 1).collect()
+}
+
+struct Search<'s, 'm> {
+    motions: ExcitedMotions<'s, 'm>,
+    found: FunctionEnds,
+    bent: Vec<Bent>,
+}
+
+impl Search<'_, '_> {
+    /// Ends of some outputs in rows that are linear in the functions; the others are noted as bent.
+    fn straight(&mut self, some: &[(usize, usize)], checked: &[usize]) -> Result<(), SimulationError> {
+        let middle = self.motions.middle();
+        let asked: Vec<Asked> = some.iter().map(|&(row, output)| (&middle, row, output)).collect();
+        let kernels = self.motions.gradients(&asked)?;
+        let classes = self.motions.classes(&middle);
+        let mut climbs: Vec<Climb> = Vec::with_capacity(2 * some.len());
+        for (&(row, output), kernel) in some.iter().zip(&kernels) {
+            for sign in [-1.0, 1.0] {
+                let mut climb = Climb::new(row, output, sign, middle.clone());
+                climb.take(kernel, &self.motions.study.domain, &self.motions.ends, &classes);
+                climbs.push(climb);
+            }
+        }
+        drop(kernels);
+        let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
+        let bent = if self.motions.has_parameters() {
+            // Those may matter under a function only: their derivatives are known there.
+            going
+        } else {
+            let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+            let values = self.motions.values(&asked, 1)?;
+            let bent = |(number, value): (usize, f64)| (!climbs[number].arrive(value)).then_some(number);
+            going.into_iter().zip(values).filter_map(bent).collect()
+        };
+        self.step(&mut climbs, &bent)?;
+        for number in bent {
+            let climb = &mut climbs[number];
+            let (row, output, sign) = (climb.row, climb.output, climb.sign);
+            let settled = climb.next.is_none().then(|| (climb.reached(), climb.open()));
+            self.bent.push(Bent { row, output, sign, settled });
+            if settled.is_none() {
+                climb.best = None;
+            }
+        }
+        climbs.retain(|climb| climb.best.is_some());
+        let (measured, others): (Vec<Climb>, Vec<Climb>) =
+            climbs.into_iter().partition(|climb| checked.contains(&climb.row));
+        others.iter().for_each(|climb| self.note(climb));
+        self.note_measured(&measured)
+    }
+
+    /// Follows some of the bent ends, evenly spread over the rows of an output's end; the others learn from these.
+    fn follow_bent(&mut self) -> Result<(), SimulationError> {
+        let mut bent = std::mem::take(&mut self.bent);
+        bent.sort_by(|a, b| (a.output, a.row).cmp(&(b.output, b.row)).then(a.sign.total_cmp(&b.sign)));
+        bent.sort_by(|a, b| a.output.cmp(&b.output).then(a.sign.total_cmp(&b.sign)));
+        // The last row of each output's end, and every so many before it.
+        let (mut followed, mut between): (Vec<Climb>, Vec<Bent>) = (Vec::new(), Vec::new());
+        for of_end in bent.chunk_by(|a, b| a.output == b.output && a.sign == b.sign) {
+            let every = of_end.len().div_ceil(FOLLOWED);
+            for (number, own) in of_end.iter().enumerate() {
+                if (of_end.len() - 1 - number) % every == 0 {
+                    followed.push(Climb::new(own.row, own.output, own.sign, self.motions.middle()));
+                } else {
+                    between.push(Bent { ..*own });
+                }
+            }
+        }
+        self.follow(&mut followed, STEPS)?;
+        self.start_elsewhere(&mut followed)?;
+        self.note_measured(&followed)?;
+        for some in between.chunks(AT_ONCE / 2) {
+            self.learn(some, &followed)?;
+        }
+        Ok(())
+    }
+
+    /// Goes on with climbs until all are done, in so many steps at most.
+    fn follow(&mut self, climbs: &mut [Climb], steps: usize) -> Result<(), SimulationError> {
+        for _ in 0..steps {
+            let going: Vec<usize> = (0..climbs.len()).filter(|&number| climbs[number].next.is_some()).collect();
+            if going.is_empty() {
+                break;
+            }
+            self.step(climbs, &going)?;
+        }
+        Ok(())
+    }
+
+    /// A step of some climbs.
+    fn step(&mut self, climbs: &mut [Climb], going: &[usize]) -> Result<(), SimulationError> {
+        let asked: Vec<Asked> = going.iter().filter_map(|&number| climbs[number].asked()).collect();
+        let found = self.motions.gradients(&asked)?;
+        for (&number, found) in going.iter().zip(found) {
+            let climb = &mut climbs[number];
+            let Some(point) = &climb.next else { continue };
+            let classes = self.motions.classes(point);
+            climb.take(&found, &self.motions.study.domain, &self.motions.ends, &classes);
+        }
+        Ok(())
+    }
+
+    /// Climbs once more from the best functions of the ends around, and from the two constants. Twice, since neighbours
+    /// learn from one another.
+    fn start_elsewhere(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
+        let cells = self.motions.ends.len();
+        for round in 0..ROUNDS {
+            let (mut numbers, mut others) = (Vec::new(), Vec::new());
+            for (number, climb) in climbs.iter().enumerate() {
+                let around = [number.checked_sub(1), Some(number + 1)].into_iter().flatten();
+                let known = around.filter_map(|other| climbs.get(other)?.best.as_ref());
+                let mut starts: Vec<Point> = known.map(|(point, _)| point.clone()).collect();
+                if let Some((best, _)) = climb.best.as_ref().filter(|_| round == 0) {
+                    let classes = self.motions.classes(best);
+                    starts.extend([-1.0, 1.0].map(|sign| Point {
+                        xi: best.xi.clone(),
+                        functions: classes.iter().map(|class| class.constant(sign, cells)).collect(),
+                    }));
+                }
+                numbers.extend(starts.iter().map(|_| number));
+                others.extend(starts.into_iter().map(|start| Climb::new(climb.row, climb.output, climb.sign, start)));
+            }
+            self.follow(&mut others, STEPS)?;
+            climbs.iter_mut().for_each(|climb| climb.improved = 0.0);
+            numbers.into_iter().zip(others).for_each(|(number, other)| climbs[number].learn(other));
+        }
+        Ok(())
+    }
+
+    /// Bent ends between those that are followed. Where the kernel settled at once, starts from elsewhere improve them by no
+    /// more than their neighbours, as far as is known. Others are climbed to from their neighbours' functions.
+    fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
+        let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
+        for (number, own) in some.iter().enumerate() {
+            let alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
+            let after = alike.clone().find(|climb| climb.row > own.row);
+            let before = alike.filter(|climb| climb.row < own.row).last();
+            let around = [before, after].into_iter().flatten();
+            if let Some((reached, open)) = own.settled {
+                let improved = around.map(|climb| climb.improved).fold(0.0, f64::max);
+                let end = FunctionEnd { value: own.sign * reached, open: open + improved };
+                self.found.note(own.row, own.output, own.sign > 0.0, end);
+                continue;
+            }
+            for (start, _) in around.filter_map(|climb| climb.best.as_ref()) {
+                numbers.push(number);
+                climbs.push(Climb::new(own.row, own.output, own.sign, start.clone()));
+            }
+        }
+        self.follow(&mut climbs, LEARNT)?;
+        let mut best: Vec<Option<Climb>> = some.iter().map(|_| None).collect();
+        for (number, climb) in numbers.into_iter().zip(climbs) {
+            if best[number].as_ref().is_none_or(|known| climb.reached() > known.reached()) {
+                best[number] = Some(climb);
+            }
+        }
+        best.iter().flatten().for_each(|climb| self.note(climb));
+        Ok(())
+    }
+
+    /// Notes what climbs found, with what halved steps change there.
+    fn note_measured(&mut self, climbs: &[Climb]) -> Result<(), SimulationError> {
+        let known: Vec<&Climb> = climbs.iter().filter(|climb| climb.best.is_some()).collect();
+        let point = |climb: &&'_ Climb| climb.best.as_ref().map(|(point, _)| point.clone());
+        let points: Vec<Point> = known.iter().filter_map(point).collect();
+        let asked: Vec<Asked> =
+            points.iter().zip(&known).map(|(point, climb)| (point, climb.row, climb.output)).collect();
+        let halved = self.motions.values(&asked, 2)?;
+        for (climb, halved) in known.into_iter().zip(halved) {
+            self.note(climb);
+            let error = step_error(&[climb.sign * climb.reached()], &[halved]);
+            self.found.note_steps(climb.row, climb.output, error);
+        }
+        Ok(())
+    }
+
+    /// Notes what a climb found.
+    fn note(&mut self, climb: &Climb) {
+        let Climb { row, output, sign, .. } = *climb;
+        let Some((point, reached)) = &climb.best else { return };
+        let value = sign * reached;
+        self.found.note(row, output, sign > 0.0, FunctionEnd { value, open: climb.open() });
+        let (sample, cells) = (self.motions.sample(point), &point.functions);
+        self.found.note_worst(output, climb.gain(), || WorstFunction { row, value, sample, cells: cells.clone() });
+    }
+}

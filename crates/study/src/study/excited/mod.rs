@@ -1,0 +1,57 @@
+//! Bounds over functions of the time: excitations of which only limits are known.
+//!
+//! As a constant, an excitation is an uncertain parameter, and methods bound it with the others. As a function, it is an
+//! input of equations that are compiled once more: a level and a slope in each step (`motions`). The gradient of an output in
+//! a row by all of them is its kernel, from one run backwards, and says which function is the worst (`climb`), in a class
+//! that `limits` evaluates. Every end is attained by a function (`ends`); it widens the methods' bands.
+
+mod climb;
+mod ends;
+mod limits;
+mod motions;
+
+use super::RunError;
+use super::bounding::{FunctionEnds, Outcome, timed};
+use super::formulation::compiled;
+use super::problem::Study;
+use crate::assemble::Questions;
+use crate::methods::MethodResult;
+use crate::model::{Formulation, Trajectory};
+use crate::simulate::{Schedule, SimulationError};
+use ends::ends;
+pub(super) use limits::Limits;
+
+/// Ending of the name of the parameter that an excitation is as a constant.
+const DEVIATION: &str = ".deviation";
+
+/// Whether something of the study is an excitation.
+pub(super) fn is_excited(study: &Study) -> bool {
+    let is_input = |own: &Trajectory| {
+        let name = format!("{}{DEVIATION}", own.name);
+        own.excitation().is_some() && study.simulator.system.parameters.iter().any(|known| known.name == name)
+    };
+    !study.simulator.system.analysis.visits() && study.description.trajectories.iter().any(is_input)
+}
+
+/// Searches the ends of all outputs over all functions; `None` where no excitation acts, and at an interruption.
+///
+/// # Errors
+/// Where the equations cannot be compiled, or the nominal motion cannot be simulated.
+pub(super) fn excited(study: &Study, schedule: &Schedule) -> Result<Option<(Outcome, FunctionEnds)>, RunError> {
+    if !is_excited(study) || study.interruption.is_asked() {
+        return Ok(None);
+    }
+    (study.stage)("any function");
+    let joint = study.simulator.system.formulation.joint;
+    let formulation = if joint { Formulation::Joint } else { Formulation::Absolute };
+    let questions = Questions { as_functions: true, formulation, ..Questions::of(study.description) };
+    let simulator = compiled(&questions)?;
+    let found = timed(schedule, "any function", || {
+        let (found, simulations) = ends(study, &simulator, schedule)?;
+        Ok((MethodResult { simulations, ..MethodResult::default() }, found))
+    });
+    match found {
+        Err(SimulationError::Interrupted) => Ok(None),
+        found => Ok(Some(found?)),
+    }
+}

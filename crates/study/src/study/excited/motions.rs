@@ -1,0 +1,116 @@
+//! Motions under functions of the time, and their gradients.
+
+use super::climb::Point;
+use super::limits::Limits;
+use crate::model::Excitation;
+use crate::numerics::{FunctionClass, Sample};
+use crate::simulate::{
+    Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Wanted, gradients_of_functions,
+    values_of_functions,
+};
+use crate::study::problem::Study;
+
+/// An output in a row at a point.
+pub type Asked<'p> = (&'p Point, usize, usize);
+
+/// The equations with excitations as inputs, and the steps.
+pub struct ExcitedMotions<'s, 'm> {
+    pub study: &'s Study<'m>,
+    simulator: &'s Simulator,
+    pub schedule: Schedule,
+    /// Of each input.
+    excitations: Vec<&'s Excitation>,
+    /// Times at which cells end, s.
+    pub ends: Vec<f64>,
+    /// Simulations and gradients so far.
+    pub count: usize,
+}
+
+impl<'s, 'm> ExcitedMotions<'s, 'm> {
+    /// With the steps of a schedule, which end where functions that are held may jump.
+    pub fn new(study: &'s Study<'m>, simulator: &'s Simulator, schedule: &Schedule) -> Self {
+        let trajectories = &study.description.trajectories;
+        let of_input = |input: &crate::assemble::InputInfo| trajectories[input.trajectory].excitation();
+        let excitations: Vec<&Excitation> = simulator.system.inputs.iter().filter_map(of_input).collect();
+        let nominal = Limits::of(study.description, &study.domain.nominal);
+        let periods = excitations.iter().filter_map(|own| match nominal.class(own) {
+            FunctionClass::Held(period) => Some(period),
+            _ => None,
+        });
+        let schedule = schedule.ending_at_multiples(&periods.collect::<Vec<f64>>());
+        let ends = schedule.ends();
+        Self { study, simulator, schedule, excitations, ends, count: 0 }
+    }
+
+    /// Number of outputs.
+    pub fn outputs(&self) -> usize {
+        self.simulator.program.outputs.len()
+    }
+
+    /// Whether there are uncertain parameters beside those that excitations are as constants.
+    pub fn has_parameters(&self) -> bool {
+        self.simulator.system.parameters.len() > self.excitations.len()
+    }
+
+    /// Indices of the trajectories that inputs are.
+    pub fn inputs(&self) -> Vec<usize> {
+        self.simulator.system.inputs.iter().map(|input| input.trajectory).collect()
+    }
+
+    /// The nominal parameters with all functions in the middle of their limits.
+    pub fn middle(&self) -> Point {
+        let domain = &self.study.domain;
+        Point::middle(domain.xi(&domain.nominal), self.excitations.len(), self.ends.len())
+    }
+
+    /// The parameters at a point.
+    pub fn sample(&self, point: &Point) -> Sample {
+        self.study.domain.sample(&point.xi)
+    }
+
+    /// The functions that each excitation may be at a point.
+    pub fn classes(&self, point: &Point) -> Vec<FunctionClass> {
+        let limits = Limits::of(self.study.description, &self.sample(point));
+        self.excitations.iter().map(|own| limits.class(own)).collect()
+    }
+
+    /// Values and gradients.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled, and at an interruption.
+    pub fn gradients(&mut self, asked: &[Asked]) -> Result<Vec<Gradient>, SimulationError> {
+        let (samples, wanted, values) = self.split(asked);
+        let functions = Functions { ends: &self.ends, values: &values };
+        let interruption = self.study.interruption;
+        let found = gradients_of_functions(self.simulator, &self.schedule, &samples, &wanted, functions, interruption);
+        found.map_err(simulation)
+    }
+
+    /// Values alone, with each step divided into so many; NaN where a step does not converge.
+    ///
+    /// # Errors
+    /// As for gradients.
+    pub fn values(&mut self, asked: &[Asked], parts: usize) -> Result<Vec<f64>, SimulationError> {
+        let (samples, wanted, values) = self.split(asked);
+        let functions = Functions { ends: &self.ends, values: &values };
+        let schedule = self.schedule.refined(parts);
+        let interruption = self.study.interruption;
+        values_of_functions(self.simulator, &schedule, &samples, &wanted, functions, interruption).map_err(simulation)
+    }
+
+    fn split(&mut self, asked: &[Asked]) -> (Vec<Sample>, Vec<Wanted>, Vec<Vec<f64>>) {
+        self.count += asked.len();
+        let samples = asked.iter().map(|(point, ..)| self.sample(point)).collect();
+        let wanted = |(sample, &(_, row, output)): (usize, &Asked)| Wanted { sample, row, output };
+        let values = asked.iter().map(|(point, ..)| point.inputs()).collect();
+        (samples, asked.iter().enumerate().map(wanted).collect(), values)
+    }
+}
+
+/// Other reasons do not occur: motions are not cut where something is excited.
+fn simulation(error: NoGradient) -> SimulationError {
+    match error {
+        NoGradient::Simulation(error) => error,
+        NoGradient::NoMotion { .. } | NoGradient::Events => SimulationError::Deferred,
+    }
+}

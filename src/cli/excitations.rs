@@ -1,0 +1,56 @@
+//! What excitations do as constants, and as any functions, for people.
+
+use super::structure::digits;
+use crate::grammar::display_unit::ShownUnit;
+use crate::results::ExcitationSummary;
+
+/// Lines that fit a screen.
+const MOST: usize = 12;
+
+/// Where functions move an output no further than this, constants are enough.
+const ENOUGH: f64 = 1.005;
+
+/// A line for each output that excitations move.
+pub(super) fn lines(excitations: &[ExcitationSummary]) -> String {
+    let line = |own: &ExcitationSummary| {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        let shown = |value: f64| format!("± {} {}", digits(unit.of_si(value)), unit.text).trim_end().to_owned();
+        let ratio = own.as_function / own.as_constant;
+        let told = match ratio {
+            ratio if ratio <= ENOUGH => ": constants are enough".to_owned(),
+            ratio if ratio.is_finite() => format!(": {} times as far", digits(ratio)),
+            _ => String::new(),
+        };
+        let (constant, function) = (shown(own.as_constant), shown(own.as_function));
+        format!("  {}: as a constant {constant}, as any function {function}{told}\n", own.output)
+    };
+    let moved = || excitations.iter().filter(|own| own.as_function > 0.0);
+    let mut text: String = moved().take(MOST).map(line).collect();
+    if moved().count() > MOST {
+        text += &format!("  … and {} more in summary.json\n", moved().count() - MOST);
+    }
+    if text.is_empty() { text } else { text + "\n" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_tells_whether_constants_are_enough() {
+        let of = |as_constant, as_function| ExcitationSummary {
+            output: "shake".into(),
+            unit: "m/s^2".into(),
+            display: None,
+            as_constant,
+            as_function,
+            time: 6.0,
+            value: as_function,
+        };
+        let text = lines(&[of(0.689, 2.573), of(1.0, 1.001), of(0.0, 2.0), of(0.0, 0.0)]);
+        let expected = "  shake: as a constant ± 0.689 m/s^2, as any function ± 2.573 m/s^2: 3.734 times as far\n  \
+                        shake: as a constant ± 1 m/s^2, as any function ± 1.001 m/s^2: constants are enough\n  \
+                        shake: as a constant ± 0 m/s^2, as any function ± 2 m/s^2\n\n";
+        assert_eq!(text, expected);
+    }
+}
