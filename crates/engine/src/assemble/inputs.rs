@@ -2,7 +2,6 @@
 
 use symdiff::{Builder, Expr, Scalar};
 
-use super::mechanism::Mechanism;
 use super::questions::Questions;
 
 /// An excitation as a function.
@@ -17,9 +16,11 @@ pub struct InputInfo {
 /// An input of a mechanism.
 #[derive(Clone, Copy)]
 pub struct MechanismInput<'g> {
-    trajectory: usize,
+    /// Index of its trajectory in the model.
+    pub trajectory: usize,
     numbers: [Scalar<'g>; 2],
-    value: Scalar<'g>,
+    /// u(t).
+    pub value: Scalar<'g>,
 }
 
 impl MechanismInput<'_> {
@@ -40,11 +41,4 @@ pub fn inputs<'g>(g: &'g Builder, questions: &Questions, time: Scalar<'g>) -> Ve
         Some(MechanismInput { trajectory: index, numbers, value })
     });
     excited.collect()
-}
-
-impl<'g> Mechanism<'g, '_> {
-    /// The value of an excitation over its reach, where it is a function.
-    pub fn input(&self, trajectory: usize) -> Option<Scalar<'g>> {
-        self.inputs.iter().find(|input| input.trajectory == trajectory).map(|input| input.value)
-    }
 }

@@ -112,8 +112,9 @@ impl<'g> Mechanism<'g, '_> {
     fn trajectory(&self, trajectory: usize, order: TimeOrder) -> Scalar<'g> {
         let number = |formula: &Formula| self.formula(formula, Context::Time);
         let own = self.names.trajectory(trajectory);
-        let value = match (own.excitation(), self.input(trajectory)) {
-            (Some(excitation), Some(u)) => excitation.value(u, number),
+        let input = self.inputs.iter().find(|input| input.trajectory == trajectory);
+        let value = match (own.excitation(), input) {
+            (Some(excitation), Some(input)) => excitation.value(input.value, number),
             _ => own.value(self.time, number),
         };
         let value = value.unwrap_or_else(|_| self.g.number(f64::NAN));
