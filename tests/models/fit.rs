@@ -201,7 +201,7 @@ fn the_truth_of_a_slider_crank_is_not_excluded() {
     assert!(excluded == 0 && apart <= 0.05, "{excluded} {apart}");
 }
 
-/// `MBINT_DRAWS=1000 cargo test --release --test models fit::many -- --ignored --nocapture`: half an hour.
+/// `MBINT_DRAWS=1000 cargo test --release --test models fit::many -- --ignored --nocapture`: some 10 s a draw.
 #[test]
 #[ignore = "takes long; prints its figures"]
 fn many_truths_are_not_excluded() {
