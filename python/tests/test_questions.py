@@ -73,9 +73,13 @@ def test_parameters_are_fitted() -> None:
     table = pd.DataFrame({"time": [0, 1], "x": [0.3, 0.7]})
     found = mbint.fit(line, table, noise={"x": "10 mm"})
     assert found.consistent
-    assert found.parameters.loc["x0", "lower"] == pytest.approx(0.29, abs=1e-3)
+    # The hull covers the set, and is wider by parts of a box of the paving.
+    assert 0.288 < found.parameters.loc["x0", "lower"] <= 0.29
+    assert 0.31 <= found.parameters.loc["x0", "upper"] < 0.312
     assert found.parameters.loc["v", "estimate"] == pytest.approx(0.4)
-    assert found.overlay["v"] == pytest.approx((0.38, 0.42), abs=1e-3)
+    lower, upper = found.overlay["v"]
+    assert 0.376 < lower <= 0.38
+    assert 0.42 <= upper < 0.424
     assert len(found.rows) == 2
     wrong = mbint.fit(line, pd.DataFrame({"time": [0, 1], "x": [0.3, 5]}), noise={"x": 0.01})
     assert not wrong.consistent
