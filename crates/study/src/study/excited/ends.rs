@@ -34,7 +34,7 @@ struct Bent {
     row: usize,
     output: usize,
     sign: f64,
-    /// Where the kernel under the first function names that function again: its value, upwards, and what is open.
+    /// Where the kernel under the first function names that function again: its value, upwards, and the rest.
     settled: Option<(f64, f64)>,
 }
 
@@ -194,8 +194,8 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Bent ends between those that are followed. Where the kernel settled at once, starts from elsewhere improve them by no
-    /// more than their neighbours, as far as is known. Others are climbed to from their neighbours' functions.
+    /// Bent ends between those that are followed. Where the kernel settled at once, starts from elsewhere improve them
+    /// by no more than their neighbours, as far as is known. Others are climbed to from their neighbours' functions.
     fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
         let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
         for (number, own) in some.iter().enumerate() {
