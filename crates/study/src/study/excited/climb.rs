@@ -1,9 +1,9 @@
 //! A climb to an end of an output over functions of the time and over the box: to where its gradient points.
 //!
 //! Of an output that is linear in the functions the first step ends there: the worst function has the sign of the
-//! kernel, h(t, τ) = ∂y(t)/∂u(τ), and the end is ∫ b |h| dτ (Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265). Else the
-//! kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops growing. A step
-//! that is worse is halved.
+//! kernel, h(t, τ) = ∂y(t)/∂u(τ), and the end is ∫ b |h| dτ (Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265).
+//! Else the kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops
+//! growing. A step that is worse is halved.
 
 use crate::numerics::{Cell, FunctionClass, ParameterBox, value};
 use crate::simulate::Gradient;

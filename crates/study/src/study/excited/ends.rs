@@ -199,9 +199,9 @@ impl Search<'_, '_> {
     fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
         let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
         for (number, own) in some.iter().enumerate() {
-            let alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
+            let mut alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
             let after = alike.clone().find(|climb| climb.row > own.row);
-            let before = alike.filter(|climb| climb.row < own.row).last();
+            let before = alike.rfind(|climb| climb.row < own.row);
             let around = [before, after].into_iter().flatten();
             if let Some((reached, open)) = own.settled {
                 let improved = around.map(|climb| climb.improved).fold(0.0, f64::max);
