@@ -6,7 +6,7 @@ use crate::results::{Bounds, FunctionWitness, ParameterSummary};
 use super::csv::number;
 
 /// A table with a column for each excitation, which `mbint run --witness` replays and `tables` read (`interpolation:
-/// linear`). Comments say of what it is the witness, and have the values of parameters.
+/// linear`). Comments name the output, and have the values of parameters.
 pub fn function_witness_csv(bounds: &Bounds, witness: &FunctionWitness, parameters: &[ParameterSummary]) -> String {
     let output = &bounds.outputs[witness.output];
     let unit = ShownUnit::of(&output.display, &output.unit);

@@ -9,8 +9,8 @@
 //! bounded, bounded rate  |u| ≤ 1, |u̇| ≤ ρ = r/b
 //! ```
 //!
-//! As a constant, u is one number between −1 and 1, or t times one: an uncertain parameter, `NAME.deviation`. As a function
-//! it is u(t) = level + slope · t over cells of the time, of which both numbers are inputs of the equations.
+//! As a constant, u is one number between −1 and 1, or t times one: an uncertain parameter, `NAME.deviation`. As a
+//! function it is u(t) = level + slope · t over cells of the time, of which both numbers are inputs of the equations.
 
 use symdiff::{Formula, Scalar};
 

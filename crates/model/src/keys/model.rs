@@ -41,7 +41,8 @@ grammar! {
         tables: Option<IndexMap<String, Table>>,
         /// Functions of the time by points that they pass: `NAME`, `NAME.rate` and `NAME.acceleration` in formulas.
         trajectories: Option<IndexMap<String, Trajectory>>,
-        /// Functions of the time of which only limits are known: `NAME` in formulas, and `NAME.rate` of those with a rate.
+        /// Functions of the time of which only limits are known: `NAME` in formulas, and `NAME.rate` of those with a
+        /// rate.
         excitations: Option<IndexMap<String, Excitation>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,

@@ -33,7 +33,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
     for entry in reader.entries(node, "excitations") {
         let named = reader.name(entry, "an excitation");
         let is_taken = |section: &&str| fields.get(section).is_some_and(|section| section.get(&entry.key).is_some());
-        if OTHERS.iter().any(|section| is_taken(&section)) {
+        if OTHERS.iter().any(is_taken) {
             let message = format!("something else is called `{}` too", clip(&entry.key));
             reader.error(entry.key_span.clone(), message, "give the excitation another name".to_owned());
             continue;
@@ -239,7 +239,7 @@ fn refuse_time(reader: &mut Reader, node: &Node, formulas: [&Formula; 2]) -> Opt
     None
 }
 
-/// Reports joints that an excitation would drive: they need its acceleration. Nothing then says what it is.
+/// Reports joints that an excitation would drive: they need its acceleration, which is not known.
 pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
     let names_one = |formula: &Formula| {
         formula.names().find_map(|(name, _)| match reader.symbol(name) {

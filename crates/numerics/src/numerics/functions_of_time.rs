@@ -7,9 +7,9 @@
 //! - *Held*, constant over each period: the same with sums of gₖ over periods.
 //! - *Rate*, |u̇| ≤ 1 and u(0) = 0: in terms of slopes the functional has the coefficients
 //!   cₖ = sₖ − gₖ tₖ₋₁ + dₖ Σⱼ﹥ₖ gⱼ, and slopeₖ = sign cₖ.
-//! - *Bounded rate*, |u| ≤ 1 and |u̇| ≤ ρ: a chain of values u₀ … u_N with |uₖ − uₖ₋₁| ≤ ρ dₖ, by dynamic programming. The
-//!   best value of the first cells as a function of uₖ is concave and piecewise linear: its breakpoints move apart by
-//!   ρ dₖ, and a linear term moves some of them over the maximum. Each is moved a few times in all.
+//! - *Bounded rate*, |u| ≤ 1 and |u̇| ≤ ρ: a chain of values u₀ … u_N with |uₖ − uₖ₋₁| ≤ ρ dₖ, by dynamic
+//!   programming. The best value of the first cells as a function of uₖ is concave and piecewise linear: its
+//!   breakpoints move apart by ρ dₖ, and a linear term moves some of them over the maximum, each a few times in all.
 //!
 //! Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265 has the first; the last is Bellman's principle.
 

@@ -57,7 +57,7 @@ impl FunctionEnds {
     pub fn note_steps(&mut self, row: usize, output: usize, error: f64) {
         let known = &mut self.steps[row * self.outputs + output];
         // NaN stays.
-        if known.is_none_or(|known| !(error <= known)) {
+        if known.is_none_or(|known| error > known || error.is_nan()) {
             *known = Some(error);
         }
     }

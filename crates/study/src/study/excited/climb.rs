@@ -1,9 +1,9 @@
 //! A climb to an end of an output over functions of the time and over the box: to where its gradient points.
 //!
-//! Of an output that is linear in the functions the first step ends there: the worst function has the sign of the kernel,
-//! h(t, τ) = ∂y(t)/∂u(τ), and the end is ∫ b |h| dτ (Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265). Else the
-//! kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops growing. A step
-//! that is worse is halved.
+//! Of an output that is linear in the functions the first step ends there: the worst function has the sign of the
+//! kernel, h(t, τ) = ∂y(t)/∂u(τ), and the end is ∫ b |h| dτ (Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265).
+//! Else the kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops
+//! growing. A step that is worse is halved.
 
 use crate::numerics::{Cell, FunctionClass, ParameterBox, value};
 use crate::simulate::Gradient;
@@ -155,7 +155,7 @@ impl Climb {
         self.best = Some((point, reached));
     }
 
-    /// The point to which a gradient points, what it promises there, and what cells cost of that.
+    /// The point to which a gradient points, its promise there, and the cost of cells.
     fn along(
         &self,
         found: &Gradient,

@@ -34,7 +34,7 @@ struct Bent {
     row: usize,
     output: usize,
     sign: f64,
-    /// Where the kernel under the first function names that function again: its value, upwards, and what is open.
+    /// Where the kernel under the first function names that function again: its value, upwards, and the rest.
     settled: Option<(f64, f64)>,
 }
 
@@ -194,14 +194,14 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Bent ends between those that are followed. Where the kernel settled at once, starts from elsewhere improve them by no
-    /// more than their neighbours, as far as is known. Others are climbed to from their neighbours' functions.
+    /// Bent ends between those that are followed. Where the kernel settled at once, starts from elsewhere improve them
+    /// by no more than their neighbours, as far as is known. Others are climbed to from their neighbours' functions.
     fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
         let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
         for (number, own) in some.iter().enumerate() {
-            let alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
+            let mut alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
             let after = alike.clone().find(|climb| climb.row > own.row);
-            let before = alike.filter(|climb| climb.row < own.row).last();
+            let before = alike.rfind(|climb| climb.row < own.row);
             let around = [before, after].into_iter().flatten();
             if let Some((reached, open)) = own.settled {
                 let improved = around.map(|climb| climb.improved).fold(0.0, f64::max);

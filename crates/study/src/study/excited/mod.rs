@@ -1,9 +1,9 @@
 //! Bounds over functions of the time: excitations of which only limits are known.
 //!
-//! As a constant, an excitation is an uncertain parameter, and methods bound it with the others. As a function, it is an
-//! input of equations that are compiled once more: a level and a slope in each step (`motions`). The gradient of an output in
-//! a row by all of them is its kernel, from one run backwards, and says which function is the worst (`climb`), in a class
-//! that `limits` evaluates. Every end is attained by a function (`ends`); it widens the methods' bands.
+//! As a constant, an excitation is an uncertain parameter, and methods bound it with the others. As a function, it is
+//! an input of equations that are compiled once more: a level and a slope in each step (`motions`). The gradient of an
+//! output in a row by all of them is its kernel, from one run backwards. It names the worst function (`climb`) of a
+//! class that `limits` evaluates. Every end is attained by a function (`ends`); it widens the methods' bands.
 
 mod climb;
 mod ends;
