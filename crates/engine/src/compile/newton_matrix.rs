@@ -335,7 +335,7 @@ mod tests {
             m.effect(JointFriction { on, coefficient, dry, coulomb, viscous, radius, length: None });
         }
         let system = m.build();
-        let (n, count) = (system.q.len(), system.lambda.len());
+        let n = system.q.len();
         let layout = Layout::of(&system);
         let mut graph = system.graph.clone();
         let (newton, inputs) =

@@ -39,9 +39,11 @@ pub fn unknown(table: &impl SymbolTable, name: &str, context: Context) -> NameEr
     }
 }
 
-/// Whether a parameter is one that the model says, and not one that follows from places of instances.
-fn is_said(parameter: &str) -> bool {
-    !parameter.contains(PLACE)
+/// Whether a parameter is one that the model says, and not one that follows from places of instances, or that an
+/// excitation is as a constant.
+fn is_said(table: &impl SymbolTable, parameter: &str) -> bool {
+    let owner = parameter.split('.').next().filter(|owner| owner.len() < parameter.len());
+    !parameter.contains(PLACE) && owner.is_none_or(|owner| table.trajectory(owner).is_none())
 }
 
 /// Why a name of an instance stands for nothing.
@@ -55,7 +57,7 @@ fn in_instance(table: &impl SymbolTable, name: &str, instance: &str, context: Co
     let start = instance.len() + 1;
     let rest = &name[start..];
     let within = |known: &str| Some(known.strip_prefix(instance)?.strip_prefix('.')?.to_owned());
-    let parameters = table.parameters().filter(|known| is_said(known)).filter_map(within);
+    let parameters = table.parameters().filter(|known| is_said(table, known)).filter_map(within);
     let known: Vec<String> = match context {
         Context::Constant => parameters.collect(),
         _ => parameters.chain(table.parts_of(instance)).chain(table.joints().filter_map(within)).collect(),
@@ -86,7 +88,7 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
         let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
         return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
     }
-    let parameters = table.parameters().filter(|known| is_said(known));
+    let parameters = table.parameters().filter(|known| is_said(table, known));
     let mut others: Vec<&str> = Vec::new();
     if context == Context::Output {
         others.extend(table.black_box_outputs());
