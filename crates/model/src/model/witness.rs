@@ -156,16 +156,15 @@ mod tests {
 
     #[test]
     fn files_of_other_models_are_refused() {
-        let mut model = load_str("m.yaml", MODEL, &[]).unwrap();
-        let error = |text: &str, model: &mut Description| {
-            Witness::parse(text).and_then(|witness| witness.replay(model)).unwrap_err().to_string()
+        let error = |text: &str| {
+            let mut model = load_str("m.yaml", MODEL, &[]).unwrap();
+            Witness::parse(text).and_then(|witness| witness.replay(&mut model)).unwrap_err().to_string()
         };
-        let model = &mut model;
-        assert_eq!(error("t,gust\n0,1\n1,1\n", model), "it has no column for the excitation `push`");
-        assert_eq!(error("t,push,gust\n0,1,1\n1,1,1\n", model), "the model has no excitation `gust`");
-        assert_eq!(error("t,push\n0,1\n1,x\n", model), "`x` in line 3 is not a number");
-        assert_eq!(error("t,push\n0,1\n", model), format!("`push`: {}", SplineError::TooFew));
-        assert_eq!(error("# parameter m = 1\nt,push\n0,1\n1,1\n", model), "the model has no parameter `m`");
-        assert_eq!(error("# parameter k = a\nt,push\n0,1\n1,1\n", model), "`a` in line 1 is not a number");
+        assert_eq!(error("t,gust\n0,1\n1,1\n"), "it has no column for the excitation `push`");
+        assert_eq!(error("t,push,gust\n0,1,1\n1,1,1\n"), "the model has no excitation `gust`");
+        assert_eq!(error("t,push\n0,1\n1,x\n"), "`x` in line 3 is not a number");
+        assert_eq!(error("t,push\n0,1\n"), format!("`push`: {}", SplineError::TooFew));
+        assert_eq!(error("# parameter m = 1\nt,push\n0,1\n1,1\n"), "the model has no parameter `m`");
+        assert_eq!(error("# parameter k = a\nt,push\n0,1\n1,1\n"), "`a` in line 1 is not a number");
     }
 }
