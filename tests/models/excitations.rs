@@ -48,6 +48,19 @@ fn integral(half_periods: usize) -> f64 {
     arch * (1.0 - decay.powi(half_periods as i32)) / (1.0 - decay)
 }
 
+/// A share of a negative middle is one of its size.
+#[test]
+fn limits_about_a_negative_middle_are_those_of_both_ends() {
+    let [share, ends] =
+        ["-20 N ± 10%", "[-22 N, -18 N]"].map(|within| run(&oscillator(&format!("{{ within: {within} }}"), "")).1);
+    let [share, ends] = [&share, &ends].map(|bounds| &bounds.outputs[0].bands[0]);
+    for row in 0..=PERIODS {
+        assert!((share.lower[row] - ends.lower[row]).abs() < 1e-12, "{row}");
+        assert!((share.upper[row] - ends.upper[row]).abs() < 1e-12, "{row}");
+    }
+    assert!(share.upper[PERIODS] - share.lower[PERIODS] > 1e-2);
+}
+
 #[test]
 fn a_bounded_force_moves_an_oscillator_by_the_integral_of_its_kernel() {
     let (_, bounds, summary) = run(&oscillator("{ within: ± 3 N }", ""));

@@ -1,6 +1,6 @@
 //! `excitations:`.
 
-use symdiff::{Binary, Formula};
+use symdiff::{Binary, Formula, Unary};
 
 use super::names::Reader;
 use crate::elements::{Class, Excitation, Timing, Trajectory};
@@ -163,7 +163,9 @@ fn around(
     };
     let percent = deviation.scalar().and_then(|scalar| number_and_unit(&scalar.text));
     let reach = match (percent.filter(|(_, unit, _)| *unit == "%"), value) {
-        (Some((percent, ..)), Some(_)) => middle.combined(Binary::Mul, &Formula::number(percent / 100.0)),
+        (Some((percent, ..)), Some(_)) => {
+            middle.clone().applied(Unary::Abs).combined(Binary::Mul, &Formula::number(percent / 100.0))
+        }
         _ => any_of(reader, deviation, dimension)?,
     };
     Some(Limits { middle, reach })
