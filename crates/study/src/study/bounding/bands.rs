@@ -3,7 +3,7 @@
 
 use super::{Bounded, Outcome};
 use crate::methods::Method;
-use crate::numerics::{BandError, EMPTY, Range, carries, time_error, time_error_certified};
+use crate::numerics::{BandError, EMPTY, Range, carries, largest, time_error, time_error_certified};
 use crate::results::Band;
 use crate::study::problem::Study;
 
@@ -49,7 +49,7 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
         if let Some(functions) = functions {
             for row in 0..rows {
                 surrogate[row] += functions.open(row, output);
-                time[row] = larger(time[row], functions.steps(row, output));
+                time[row] = largest([time[row], functions.steps(row, output)]);
                 span = span.max(found[row].width());
             }
         }
@@ -87,11 +87,6 @@ pub fn as_constants(bounded: &Bounded, output: usize, rows: usize) -> f64 {
     let Some((_, outcome)) = bounded.methods.first() else { return f64::NAN };
     let of_row = |row: usize| outcome.result.bands[output][row].with(bounded.seen.range(row, output)).width();
     (0..rows).map(of_row).fold(0.0, f64::max)
-}
-
-/// The larger one; NaN wins.
-fn larger(a: f64, b: f64) -> f64 {
-    if a >= b || a.is_nan() { a } else { b }
 }
 
 /// Flags rows in which two methods exclude each other: one of them is wrong, and nothing tells which. What is proven is

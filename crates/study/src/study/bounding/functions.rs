@@ -1,6 +1,6 @@
 //! Ends of outputs over functions of the time: what a search found of excitations of which only limits are known.
 
-use crate::numerics::{Cell, Range, Sample};
+use crate::numerics::{Cell, Range, Sample, largest};
 
 /// An end that a function attains.
 #[derive(Clone, Copy, Debug)]
@@ -56,10 +56,7 @@ impl FunctionEnds {
     /// Notes the error of the steps of an output in a row; the largest counts.
     pub fn note_steps(&mut self, row: usize, output: usize, error: f64) {
         let known = &mut self.steps[row * self.outputs + output];
-        // NaN stays.
-        if known.is_none_or(|known| error > known || error.is_nan()) {
-            *known = Some(error);
-        }
+        *known = Some(largest(known.iter().copied().chain([error])));
     }
 
     /// Notes a function that moves an output this far from the middle of all limits, if none moves it further.
@@ -80,9 +77,9 @@ impl FunctionEnds {
             for row in 0..rows {
                 let after = measured.partition_point(|(own, _)| *own < row);
                 let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
-                let errors = around.filter_map(|number| measured.get(number)).map(|(_, error)| *error);
-                // NaN wins, and so does nothing.
-                let worse = errors.reduce(|a, b| if a >= b || a.is_nan() { a } else { b });
+                let errors: Vec<f64> =
+                    around.filter_map(|number| measured.get(number)).map(|(_, error)| *error).collect();
+                let worse = (!errors.is_empty()).then(|| largest(errors));
                 self.steps[at(row)] = Some(self.steps[at(row)].or(worse).unwrap_or(f64::NAN));
             }
         }
@@ -94,15 +91,29 @@ impl FunctionEnds {
         Range { lower: lower.value, upper: upper.value }
     }
 
-    /// How much further one of them may be.
+    /// How much further one of them may be; NaN where that is not known of both.
     pub fn open(&self, row: usize, output: usize) -> f64 {
-        let [lower, upper] = self.ends[row * self.outputs + output];
-        // NaN stays.
-        if lower.open >= upper.open { lower.open } else { upper.open }
+        largest(self.ends[row * self.outputs + output].map(|end| end.open))
     }
 
     /// Error of the steps under such functions.
     pub fn steps(&self, row: usize, output: usize) -> f64 {
         self.steps[row * self.outputs + output].unwrap_or(f64::NAN)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_end_of_which_nothing_is_known_is_not_covered_by_the_other() {
+        for known in [false, true] {
+            let mut ends = FunctionEnds::new(1, 1, Vec::new(), Vec::new());
+            ends.note(0, 0, known, FunctionEnd { value: 1.0, open: 0.5 });
+            assert!(ends.open(0, 0).is_nan(), "{known}");
+            ends.note(0, 0, !known, FunctionEnd { value: -1.0, open: 0.25 });
+            assert_eq!(ends.open(0, 0), 0.5);
+        }
     }
 }

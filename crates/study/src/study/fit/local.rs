@@ -6,6 +6,7 @@ use super::readings::{Readings, Values};
 use super::{FitError, Measurements};
 use crate::numerics::{
     Design, ParameterBox, SAFETY_OF_SURROGATE, SparseBasis, SparseWork, Surrogate, SurrogateWork, Tubes, corners,
+    largest,
 };
 
 /// Most nodes of a polynomial.
@@ -160,10 +161,7 @@ impl Local {
         basis.values(held_out, &coefficients, &mut found, &mut SparseWork::default());
         let error = |index: usize| {
             let differences = found[index * held_out.len()..][..held_out.len()].iter().zip(&direct.values[index]);
-            let most = differences.fold(0.0, |most: f64, (a, b)| {
-                let own = (a - b).abs();
-                if own.is_nan() { f64::NAN } else { most.max(own) }
-            });
+            let most = largest(differences.map(|(a, b)| a - b));
             SAFETY_OF_SURROGATE * most + nodes.interpolation[index].max(direct.interpolation[index])
         };
         let errors: Vec<f64> = (0..direct.values.len()).map(error).collect();
