@@ -311,6 +311,11 @@ pub enum ConditionOf {
 }
 
 impl System {
+    /// Symbols of all inputs: level and slope of each.
+    pub fn input_symbols(&self) -> impl Iterator<Item = Expr> {
+        self.inputs.iter().flat_map(|input| input.symbols)
+    }
+
     /// All equations, outputs and start values.
     pub fn roots(&self) -> Vec<Expr> {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use symdiff::{Expr, Input};
+use symdiff::{Expr, Input, Tile};
 
 use crate::assemble::System;
 
@@ -68,6 +68,11 @@ impl Layout {
         self.q.start..self.lambda.end
     }
 
+    /// Sets levels and slopes of excitations that are functions, lane by lane.
+    pub fn set_inputs(&self, tile: &mut Tile, values: &[f64]) {
+        tile.block_mut(self.inputs.clone()).copy_from_slice(values);
+    }
+
     /// The system's symbols as inputs: parameters at stage 0, everything else at stage 1.
     pub(super) fn inputs(&self, system: &System) -> Vec<Input> {
         let mut inputs = Vec::new();
@@ -80,7 +85,7 @@ impl Layout {
         };
         let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
         add(&parameters, self.parameters.start, 0);
-        let of_inputs: Vec<Expr> = system.inputs.iter().flat_map(|input| input.symbols).collect();
+        let of_inputs: Vec<Expr> = system.input_symbols().collect();
         add(&of_inputs, self.inputs.start, 1);
         add(&[system.time], self.time, 1);
         add(&system.q, self.q.start, 1);

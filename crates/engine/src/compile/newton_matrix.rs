@@ -107,7 +107,7 @@ impl StepSymbols {
         };
         let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
         add(&parameters, layout.parameters.start, SAMPLE);
-        let of_inputs: Vec<Expr> = system.inputs.iter().flat_map(|input| input.symbols).collect();
+        let of_inputs: Vec<Expr> = system.input_symbols().collect();
         add(&of_inputs, layout.inputs.start, STEP);
         add(&[self.h], layout.step, STEP_SIZE);
         add(&[self.t], layout.time, STEP);

@@ -85,7 +85,7 @@ impl<'s> Sampling<'s> {
         let state = layout.q.start * width..layout.lambda.end * width;
         let tile = self.assembly.tile_mut();
         tile.values_mut()[state.clone()].copy_from_slice(&stepper.tile().values()[state]);
-        tile.block_mut(layout.inputs.clone()).copy_from_slice(stepper.tile().block(layout.inputs.clone()));
+        layout.set_inputs(tile, stepper.tile().block(layout.inputs.clone()));
         tile.lane_mut(layout.time).fill(time);
         self.assembly.sample();
         self.assembly.accelerate();

@@ -164,7 +164,7 @@ fn outputs_in(system: &System, layout: &Layout, state: &[f64], which: Range<usiz
     let registers = [&layout.q, &layout.v, &layout.w, &layout.lambda].into_iter().flat_map(Clone::clone);
     let values = symbols.zip(registers.map(|register| state[register]));
     let parameters = system.parameters.iter().map(|parameter| parameter.symbol).zip(sample.iter().copied());
-    let inputs = system.inputs.iter().flat_map(|input| input.symbols).zip(layout.inputs.clone());
+    let inputs = system.input_symbols().zip(layout.inputs.clone());
     let inputs = inputs.map(|(symbol, register)| (symbol, state[register]));
     let values: FxHashMap<Expr, f64> = values.chain(parameters).chain(inputs).chain([(system.time, 0.0)]).collect();
     let outputs: Vec<Expr> = system.outputs[which].iter().map(|output| output.expr).collect();

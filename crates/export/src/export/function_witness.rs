@@ -1,6 +1,7 @@
 //! `witness.NAME.csv`: the functions of excitations under which an output goes the furthest.
 
 use crate::grammar::display_unit::ShownUnit;
+use crate::model::deviation_of;
 use crate::results::{Bounds, FunctionWitness, ParameterSummary};
 
 use super::csv::number;
@@ -11,11 +12,11 @@ pub fn function_witness_csv(bounds: &Bounds, witness: &FunctionWitness, paramete
     let output = &bounds.outputs[witness.output];
     let unit = ShownUnit::of(&output.display, &output.unit);
     let (value, time) = (number(unit.of_si(witness.value)), number(witness.time));
-    let mut text = format!("# {} is {} at t = {time} s under these functions\n", output.name, with(&value, unit.text));
+    let value = format!("{value} {}", unit.text);
+    let mut text = format!("# {} is {} at t = {time} s under these functions\n", output.name, value.trim_end());
     for (parameter, value) in parameters.iter().zip(&witness.parameters) {
         // What an excitation is as a constant has no value here.
-        let is_excitation =
-            witness.functions.iter().any(|own| parameter.name.strip_prefix(&own.name) == Some(".deviation"));
+        let is_excitation = witness.functions.iter().any(|own| parameter.name == deviation_of(&own.name));
         if !is_excitation {
             text += &format!("# parameter {} = {}\n", parameter.name, number(*value));
         }
@@ -33,11 +34,6 @@ pub fn function_witness_csv(bounds: &Bounds, witness: &FunctionWitness, paramete
         text += "\n";
     }
     text
-}
-
-/// A number with its unit, if it has one.
-fn with(value: &str, unit: &str) -> String {
-    if unit.is_empty() { value.to_owned() } else { format!("{value} {unit}") }
 }
 
 /// The value at a time, on the straight line between the points around it.

@@ -13,13 +13,11 @@ use crate::grammar::unit::number_and_unit;
 use crate::grammar::{Context, Symbol};
 use crate::keys;
 use crate::model::description::{Parameter, ParameterValue};
+use crate::model::parameters::deviation_of;
 use crate::model::tuning::TUNING;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
-
-/// Ending of the name of the parameter that an excitation is as a constant.
-pub(super) const SUFFIX: &str = ".deviation";
 
 /// Sections whose names formulas may use too.
 const OTHERS: [&str; 6] = ["parameters", "bodies", "joints", "effects", "states", "trajectories"];
@@ -47,7 +45,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
 /// Adds the parameter that an excitation is as a constant, which no formula of the file evaluates.
 fn add_deviation(reader: &mut Reader, name: &str) {
     let value = ParameterValue::Interval { nominal: 0.0, lower: -1.0, upper: 1.0 };
-    let parameter = Parameter { name: format!("{name}{SUFFIX}"), unit: String::new(), value };
+    let parameter = Parameter { name: deviation_of(name), unit: String::new(), value };
     reader.model.parameters.push(parameter);
     reader.kinds.push(Kind::parameter(Dimension::NUMBER));
     reader.varies.push(true);
@@ -107,7 +105,7 @@ fn excitation(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
         }
     };
     let Limits { middle, reach } = limits;
-    let deviation = Formula::name(&format!("{}{SUFFIX}", entry.key));
+    let deviation = Formula::name(&deviation_of(&entry.key));
     let timing = Timing::Within(Box::new(Excitation { deviation, middle, reach, class }));
     Some(Trajectory { name: entry.key.clone(), points: Vec::new(), timing, dimension })
 }
@@ -275,7 +273,7 @@ pub fn unused(reader: &mut Reader, fields: &Fields) -> Vec<Diagnostic> {
         if reader.model.trajectories[index].excitation().is_none() {
             continue;
         }
-        reader.idle.insert(format!("{}{SUFFIX}", entry.key));
+        reader.idle.insert(deviation_of(&entry.key));
         let message = format!("excitation `{}` is used nowhere", clip(&entry.key));
         warnings.push(Diagnostic::warning(entry.key_span.clone(), message));
     }

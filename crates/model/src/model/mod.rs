@@ -52,5 +52,6 @@ pub use crate::keys::{SCHEMA_VERSION, schema};
 pub use description::*;
 pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
 pub use overlay::read_overlay;
+pub use parameters::deviation_of;
 pub use tuning::tuning;
 pub use witness::{Witness, WitnessError};

@@ -8,6 +8,8 @@ pub(super) mod law;
 mod order;
 mod spec;
 
+pub use dependent::deviation_of;
+
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;

@@ -14,6 +14,7 @@ use symdiff::{Formula, Spline, SplineError, Unary};
 
 use crate::elements::Timing;
 use crate::model::description::{Description, ParameterValue};
+use crate::model::parameters::deviation_of;
 
 /// Before a parameter's value.
 const PARAMETER: &str = "# parameter ";
@@ -117,7 +118,7 @@ impl Witness {
             let found = model.trajectories.iter_mut().find(|own| own.name == *name);
             let own = found.filter(|own| own.excitation().is_some()).ok_or_else(|| unknown("excitation", name))?;
             own.timing = Timing::Given(Formula::name("t").applied(Unary::Spline(*spline, 0)));
-            let deviation = format!("{name}{}", super::excitations::SUFFIX);
+            let deviation = deviation_of(name);
             let constants = model.parameters.iter_mut().filter(|own| own.name == deviation);
             constants.for_each(|own| own.value = ParameterValue::Formula(Formula::number(0.0)));
         }

@@ -5,10 +5,10 @@
 //! worse than Σ|c|; it is the splitting that makes it tight. The box with the highest bound is split first, so at any
 //! time that bound holds for the whole, and the largest corner seen is attained.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::range::{Enclosed, Range};
+use super::ranked::Ranked;
 use super::tensor::{Matrix, Separable, Work};
 
 /// A bound is good when it is this close to an attained value, relative to the width of the attained range.
@@ -27,33 +27,10 @@ pub(super) struct Bernstein {
     rounding: f64,
     max_splits: usize,
     work: Work,
-    boxes: BinaryHeap<Part>,
+    /// The polynomial's coefficients on parts of the domain, by the largest of each.
+    boxes: BinaryHeap<Ranked<Vec<f64>>>,
     /// Coefficients of boxes that are done with, to be used again.
     spare: Vec<Vec<f64>>,
-}
-
-/// A part of the domain: the polynomial's coefficients on it, and the largest.
-#[derive(Clone, Debug)]
-struct Part {
-    bound: f64,
-    coefficients: Vec<f64>,
-}
-
-impl PartialEq for Part {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Part {}
-impl PartialOrd for Part {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Part {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.bound.total_cmp(&other.bound)
-    }
 }
 
 impl Bernstein {
@@ -93,14 +70,14 @@ impl Bernstein {
         self.keep(whole, attained);
         let mut splits = 0;
         while let Some(part) = self.boxes.pop() {
-            let close = part.bound - attained.upper <= TOLERANCE * attained.width();
+            let close = part.rank - attained.upper <= TOLERANCE * attained.width();
             if close || splits == self.max_splits {
-                let rest = self.boxes.drain().map(|part| part.coefficients);
-                self.spare.extend(rest.chain([part.coefficients]));
-                return part.bound.max(attained.upper);
+                let rest = self.boxes.drain().map(|part| part.item);
+                self.spare.extend(rest.chain([part.item]));
+                return part.rank.max(attained.upper);
             }
             splits += 1;
-            let mut right = part.coefficients;
+            let mut right = part.item;
             let mut left = self.spare.pop().unwrap_or_default();
             halve(&self.orders, self.axis_to_split(&right), &mut right, &mut left);
             self.keep(left, attained);
@@ -118,7 +95,7 @@ impl Bernstein {
         }
         let bound = coefficients.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if bound > attained.upper {
-            self.boxes.push(Part { bound, coefficients });
+            self.boxes.push(Ranked { rank: bound, item: coefficients });
         } else {
             self.spare.push(coefficients);
         }

@@ -39,6 +39,7 @@ mod paving;
 mod peak;
 mod polynomial_range;
 mod range;
+mod ranked;
 mod row_space;
 mod samples;
 mod scan;

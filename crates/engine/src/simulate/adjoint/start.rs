@@ -61,8 +61,7 @@ impl<'s> StartAdjoints<'s> {
 
     /// Sets the inputs.
     pub fn set_inputs(&mut self, values: &[f64]) {
-        let inputs = self.program.layout.inputs.clone();
-        self.assembly.tile_mut().block_mut(inputs).copy_from_slice(values);
+        self.program.layout.set_inputs(self.assembly.tile_mut(), values);
     }
 
     fn set_values(&mut self, first: usize, values: &[f64]) {

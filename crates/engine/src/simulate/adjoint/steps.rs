@@ -58,10 +58,10 @@ impl<'s> Steps<'s> {
         let layout = &self.simulator.program.layout;
         let (h, end) = self.steps[step];
         let values = inputs.values(inputs.cell(end));
-        self.stepper.tile_mut().block_mut(layout.inputs.clone()).copy_from_slice(values);
+        layout.set_inputs(self.stepper.tile_mut(), values);
         if step == 0 {
             let tile = assembly.tile_mut();
-            tile.block_mut(layout.inputs.clone()).copy_from_slice(values);
+            layout.set_inputs(tile, values);
             tile.block_mut(layout.state()).copy_from_slice(self.stepper.tile().block(layout.state()));
             tile.lane_mut(layout.time).fill(end - h);
             assembly.accelerate();
@@ -195,7 +195,7 @@ impl<'s> StepAdjoints<'s> {
         let (state, after, unchanged) = self.path.around(step);
         if let Some(inputs) = inputs {
             self.start.set_inputs(inputs.values(cell));
-            self.tile.block_mut(layout.inputs.clone()).copy_from_slice(inputs.values(cell));
+            layout.set_inputs(&mut self.tile, inputs.values(cell));
         }
         if let Some(unchanged) = unchanged {
             // As the path samples: new accelerations of the new states, which follow from the old state.

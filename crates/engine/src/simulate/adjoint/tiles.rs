@@ -78,51 +78,24 @@ pub fn gradients(
     wanted: &[Wanted],
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
-    of_tiles(simulator, schedule, samples, wanted, Under { functions: None, backwards: true }, interruption)
+    let under = Under { functions: None, backwards: true };
+    gradients_under(simulator, schedule, samples, wanted, under, interruption)
 }
 
-/// The same under functions of the time, one for each gradient, and by these.
-///
-/// # Errors
-/// As for [`gradients`].
-pub fn gradients_of_functions(
-    simulator: &Simulator,
-    schedule: &Schedule,
-    samples: &[Sample],
-    wanted: &[Wanted],
-    functions: Functions<'_>,
-    interruption: Interruption<'_>,
-) -> Result<Vec<Gradient>, NoGradient> {
-    let under = Under { functions: Some(functions), backwards: true };
-    of_tiles(simulator, schedule, samples, wanted, under, interruption)
-}
-
-/// The values alone, which cost a simulation; NaN where a step does not converge.
-///
-/// # Errors
-/// As for [`gradients`].
-pub fn values_of_functions(
-    simulator: &Simulator,
-    schedule: &Schedule,
-    samples: &[Sample],
-    wanted: &[Wanted],
-    functions: Functions<'_>,
-    interruption: Interruption<'_>,
-) -> Result<Vec<f64>, NoGradient> {
-    let under = Under { functions: Some(functions), backwards: false };
-    let found = of_tiles(simulator, schedule, samples, wanted, under, interruption)?;
-    Ok(found.into_iter().map(|found| found.value).collect())
-}
-
-/// What motions are under, and whether they are followed backwards.
+/// Functions of the time that motions are under, and whether these are followed backwards.
 #[derive(Clone, Copy)]
-struct Under<'f> {
-    functions: Option<Functions<'f>>,
-    backwards: bool,
+pub struct Under<'f> {
+    /// One for each gradient, which is by these too.
+    pub functions: Option<Functions<'f>>,
+    /// Else the outputs alone are known, which cost a simulation, and derivatives are zero.
+    pub backwards: bool,
 }
 
-/// Lanes of tiles.
-fn of_tiles(
+/// Gradients under functions of the time.
+///
+/// # Errors
+/// As for [`gradients`].
+pub fn gradients_under(
     simulator: &Simulator,
     schedule: &Schedule,
     samples: &[Sample],
@@ -188,7 +161,7 @@ impl TileOf<'_> {
     /// Where a lane cannot be assembled.
     fn gradients(mut self) -> Result<Vec<Gradient>, NoGradient> {
         let mut values = vec![0.0; self.lanes.len()];
-        // What is lost is noted while the functions are borrowed.
+        // Lost lanes are noted while the functions are borrowed.
         let inputs = self.inputs.take();
         let (by_parameters, kernel) = match self.schedule.integration {
             Integration::Plain => self.of_scheme(1, &mut values, inputs.as_ref()),

@@ -75,8 +75,7 @@ impl<'s> RowClosure<'s> {
 
     /// Sets the inputs.
     pub fn set_inputs(&mut self, values: &[f64]) {
-        let inputs = self.program.layout.inputs.clone();
-        self.assembly.tile_mut().block_mut(inputs).copy_from_slice(values);
+        self.program.layout.set_inputs(self.assembly.tile_mut(), values);
     }
 
     /// The lanes' times, s.

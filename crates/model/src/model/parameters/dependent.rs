@@ -12,11 +12,16 @@ use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Entry;
 
-const SUFFIX: &str = ".deviation";
+const DEVIATION: &str = ".deviation";
+
+/// Name of the parameter by which something of a name deviates.
+pub fn deviation_of(name: &str) -> String {
+    format!("{name}{DEVIATION}")
+}
 
 /// The place of the parameter whose deviation has this name.
 pub fn owner(entries: &[Entry], name: &str) -> Option<usize> {
-    let name = name.strip_suffix(SUFFIX)?;
+    let name = name.strip_suffix(DEVIATION)?;
     entries.iter().position(|entry| entry.key == name)
 }
 
@@ -30,7 +35,7 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
         if !(draft.spec.is_uncertain() && !draft.spec.contradictory && draft.uses.iter().any(|&used| varies[used])) {
             continue;
         }
-        let name = format!("{}{SUFFIX}", reader.model.parameters[index].name);
+        let name = deviation_of(&reader.model.parameters[index].name);
         let set = overrides.iter().find(|(wanted, _)| wanted.name == name);
         let (name_span, unit_node) = (draft.name_span.clone(), draft.spec.unit.clone());
         let mut spec = Spec::of_unit(unit_node);
@@ -48,9 +53,9 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
         drafts[index].deviation = Some(deviation);
         drafts[index].uses.push(deviation);
     }
-    for (wanted, span) in overrides.iter().filter(|(wanted, _)| wanted.name.ends_with(SUFFIX)) {
+    for (wanted, span) in overrides.iter().filter(|(wanted, _)| wanted.name.ends_with(DEVIATION)) {
         if !reader.model.parameters.iter().any(|known| known.name == wanted.name) {
-            let message = format!("`{}` has no deviation of its own", wanted.name.trim_end_matches(SUFFIX));
+            let message = format!("`{}` has no deviation of its own", wanted.name.trim_end_matches(DEVIATION));
             let help = "a parameter with a tolerance whose value depends on an uncertain one has".to_owned();
             reader.error(span.clone(), message, help);
         }

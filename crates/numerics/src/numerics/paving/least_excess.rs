@@ -1,11 +1,11 @@
 //! The least by which some quantity misses its interval, over the whole box.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::Tubes;
 use super::parts::{Part, Shape};
 use crate::numerics::range::Range;
+use crate::numerics::ranked::Ranked;
 
 /// The least largest excess.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,28 +18,8 @@ pub struct LeastExcess {
     pub at: Vec<f64>,
 }
 
-/// A box by the least excess that is possible on it: the heap has the least on top.
-struct Candidate {
-    bound: f64,
-    part: Part,
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Candidate {}
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound)
-    }
-}
+/// A box by the least excess that is possible on it, with its sign changed: the heap has the least on top.
+type Candidate = Ranked<Part>;
 
 /// Minimises, over the box, the largest excess of a quantity beyond its outer interval, in units of its scale: by
 /// branch and bound to a tolerance, or over so many boxes.
@@ -55,7 +35,8 @@ pub fn least_excess(
     let whole = Part::whole(&shape, tubes);
     heap.extend(examined(whole, &shape, tubes, &mut best));
     for _ in 0..boxes {
-        let Some(Candidate { bound, part }) = heap.pop() else { break };
+        let Some(Candidate { rank, item: part }) = heap.pop() else { break };
+        let bound = -rank;
         best.lower = bound;
         if best.upper - bound <= tolerance || interrupted() {
             return best;
@@ -64,7 +45,7 @@ pub fn least_excess(
             heap.extend(examined(half, &shape, tubes, &mut best));
         }
     }
-    best.lower = heap.peek().map_or(best.upper, |least| least.bound.min(best.upper));
+    best.lower = heap.peek().map_or(best.upper, |least| (-least.rank).min(best.upper));
     best
 }
 
@@ -86,5 +67,5 @@ fn examined(part: Part, shape: &Shape, tubes: &Tubes, best: &mut LeastExcess) ->
     }
     // A quantity that has less everywhere than another has at least is never the largest.
     let part = part.only(shape, |row, range| most(row, range) >= bound);
-    (bound < best.upper).then_some(Candidate { bound, part })
+    (bound < best.upper).then_some(Candidate { rank: -bound, item: part })
 }

@@ -1,6 +1,6 @@
 //! A box with the Bernstein coefficients of the quantities that are not decided on it.
 
-use super::Tubes;
+use super::{Tubes, volume};
 use crate::numerics::bernstein::{from_chebyshev, halve};
 use crate::numerics::range::Range;
 use crate::numerics::tensor::{Separable, Work};
@@ -66,7 +66,7 @@ impl Part {
     /// As a share of the whole box.
     pub fn volume(&self) -> f64 {
         let (lower, upper) = self.ends.split_at(self.ends.len() / 2);
-        lower.iter().zip(upper).map(|(lower, upper)| 0.5 * (upper - lower)).product()
+        volume(lower, upper)
     }
 
     pub fn middle(&self) -> Vec<f64> {

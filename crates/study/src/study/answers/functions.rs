@@ -63,10 +63,10 @@ fn of_excitations(study: &Study, functions: &FunctionEnds, worst: &WorstFunction
             }
             let [from, until] = [begin, to].map(|time| limits.value_at(excitation, *cell, time));
             let jumps = points.last().is_some_and(|(_, value)| (value - from).abs() > STRAIGHT * from.abs());
-            match points.is_empty() || jumps {
-                true if points.is_empty() => points.push((0.0, from)),
-                true => points.push((begin + JUMP * duration, from)),
-                false => {}
+            if points.is_empty() {
+                points.push((0.0, from));
+            } else if jumps {
+                points.push((begin + JUMP * duration, from));
             }
             points.push((to, until));
             begin = to;

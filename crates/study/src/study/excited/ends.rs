@@ -119,8 +119,7 @@ impl Search<'_, '_> {
     /// Follows some of the bent ends, evenly spread over the rows of an output's end; the others learn from these.
     fn follow_bent(&mut self) -> Result<(), SimulationError> {
         let mut bent = std::mem::take(&mut self.bent);
-        bent.sort_by(|a, b| (a.output, a.row).cmp(&(b.output, b.row)).then(a.sign.total_cmp(&b.sign)));
-        bent.sort_by(|a, b| a.output.cmp(&b.output).then(a.sign.total_cmp(&b.sign)));
+        bent.sort_by(|a, b| a.output.cmp(&b.output).then(a.sign.total_cmp(&b.sign)).then(a.row.cmp(&b.row)));
         // The last row of each output's end, and every so many before it.
         let (mut followed, mut between): (Vec<Climb>, Vec<Bent>) = (Vec::new(), Vec::new());
         for of_end in bent.chunk_by(|a, b| a.output == b.output && a.sign == b.sign) {

@@ -16,18 +16,15 @@ use super::formulation::compiled;
 use super::problem::Study;
 use crate::assemble::Questions;
 use crate::methods::MethodResult;
-use crate::model::{Formulation, Trajectory};
+use crate::model::{Formulation, Trajectory, deviation_of};
 use crate::simulate::{Schedule, SimulationError};
 use ends::ends;
 pub(super) use limits::Limits;
 
-/// Ending of the name of the parameter that an excitation is as a constant.
-const DEVIATION: &str = ".deviation";
-
 /// Whether something of the study is an excitation.
 pub(super) fn is_excited(study: &Study) -> bool {
     let is_input = |own: &Trajectory| {
-        let name = format!("{}{DEVIATION}", own.name);
+        let name = deviation_of(&own.name);
         own.excitation().is_some() && study.simulator.system.parameters.iter().any(|known| known.name == name)
     };
     !study.simulator.system.analysis.visits() && study.description.trajectories.iter().any(is_input)

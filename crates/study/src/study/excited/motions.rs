@@ -5,8 +5,7 @@ use super::limits::Limits;
 use crate::model::Excitation;
 use crate::numerics::{FunctionClass, Sample};
 use crate::simulate::{
-    Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Wanted, gradients_of_functions,
-    values_of_functions,
+    Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Under, Wanted, gradients_under,
 };
 use crate::study::problem::Study;
 
@@ -79,11 +78,8 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     /// # Errors
     /// Where a sample cannot be assembled, and at an interruption.
     pub fn gradients(&mut self, asked: &[Asked]) -> Result<Vec<Gradient>, SimulationError> {
-        let (samples, wanted, values) = self.split(asked);
-        let functions = Functions { ends: &self.ends, values: &values };
-        let interruption = self.study.interruption;
-        let found = gradients_of_functions(self.simulator, &self.schedule, &samples, &wanted, functions, interruption);
-        found.map_err(simulation)
+        self.count += asked.len();
+        self.run(&self.schedule, asked, true)
     }
 
     /// Values alone, with each step divided into so many; NaN where a step does not converge.
@@ -91,19 +87,19 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     /// # Errors
     /// As for gradients.
     pub fn values(&mut self, asked: &[Asked], parts: usize) -> Result<Vec<f64>, SimulationError> {
-        let (samples, wanted, values) = self.split(asked);
-        let functions = Functions { ends: &self.ends, values: &values };
-        let schedule = self.schedule.refined(parts);
-        let interruption = self.study.interruption;
-        values_of_functions(self.simulator, &schedule, &samples, &wanted, functions, interruption).map_err(simulation)
+        self.count += asked.len();
+        let found = self.run(&self.schedule.refined(parts), asked, false)?;
+        Ok(found.into_iter().map(|found| found.value).collect())
     }
 
-    fn split(&mut self, asked: &[Asked]) -> (Vec<Sample>, Vec<Wanted>, Vec<Vec<f64>>) {
-        self.count += asked.len();
-        let samples = asked.iter().map(|(point, ..)| self.sample(point)).collect();
+    fn run(&self, schedule: &Schedule, asked: &[Asked], backwards: bool) -> Result<Vec<Gradient>, SimulationError> {
+        let samples: Vec<Sample> = asked.iter().map(|(point, ..)| self.sample(point)).collect();
         let wanted = |(sample, &(_, row, output)): (usize, &Asked)| Wanted { sample, row, output };
-        let values = asked.iter().map(|(point, ..)| point.inputs()).collect();
-        (samples, asked.iter().enumerate().map(wanted).collect(), values)
+        let wanted: Vec<Wanted> = asked.iter().enumerate().map(wanted).collect();
+        let values: Vec<Vec<f64>> = asked.iter().map(|(point, ..)| point.inputs()).collect();
+        let under = Under { functions: Some(Functions { ends: &self.ends, values: &values }), backwards };
+        let found = gradients_under(self.simulator, schedule, &samples, &wanted, under, self.study.interruption);
+        found.map_err(simulation)
     }
 }
 

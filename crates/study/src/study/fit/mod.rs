@@ -81,7 +81,8 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
         (is_empty, errors, set) = (found.set.is_none(), found.errors, found.set);
     }
     (options.stage)("least squares");
-    let minimum = minimum(model, measurements, &prior, around(set.as_ref(), k), options)?;
+    let hull = set.as_ref().map(Set::hull);
+    let minimum = minimum(model, measurements, &prior, around(hull.as_deref(), k), options)?;
     simulations += minimum.simulations;
     let estimate = polished(model, measurements, &prior, &minimum, options)?;
     let covariance = linearised(&minimum.local, measurements, &estimate.eta).covariance();
@@ -94,7 +95,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
         None
     };
     let errors = errors.unwrap_or_else(|| minimum.local.errors.clone());
-    let (inner, hull) = (set.as_ref().and_then(Set::inner_hull), set.as_ref().map(Set::hull));
+    let inner = set.as_ref().and_then(Set::inner_hull);
     let middle = set.as_ref().map(Set::middle);
     let names: Vec<String> = parameters.iter().map(|own| own.name.clone()).collect();
     let of = |axis: usize| {
@@ -120,15 +121,16 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
         residual: estimate.residual,
         rows,
         correlations: covariance.correlations,
-        set: set.map(|set| set.described(&prior, &names)),
+        set: set.zip(hull).map(|(set, hull)| set.described(&prior, &names, &hull)),
         unexplained: contradiction,
         simulations,
     })
 }
 
-/// Where least squares begin: about the consistent set, which their estimate may lie outside of, or the model's box.
-fn around(set: Option<&Set>, k: usize) -> Frame {
-    let Some(hull) = set.map(Set::hull) else { return Frame::whole(k) };
+/// Where least squares begin: about the hull of the consistent set, which their estimate may lie outside of, or the
+/// model's box.
+fn around(hull: Option<&[[f64; 2]]>, k: usize) -> Frame {
+    let Some(hull) = hull else { return Frame::whole(k) };
     let middle: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect();
     let halves: Vec<f64> = hull.iter().map(|[lower, upper]| 0.5 * AROUND * (upper - lower)).collect();
     Frame::around(&middle, &halves)

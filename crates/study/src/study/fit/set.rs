@@ -207,14 +207,18 @@ fn extents<'b>(boxes: impl Iterator<Item = (&'b [f64], &'b [f64])>, directions: 
     extents
 }
 
-/// Axes along the principal ones of a paving, as long as it is.
-fn fitted(frame: &Frame, paving: &Paving) -> Frame {
-    let k = frame.center.len();
-    let (_, covariance) = moments(paving, k);
-    let eigen = (&frame.axes * covariance * frame.axes.transpose()).symmetric_eigen();
-    let directions = eigen.eigenvectors;
+/// Principal axes of a paving in ξ, as columns, and its extent along each from the frame's center.
+fn principal(frame: &Frame, paving: &Paving) -> (DMatrix<f64>, Vec<[f64; 2]>) {
+    let (_, covariance) = moments(paving, frame.center.len());
+    let directions = (&frame.axes * covariance * frame.axes.transpose()).symmetric_eigen().eigenvectors;
     // v · ξ = v · center + (axesᵀ v) · η
     let extents = extents(outer(paving), &(frame.axes.transpose() * &directions));
+    (directions, extents)
+}
+
+/// Axes along the principal ones of a paving, as long as it is.
+fn fitted(frame: &Frame, paving: &Paving) -> Frame {
+    let (directions, extents) = principal(frame, paving);
     let (mut center, mut axes) = (frame.center.clone(), directions.clone());
     for (index, [lower, upper]) in extents.into_iter().enumerate() {
         center += directions.column(index) * (0.5 * (lower + upper));
@@ -246,14 +250,12 @@ impl Set {
         self.frame.xi(mean.as_slice()).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect()
     }
 
-    /// As results have it.
-    pub fn described(&self, prior: &ParameterBox, names: &[String]) -> ConsistentSet {
+    /// As results have it, given its hull.
+    pub fn described(&self, prior: &ParameterBox, names: &[String], hull: &[[f64; 2]]) -> ConsistentSet {
         let k = prior.dimension();
-        let (_, covariance) = moments(&self.paving, k);
-        let eigen = (&self.frame.axes * covariance * self.frame.axes.transpose()).symmetric_eigen();
-        let extents = extents(outer(&self.paving), &(self.frame.axes.transpose() * &eigen.eigenvectors));
+        let (directions, extents) = principal(&self.frame, &self.paving);
         let axis = |index: usize| {
-            let direction: Vec<f64> = eigen.eigenvectors.column(index).iter().copied().collect();
+            let direction: Vec<f64> = directions.column(index).iter().copied().collect();
             let largest = direction.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
             let sign = if largest < 0.0 { -1.0 } else { 1.0 };
             let direction = direction.into_iter().map(|own| sign * own).collect();
@@ -262,14 +264,13 @@ impl Set {
         let mut axes: Vec<FitAxis> = (0..k).map(axis).collect();
         axes.sort_by(|a, b| b.extent.total_cmp(&a.extent));
         let volume = volume(&self.frame);
-        let hull = self.hull();
         let touches = |axis: &usize| hull[*axis][0] <= -1.0 + 1e-6 || hull[*axis][1] >= 1.0 - 1e-6;
         let inverse = self.frame.axes.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(k, k));
         ConsistentSet {
             volumes: self.paving.volumes().map(|own| own * volume),
             boxes: [self.paving.inside.len(), self.paving.undecided.len()],
             axes,
-            projections: projections(&self.frame, &self.paving, &hull, prior),
+            projections: projections(&self.frame, &self.paving, hull, prior),
             at_limits: (0..k).filter(touches).map(|axis| names[axis].clone()).collect(),
             paving: SkewPaving {
                 center: self.frame.center.iter().copied().collect(),
