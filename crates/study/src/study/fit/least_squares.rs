@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::local::{COARSE, Frame, Local};
-use super::readings::Run;
+use super::readings::{Finer, Run};
 use super::{FitError, Measurements};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, spread};
@@ -77,7 +77,7 @@ pub fn minimum(
     let (mut frame, mut simulations, mut before) = (first, 0, f64::INFINITY);
     let mut best: Option<Minimum> = None;
     for round in 0..BOXES {
-        let run = Run::new(description, &frame.domain(prior), 0, options)?;
+        let run = Run::new(description, &frame.domain(prior), Finer::default(), options)?;
         simulations += run.simulations;
         let local = Local::new(&run.readings(measurements)?, &frame, prior, measurements, COARSE)?;
         let starts = if round == 0 { STARTS } else { 0 };

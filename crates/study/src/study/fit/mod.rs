@@ -20,7 +20,7 @@ pub use data::{DataError, Measurements, NoiseBound};
 use interpolation::Interpolation;
 use least_squares::{DEVIATION, Minimum, POLISHING, is_short, linearised, minimum};
 use local::{COARSE, Frame, Local, values};
-use readings::Run;
+use readings::{Finer, Run};
 use set::Set;
 use unexplained::unexplained;
 
@@ -72,7 +72,7 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
     let (parameters, prior) = uncertain(model);
     let k = prior.dimension();
     (options.stage)("surrogates");
-    let run = Run::new(model, &prior, 0, options)?;
+    let run = Run::new(model, &prior, Finer::default(), options)?;
     let mut simulations = run.simulations;
     let (mut set, mut is_empty, mut errors) = (None, false, None);
     if k <= Fit::MOST_PARAMETERS {

@@ -6,7 +6,7 @@ use super::data::Measured;
 use super::interpolation::Interpolation;
 use super::{FitError, Measurements};
 use crate::methods::Method;
-use crate::model::{Description, ParameterValue};
+use crate::model::{Description, ParameterValue, Stepping};
 use crate::numerics::ParameterBox;
 use crate::study::allocate::{raise, run_simulations};
 use crate::study::{Evaluator, Kept, Options, run_keeping};
@@ -17,6 +17,13 @@ pub struct Run {
     /// Their box, in the parameters' units.
     pub domain: ParameterBox,
     pub simulations: usize,
+}
+
+/// How often the model's orders are raised and its steps halved.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Finer {
+    pub orders: usize,
+    pub steps: usize,
 }
 
 /// The measured rows of a run's surrogates.
@@ -42,17 +49,22 @@ pub struct Values {
 }
 
 impl Run {
-    /// Over a box within the model's; with a raised order where `raised` says how often.
+    /// Over a box within the model's.
     ///
     /// # Errors
     /// Where the model cannot be run, or has no surrogate.
     pub fn new(
         description: &Description,
         domain: &ParameterBox,
-        raised: usize,
+        finer: Finer,
         options: &Options,
     ) -> Result<Self, FitError> {
         let mut model = description.clone();
+        let shorter = 0.5_f64.powi(finer.steps as i32);
+        match &mut model.simulation.stepping {
+            Stepping::Fixed(step) => *step *= shorter,
+            Stepping::Tolerance(tolerance) => *tolerance *= shorter * shorter,
+        }
         let mut axis = 0;
         for parameter in &mut model.parameters {
             if let ParameterValue::Interval { nominal, lower, upper } = &mut parameter.value {
@@ -61,7 +73,7 @@ impl Run {
                 axis += 1;
             }
         }
-        let is_raised = (0..raised).all(|_| raise(&mut model));
+        let is_raised = (0..finer.orders).all(|_| raise(&mut model));
         let (_, summary, kept) =
             run_keeping(&model, Options { methods: Some(vec![Method::Chebyshev]), store: None, ..*options })?;
         if (options.interrupted)() {
@@ -69,6 +81,11 @@ impl Run {
         }
         let kept = kept.filter(|_| is_raised).ok_or(FitError::NoSurrogate)?;
         Ok(Self { kept, domain: domain.clone(), simulations: run_simulations(&summary) })
+    }
+
+    /// Whether some output's surrogate has a larger error than its steps.
+    pub fn is_rough(&self) -> bool {
+        (0..self.kept.outputs()).map(|output| self.kept.error(output)).any(|error| error.surrogate > error.time)
     }
 
     /// Measured rows.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::local::{COARSE, FINE, Frame, Local};
 use super::projections::projections;
-use super::readings::Run;
+use super::readings::{Finer, Run};
 use super::{FitError, Measurements};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, Paving, PavingLimits, pave};
@@ -28,8 +28,11 @@ const ROUGH: f64 = 3e-4;
 /// New ones with less than this share of the error are worth it, and so many of them.
 const BETTER: f64 = 0.7;
 const RUNS: usize = 8;
-/// Orders by which a surrogate of the whole box is raised where it tells nothing.
+/// Times that an order is raised, or steps are halved.
 const RAISED: usize = 3;
+
+/// Volumes of the last pavings may differ by this share of the outer one before simulations are refined.
+const APART: f64 = 0.03;
 
 /// The end of the approach.
 pub struct Found {
@@ -76,22 +79,28 @@ pub fn found(
         if shrinks {
             approach.frame = next;
         }
-        if approach.improved(local.roughness(used), shrinks)? || shrinks {
+        let is_all = std::ptr::eq(used, measurements);
+        if approach.improved(local.roughness(used), shrinks, is_all)? || shrinks {
             continue;
         }
-        if std::ptr::eq(used, measurements) {
+        if is_all {
             break;
         }
         used = measurements;
     }
-    let local = approach.local(measurements, FINE)?;
-    let paving = pave(&local.tubes, LAST, options.interrupted);
-    if (options.interrupted)() {
-        return Err(FitError::Interrupted);
+    let (mut local, mut paving) = approach.last(measurements)?;
+    while apart(&paving) > APART && approach.refined()? {
+        (local, paving) = approach.last(measurements)?;
     }
     let is_empty = paving.volumes()[1] == 0.0;
     let Approach { frame, simulations, .. } = approach;
     Ok(Found { set: (!is_empty).then_some(Set { frame, paving }), simulations, errors: Some(local.errors) })
+}
+
+/// Difference of a paving's volumes as a share of the outer one.
+fn apart(paving: &Paving) -> f64 {
+    let [inner, outer] = paving.volumes();
+    if outer > 0.0 { 1.0 - inner / outer } else { 0.0 }
 }
 
 /// A set that is approached.
@@ -104,8 +113,7 @@ struct Approach<'a> {
     narrower: Option<Run>,
     frame: Frame,
     runs: usize,
-    /// How often the order was raised.
-    raised: usize,
+    finer: Finer,
     /// Error in the round before the last run, in multiples of the noise.
     before: f64,
     simulations: usize,
@@ -115,7 +123,8 @@ impl<'a> Approach<'a> {
     fn begun(description: &'a Description, prior: &'a ParameterBox, first: &'a Run, options: &'a Options<'a>) -> Self {
         let frame = Frame::whole(prior.dimension());
         let before = f64::INFINITY;
-        Self { description, prior, options, first, narrower: None, frame, runs: 1, raised: 0, before, simulations: 0 }
+        let finer = Finer::default();
+        Self { description, prior, options, first, narrower: None, frame, runs: 1, finer, before, simulations: 0 }
     }
 
     fn run(&self) -> &Run {
@@ -127,8 +136,9 @@ impl<'a> Approach<'a> {
     }
 
     /// Better surrogates, where their error counts and they are worth it: over the box around a frame that has shrunk,
-    /// or of a higher order. Returns whether there are some.
-    fn improved(&mut self, roughness: f64, shrinks: bool) -> Result<bool, FitError> {
+    /// or of a higher order. Orders are raised only where all rows are used (`is_all`), since a few more rows make the
+    /// set smaller at no cost. Returns whether there are some.
+    fn improved(&mut self, roughness: f64, shrinks: bool, is_all: bool) -> Result<bool, FitError> {
         let domain = self.frame.domain(self.prior);
         let is_narrower = is_narrower(&domain, &self.run().domain);
         if roughness <= ROUGH || self.runs == RUNS || (shrinks && !is_narrower) {
@@ -136,13 +146,37 @@ impl<'a> Approach<'a> {
         }
         if !is_narrower {
             // The last run was of no use, or the box cannot be made smaller.
-            if roughness > BETTER * self.before || self.raised == RAISED {
+            let is_worth_it = is_all && roughness <= BETTER * self.before && self.run().is_rough();
+            if !is_worth_it || self.finer.orders == RAISED {
                 return Ok(false);
             }
-            self.raised += 1;
+            self.finer.orders += 1;
         }
         self.before = roughness;
-        match Run::new(self.description, &domain, self.raised, self.options) {
+        self.rerun(&domain)
+    }
+
+    /// A finer run over the frame's box: of a higher order where the surrogate has the larger error, else of shorter
+    /// steps. Returns whether there is one.
+    fn refined(&mut self) -> Result<bool, FitError> {
+        let finer = if self.run().is_rough() { &mut self.finer.orders } else { &mut self.finer.steps };
+        if *finer == RAISED || self.runs == RUNS {
+            return Ok(false);
+        }
+        *finer += 1;
+        self.rerun(&self.frame.domain(self.prior))
+    }
+
+    /// The last paving with the polynomials that it is of.
+    fn last(&self, measurements: &Measurements) -> Result<(Local, Paving), FitError> {
+        let local = self.local(measurements, FINE)?;
+        let paving = pave(&local.tubes, LAST, self.options.interrupted);
+        if (self.options.interrupted)() { Err(FitError::Interrupted) } else { Ok((local, paving)) }
+    }
+
+    /// A run over a box, in place of the one before. Returns whether there is one.
+    fn rerun(&mut self, domain: &ParameterBox) -> Result<bool, FitError> {
+        match Run::new(self.description, domain, self.finer, self.options) {
             Ok(run) => {
                 self.runs += 1;
                 self.simulations += run.simulations;
