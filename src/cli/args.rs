@@ -9,6 +9,7 @@ mod sample;
 mod shards;
 mod shared;
 mod sweep;
+mod verify;
 
 use std::path::PathBuf;
 
@@ -28,6 +29,7 @@ pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 pub(super) use shared::{AskedArgs, OneRunArgs, RootArgs, SetArgs, Threads, overlaid};
 pub(super) use sweep::SweepArgs;
+pub(super) use verify::VerifyArgs;
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.
 #[derive(Debug, Parser)]
@@ -53,6 +55,8 @@ pub(super) enum Command {
     Gradient(GradientArgs),
     /// Find the parameters that agree with measured values.
     Fit(FitArgs),
+    /// Verify that a model integrates as theory tells, against manufactured motions of its own.
+    Verify(VerifyArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Make report.html again from a folder of results.

@@ -47,6 +47,7 @@ mod sweep;
 mod table;
 mod tree;
 mod verdicts;
+mod verify;
 mod version;
 mod watch;
 
@@ -150,6 +151,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Allocate(args) => allocate::allocate(args, console),
         Command::Gradient(args) => gradient::gradient(args, console),
         Command::Fit(args) => fit::fit(args, console),
+        Command::Verify(args) => verify::verify(&args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),

@@ -72,5 +72,5 @@ pub use number_formulas::NumberFormulas;
 pub use questions::Questions;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,
-    SampledState, StartCondition, System, UncertainParameter,
+    SampledState, Start, StartCondition, System, UncertainParameter,
 };

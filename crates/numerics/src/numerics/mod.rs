@@ -17,6 +17,7 @@ mod bernstein;
 mod brink;
 mod cheapest;
 mod chebyshev;
+mod chebyshev_series;
 mod course;
 mod decay;
 mod design;
@@ -59,6 +60,7 @@ mod time_shift;
 
 pub use brink::to_brinks;
 pub use cheapest::{Linear, Power, cheapest};
+pub use chebyshev_series::ChebyshevSeries;
 pub use course::{Course, Phase};
 pub use decay::truncation;
 pub use design::{Design, MOST_AXES};

@@ -23,6 +23,7 @@ mod samples;
 mod statistics;
 mod structure;
 mod summary;
+mod verification;
 
 pub use crate::methods::{Method, TooDeep};
 pub use allocation::{AllocatedTolerance, Allocation, Criterion, NotMet, ToleranceZone, TradePoint};
@@ -56,3 +57,4 @@ pub use summary::{
     AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, EventSummary, EventsFollowed, MethodSummary,
     ParameterSummary, PieceSummary, SingularSummary, SubsystemSummary, Summary,
 };
+pub use verification::{Convergence, FormulationVerification, Quantity, SchemeVerification, Verification};

@@ -9,7 +9,7 @@
 //! bounds the part of a box in which there is a motion, `cost` runs one model with many settings to find the cost of
 //! accuracy, `explain` lists what a model is compiled to, and `price` estimates a run. `drawing` and `motion` show the
 //! mechanism, `internal` confines a panic, `statistics` evaluates kept surrogates, and `allocate` searches tolerances.
-//! `fit` compares with measured values.
+//! `fit` compares with measured values, and `verify` with manufactured solutions.
 //!
 //! A type has its methods in its own file; other files have functions that take it. So the imports of a file are
 //! all that it uses, and a test finds circles.
@@ -48,6 +48,7 @@ mod stepping;
 mod structure;
 mod subsystems;
 mod tuning;
+mod verify;
 mod zones;
 
 use crate::assemble::{BuildError, Questions};
@@ -79,6 +80,7 @@ pub use shard::simulate_parts;
 pub use structure::structure;
 pub use subsystems::uncertain;
 pub use tuning::tuning;
+pub use verify::{VerifyError, verify};
 
 /// How to run.
 pub struct Options<'a> {

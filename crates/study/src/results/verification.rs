@@ -1,0 +1,198 @@
+//! What a verification of a model found.
+
+use serde::Serialize;
+
+/// A quantity whose error is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Generalised coordinates.
+    #[default]
+    Positions,
+    /// Their rates.
+    Velocities,
+    /// The rates of these.
+    Accelerations,
+    /// States of controllers and of effects.
+    States,
+    /// Lagrange multipliers.
+    Reactions,
+}
+
+/// Errors of a quantity against an exact motion, with shorter and shorter steps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Convergence {
+    /// Of what.
+    pub quantity: Quantity,
+    /// The order that theory tells.
+    pub theory: f64,
+    /// Step, s, and largest error as a share of the quantity's size, from the longest steps on.
+    pub errors: Vec<(f64, f64)>,
+    /// Observed orders: of each error and the one before.
+    pub orders: Vec<f64>,
+    /// Error below which rounding counts.
+    pub rounding: f64,
+    /// The observed order that counts; `None` where steps of any length are exact.
+    pub order: Option<f64>,
+    /// Whether the error falls as theory tells.
+    pub is_verified: bool,
+}
+
+/// A way to integrate, with the errors of all quantities.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SchemeVerification {
+    /// E.g. `HHT-I3`.
+    pub scheme: String,
+    /// By quantity.
+    pub convergence: Vec<Convergence>,
+    /// Why there are none.
+    pub failure: Option<String>,
+}
+
+/// What a formulation's equations were found to be.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FormulationVerification {
+    /// `absolute` or `joint`.
+    pub formulation: String,
+    /// Number of coordinates, and of constraints.
+    pub coordinates: usize,
+    /// Number of constraints.
+    pub constraints: usize,
+    /// Names of constraints that follow from others.
+    pub redundant: Vec<String>,
+    /// Names of constraints that depend on others at the start only.
+    pub singular_at_start: Vec<String>,
+    /// Length of the manufactured motion, s.
+    pub duration: f64,
+    /// By scheme.
+    pub schemes: Vec<SchemeVerification>,
+    /// Why nothing could be verified.
+    pub failure: Option<String>,
+}
+
+/// What a verification of a model found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verification {
+    /// Name of the model.
+    pub model: String,
+    /// By formulation, as far as the model has it.
+    pub formulations: Vec<FormulationVerification>,
+}
+
+/// Share of theory's order that an observed one may be lower.
+const WITHIN: f64 = 0.05;
+
+/// An error that falls by less than this order, and is less than this, is rounding's.
+const FLAT: f64 = 0.5;
+const SMALL: f64 = 1e-6;
+
+/// Errors of less than so many times that of rounding are touched by it.
+const TOUCHED: f64 = 3.0;
+
+impl Convergence {
+    /// Of a quantity whose errors below `rounding` are none of the steps.
+    pub fn new(quantity: Quantity, theory: f64, rounding: f64) -> Self {
+        Self { quantity, theory, rounding, ..Self::default() }
+    }
+
+    /// With the error of shorter steps, by half.
+    pub fn add(&mut self, step: f64, error: f64) {
+        if let Some((_, before)) = self.errors.last() {
+            self.orders.push((before / error).log2());
+        }
+        self.errors.push((step, error));
+        self.order = self.observed();
+        let is_exact = self.errors.iter().any(|(_, error)| *error <= TOUCHED * self.rounding());
+        self.is_verified = self.order.map_or(is_exact, |order| self.follows(order));
+    }
+
+    /// Forgets the errors of longer steps, of which some did not converge.
+    pub fn restart(&mut self) {
+        *self = Self::new(self.quantity, self.theory, self.rounding);
+    }
+
+    /// Whether shorter steps do not make the error smaller, which is small already.
+    fn is_flat(&self) -> bool {
+        let is_small = self.errors.last().is_some_and(|(_, error)| *error < SMALL);
+        is_small && self.orders.last().is_some_and(|order| *order < FLAT)
+    }
+
+    /// The error of rounding, as far as it is known.
+    fn rounding(&self) -> f64 {
+        let least = self.errors.iter().map(|(_, error)| *error).fold(f64::INFINITY, f64::min);
+        if self.is_flat() { least.max(self.rounding) } else { self.rounding }
+    }
+
+    /// Orders between errors that rounding does not touch, those of the longest steps first.
+    fn known(&self) -> impl DoubleEndedIterator<Item = f64> {
+        let least = TOUCHED * self.rounding();
+        let finer = self.errors.iter().skip(1);
+        self.orders.iter().zip(finer).filter(move |(_, (_, error))| *error > least).map(|(order, _)| *order)
+    }
+
+    fn follows(&self, order: f64) -> bool {
+        order >= (1.0 - WITHIN) * self.theory
+    }
+
+    /// The observed order: the larger of the last two that rounding does not touch; `None` where there are none, since
+    /// steps of any length are exact.
+    fn observed(&self) -> Option<f64> {
+        self.known().rev().take(2).reduce(f64::max)
+    }
+
+    /// Whether shorter steps would tell no more: errors are those of rounding, or two orders follow theory.
+    pub fn is_settled(&self) -> bool {
+        let is_exact = self.errors.last().is_some_and(|(_, error)| *error <= self.rounding);
+        is_exact || self.is_flat() || self.known().rev().take_while(|order| self.follows(*order)).count() >= 2
+    }
+}
+
+impl SchemeVerification {
+    /// Whether all errors fall as theory tells.
+    pub fn is_verified(&self) -> bool {
+        self.failure.is_none() && self.convergence.iter().all(|own| own.is_verified)
+    }
+}
+
+impl FormulationVerification {
+    /// Whether all schemes do what theory tells.
+    pub fn is_verified(&self) -> bool {
+        self.failure.is_none() && self.schemes.iter().all(SchemeVerification::is_verified)
+    }
+}
+
+impl Verification {
+    /// Whether all formulations are verified.
+    pub fn is_verified(&self) -> bool {
+        self.formulations.iter().all(FormulationVerification::is_verified)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_errors(theory: f64, errors: &[f64]) -> Convergence {
+        let mut own = Convergence::new(Quantity::Positions, theory, 1e-13);
+        errors.iter().enumerate().for_each(|(index, &error)| own.add(0.5_f64.powi(index as i32), error));
+        own
+    }
+
+    #[test]
+    fn orders_are_those_above_rounding() {
+        let own = of_errors(8.0, &[2.56e-6, 1e-8, 1e-12, 0.9e-12]);
+        assert!((own.order.unwrap() - 8.0).abs() < 1e-12);
+        assert!(own.is_settled() && own.is_verified);
+        let own = of_errors(2.0, &[4e-2, 1e-2]);
+        assert!(!own.is_settled() && own.is_verified);
+        assert!(of_errors(2.0, &[1.6e-1, 4e-2, 1e-2]).is_settled());
+    }
+
+    #[test]
+    fn an_error_that_falls_too_slowly_is_seen() {
+        let own = of_errors(2.0, &[4e-2, 2e-2, 1e-2]);
+        assert!(!own.is_settled() && !own.is_verified);
+        assert!(of_errors(2.0, &[1e-12, 1e-12]).is_verified);
+        assert!(!of_errors(2.0, &[1e-3, 1e-3]).is_verified);
+    }
+}

@@ -1,0 +1,80 @@
+//! A system with the loads of a manufactured motion, which starts on it.
+
+use symdiff::{Expr, Graph};
+
+use super::motion::Manufactured;
+use crate::assemble::{OutputInfo, Start, System};
+use crate::numerics::ChebyshevSeries;
+
+/// The system with loads beside its forces and slips in its velocity constraints; its outputs are its coordinates,
+/// velocities, accelerations and multipliers (3n + m). `independent` coordinates are given at the start, the others
+/// follow.
+pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> System {
+    let mut system = system.clone();
+    let n = system.q.len();
+    let scaled = scaled_time(&mut system.graph, system.time, motion.end);
+    for (force, load) in system.force.iter_mut().zip(&motion.loads) {
+        let load = expression(&mut system.graph, scaled, load);
+        *force = system.graph.add(*force, load);
+    }
+    for (constraint, slip) in system.velocity_constraint.iter_mut().zip(&motion.slips) {
+        let slip = expression(&mut system.graph, scaled, slip);
+        *constraint = system.graph.sub(*constraint, slip);
+    }
+    let at_start = |series: &[ChebyshevSeries], graph: &mut Graph| -> Vec<Expr> {
+        series.iter().map(|own| graph.constant(own.at(0.0))).collect()
+    };
+    let positions = at_start(&motion.positions, &mut system.graph);
+    let velocities = at_start(&motion.velocities, &mut system.graph);
+    let given = |values: &[Expr]| -> Vec<Option<Expr>> {
+        let is_given = |index: usize| independent.contains(&index) || system.coordinates[index].is_state;
+        (0..n).map(|index| is_given(index).then_some(values[index])).collect()
+    };
+    system.start = Start {
+        position: given(&positions),
+        velocity: given(&velocities),
+        guess: positions,
+        fulfils_velocity_constraints: true,
+        conditions: Vec::new(),
+        at_equilibrium: false,
+        nearest: None,
+    };
+    observed(&system)
+}
+
+/// The system with its coordinates, velocities, accelerations and multipliers as outputs.
+pub fn observed(system: &System) -> System {
+    let symbols = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten();
+    let output = |(index, &expr): (usize, &Expr)| OutputInfo {
+        name: format!("value {index}"),
+        unit: String::new(),
+        dimension: None,
+        expr,
+        of_results: None,
+    };
+    System { outputs: symbols.enumerate().map(output).collect(), ..system.clone() }
+}
+
+/// τ = 2 t/T − 1
+fn scaled_time(graph: &mut Graph, time: Expr, end: f64) -> Expr {
+    let twice = graph.scale(2.0 / end, time);
+    let one = graph.constant(1.0);
+    graph.sub(twice, one)
+}
+
+/// Σ cₖ Tₖ(τ), by Clenshaw's recurrence.
+fn expression(graph: &mut Graph, tau: Expr, series: &ChebyshevSeries) -> Expr {
+    let twice = graph.scale(2.0, tau);
+    let zero = graph.constant(0.0);
+    let (mut next, mut last) = (zero, zero);
+    for &coefficient in series.coefficients().iter().skip(1).rev() {
+        let product = graph.mul(twice, next);
+        let difference = graph.sub(product, last);
+        let coefficient = graph.constant(coefficient);
+        (next, last) = (graph.add(coefficient, difference), next);
+    }
+    let product = graph.mul(tau, next);
+    let difference = graph.sub(product, last);
+    let constant = graph.constant(series.coefficients()[0]);
+    graph.add(constant, difference)
+}

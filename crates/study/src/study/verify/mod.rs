@@ -1,0 +1,187 @@
+//! Verification of a model by manufactured solutions (Salari & Knupp, Sandia report SAND2000-1444; ASME V&V 10 and
+//! 20): does *this* mechanism, with *these* effects, integrate as theory tells?
+//!
+//! `motion` makes a smooth motion on the constraints, near the nominal one, and the loads with which it fulfils the
+//! equations of motion; `loaded` is the system with these loads, whose exact solution is then known; `orders` measures
+//! how its errors fall with the steps.
+
+mod loaded;
+mod motion;
+mod orders;
+
+use super::black_box::needs_equations;
+use super::formulation::compiled;
+use super::{Options, RunError, first_step, scheme};
+use crate::assemble::{BuildError, Questions};
+use crate::compile::compile_equations;
+use crate::model::{Analysis, Description, Formulation, Stepping};
+use crate::numerics::Sample;
+use crate::results::{FormulationVerification, SchemeVerification, Verification};
+use crate::simulate::{
+    Integration, Observed, Schedule, SimulationError, Simulator, Steps, choose_independent, integrator,
+};
+
+use loaded::{loaded, observed};
+use motion::{Equations, Manufactured, Nominal};
+use orders::convergence;
+
+/// Rows in which the nominal motion is followed.
+const ROWS: usize = 1 << 10;
+
+/// Ways to integrate.
+const INTEGRATIONS: [Integration; 3] =
+    [Integration::Plain, Integration::Extrapolated { levels: 3 }, Integration::Explicit];
+
+/// Why a formulation could not be verified.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum NotVerified {
+    /// Not a single row.
+    #[error("the nominal motion stops at once")]
+    NoMotion,
+    /// The constraints cannot be fulfilled near the motion.
+    #[error("near t = {time} s no position on the constraints is found: the motion passes a singular configuration")]
+    NotClosed {
+        /// s
+        time: f64,
+    },
+    /// The motion on the constraints is not smooth.
+    #[error("the motion up to t = {end} s is not smooth enough")]
+    NotSmooth {
+        /// s
+        end: f64,
+    },
+    /// The equations have no values.
+    #[error("the equations of motion have no finite values up to t = {end} s")]
+    NotFinite {
+        /// s
+        end: f64,
+    },
+    /// The equations are not smooth along the motion.
+    #[error("the equations of motion are not smooth up to t = {end} s: a contact, a stop or a condition switches")]
+    Kink {
+        /// s
+        end: f64,
+    },
+}
+
+/// Why a model was not verified at all.
+#[derive(Debug, thiserror::Error)]
+pub enum VerifyError {
+    /// It cannot be run either.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// It takes no steps.
+    #[error("`analysis: {0}` takes no steps: there is nothing to verify")]
+    NoSteps(&'static str),
+    /// It was asked to stop.
+    #[error("interrupted before there was a result")]
+    Interrupted,
+}
+
+/// Verifies a model in all formulations that it has, by all ways to integrate it.
+///
+/// # Errors
+/// Where the model cannot be built or assembled, and at an interruption.
+pub fn verify(description: &Description, options: &Options) -> Result<Verification, VerifyError> {
+    needs_equations(description, "a verification").map_err(RunError::from)?;
+    match description.analysis {
+        Analysis::Statics => return Err(VerifyError::NoSteps("statics")),
+        Analysis::Kinematics => return Err(VerifyError::NoSteps("kinematics")),
+        Analysis::Modes(_) => return Err(VerifyError::NoSteps("modes")),
+        _ => (),
+    }
+    let mut formulations = Vec::new();
+    for formulation in [Formulation::Absolute, Formulation::Joint] {
+        (options.stage)("compiling");
+        let questions = Questions { formulation, ..Questions::of(description) };
+        let simulator = match compiled(&questions) {
+            // Absolute coordinates are there already.
+            Err(RunError::Build(BuildError::NoJointCoordinates { .. })) => continue,
+            compiled => compiled?,
+        };
+        formulations.push(of_formulation(description, &simulator, options)?);
+    }
+    Ok(Verification { model: description.name.clone(), formulations })
+}
+
+fn of_formulation(
+    description: &Description,
+    simulator: &Simulator,
+    options: &Options,
+) -> Result<FormulationVerification, VerifyError> {
+    let (system, mobility) = (&simulator.system, &simulator.mobility);
+    let mut found = FormulationVerification {
+        formulation: system.formulation.name().to_owned(),
+        coordinates: system.q.len(),
+        constraints: system.lambda.len(),
+        redundant: system.constraint_names(&mobility.redundant),
+        singular_at_start: system.constraint_names(&mobility.singular_at_start),
+        duration: 0.0,
+        schemes: Vec::new(),
+        failure: None,
+    };
+    (options.stage)("manufactured motion");
+    let parameters: Sample = system.parameters.iter().map(|parameter| parameter.nominal).collect();
+    let nominal = nominal_motion(description, simulator, &parameters).map_err(RunError::from)?;
+    let redundant: Vec<usize> = mobility.redundant.iter().map(|constraint| constraint.number()).collect();
+    let mut equations = Equations::new(system, compile_equations(system), &parameters, &redundant);
+    let motion = match Manufactured::near(&nominal, &mut equations) {
+        Ok(motion) => motion,
+        Err(why) => {
+            found.failure = Some(why.to_string());
+            return Ok(found);
+        }
+    };
+    found.duration = motion.end;
+    let start: Vec<f64> = motion.positions.iter().map(|own| own.at(0.0)).collect();
+    let independent = choose_independent(simulator, &parameters, &start, 0.0);
+    let independent: Vec<usize> = independent.into_iter().map(|coordinate| coordinate.number()).collect();
+    let loaded = loaded(system, &motion, &independent);
+    let loaded = match Simulator::new(loaded, scheme(description), first_step(description).min(1e-2 * motion.end)) {
+        Ok(loaded) => loaded,
+        Err(error) => {
+            found.failure = Some(format!("the manufactured motion does not start: {error}"));
+            return Ok(found);
+        }
+    };
+    for integration in INTEGRATIONS {
+        (options.stage)("orders");
+        let scheme = integration.name().unwrap_or_else(|| "HHT-I3".to_owned());
+        let verified = match convergence(&loaded, &motion, integration, options.interrupted) {
+            Ok(convergence) => SchemeVerification { scheme, convergence, failure: None },
+            Err(SimulationError::Interrupted) => return Err(VerifyError::Interrupted),
+            Err(error) => SchemeVerification { scheme, convergence: Vec::new(), failure: Some(error.to_string()) },
+        };
+        found.schemes.push(verified);
+    }
+    Ok(found)
+}
+
+/// The nominal motion in rows, as far as steps of a fixed length go.
+fn nominal_motion(
+    description: &Description,
+    simulator: &Simulator,
+    parameters: &Sample,
+) -> Result<Nominal, SimulationError> {
+    let duration = description.simulation.duration;
+    let row = duration / ROWS as f64;
+    let step = match description.simulation.stepping {
+        Stepping::Fixed(step) => step,
+        Stepping::Tolerance(_) => row,
+    };
+    let steps = (row / step).ceil().max(1.0);
+    let schedule = Schedule::fixed(duration, row / steps, row);
+    let observed = Simulator::new(observed(&simulator.system), scheme(description), schedule.first_step())?;
+    let mut run = integrator(&observed, std::slice::from_ref(parameters), &schedule)?;
+    let mut values = Vec::new();
+    let stops =
+        run.advance(Steps { schedule: &schedule, controller: None }, 0..schedule.rows, Observed::Outputs, &mut values);
+    let count = observed.system.outputs.len();
+    let reached = stops.first().map_or(schedule.rows, |stop| stop.row);
+    let n = observed.system.q.len();
+    let state = |row: &[f64]| [&row[..2 * n], &row[3 * n..]].concat();
+    Ok(Nominal {
+        times: (0..reached).map(|row| schedule.time(row)).collect(),
+        states: values.chunks_exact(count).take(reached).map(state).collect(),
+    })
+}

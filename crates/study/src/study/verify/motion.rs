@@ -1,0 +1,268 @@
+//! A manufactured motion: a smooth motion on the constraints, near that of the nominal parameters.
+//!
+//! Polynomials of low degree follow the nominal motion over a part of the run; Newton's method moves them onto the
+//! constraints at Chebyshev nodes, by the shortest way; the series through these points is the motion. It fulfils the
+//! constraints to rounding where it is resolved, and velocities and accelerations are its derivatives.
+
+use nalgebra::{DMatrix, DVector};
+use symdiff::{Tile, math};
+
+use super::NotVerified;
+use crate::assemble::System;
+use crate::compile::{EquationsProgram, Layout, Tapes};
+use crate::numerics::ChebyshevSeries;
+
+/// Degree of the polynomials that follow the nominal motion.
+const FOLLOWING: usize = 8;
+
+/// Nodes of the motion, and of the loads.
+const NODES: usize = 96;
+
+/// Halvings of the part of the run, where polynomials do not follow the motion or its series is not resolved.
+const HALVINGS: usize = 8;
+
+/// How far polynomials may be from the nominal motion, as a share of a coordinate's range.
+const NEAR: f64 = 0.02;
+
+/// Coordinates that hardly move, by less than this share of their scale, swing by as much: a motion at rest would tell
+/// nothing.
+const SWING: f64 = 0.01;
+
+/// Constraints are fulfilled where residuals are less than this share of the coordinates' scale.
+const CLOSED: f64 = 1e-12;
+const CORRECTIONS: usize = 40;
+
+/// A series is resolved where its last quarter is less than this share of its size.
+const RESOLVED: f64 = 1e-11;
+/// Coefficients below this share of the largest are rounding, which derivatives would amplify.
+const ROUNDING: f64 = 3e-14;
+
+/// A nominal motion, row by row.
+pub struct Nominal {
+    /// s, from zero on.
+    pub times: Vec<f64>,
+    /// Positions, velocities and multipliers (2n + m) in each row.
+    pub states: Vec<Vec<f64>>,
+}
+
+/// A motion that fulfils the constraints, and the loads with which it fulfils the equations of motion.
+#[derive(Clone, Debug)]
+pub struct Manufactured {
+    /// s
+    pub end: f64,
+    /// Positions, n; constant for states, whose positions stand in no equation.
+    pub positions: Vec<ChebyshevSeries>,
+    /// Velocities, n, and values of states.
+    pub velocities: Vec<ChebyshevSeries>,
+    /// Accelerations, n.
+    pub accelerations: Vec<ChebyshevSeries>,
+    /// Multipliers, m; zero of redundant constraints.
+    pub multipliers: Vec<ChebyshevSeries>,
+    /// M w + Φ_qᵀ λ − Q, n.
+    pub loads: Vec<ChebyshevSeries>,
+    /// Ψ(q, v, t) of the velocity constraints.
+    pub slips: Vec<ChebyshevSeries>,
+}
+
+/// The equations at one point.
+pub struct Equations<'s> {
+    system: &'s System,
+    program: EquationsProgram,
+    tile: Tile,
+    /// Numbers of the constraints that are not redundant.
+    kept: Vec<usize>,
+}
+
+impl<'s> Equations<'s> {
+    /// Of a system with these parameters, of whose constraints those by the numbers `redundant` follow from others.
+    pub fn new(system: &'s System, program: EquationsProgram, parameters: &[f64], redundant: &[usize]) -> Self {
+        let mut tile = Tile::new(1, program.registers(), program.constants());
+        for (register, &value) in program.layout.parameters.clone().zip(parameters) {
+            tile.lane_mut(register)[0] = value;
+        }
+        tile.run(program.sample());
+        let kept = (0..system.constraint.len()).filter(|constraint| !redundant.contains(constraint)).collect();
+        Self { system, program, tile, kept }
+    }
+
+    fn layout(&self) -> &Layout {
+        &self.program.layout
+    }
+
+    fn set(&mut self, registers: std::ops::Range<usize>, values: impl IntoIterator<Item = f64>) {
+        for (register, value) in registers.zip(values) {
+            self.tile.lane_mut(register)[0] = value;
+        }
+    }
+
+    fn value(&self, register: usize) -> f64 {
+        self.tile.lane(register)[0]
+    }
+
+    /// Φ(q, t).
+    fn gaps(&mut self, time: f64, q: &[f64]) -> DVector<f64> {
+        let layout = self.layout().clone();
+        self.set(layout.q, q.iter().copied());
+        self.set(layout.time..layout.time + 1, [time]);
+        self.tile.run(self.program.residual());
+        let gap = |&constraint: &usize| self.value(self.program.constraint[constraint]);
+        DVector::from_iterator(self.kept.len(), self.kept.iter().map(gap))
+    }
+
+    /// Moves positions onto the constraints; `None` where Newton's method does not get there.
+    fn closed(&mut self, time: f64, q: &mut [f64]) -> Option<()> {
+        if self.kept.is_empty() {
+            return Some(());
+        }
+        let scales: Vec<f64> = self.system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
+        let least = CLOSED * scales.iter().copied().fold(0.0, f64::max);
+        let mut before = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            let gaps = self.gaps(time, q);
+            let gap = gaps.amax();
+            // Corrections that change nothing more are at rounding.
+            if gap == 0.0 || (gap < least && gap >= 0.5 * before) {
+                return Some(());
+            }
+            before = gap;
+            self.tile.run(self.program.jacobian());
+            let mut slopes = DMatrix::zeros(self.kept.len(), q.len());
+            for &(row, column, register) in &self.program.constraint_by_position {
+                if let Ok(row) = self.kept.binary_search(&row) {
+                    slopes[(row, column)] = self.value(register) * scales[column];
+                }
+            }
+            let moved = slopes.transpose() * (&slopes * slopes.transpose()).cholesky()?.solve(&gaps);
+            for (coordinate, q) in q.iter_mut().enumerate() {
+                *q -= scales[coordinate] * moved[coordinate];
+            }
+        }
+        (before < least).then_some(())
+    }
+
+    /// Residuals of the equations of motion (n), then of the velocity constraints.
+    fn residuals(&mut self, motion: &Manufactured, time: f64) -> Vec<f64> {
+        let layout = self.layout().clone();
+        let at = |series: &[ChebyshevSeries]| series.iter().map(|own| own.at(time)).collect::<Vec<f64>>();
+        self.set(layout.time..layout.time + 1, [time]);
+        self.set(layout.q, at(&motion.positions));
+        self.set(layout.v, at(&motion.velocities));
+        self.set(layout.w, at(&motion.accelerations));
+        self.set(layout.lambda, at(&motion.multipliers));
+        self.tile.run(self.program.residual());
+        self.tile.run(self.program.rates());
+        let slips = &self.program.constraint_rates[0][self.system.constraint.len()..];
+        self.program.motion.iter().chain(slips).map(|&register| self.value(register)).collect()
+    }
+}
+
+/// Through values of several functions at nodes, without rounding; `None` where one is not resolved.
+fn series(span: [f64; 2], values: &[Vec<f64>], resolved: f64) -> Option<Vec<ChebyshevSeries>> {
+    let count = values.first().map_or(0, Vec::len);
+    let mut found = Vec::with_capacity(count);
+    for index in 0..count {
+        let of_one: Vec<f64> = values.iter().map(|row| row[index]).collect();
+        found.push(ChebyshevSeries::through(span, &of_one));
+    }
+    let size = found.iter().map(ChebyshevSeries::size).fold(0.0, f64::max);
+    let is_resolved = |own: &ChebyshevSeries| own.tail() <= resolved * size;
+    found.iter().all(is_resolved).then(|| {
+        found.into_iter().map(|own| own.chopped(ROUNDING * size)).collect()
+    })
+}
+
+impl Manufactured {
+    /// Near a nominal motion, over as much of it as polynomials follow.
+    ///
+    /// # Errors
+    /// Where no part of it has a smooth motion on the constraints, or its equations are not smooth along it.
+    pub fn near(nominal: &Nominal, equations: &mut Equations) -> Result<Self, NotVerified> {
+        let whole = *nominal.times.last().ok_or(NotVerified::NoMotion)?;
+        let mut why = NotVerified::NoMotion;
+        for halving in 0..=HALVINGS {
+            let end = whole * 0.5_f64.powi(halving as i32);
+            let Some(fit) = followed(nominal, end, equations.system, halving < HALVINGS / 2) else { continue };
+            match Self::of_fit(&fit, end, equations) {
+                Ok(motion) => return Ok(motion),
+                Err(reason) => why = reason,
+            }
+        }
+        Err(why)
+    }
+
+    /// From polynomials for q, v and λ.
+    fn of_fit(fit: &[ChebyshevSeries], end: f64, equations: &mut Equations) -> Result<Self, NotVerified> {
+        let n = equations.system.q.len();
+        let span = [0.0, end];
+        let times = ChebyshevSeries::nodes(span, NODES);
+        let mut values = Vec::with_capacity(times.len());
+        for &time in &times {
+            let mut q: Vec<f64> = fit[..n].iter().map(|own| own.at(time)).collect();
+            equations.closed(time, &mut q).ok_or(NotVerified::NotClosed { time })?;
+            values.push(q);
+        }
+        let mut positions = series(span, &values, RESOLVED).ok_or(NotVerified::NotSmooth { end })?;
+        let mut velocities: Vec<ChebyshevSeries> = positions.iter().map(ChebyshevSeries::derivative).collect();
+        for (index, coordinate) in equations.system.coordinates.iter().enumerate() {
+            if coordinate.is_state {
+                positions[index] = ChebyshevSeries::through(span, &[0.0, 0.0]);
+                velocities[index] = fit[n + index].clone();
+            }
+        }
+        let accelerations = velocities.iter().map(ChebyshevSeries::derivative).collect();
+        let multipliers = fit[2 * n..].to_vec();
+        let mut motion = Self { end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![] };
+        let values: Vec<Vec<f64>> = times.iter().map(|&time| equations.residuals(&motion, time)).collect();
+        if values.iter().flatten().any(|value| !value.is_finite()) {
+            return Err(NotVerified::NotFinite { end });
+        }
+        let forces: Vec<Vec<f64>> = values.iter().map(|row| row[..n].to_vec()).collect();
+        let slips: Vec<Vec<f64>> = values.iter().map(|row| row[n..].to_vec()).collect();
+        let kink = || NotVerified::Kink { end };
+        motion.loads = series(span, &forces, LOADS_RESOLVED).ok_or_else(kink)?;
+        motion.slips = series(span, &slips, LOADS_RESOLVED).ok_or_else(kink)?;
+        Ok(motion)
+    }
+}
+
+/// The same for loads, which have accelerations in them.
+const LOADS_RESOLVED: f64 = 1e-8;
+
+/// Values with a swing of their own where they hardly change.
+fn moved(values: &mut [f64], index: usize, scale: f64) {
+    let (least, most) = range(values);
+    if most - least > SWING * scale {
+        return;
+    }
+    let last = (values.len().max(2) - 1) as f64;
+    for (row, value) in values.iter_mut().enumerate() {
+        *value += SWING * scale * math::sin(index as f64 + (2.0 + 0.3 * index as f64) * row as f64 / last);
+    }
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &own| (least.min(own), most.max(own)))
+}
+
+/// Polynomials for q, v and λ up to a time; `None` where they are not near the motion, if they have to be.
+fn followed(nominal: &Nominal, end: f64, system: &System, near: bool) -> Option<Vec<ChebyshevSeries>> {
+    let rows = nominal.times.iter().take_while(|&&time| time <= end * (1.0 + 1e-12)).count();
+    let (times, states) = (&nominal.times[..rows], &nominal.states[..rows]);
+    let n = system.q.len();
+    let mut fit = Vec::new();
+    for index in 0..states.first()?.len() {
+        let mut values: Vec<f64> = states.iter().map(|state| state[index]).collect();
+        if index < n {
+            moved(&mut values, index, system.coordinates[index].scale);
+        }
+        let own = ChebyshevSeries::fitted([0.0, end], FOLLOWING, times, &values)?;
+        let (least, most) = range(&values);
+        if index < n && near {
+            let allowed = NEAR * (most - least).max(1e-6 * system.coordinates[index].scale);
+            let is_near = times.iter().zip(&values).all(|(&time, value)| (own.at(time) - value).abs() <= allowed);
+            is_near.then_some(())?;
+        }
+        fit.push(own);
+    }
+    Some(fit)
+}

@@ -1,0 +1,103 @@
+//! `mbint verify`: orders of a model's own manufactured motions.
+
+use super::args::{Format, VerifyArgs};
+use super::console::{BOLD, Console, to_json};
+use super::progress::Progress;
+use super::table::{Align, Table};
+use super::verdicts::short;
+use super::{Failure, Status, interrupt, load};
+use crate::results::{Convergence, FormulationVerification, Quantity, Verification};
+use crate::study::{self, RunError, VerifyError};
+
+pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status, Failure> {
+    let given = args.set.given()?;
+    let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
+        return Ok(Status::Wrong);
+    };
+    let progress = Progress::new(&model.name, !args.run.quiet);
+    let options = study::Options {
+        threads: args.run.threads.number(),
+        stage: &|stage| progress.stage(stage),
+        interrupted: &interrupt::asked,
+        ..study::Options::default()
+    };
+    let found = match study::verify(&model, &options) {
+        Err(VerifyError::Interrupted) => return Ok(Status::Interrupted),
+        found => found.map_err(|error| {
+            let message = format!("{}: {error}", model.name);
+            match error {
+                VerifyError::NoSteps(_) | VerifyError::Run(RunError::Refused(_)) => Failure::Wrong(message),
+                _ => Failure::Failed(message),
+            }
+        })?,
+    };
+    drop(progress);
+    match args.format {
+        Format::Json => console.print(&to_json(&found)?)?,
+        Format::Text if args.run.quiet => {}
+        Format::Text => console.print(&overview(&found))?,
+    }
+    Ok(if found.is_verified() { Status::Done } else { Status::NotMet })
+}
+
+/// Prints the verdict, and a table a formulation.
+fn overview(found: &Verification) -> String {
+    let verdict = if found.is_verified() { "verified" } else { "not verified" };
+    let mut text = format!("{BOLD}{}{BOLD:#}: {verdict}\n", found.model);
+    found.formulations.iter().for_each(|own| text += &formulation(own));
+    text
+}
+
+fn formulation(own: &FormulationVerification) -> String {
+    let counted = |count: usize, of: &str| format!("{count} {of}{}", if count == 1 { "" } else { "s" });
+    let mut text = format!(
+        "\n  {} coordinates: {}, {}",
+        own.formulation,
+        counted(own.coordinates, "coordinate"),
+        counted(own.constraints, "constraint")
+    );
+    if !own.redundant.is_empty() {
+        text += &format!(", redundant: {}", own.redundant.join(", "));
+    }
+    if !own.singular_at_start.is_empty() {
+        text += &format!(", singular at the start: {}", own.singular_at_start.join(", "));
+    }
+    if let Some(why) = &own.failure {
+        return text + &format!("\n  not verified: {why}\n");
+    }
+    text += &format!("; a motion of {} s\n", short(own.duration));
+    let mut table = Table::new([
+        ("scheme", Align::Left),
+        ("of", Align::Left),
+        ("order", Align::Right),
+        ("theory", Align::Right),
+        ("error", Align::Right),
+        ("step, s", Align::Right),
+        ("", Align::Left),
+    ]);
+    for scheme in &own.schemes {
+        for (index, convergence) in scheme.convergence.iter().enumerate() {
+            let name = if index == 0 { scheme.scheme.clone() } else { String::new() };
+            table.row(row(name, convergence));
+        }
+        if let Some(why) = &scheme.failure {
+            let none = String::new;
+            table.row([scheme.scheme.clone(), none(), none(), none(), none(), none(), why.clone()]);
+        }
+    }
+    text + &table.render(2)
+}
+
+fn row(scheme: String, own: &Convergence) -> [String; 7] {
+    let quantity = match own.quantity {
+        Quantity::Positions => "positions",
+        Quantity::Velocities => "velocities",
+        Quantity::Accelerations => "accelerations",
+        Quantity::States => "states",
+        Quantity::Reactions => "reactions",
+    };
+    let (step, error) = own.errors.last().copied().unwrap_or((f64::NAN, f64::NAN));
+    let order = own.order.map_or_else(|| "exact".to_owned(), |order| format!("{order:.2}"));
+    let verdict = if own.is_verified { String::new() } else { "not as in theory".to_owned() };
+    [scheme, quantity.to_owned(), order, format!("{:.0}", own.theory), short(error), short(step), verdict]
+}
