@@ -11,7 +11,10 @@ pub use mbint_study::results;
 #[doc(inline)]
 pub use methods::Method;
 #[doc(inline)]
-pub use results::{GradientParameter, Gradients, OutputGradients, Summary};
+pub use results::{
+    Convergence, FormulationVerification, GradientParameter, Gradients, OutputGradients, Quantity, SchemeVerification,
+    Summary, Verification,
+};
 #[doc(inline)]
 pub use syntax::Diagnostics;
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::export::ExportError;
 use crate::model::UnknownScene;
-use crate::study::{AllocateError, CostError, DataError, FitError, GradientError, RunError};
+use crate::study::{AllocateError, CostError, DataError, FitError, GradientError, RunError, VerifyError};
 use crate::syntax::Diagnostics;
 
 /// Why there is no model, or nothing of it could be run.
@@ -40,6 +40,9 @@ pub enum Error {
     /// Outputs have no derivatives by the parameters.
     #[error(transparent)]
     Gradient(#[from] Box<GradientError>),
+    /// The model cannot be verified.
+    #[error(transparent)]
+    Verify(Box<VerifyError>),
     /// Measured values cannot be used.
     #[error(transparent)]
     Data(#[from] DataError),
@@ -63,6 +66,16 @@ impl From<AllocateError> for Error {
         match error {
             AllocateError::Unsuitable(message) => Self::Unsuitable(message),
             AllocateError::Run(error) => Self::Run(error),
+        }
+    }
+}
+
+impl From<VerifyError> for Error {
+    fn from(error: VerifyError) -> Self {
+        match error {
+            VerifyError::Run(error) => Self::Run(error),
+            VerifyError::Interrupted => Self::Interrupted,
+            VerifyError::NoSteps(_) => Self::Verify(Box::new(error)),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Axis, Error, Study, Sweep};
 use crate::model::{Description, Override, ParameterValue, Reading, read_rooted, read_str};
-use crate::results::Gradients;
+use crate::results::{Gradients, Verification};
 use crate::study::{self, Options};
 use crate::syntax::Diagnostics;
 
@@ -153,6 +153,15 @@ impl Model {
     /// [`Error::Gradient`]: the mechanism cannot be run, nothing in it is uncertain, or its motion has no derivatives.
     pub fn gradients(&self) -> Result<Gradients, Error> {
         Ok(study::gradient(&self.description, &Options::default()).map_err(Box::new)?)
+    }
+
+    /// Whether the model integrates as theory tells, in all coordinates that it has: errors against motions that are
+    /// known, since the loads that make them solutions are added.
+    ///
+    /// # Errors
+    /// [`Error::Run`]: the mechanism cannot be built; [`Error::Verify`]: its analysis takes no steps.
+    pub fn verify(&self) -> Result<Verification, Error> {
+        Ok(study::verify(&self.description, &Options::default())?)
     }
 
     /// The checked model behind this one.

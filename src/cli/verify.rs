@@ -9,6 +9,9 @@ use super::{Failure, Status, interrupt, load};
 use crate::results::{Convergence, FormulationVerification, Quantity, Verification};
 use crate::study::{self, RunError, VerifyError};
 
+/// Orders that exceed that of theory by more than this factor tell only that they do.
+const MORE: f64 = 1.5;
+
 pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
     let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
@@ -97,7 +100,12 @@ fn row(scheme: String, own: &Convergence) -> [String; 7] {
         Quantity::Reactions => "reactions",
     };
     let (step, error) = own.errors.last().copied().unwrap_or((f64::NAN, f64::NAN));
-    let order = own.order.map_or_else(|| "exact".to_owned(), |order| format!("{order:.2}"));
+    let order = match own.order {
+        None => "exact".to_owned(),
+        // Transients that long steps damp, or rounding at once.
+        Some(order) if order > MORE * own.theory => format!("> {:.0}", own.theory),
+        Some(order) => format!("{order:.2}"),
+    };
     let verdict = if own.is_verified { String::new() } else { "not as in theory".to_owned() };
     [scheme, quantity.to_owned(), order, format!("{:.0}", own.theory), short(error), short(step), verdict]
 }

@@ -87,5 +87,6 @@ mod tolerance;
 mod total_degree;
 mod urdf;
 mod vehicles;
+mod verify;
 mod wiper;
 mod zones;

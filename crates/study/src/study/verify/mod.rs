@@ -38,6 +38,9 @@ pub enum NotVerified {
     /// Not a single row.
     #[error("the nominal motion stops at once")]
     NoMotion,
+    /// Its velocities or states jump.
+    #[error("states of sampled controllers change at instants: no smooth motion has them")]
+    Sampled,
     /// The constraints cannot be fulfilled near the motion.
     #[error("near t = {time} s no position on the constraints is found: the motion passes a singular configuration")]
     NotClosed {
@@ -120,6 +123,10 @@ fn of_formulation(
         schemes: Vec::new(),
         failure: None,
     };
+    if !system.sampled.is_empty() {
+        found.failure = Some(NotVerified::Sampled.to_string());
+        return Ok(found);
+    }
     (options.stage)("manufactured motion");
     let parameters: Sample = system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let nominal = nominal_motion(description, simulator, &parameters).map_err(RunError::from)?;

@@ -15,8 +15,11 @@ use crate::numerics::ChebyshevSeries;
 /// Degree of the polynomials that follow the nominal motion.
 const FOLLOWING: usize = 8;
 
-/// Nodes of the motion, and of the loads.
+/// Nodes of the motion.
 const NODES: usize = 96;
+
+/// Nodes of the loads: more where functions are steep.
+const LOADS: [usize; 2] = [96, 384];
 
 /// Halvings of the part of the run, where polynomials do not follow the motion or its series is not resolved.
 const HALVINGS: usize = 8;
@@ -34,8 +37,10 @@ const CORRECTIONS: usize = 40;
 
 /// A series is resolved where its last quarter is less than this share of its size.
 const RESOLVED: f64 = 1e-11;
+/// The same for loads, which have accelerations in them.
+const LOADS_RESOLVED: f64 = 1e-8;
 /// Coefficients below this share of the largest are rounding, which derivatives would amplify.
-const ROUNDING: f64 = 3e-14;
+const ROUNDING: f64 = 3e-16;
 
 /// A nominal motion, row by row.
 pub struct Nominal {
@@ -114,8 +119,7 @@ impl<'s> Equations<'s> {
         if self.kept.is_empty() {
             return Some(());
         }
-        let scales: Vec<f64> = self.system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
-        let least = CLOSED * scales.iter().copied().fold(0.0, f64::max);
+        let least = CLOSED * self.system.coordinates.iter().map(|coordinate| coordinate.scale).fold(0.0, f64::max);
         let mut before = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             let gaps = self.gaps(time, q);
@@ -125,19 +129,45 @@ impl<'s> Equations<'s> {
                 return Some(());
             }
             before = gap;
-            self.tile.run(self.program.jacobian());
-            let mut slopes = DMatrix::zeros(self.kept.len(), q.len());
-            for &(row, column, register) in &self.program.constraint_by_position {
-                if let Ok(row) = self.kept.binary_search(&row) {
-                    slopes[(row, column)] = self.value(register) * scales[column];
-                }
-            }
-            let moved = slopes.transpose() * (&slopes * slopes.transpose()).cholesky()?.solve(&gaps);
+            let moved = self.shortest(&gaps)?;
             for (coordinate, q) in q.iter_mut().enumerate() {
-                *q -= scales[coordinate] * moved[coordinate];
+                *q -= moved[coordinate];
             }
         }
         (before < least).then_some(())
+    }
+
+    /// The shortest change of positions by which the constraints change so much, to first order; `None` where the
+    /// position is singular.
+    fn shortest(&mut self, gaps: &DVector<f64>) -> Option<DVector<f64>> {
+        let coordinates = &self.system.coordinates;
+        self.tile.run(self.program.jacobian());
+        let mut slopes = DMatrix::zeros(self.kept.len(), coordinates.len());
+        for &(row, column, register) in &self.program.constraint_by_position {
+            if let Ok(row) = self.kept.binary_search(&row) {
+                slopes[(row, column)] = self.value(register) * coordinates[column].scale;
+            }
+        }
+        let mut moved = slopes.transpose() * (&slopes * slopes.transpose()).cholesky()?.solve(gaps);
+        moved.iter_mut().zip(coordinates).for_each(|(moved, coordinate)| *moved *= coordinate.scale);
+        Some(moved)
+    }
+
+    /// Velocities or accelerations with which Φ̇ (`order` 0) or Φ̈ (1) is zero, nearest to those given.
+    fn consistent(&mut self, order: usize, values: &mut [f64]) -> Option<()> {
+        let layout = self.layout();
+        let registers = if order == 0 { layout.v.clone() } else { layout.w.clone() };
+        self.set(registers.clone(), values.iter().copied());
+        if self.kept.is_empty() {
+            return Some(());
+        }
+        self.tile.run(self.program.rates());
+        let rates = &self.program.constraint_rates[order];
+        let gaps = DVector::from_iterator(self.kept.len(), self.kept.iter().map(|&own| self.value(rates[own])));
+        let moved = self.shortest(&gaps)?;
+        values.iter_mut().zip(moved.iter()).for_each(|(value, moved)| *value -= moved);
+        self.set(registers, values.iter().copied());
+        Some(())
     }
 
     /// Residuals of the equations of motion (n), then of the velocity constraints.
@@ -166,9 +196,7 @@ fn series(span: [f64; 2], values: &[Vec<f64>], resolved: f64) -> Option<Vec<Cheb
     }
     let size = found.iter().map(ChebyshevSeries::size).fold(0.0, f64::max);
     let is_resolved = |own: &ChebyshevSeries| own.tail() <= resolved * size;
-    found.iter().all(is_resolved).then(|| {
-        found.into_iter().map(|own| own.chopped(ROUNDING * size)).collect()
-    })
+    found.iter().all(is_resolved).then(|| found.into_iter().map(|own| own.chopped(ROUNDING * size)).collect())
 }
 
 impl Manufactured {
@@ -209,24 +237,37 @@ impl Manufactured {
                 velocities[index] = fit[n + index].clone();
             }
         }
-        let accelerations = velocities.iter().map(ChebyshevSeries::derivative).collect();
+        let mut accelerations: Vec<ChebyshevSeries> = velocities.iter().map(ChebyshevSeries::derivative).collect();
+        // Derivatives amplify rounding; the constraints' own rates say what it is.
+        let (mut rates, mut changes) = (Vec::new(), Vec::new());
+        for &time in &times {
+            let at = |series: &[ChebyshevSeries]| series.iter().map(|own| own.at(time)).collect::<Vec<f64>>();
+            let (mut v, mut w) = (at(&velocities), at(&accelerations));
+            equations.gaps(time, &at(&positions));
+            let consistent = equations.consistent(0, &mut v).and_then(|()| equations.consistent(1, &mut w));
+            consistent.ok_or(NotVerified::NotClosed { time })?;
+            rates.push(v);
+            changes.push(w);
+        }
+        velocities = series(span, &rates, RESOLVED).ok_or(NotVerified::NotSmooth { end })?;
+        accelerations = series(span, &changes, LOADS_RESOLVED).unwrap_or(accelerations);
         let multipliers = fit[2 * n..].to_vec();
         let mut motion = Self { end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![] };
-        let values: Vec<Vec<f64>> = times.iter().map(|&time| equations.residuals(&motion, time)).collect();
-        if values.iter().flatten().any(|value| !value.is_finite()) {
-            return Err(NotVerified::NotFinite { end });
+        for nodes in LOADS {
+            let times = ChebyshevSeries::nodes(span, nodes);
+            let values: Vec<Vec<f64>> = times.iter().map(|&time| equations.residuals(&motion, time)).collect();
+            if values.iter().flatten().any(|value| !value.is_finite()) {
+                return Err(NotVerified::NotFinite { end });
+            }
+            if let Some(mut all) = series(span, &values, LOADS_RESOLVED) {
+                motion.slips = all.split_off(n);
+                motion.loads = all;
+                return Ok(motion);
+            }
         }
-        let forces: Vec<Vec<f64>> = values.iter().map(|row| row[..n].to_vec()).collect();
-        let slips: Vec<Vec<f64>> = values.iter().map(|row| row[n..].to_vec()).collect();
-        let kink = || NotVerified::Kink { end };
-        motion.loads = series(span, &forces, LOADS_RESOLVED).ok_or_else(kink)?;
-        motion.slips = series(span, &slips, LOADS_RESOLVED).ok_or_else(kink)?;
-        Ok(motion)
+        Err(NotVerified::Kink { end })
     }
 }
-
-/// The same for loads, which have accelerations in them.
-const LOADS_RESOLVED: f64 = 1e-8;
 
 /// Values with a swing of their own where they hardly change.
 fn moved(values: &mut [f64], index: usize, scale: f64) {

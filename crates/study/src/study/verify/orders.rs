@@ -7,10 +7,10 @@ use crate::results::{Convergence, Quantity};
 use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulator, Steps, integrator};
 
 /// Intervals between the rows in which errors are taken.
-const ROWS: usize = 8;
+const ROWS: usize = 4;
 
 /// Most steps of a row.
-const MOST: usize = 1 << 12;
+const MOST: usize = 1 << 13;
 
 /// Errors below these shares of a quantity's size are rounding's, whatever the model: of positions, velocities,
 /// accelerations and reactions.
@@ -56,7 +56,9 @@ fn groups<'m>(system: &System, motion: &'m Manufactured) -> Vec<Group<'m>> {
         |quantity: Quantity, first: usize, series: &'m [ChebyshevSeries], of: Vec<usize>, per: f64, rounding| {
             let exact: Vec<&ChebyshevSeries> = of.iter().map(|&index| &series[index]).collect();
             let scales = of.iter().map(|&index| match quantity {
-                Quantity::States | Quantity::Reactions => size(exact.iter().copied()).max(f64::MIN_POSITIVE),
+                Quantity::States => size(exact.iter().copied()).max(f64::MIN_POSITIVE),
+                // Reactions may vanish where loads do not.
+                Quantity::Reactions => size(exact.iter().copied().chain(&motion.loads)).max(f64::MIN_POSITIVE),
                 _ => system.coordinates[index].scale * per,
             });
             let scales = scales.collect();

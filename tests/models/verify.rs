@@ -1,0 +1,69 @@
+//! Orders of manufactured motions: models of which theory is known, and what stands against a verification.
+
+use mbint::{Error, Model, Quantity, Verification};
+
+fn of_file(path: &str) -> Model {
+    Model::from_file(format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+fn of_model(name: &str) -> Verification {
+    of_file(&format!("models/{name}")).verify().unwrap()
+}
+
+/// Orders of all quantities by a scheme of a formulation.
+fn orders(found: &Verification, formulation: usize, scheme: usize) -> Vec<(Quantity, f64)> {
+    let convergence = &found.formulations[formulation].schemes[scheme].convergence;
+    convergence.iter().map(|own| (own.quantity, own.order.unwrap())).collect()
+}
+
+#[test]
+fn a_slider_crank_has_the_orders_of_its_schemes_in_both_formulations() {
+    let found = of_model("slider_crank.yaml");
+    assert!(found.is_verified(), "{found:?}");
+    assert_eq!(found.formulations.len(), 2);
+    for formulation in 0..2 {
+        for (scheme, theory, within) in [(0, 2.0, 0.05), (1, 4.0, 0.15)] {
+            let orders = orders(&found, formulation, scheme);
+            assert_eq!(orders.len(), 4, "positions, velocities, accelerations and reactions");
+            assert!(orders.iter().all(|(_, order)| (order - theory).abs() < within), "{scheme}: {orders:?}");
+        }
+        // Order 8, until errors are those of rounding.
+        let explicit = orders(&found, formulation, 2);
+        assert!(explicit.iter().all(|(_, order)| *order > 7.5), "{explicit:?}");
+    }
+}
+
+#[test]
+fn rolling_states_and_redundant_loops_are_verified() {
+    for (name, quantity) in [
+        ("coin.yaml", Quantity::Reactions),
+        ("held_arm.yaml", Quantity::States),
+        ("planetary_gear.yaml", Quantity::Reactions),
+        ("four_bar.yaml", Quantity::Reactions),
+    ] {
+        let found = of_model(name);
+        assert!(found.is_verified(), "{name}: {found:?}");
+        let has = |own: &&mbint::Convergence| own.quantity == quantity;
+        let convergence = &found.formulations[0].schemes[0].convergence;
+        assert!(convergence.iter().any(|own| has(&own)), "{name}");
+    }
+}
+
+#[test]
+fn a_model_that_takes_no_steps_is_refused() {
+    let error = of_file("docs/examples/statics.yaml").verify().unwrap_err();
+    assert!(matches!(error, Error::Verify(_)), "{error}");
+    assert!(error.to_string().contains("takes no steps"), "{error}");
+}
+
+/// A force with a corner in the middle of every part of the run.
+#[test]
+fn a_kink_is_named() {
+    let text = "model: kink\nbodies:\n  block: { mass: 1, coordinates: [x] }\neffects:\n  \
+                push: { force: { on: block, value: [\"abs(sin(4000*t))\", 0] } }\noutputs: { x: block.x }\n\
+                simulation: { duration: 1, step: 1e-3 }\n";
+    let found = Model::from_yaml_str("kink.yaml", text).unwrap().verify().unwrap();
+    assert!(!found.is_verified());
+    let why = found.formulations[0].failure.as_deref().unwrap();
+    assert!(why.contains("not smooth"), "{why}");
+}
