@@ -38,7 +38,7 @@ pub(super) fn statistics(summary: &Summary) -> String {
         let known = |value: f64, text: String| if value.is_nan() { "–".to_owned() } else { text };
         let estimate = |value: f64, of: Uncertain| format!("{} ± {:.1e}", number(value), shown(of.total()));
         let statistical = match (output.quantiles.first(), output.quantiles.last()) {
-            (Some(low), Some(high)) => ends(low.value, high.value),
+            (Some(low), Some(high)) => known(low.value + high.value, ends(low.value, high.value)),
             _ => String::new(),
         };
         table.row([
@@ -99,6 +99,9 @@ fn reduced(found: &StatisticsSummary) -> String {
         let digits = decimals(unit.of_si(own.deviation.value));
         let estimate = |of: &Uncertain| {
             let value = unit.of_si(of.value);
+            if value.is_nan() {
+                return "–".to_owned();
+            }
             let number = match digits {
                 Some(digits) => format!("{value:.digits$}"),
                 None => format!("{value:.4e}"),

@@ -37,6 +37,20 @@ pub fn sample_quantile(sorted: &[f64], share: f64) -> Estimate {
     if [sorted.first(), sorted.last()].iter().any(|end| end.is_none_or(|value| value.is_nan())) {
         return unknown;
     }
+    let Some([below, above]) = ranks(share, n) else { return unknown };
+    let index = (share * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+    let (at, between) = (index as usize, index.fract());
+    let value = sorted[at] + between * (sorted[(at + 1).min(n - 1)] - sorted[at]);
+    Estimate { value, sampling: (value - sorted[below - 1]).max(sorted[above - 1] - value) }
+}
+
+/// Whether so many samples have a confidence interval for a quantile.
+pub fn has_interval(share: f64, count: usize) -> bool {
+    ranks(share, count).is_some()
+}
+
+/// Ranks, from 1, of the samples between which a quantile lies with 95 %.
+fn ranks(share: f64, n: usize) -> Option<[usize; 2]> {
     // The i-th smallest of n shares is of the law Beta(i, n + 1 − i).
     let is_below = |i: usize| beta_quantile(0.975, i as f64, (n + 1 - i) as f64) <= share;
     let is_above = |i: usize| beta_quantile(0.025, i as f64, (n + 1 - i) as f64) >= share;
@@ -50,13 +64,7 @@ pub fn sample_quantile(sorted: &[f64], share: f64) -> Estimate {
         let middle = usize::midpoint(above, to);
         if is_above(middle) { to = middle } else { above = middle + 1 }
     }
-    if below == 0 || above > n {
-        return unknown;
-    }
-    let index = (share * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
-    let (at, between) = (index as usize, index.fract());
-    let value = sorted[at] + between * (sorted[(at + 1).min(n - 1)] - sorted[at]);
-    Estimate { value, sampling: (value - sorted[below - 1]).max(sorted[above - 1] - value) }
+    (below > 0 && above <= n).then_some([below, above])
 }
 
 #[cfg(test)]

@@ -6,7 +6,9 @@ use rayon::prelude::*;
 use super::realisations::{Realisations, realisations, samples, varied};
 use super::{INTERRUPTED, Laws};
 use crate::model::{Analysis, Description, Requirement};
-use crate::numerics::statistics::{Estimate, sample_deviation, sample_mean, sample_quantile, share_interval};
+use crate::numerics::statistics::{
+    Estimate, has_interval, sample_deviation, sample_mean, sample_quantile, share_interval,
+};
 use crate::reduce::Subsystem;
 use crate::results::{
     ExposureSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, RandomSummary, StatisticsResult,
@@ -16,6 +18,7 @@ use crate::study::Options;
 use crate::study::ensemble::Progress;
 use crate::study::prepared::{Prepared, choices, prepare};
 use crate::study::problem::Study;
+use crate::syntax::suggest;
 
 /// Samples where a model asks for no number: the quantiles of a normal law's three deviations need 2731.
 const SAMPLES: usize = 1 << 12;
@@ -72,6 +75,12 @@ pub(super) fn of_motions(
     let times = sampled.parts.iter().map(|(_, found)| &found.times).max_by_key(|times| times.len());
     let times = times.cloned().unwrap_or_default();
     let (requirements, together) = sampled.requirements();
+    let unknown: Vec<String> =
+        asked.quantiles.iter().filter(|share| !has_interval(**share, count)).map(f64::to_string).collect();
+    let note = (!unknown.is_empty()).then(|| {
+        let names = suggest::list(&unknown.iter().map(String::as_str).collect::<Vec<&str>>());
+        format!("{count} samples are too few for the quantiles {names}: ask for more `samples`")
+    });
     let excitations = description.trajectories.iter().filter(|own| own.random().is_some());
     let excitations: Vec<String> = excitations.map(|own| own.name.clone()).collect();
     let mut parameters = laws.summaries();
@@ -90,7 +99,7 @@ pub(super) fn of_motions(
         requirements,
         together,
         random: Some(RandomSummary { excitations, seed }),
-        failure: None,
+        failure: note,
     };
     Ok(StatisticsResult { times, outputs, summary })
 }
@@ -192,7 +201,7 @@ impl Sampled<'_> {
             })
         };
         let mut all = vec![[true; 3]; self.count];
-        let mut each = Vec::new();
+        let (mut each, mut shortest) = (Vec::new(), f64::INFINITY);
         for (index, own) in self.description.requirements.iter().enumerate() {
             let Some((values, error)) = margins(index) else { continue };
             // Errors harm, none, errors help; NaN has no value, and fails.
@@ -201,9 +210,10 @@ impl Sampled<'_> {
             all.iter_mut().zip(&fulfilled).for_each(|(all, own)| {
                 all.iter_mut().zip(own).for_each(|(all, own)| *all &= own);
             });
+            shortest = shortest.min(self.window(own));
             each.push(self.share(&own.name, &fulfilled, self.window(own)));
         }
-        let together = (each.len() > 1).then(|| self.share(TOGETHER, &all, self.description.simulation.duration));
+        let together = (each.len() > 1).then(|| self.share(TOGETHER, &all, shortest));
         (each, together)
     }
 
