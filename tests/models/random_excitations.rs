@@ -94,8 +94,8 @@ fn roads_shake_a_quarter_car_as_lyapunovs_equation_says() {
     }
 }
 
-/// RMS of the driver's acceleration in `docs/examples/ride_comfort.yaml`: (K + iω D − ω² M) x = k (e₃ + e₄ exp(−iω L/v)) for
-/// heave, pitch and both wheels, summed over frequencies.
+/// RMS of the driver's acceleration in `docs/examples/ride_comfort.yaml`, summed over frequencies:
+/// (K + iω D − ω² M) x = k (e₃ + e₄ exp(−iω L/v)) for heave, pitch and both wheels.
 fn on_a_rough_road(body: f64, damper: f64, tyre: f64) -> f64 {
     let (inertia, wheel, spring, speed) = (900.0, 40.0, 22e3, 25.0);
     let arms = [1.2, -1.5];

@@ -1,5 +1,5 @@
-//! Inputs: excitations that are functions of the time, u(t) = level + slope · t over a cell of the time, and random ones
-//! of a linearised mechanism.
+//! Inputs: excitations that are functions of the time, u(t) = level + slope · t over a cell of the time, and random
+//! ones of a linearised mechanism.
 
 use symdiff::{Builder, Expr, Scalar};
 

@@ -219,8 +219,8 @@ grammar! {
         held: Option<Number>,
         /// It is a stationary random function with this spectrum.
         random: Option<Random>,
-        /// Name of a random excitation, which stands before this one, that it repeats: rear wheels meet the road of front
-        /// wheels.
+        /// Name of a random excitation, which stands before this one, that it repeats: rear wheels meet the road of the
+        /// front wheels.
         follows: Option<String>,
         /// How much later it repeats that, s; a formula of parameters.
         after: Option<Number>,
@@ -228,8 +228,8 @@ grammar! {
 
     /// One-sided spectral density of a stationary random function.
     Random is "a random excitation" {
-        /// Class `A` to `H` of a road (ISO 8608), or its density at a wavelength of 10 m, m³; it falls with the square of
-        /// the spatial frequency.
+        /// Class `A` to `H` of a road (ISO 8608), or its density at a wavelength of 10 m, m³; it falls with the square
+        /// of the spatial frequency.
         road: Option<RoadFile>,
         /// Speed at which the road is passed; a formula of parameters.
         speed: Option<Number>,

@@ -96,8 +96,8 @@ grammar! {
     Statistics is "`statistics`" {
         /// The law of every uncertain parameter that has none of its own; by default uniform.
         distribution: Option<LawFile>,
-        /// Samples of the surrogate, by default a million; a power of two is taken. Under random excitations motions are
-        /// simulated, by default 4096.
+        /// Samples of the surrogate, by default a million; a power of two is taken. Under random excitations motions
+        /// are simulated, by default 4096.
         samples: Option<u32>,
         /// Whole number that chooses the samples of random excitations; by default 1.
         seed: Option<u32>,

@@ -139,9 +139,12 @@ fn random(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traject
     Some(Trajectory { name: entry.key.clone(), points: Vec::new(), timing, dimension })
 }
 
-/// Adds the parameter of a realisation, which excitations of one model do not share.
+/// Adds the parameter of a realisation. Excitations of other names have others, whatever stands before them (the hash
+/// of Fowler, Noll and Vo).
 fn add_seed(reader: &mut Reader, name: &str, seed: usize) {
-    let number = Normals::new(seed * TUNING.most_seeds + reader.model.trajectories.len()).uniform();
+    let mixed = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325, mixed) % TUNING.most_seeds as u64;
+    let number = Normals::new(seed * TUNING.most_seeds + hash as usize).uniform();
     let parameter =
         Parameter { name: seed_of(name), unit: String::new(), value: ParameterValue::Formula(Formula::number(number)) };
     reader.model.parameters.push(parameter);

@@ -83,8 +83,8 @@ impl RandomLoads {
         Some(Self { graph, symbols, inputs: system.random.clone(), motion: motion_by, outputs: outputs_by, sizes })
     }
 
-    /// Root mean square of each output, and the frequency, Hz, with which it rises through its mean. `state` are the layout's registers, `by` derivatives of the outputs by q, v, w and λ, and
-    /// `frequencies` those of the modes, Hz.
+    /// Root mean square of each output, and the frequency, Hz, with which it rises through its mean. `state` are the
+    /// layout's registers, `by` derivatives of the outputs by q, v, w and λ, and `frequencies` those of the modes, Hz.
     pub fn tell(
         &self,
         state: &[f64],

@@ -33,7 +33,7 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     let (bounds, mut summary, kept) = reduced::run(description, options, true)?;
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
-        _ if random::is_random(description) => random::of_motions((description, shown), options),
+        _ if random::is_random(description) => random::of_motions(description, shown, options),
         Some(kept) => of_run((description, shown), options, &bounds, kept),
         None => Err("there is no surrogate over the whole box".to_owned()),
     };

@@ -42,7 +42,8 @@ pub(super) fn is_random(description: &Description) -> bool {
 /// # Errors
 /// In words, where motions cannot be simulated.
 pub(super) fn of_motions(
-    (description, shown): (&Description, usize),
+    description: &Description,
+    shown: usize,
     options: &Options,
 ) -> Result<StatisticsResult, String> {
     let asked = &description.statistics;
