@@ -92,7 +92,7 @@ simulation: { duration: 0.5, step: 0.01, output_step: 0.1 }
 bounds: { chebyshev: { order: 3 } }
 ";
 
-/// Excitations that nothing of a scene uses cost nothing: neither limits, nor random ones, nor what they are as constants.
+/// Excitations that nothing of a scene uses cost nothing: neither functions within limits, nor random ones.
 #[test]
 fn a_scene_without_an_excitation_is_the_model_without_it() {
     let place = Place::new();

@@ -32,7 +32,7 @@ const CHECKED: usize = 16;
 /// Error of steps over the change by halved ones where a function jumps: by the scheme, a jump takes a step.
 const FIRST_ORDER: f64 = 2.0;
 
-/// Limit of what that estimate may be wrong by, as with validation samples.
+/// Factor by which these estimates may be wrong, as with validation samples.
 const SAFETY: f64 = 1.25;
 
 /// An end of an output that is not linear in the functions.
