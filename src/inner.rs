@@ -47,7 +47,7 @@ pub mod results {
     pub use crate::results::{
         Allocation, Band, Bounds, CostStudy, FunctionWitness, Method, MethodSummary, OutputBounds, OutputStatistics,
         OutputStatisticsSummary, ReducedBand, ReducedSummary, RequirementSummary, StatisticsResult, Summary, Uncertain,
-        Verdict,
+        Verdict, YieldSummary,
     };
 }
 

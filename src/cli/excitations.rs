@@ -1,8 +1,9 @@
-//! What excitations do as constants, and as any functions, for people.
+//! What excitations do as constants, and as any functions, for people; random ones.
 
 use super::structure::digits;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::ExcitationSummary;
+use crate::results::{ExcitationSummary, Summary};
+use crate::syntax::suggest;
 
 /// Lines that fit a screen.
 const MOST: usize = 12;
@@ -10,8 +11,24 @@ const MOST: usize = 12;
 /// Where functions move an output no further than this, constants are enough.
 const ENOUGH: f64 = 1.005;
 
-/// A line for each output that excitations move.
-pub(super) fn lines(excitations: &[ExcitationSummary]) -> String {
+/// A line for each output that excitations move, and one of random ones.
+pub(super) fn lines(summary: &Summary) -> String {
+    limited(&summary.excitations) + &random(&summary.realisations)
+}
+
+/// A line where bounds have one realisation of random excitations.
+fn random(realisations: &[String]) -> String {
+    let names: Vec<&str> = realisations.iter().map(String::as_str).collect();
+    match names.as_slice() {
+        [] => String::new(),
+        names => {
+            let names = suggest::list(names);
+            format!("  bounds have one realisation of {names}: `statistics:` simulates many\n\n")
+        }
+    }
+}
+
+fn limited(excitations: &[ExcitationSummary]) -> String {
     let line = |own: &ExcitationSummary| {
         let unit = ShownUnit::of(&own.display, &own.unit);
         let shown = |value: f64| format!("± {} {}", digits(unit.of_si(value)), unit.text).trim_end().to_owned();
@@ -47,10 +64,12 @@ mod tests {
             time: 6.0,
             value: as_function,
         };
-        let text = lines(&[of(0.689, 2.573), of(1.0, 1.001), of(0.0, 2.0), of(0.0, 0.0)]);
+        let text = limited(&[of(0.689, 2.573), of(1.0, 1.001), of(0.0, 2.0), of(0.0, 0.0)]);
         let expected = "  shake: as a constant ± 0.689 m/s^2, as any function ± 2.573 m/s^2: 3.734 times as far\n  \
                         shake: as a constant ± 1 m/s^2, as any function ± 1.001 m/s^2: constants are enough\n  \
                         shake: as a constant ± 0 m/s^2, as any function ± 2 m/s^2\n\n";
         assert_eq!(text, expected);
+        let text = random(&["road".to_owned()]);
+        assert_eq!(text, "  bounds have one realisation of `road`: `statistics:` simulates many\n\n");
     }
 }

@@ -291,7 +291,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         }
     }
     text += &summary.black_box.as_ref().map_or_else(String::new, |own| black_box::lines(own, &summary.errors));
-    text += &super::excitations::lines(&summary.excitations);
+    text += &super::excitations::lines(summary);
     text += &contributions(&summary.contributions);
     text += &verdicts::tables(summary);
     text += &super::statistics::statistics(summary);
@@ -373,6 +373,7 @@ mod tests {
             subsystems: vec![],
             failure: None,
             excitations: Vec::new(),
+            realisations: Vec::new(),
             is_cut: false,
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));

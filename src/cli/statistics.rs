@@ -4,6 +4,7 @@ use super::stack;
 use super::table::{Align, Table};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{StatisticsSummary, Summary, Uncertain};
+use crate::syntax::suggest;
 
 /// Laws, and for each output the worst case, the linearised stack and the distribution.
 pub(super) fn statistics(summary: &Summary) -> String {
@@ -33,17 +34,19 @@ pub(super) fn statistics(summary: &Summary) -> String {
             None => format!("{value:.4e}"),
         };
         let ends = |lower: f64, upper: f64| format!("[{}, {}]", number(shown(lower)), number(shown(upper)));
+        // Motions under random excitations have neither a box nor a linear stack.
+        let known = |value: f64, text: String| if value.is_nan() { "–".to_owned() } else { text };
         let estimate = |value: f64, of: Uncertain| format!("{} ± {:.1e}", number(value), shown(of.total()));
         let statistical = match (output.quantiles.first(), output.quantiles.last()) {
-            (Some(low), Some(high)) => ends(low.value, high.value),
+            (Some(low), Some(high)) => known(low.value + high.value, ends(low.value, high.value)),
             _ => String::new(),
         };
         table.row([
             output.output.clone(),
             if has_time { format!("{:.4}", output.time) } else { "–".to_owned() },
-            ends(output.worst_case[0], output.worst_case[1]),
-            format!("± {}", number(shown(output.linear))),
-            format!("± {}", number(shown(output.rss))),
+            known(output.worst_case[0], ends(output.worst_case[0], output.worst_case[1])),
+            known(output.linear, format!("± {}", number(shown(output.linear)))),
+            known(output.rss, format!("± {}", number(shown(output.rss)))),
             estimate(shown(output.mean.value), output.mean),
             estimate(shown(output.deviation.value), output.deviation),
             statistical,
@@ -58,13 +61,23 @@ pub(super) fn statistics(summary: &Summary) -> String {
         }
         _ => String::new(),
     };
+    let by = match &found.random {
+        Some(random) => {
+            let names: Vec<&str> = random.excitations.iter().map(String::as_str).collect();
+            let (names, seed) = (suggest::list(&names), random.seed);
+            format!("samples are {} simulated motions under {names} (seed {seed}){shares}", found.samples)
+        }
+        None => {
+            let samples = found.samples;
+            format!("the worst case is every case of the box{shares}, by {samples} samples of the surrogate")
+        }
+    };
     format!(
-        "{}{note}{}{}{}  the worst case is every case of the box{shares}, by {} samples of the surrogate\n{}\n",
+        "{}{note}{}{}{}  {by}\n{}\n",
         laws(found),
         table.render(2),
         reduced(found),
         stack::sensitivities(summary),
-        found.samples,
         yields(found.requirements.iter().chain(&found.together))
     )
 }
@@ -86,6 +99,9 @@ fn reduced(found: &StatisticsSummary) -> String {
         let digits = decimals(unit.of_si(own.deviation.value));
         let estimate = |of: &Uncertain| {
             let value = unit.of_si(of.value);
+            if value.is_nan() {
+                return "–".to_owned();
+            }
             let number = match digits {
                 Some(digits) => format!("{value:.digits$}"),
                 None => format!("{value:.4e}"),
@@ -110,8 +126,12 @@ pub(super) fn yields<'y>(found: impl IntoIterator<Item = &'y crate::results::Yie
             of.cpk.map_or_else(String::new, |cpk| format!("{} Cpk {cpk:.2}", if cp.is_empty() { ";" } else { "," }));
         let time = of.time.map_or_else(String::new, |time| format!(" at t = {time:.4} s"));
         let rare = of.method.as_ref().map_or_else(String::new, |method| format!(", by {method}"));
+        let exposure = of.exposure.as_ref().map_or_else(String::new, |own| {
+            let [least, most] = own.ppm_interval.map(parts);
+            format!("; within {} s {} ppm (95 %: {least} to {most})", own.time, parts(own.ppm))
+        });
         format!(
-            "  statistically, {} {} fulfilled by {} %: {} ppm fail (95 %: {} to {}{rare}){cp}{cpk}{time}\n",
+            "  statistically, {} {} fulfilled by {} %: {} ppm fail (95 %: {} to {}{rare}){exposure}{cp}{cpk}{time}\n",
             of.requirement,
             if of.requirement.contains(' ') { "are" } else { "is" },
             percent(of.share),

@@ -20,3 +20,7 @@ pub const ALLOCATIONS: (u64, usize) = (24, 0);
 
 /// Rows of many parameters that are missed without a flag.
 pub const WIDE: usize = 0;
+
+/// Rows under excitations that are missed without a flag: three of one draw, whose periods are not whole rows, so that
+/// the steps' errors of rows between the measured ones are larger.
+pub const EXCITED: usize = 3;

@@ -17,11 +17,13 @@
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
 mod draw;
+mod excited;
 mod families;
 mod known;
 mod questions;
 mod random;
 mod record;
+mod rows;
 mod runge_kutta;
 mod search;
 mod shrink;
@@ -244,4 +246,29 @@ fn ends_of_a_few_draws_of_many_parameters_are_honest() {
 #[ignore = "half a minute"]
 fn ends_of_many_parameters_are_honest() {
     wide(60);
+}
+
+/// Excitations within limits, and random ones.
+fn excited(draws: u64, compare: fn(u64, u64) -> rows::Tally) {
+    let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
+    let tally = compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
+    println!("{tally}");
+    assert!(tally.missed <= known::EXCITED, "{tally}");
+    assert!(4 * tally.flagged <= tally.rows, "{tally}");
+}
+
+#[test]
+fn ends_of_a_few_draws_over_functions_are_honest() {
+    excited(6, excited::functions);
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn ends_over_functions_are_honest() {
+    excited(80, excited::functions);
+}
+
+#[test]
+fn root_mean_squares_are_honest() {
+    excited(60, excited::squares);
 }

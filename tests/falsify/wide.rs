@@ -3,39 +3,13 @@
 //! extreme inside, and some are saddles or products, whose gradient vanishes in the middle of the box.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
-use std::fmt::{self, Display, Formatter};
-
-use mbint::Model;
 
 use crate::random::Random;
+use crate::rows::{self, Drawn, Tally};
 use crate::truth::Range;
 
 /// Share of the values that is rounding, and steps that are kept to 1e-8 of the run.
 const ROUNDING: f64 = 1e-6;
-
-/// What came of the draws.
-#[derive(Default)]
-pub struct Tally {
-    pub draws: usize,
-    pub rows: usize,
-    pub flagged: usize,
-    /// Rows without a flag that the truth contradicts.
-    pub missed: usize,
-    /// Sums of widths, and of what bands without a flag leave out of them.
-    width: f64,
-    short: f64,
-}
-
-impl Display for Tally {
-    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        let Self { draws, rows, flagged, missed, width, short } = self;
-        write!(
-            f,
-            "{draws} draws, {rows} rows: {flagged} are flagged, {missed} missed; bands are short of {:.3} % of the width",
-            100.0 * short / width
-        )
-    }
-}
 
 /// A sum over parameters from −1 to 1.
 #[derive(Default)]
@@ -128,41 +102,15 @@ bounds: {{ tolerance: 2e-2 }}
     }
 }
 
-/// Runs draws and compares every row.
+/// Draws and compares.
 pub fn compare(seed: u64, draws: u64) -> Tally {
-    let mut tally = Tally::default();
-    for number in 0..draws {
-        let draw = Draw::new(&mut Random::new(seed, number));
-        let model = Model::from_yaml_str("wide", &draw.yaml).unwrap_or_else(|error| panic!("{error}\n{}", draw.yaml));
-        let result = model.study().run().unwrap_or_else(|error| panic!("draw {number}: {error}\n{}", draw.yaml));
-        tally.draws += 1;
-        let output = result.outputs().next().unwrap();
-        let band = output.bands().next().unwrap();
-        let before = tally.missed;
-        for (row, &time) in result.times().iter().enumerate() {
-            tally.rows += 1;
-            if !band.is_reliable(row) {
-                tally.flagged += 1;
-                continue;
-            }
-            let (truth, allowed) = (draw.truth(time), band.errors()[row] + ROUNDING * 0.13);
-            let [below, above] = [band.lower()[row] - truth.lower, truth.upper - band.upper()[row]];
-            tally.width += truth.upper - truth.lower;
-            tally.short += below.max(0.0) + above.max(0.0);
-            if below.abs().max(above.abs()) > allowed {
-                tally.missed += 1;
-                println!(
-                    "# draw {number} at {time} s: [{}, {}] ± {allowed}, in truth [{}, {}]",
-                    band.lower()[row],
-                    band.upper()[row],
-                    truth.lower,
-                    truth.upper
-                );
-            }
+    rows::compare(seed, draws, |random| {
+        let draw = Draw::new(random);
+        Drawn {
+            yaml: draw.yaml.clone(),
+            output: "x",
+            truth: Box::new(move |time| draw.truth(time)),
+            rounding: ROUNDING * 0.13,
         }
-        if tally.missed > before {
-            println!("{}", draw.yaml);
-        }
-    }
-    tally
+    })
 }

@@ -60,6 +60,7 @@ mod moving_machines;
 mod pruning;
 mod questions_apart;
 mod random;
+mod random_excitations;
 mod reduced;
 mod reductions;
 mod reproducibility;

@@ -76,6 +76,52 @@ fn compiled(mut explanation: serde_json::Value) -> serde_json::Value {
     explanation
 }
 
+const EXCITED: &str = "model: excited
+parameters: { k: { value: 100, unit: N/m, tolerance: 5% } }
+excitations:
+  push: { within: ± 1 N }
+  gust: { random: { white: 1 N^2*s, band: [0.5, 5], lines: 20 } }
+bodies: { mass: { mass: 1, coordinates: [x] } }
+effects:
+  spring: { spring_damper: { between: [ground, mass], along: x, stiffness: k, damping: 1 } }
+  pusher: { force: { on: mass, value: [push, 0] } }
+  blower: { force: { on: mass, value: [gust, 0] } }
+initial: { mass.x: 0.1, mass.vx: 0 }
+outputs: { x: mass.x }
+simulation: { duration: 0.5, step: 0.01, output_step: 0.1 }
+bounds: { chebyshev: { order: 3 } }
+";
+
+/// Excitations that nothing of a scene uses cost nothing: neither functions within limits, nor random ones.
+#[test]
+fn a_scene_without_an_excitation_is_the_model_without_it() {
+    let place = Place::new();
+    let scenes = "scenes: { calm: { without: [pusher, blower] }, pushed: { without: [blower] }, blown: { without: [pusher] } }\n";
+    fs::write(place.path().join("full.yaml"), format!("{EXCITED}{scenes}")).unwrap();
+    place.run("run -q full.yaml -o scenes", 0);
+    let without = |names: &[&str]| -> String {
+        let is_used = |line: &&str| !names.iter().any(|name| line.trim().starts_with(name));
+        EXCITED.lines().filter(is_used).flat_map(|line| [line, "\n"]).collect()
+    };
+    let counts = [
+        ("calm", without(&["excitations:", "push:", "gust:", "pusher:", "blower:"])),
+        ("pushed", without(&["gust:", "blower:"])),
+        ("blown", without(&["push:", "pusher:"])),
+    ]
+    .map(|(name, text)| {
+        fs::write(place.path().join(format!("{name}.yaml")), text).unwrap();
+        let of_scene = compiled(explained(&place, &format!("full.yaml --scene {name}")));
+        let by_hand = compiled(explained(&place, &format!("{name}.yaml")));
+        assert_eq!(of_scene["instructions"], by_hand["instructions"], "{name}");
+        assert_eq!(of_scene, by_hand, "{name}");
+        place.run(&format!("run -q {name}.yaml -o {name}"), 0);
+        let table = |folder: &str| fs::read(place.path().join(folder).join("bounds.csv")).unwrap();
+        assert!(table(&format!("scenes/{name}")) == table(name), "{name}: the same bytes");
+        by_hand["instructions"].clone()
+    });
+    assert!(counts[0] != counts[1] && counts[0] != counts[2], "{counts:?}");
+}
+
 /// The proof that a scene pays for nothing but its own: one that leaves every effect out compiles to the very
 /// instructions of a model that never had any, and gives the same bytes.
 #[test]

@@ -13,6 +13,8 @@ mod slides;
 mod swings;
 mod tops;
 
+pub use oscillators::decay;
+
 use crate::draw::{Bounds, Combine, Curves, Draw, Output, Parameter, Stepping, Term, Time, Wrap};
 use crate::random::Random;
 use crate::{runge_kutta, truth};

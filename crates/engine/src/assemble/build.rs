@@ -119,6 +119,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     let sampled = m.sampled_states(description, std::mem::take(&mut applied.sampled));
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
     let outputs = m.outputs()?;
+    let random = m.random_inputs()?;
     let mut start = m.start(description)?;
     if description.analysis != Analysis::Kinematics {
         constraints.add_balances(&m, &balance.massive, &balance.force, &start)?;
@@ -163,6 +164,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
             graph,
             parameters,
             inputs,
+            random,
             time,
             q,
             v,

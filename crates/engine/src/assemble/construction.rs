@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use symdiff::{Builder, Formula};
 
 use super::coordinates;
-use super::inputs::inputs;
+use super::inputs::{inputs, random_symbols};
 use super::mechanism::{Mechanism, Owner, dof};
 use super::names::Names;
 use super::questions::Questions;
 use super::superelement::superelements;
 use super::system::UncertainParameter;
 use super::tree::Tree;
+use crate::elements::Trajectory;
 use crate::elements::joints::Mobilizer;
 use crate::model::{self, Parameter, ParameterValue};
 use crate::multibody::{
@@ -34,6 +35,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             superelements: superelements(description),
             time,
             inputs: inputs(g, questions, time),
+            random: random_symbols(g, questions),
             uncertain: Vec::new(),
             child_guesses: Vec::new(),
             starts_assembled: false,
@@ -90,7 +92,9 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             &ParameterValue::Interval { nominal, lower, upper } => {
                 let variable = self.g.variable(&format!("p:{}", parameter.name));
                 let (name, unit, symbol) = (parameter.name.clone(), parameter.unit.clone(), variable.expr());
-                self.uncertain.push(UncertainParameter { name, unit, symbol, nominal, lower, upper });
+                let mut random = self.questions.description.trajectories.iter().filter_map(Trajectory::random);
+                let is_seed = random.any(|own| own.is_chosen_by(&name));
+                self.uncertain.push(UncertainParameter { name, unit, symbol, nominal, lower, upper, is_seed });
                 variable
             }
         };

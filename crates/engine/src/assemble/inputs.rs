@@ -1,8 +1,11 @@
-//! Inputs: excitations that are functions of the time, u(t) = level + slope · t over a cell of the time.
+//! Inputs: excitations that are functions of the time, u(t) = level + slope · t over a cell of the time, and random
+//! ones of a linearised mechanism.
 
 use symdiff::{Builder, Expr, Scalar};
 
 use super::questions::Questions;
+use crate::model::Analysis;
+use crate::numerics::Spectrum;
 
 /// An excitation as a function.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +31,47 @@ impl MechanismInput<'_> {
     pub fn info(&self) -> InputInfo {
         InputInfo { trajectory: self.trajectory, symbols: self.numbers.map(Scalar::expr) }
     }
+}
+
+/// A random excitation about which a mechanism is linearised: it is zero, and what acts on the mechanism follows from
+/// derivatives by it.
+#[derive(Clone, Debug)]
+pub struct RandomInput {
+    /// Symbols of its value, rate and acceleration.
+    pub symbols: [Expr; 3],
+    /// Parameter that chooses the realisation: excitations that share it follow one another.
+    pub seed: String,
+    /// Level of its density, of parameters.
+    pub level: Expr,
+    /// Speed at which the density's frequencies are passed, of parameters.
+    pub speed: Expr,
+    /// Delay, s, of parameters.
+    pub delay: Expr,
+    /// Density.
+    pub spectrum: Spectrum,
+    /// Least and largest frequency of the density.
+    pub band: [f64; 2],
+}
+
+/// Symbols of a random excitation, where the questions are those of a linearised mechanism.
+pub struct RandomSymbols<'g> {
+    /// Index of its trajectory in the model.
+    pub trajectory: usize,
+    /// Its value, rate and acceleration.
+    pub values: [Scalar<'g>; 3],
+}
+
+/// Symbols of all random excitations, where vibrations are asked for.
+pub fn random_symbols<'g>(g: &'g Builder, questions: &Questions) -> Vec<RandomSymbols<'g>> {
+    if !matches!(questions.description.analysis, Analysis::Modes(_)) {
+        return Vec::new();
+    }
+    let trajectories = questions.description.trajectories.iter().enumerate();
+    let random = trajectories.filter(|(_, own)| own.random().is_some()).map(|(trajectory, own)| {
+        let values = ["value", "rate", "acceleration"].map(|part| g.variable(&format!("x:{}.{part}", own.name)));
+        RandomSymbols { trajectory, values }
+    });
+    random.collect()
 }
 
 /// Inputs of all excitations, where the questions ask for functions.

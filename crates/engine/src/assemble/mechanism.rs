@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use symdiff::{Builder, Expr, Scalar};
 
-use super::inputs::MechanismInput;
+use super::inputs::{MechanismInput, RandomSymbols};
 use super::names::Names;
 use super::questions::Questions;
 use super::reaction::Reaction;
@@ -109,6 +109,8 @@ pub struct Mechanism<'g, 'd> {
     pub time: Scalar<'g>,
     /// Excitations that are functions.
     pub inputs: Vec<MechanismInput<'g>>,
+    /// Random excitations, where vibrations are asked for.
+    pub random: Vec<RandomSymbols<'g>>,
     /// The parameters that are symbols.
     pub uncertain: Vec<UncertainParameter>,
     /// Places in q of inboard joints' coordinates, and where to look for them.

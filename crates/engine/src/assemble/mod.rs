@@ -66,7 +66,7 @@ pub use build::{
     build, closes_loops, has_joints_of_several_axes, in_absolute_coordinates, in_joint_coordinates, joint_elimination,
 };
 pub use cuts::{cuts_of_several_axes, other_cuts};
-pub use inputs::InputInfo;
+pub use inputs::{InputInfo, RandomInput};
 pub use inventory::Inventory;
 pub use number_formulas::NumberFormulas;
 pub use questions::Questions;

@@ -2,6 +2,7 @@
 
 use symdiff::{Formula, Scalar};
 
+use super::inputs::{RandomInput, RandomSymbols};
 use super::mechanism::{Mechanism, dof};
 use super::system::OutputInfo;
 use crate::grammar::{EnergyKind, OnJoint, PointRef, ReactionComponent, Sensor, Symbol, TimeOrder};
@@ -111,6 +112,9 @@ impl<'g> Mechanism<'g, '_> {
     /// excitation of t too, as the reader saw to.
     fn trajectory(&self, trajectory: usize, order: TimeOrder) -> Scalar<'g> {
         let number = |formula: &Formula| self.formula(formula, Context::Time);
+        if let Some(random) = self.random.iter().find(|random| random.trajectory == trajectory) {
+            return random.values[order as usize];
+        }
         let own = self.names.trajectory(trajectory);
         let input = self.inputs.iter().find(|input| input.trajectory == trajectory);
         let value = match (own.excitation(), input) {
@@ -119,6 +123,25 @@ impl<'g> Mechanism<'g, '_> {
         };
         let value = value.unwrap_or_else(|_| self.g.number(f64::NAN));
         (0..order as usize).fold(value, |value, _| value.derivative(self.time))
+    }
+
+    /// Random excitations about which the mechanism is linearised.
+    pub fn random_inputs(&self) -> Result<Vec<RandomInput>, BuildError> {
+        let number = |formula: &Formula| Ok(self.formula(formula, Context::Parameters)?.expr());
+        let mut inputs = Vec::with_capacity(self.random.len());
+        for RandomSymbols { trajectory, values } in &self.random {
+            let Some(random) = self.names.trajectory(*trajectory).random() else { continue };
+            inputs.push(RandomInput {
+                symbols: values.map(Scalar::expr),
+                seed: random.seed.names().map(|(name, _)| name).collect(),
+                level: number(&random.level)?,
+                speed: number(&random.speed)?,
+                delay: number(&random.delay)?,
+                spectrum: random.spectrum.clone(),
+                band: random.band,
+            });
+        }
+        Ok(inputs)
     }
 
     fn reaction(&self, joint: usize, component: ReactionComponent) -> Scalar<'g> {

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::inputs::InputInfo;
+use super::inputs::{InputInfo, RandomInput};
 use symdiff::{Expr, Formula, Graph};
 
 use crate::grammar::quantity::Dimension;
@@ -21,6 +21,8 @@ pub struct System {
     pub parameters: Vec<UncertainParameter>,
     /// Excitations that are functions of the time.
     pub inputs: Vec<InputInfo>,
+    /// Random excitations about which a mechanism is linearised.
+    pub random: Vec<RandomInput>,
     /// t, s.
     pub time: Expr,
     /// Positions, n symbols.
@@ -179,6 +181,8 @@ pub struct UncertainParameter {
     pub lower: f64,
     /// Upper end of the interval.
     pub upper: f64,
+    /// Whether it chooses a realisation of a random excitation: values near one another have nothing in common.
+    pub is_seed: bool,
 }
 
 /// A coordinate's name and size.
@@ -311,9 +315,10 @@ pub enum ConditionOf {
 }
 
 impl System {
-    /// Symbols of all inputs: level and slope of each.
+    /// Symbols of all inputs: level and slope of each, and value, rate and acceleration of random ones.
     pub fn input_symbols(&self) -> impl Iterator<Item = Expr> {
-        self.inputs.iter().flat_map(|input| input.symbols)
+        let functions = self.inputs.iter().flat_map(|input| input.symbols);
+        functions.chain(self.random.iter().flat_map(|random| random.symbols))
     }
 
     /// All equations, outputs and start values.
@@ -323,6 +328,7 @@ impl System {
         roots.extend(self.named_constraints().map(|(value, _)| value));
         roots.extend(self.sampled.iter().map(|sampled| sampled.value));
         roots.extend(self.outputs.iter().map(|output| output.expr));
+        roots.extend(self.random.iter().flat_map(|random| [random.level, random.speed, random.delay]));
         roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
         roots.extend(
             self.start.conditions.iter().flat_map(|condition| [Some(condition.value), condition.rate]).flatten(),

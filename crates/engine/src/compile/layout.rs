@@ -12,7 +12,7 @@ use crate::assemble::System;
 pub struct Layout {
     /// Uncertain parameters, k.
     pub parameters: Range<usize>,
-    /// Levels and slopes of excitations that are functions, two each.
+    /// Levels and slopes of excitations that are functions, two each, or values of random ones, three each.
     pub inputs: Range<usize>,
     /// Step size h, s.
     pub step: usize,
@@ -45,7 +45,7 @@ impl Layout {
         };
         Self {
             parameters: block(system.parameters.len()),
-            inputs: block(2 * system.inputs.len()),
+            inputs: block(system.input_symbols().count()),
             step: block(1).start,
             time: block(1).start,
             q: block(n),

@@ -237,6 +237,7 @@ mod tests {
             subsystems: vec![],
             failure: None,
             excitations: Vec::new(),
+            realisations: Vec::new(),
             is_cut: false,
         };
         (bounds, summary)

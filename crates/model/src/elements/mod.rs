@@ -6,6 +6,7 @@ mod form;
 mod glyph;
 pub mod joints;
 pub mod meshing;
+mod random;
 pub mod shapes;
 mod trajectory;
 
@@ -13,4 +14,5 @@ pub use excitation::{Class, Excitation};
 pub use form::{Bend, Form, Shape, SurfaceAt, Surroundings};
 pub use glyph::Glyph;
 pub use joints::JointKind;
+pub use random::RandomFunction;
 pub use trajectory::{Timing, Trajectory, Waypoint};

@@ -17,6 +17,7 @@
 use symdiff::{Formula, Scalar};
 
 use super::excitation::Excitation;
+use super::random::RandomFunction;
 use crate::grammar::quantity::Dimension;
 
 /// Shares of a move that two ramps leave are none below this.
@@ -61,6 +62,8 @@ pub enum Timing {
     Within(Box<Excitation>),
     /// An excitation that is a known function: a formula of t.
     Given(Formula),
+    /// A stationary random function.
+    Random(Box<RandomFunction>),
 }
 
 /// Time, value and rate.
@@ -82,7 +85,17 @@ impl Trajectory {
             Timing::Given(formula) => Some(formula),
             _ => None,
         };
-        of_points.chain(ramp).chain(given).chain(self.excitation().into_iter().flat_map(Excitation::formulas))
+        let of_excitation = self.excitation().into_iter().flat_map(Excitation::formulas);
+        let of_random = self.random().into_iter().flat_map(RandomFunction::formulas);
+        of_points.chain(ramp).chain(given).chain(of_excitation).chain(of_random)
+    }
+
+    /// Its spectrum, where it is random.
+    pub fn random(&self) -> Option<&RandomFunction> {
+        match &self.timing {
+            Timing::Random(random) => Some(random),
+            _ => None,
+        }
     }
 
     /// Its limits, where it is an excitation.
@@ -108,6 +121,9 @@ impl Trajectory {
         if let Timing::Given(formula) = &self.timing {
             return number(formula);
         }
+        if let Some(random) = self.random() {
+            return random.value(time, number);
+        }
         let zero = time.builder().number(0.0);
         let mut knots: Vec<Knot> = Vec::with_capacity(self.points.len());
         for Waypoint { time, value, rate } in &self.points {
@@ -129,7 +145,7 @@ impl Trajectory {
                 Timing::Quintic => pieces.push((to[0], quintic(u, h, from, to))),
                 Timing::Trapezoidal(_) => trapezoidal(&mut pieces, u, ramp.map(|ramp| ramp / h), from, to),
                 // Without points there are no pieces.
-                Timing::Within(_) | Timing::Given(_) => {}
+                Timing::Within(_) | Timing::Given(_) | Timing::Random(_) => {}
             }
         }
         let ([first, start, _], [_, end, _]) = (knots[0], knots[knots.len() - 1]);

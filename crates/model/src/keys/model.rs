@@ -209,7 +209,7 @@ grammar! {
         ramp: Option<Number>,
     }
 
-    /// Any function of the time within limits.
+    /// Any function of the time within limits, or a random one.
     Excitation is "an excitation" {
         /// Limits of its value: `± 5 N`, `20 N ± 10%`, or `[lower, upper]`; formulas of t and parameters.
         within: Option<WithinFile>,
@@ -217,6 +217,45 @@ grammar! {
         rate: Option<Number>,
         /// It is constant over each period of this length, s, and jumps between them.
         held: Option<Number>,
+        /// It is a stationary random function with this spectrum.
+        random: Option<Random>,
+        /// Name of a random excitation, which stands before this one, that it repeats: rear wheels meet the road of the
+        /// front wheels.
+        follows: Option<String>,
+        /// How much later it repeats that, s; a formula of parameters.
+        after: Option<Number>,
+    }
+
+    /// One-sided spectral density of a stationary random function.
+    Random is "a random excitation" {
+        /// Class `A` to `H` of a road (ISO 8608), or its density at a wavelength of 10 m, m³; it falls with the square
+        /// of the spatial frequency.
+        road: Option<RoadFile>,
+        /// Speed at which the road is passed; a formula of parameters.
+        speed: Option<Number>,
+        /// Density that is the same at all frequencies of the band: `4 N^2*s`; a formula of parameters.
+        white: Option<Number>,
+        /// White noise passes this filter.
+        filter: Option<SpectrumFilter>,
+        /// Pairs of a frequency and a density; straight lines in logarithmic scales between them.
+        density: Option<Vec<[Number; 2]>>,
+        /// Least and largest frequency, Hz; of a road 1/m, by default `[0.011, 2.83]`.
+        band: Option<[Number; 2]>,
+        /// Cosines of which realisations are made, by default 100. Where a vibration is lightly damped, they should be
+        /// nearer to each other than one over the duration.
+        lines: Option<u32>,
+        /// It begins smoothly within this time, s; by default at once.
+        ramp: Option<Number>,
+        /// Whole number that chooses the realisation of the motion; by default 1.
+        seed: Option<u32>,
+    }
+
+    /// A filter of the first order, or with a damping ratio of the second.
+    SpectrumFilter is "a `filter`" {
+        /// Corner of a lag, or natural frequency, Hz.
+        frequency: Number,
+        /// Damping ratio of a filter of the second order.
+        damping: Option<f64>,
     }
 
     /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its

@@ -96,8 +96,13 @@ grammar! {
     Statistics is "`statistics`" {
         /// The law of every uncertain parameter that has none of its own; by default uniform.
         distribution: Option<LawFile>,
-        /// Samples of the surrogate, by default a million; a power of two is taken.
+        /// Samples of the surrogate, by default a million; a power of two is taken. Under random excitations motions
+        /// are simulated, by default 4096.
         samples: Option<u32>,
+        /// Whole number that chooses the samples of random excitations; by default 1.
+        seed: Option<u32>,
+        /// Under random excitations: failures of requirements within this time, s, of which motions are parts.
+        exposure: Option<Number>,
         /// Shares below the quantiles, e.g. `[0.135%, 50%, 99.865%]`, which is the default.
         quantiles: Option<Vec<Number>>,
         /// Parameters that depend on each other, group by group.

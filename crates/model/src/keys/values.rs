@@ -197,6 +197,25 @@ schema_only! {
         Text(String),
     }
 
+    /// Class of a road.
+    #[schemars(inline)]
+    pub enum RoadName {
+        A,
+        B,
+        C,
+        D,
+        E,
+        F,
+        G,
+        H,
+    }
+
+    #[schemars(untagged, inline)]
+    pub enum RoadFile {
+        Class(RoadName),
+        Density(Number),
+    }
+
     #[schemars(untagged, inline)]
     pub enum WithinFile {
         /// Both limits, of t and parameters.

@@ -3,6 +3,7 @@
 use symdiff::{Binary, Formula, Unary};
 
 use super::names::Reader;
+use super::random;
 use crate::elements::{Class, Excitation, Timing, Trajectory};
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::evaluate;
@@ -13,7 +14,7 @@ use crate::grammar::unit::number_and_unit;
 use crate::grammar::{Context, Symbol};
 use crate::keys;
 use crate::model::description::{Parameter, ParameterValue};
-use crate::model::parameters::deviation_of;
+use crate::model::parameters::{deviation_of, seed_of};
 use crate::model::tuning::TUNING;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
@@ -37,7 +38,9 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
             continue;
         }
         let Some(found) = excitation(reader, entry).filter(|_| named) else { continue };
-        add_deviation(reader, &entry.key);
+        if found.excitation().is_some() {
+            add_deviation(reader, &entry.key);
+        }
         reader.model.trajectories.push(found);
     }
 }
@@ -62,6 +65,9 @@ struct Limits {
 
 fn excitation(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
     let fields = reader.fields::<keys::Excitation>(&entry.value, entry.key_span.clone())?;
+    if random::is_random(&fields) {
+        return random::read(reader, entry, &fields);
+    }
     let mut dimension = None;
     let limits = match fields.get("within") {
         Some(node) => Some(limits(reader, node, &mut dimension)?),
@@ -99,7 +105,8 @@ fn excitation(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
             if !fields.lacks_all(&["within", "rate"]) {
                 return None;
             }
-            let help = "give limits of its value, `within: ± 5 N`, or of its `rate`".to_owned();
+            let help =
+                "give limits of its value, `within: ± 5 N`, or of its `rate`, or a spectrum, `random`".to_owned();
             reader.error(entry.key_span.clone(), "an excitation needs limits", help);
             return None;
         }
@@ -270,10 +277,11 @@ pub fn unused(reader: &mut Reader, fields: &Fields) -> Vec<Diagnostic> {
     for entry in reader.entries(node, "excitations") {
         let index = reader.model.trajectories.iter().position(|own| own.name == entry.key);
         let Some(index) = index.filter(|index| !reader.used_trajectories.contains(index)) else { continue };
-        if reader.model.trajectories[index].excitation().is_none() {
-            continue;
-        }
-        reader.idle.insert(deviation_of(&entry.key));
+        match &reader.model.trajectories[index].timing {
+            Timing::Within(_) => reader.idle.insert(deviation_of(&entry.key)),
+            Timing::Random(_) => reader.idle.insert(seed_of(&entry.key)),
+            _ => continue,
+        };
         let message = format!("excitation `{}` is used nowhere", clip(&entry.key));
         warnings.push(Diagnostic::warning(entry.key_span.clone(), message));
     }

@@ -6,7 +6,7 @@ use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
     analysis, black_box, bodies, bounds, effects, excitations, fmu, instances, joints, motion_times, parameters,
-    requests, requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
+    random, requests, requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
 };
 use crate::expand::dimensions::{self, Chain};
 use crate::expand::overrides::Override;
@@ -349,6 +349,7 @@ fn describe(
     states::check_instants(&mut reader, effect_entries);
     analysis::check_joints(&mut reader, joint_entries);
     excitations::check_joints(&mut reader, joint_entries);
+    random::check_joints(&mut reader, joint_entries);
     analysis::check_speeds(&mut reader, joint_entries);
     analysis::check_requests(&mut reader, &fields, [output_entries, requirement_entries]);
     sections::missing_sections(&mut reader, &fields, robot.is_some(), body_entries, output_entries);

@@ -8,7 +8,7 @@ pub(super) mod law;
 mod order;
 mod spec;
 
-pub use dependent::deviation_of;
+pub use dependent::{deviation_of, seed_of};
 
 use std::collections::{HashMap, HashSet};
 

@@ -62,6 +62,14 @@ fn of_analysis(model: &Description, name: &str) -> Option<Option<Dimension>> {
         Analysis::Modes(_) if name.trim_end_matches('_') == GROWTH => Some(Some(rate)),
         Analysis::Modes(_) => {
             let (owner, quantity) = name.split_once('.')?;
+            let is_random = model.trajectories.iter().any(|own| own.random().is_some());
+            if let Some(dimension) = of_output(model, owner).filter(|_| is_random) {
+                return match quantity {
+                    "rms" => Some(dimension),
+                    "crossings" => Some(Some(rate)),
+                    _ => None,
+                };
+            }
             if model.modes.responses.iter().any(|response| response.name == owner) {
                 return match quantity {
                     "amplitude" => Some(None),

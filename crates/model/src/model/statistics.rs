@@ -2,10 +2,12 @@
 
 use super::description::{Analysis, Correlation, ParameterValue};
 use super::parameters::law::{Place, named};
+use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::unit::number_and_unit;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::model::tuning::TUNING;
 use crate::numerics::statistics::Copula;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -14,12 +16,15 @@ use crate::syntax::yaml::{Node, Value};
 /// Shares below the quantiles where none are named: the ends of ±3σ of a normal law, and the median.
 const QUANTILES: [f64; 3] = [0.00135, 0.5, 0.99865];
 
+/// Seed of samples where none is named.
+const SEED: usize = 1;
+
 /// Samples that can be asked for.
 const SAMPLES: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 24;
 
 /// Reads the section, and completes what parameters say of their laws.
 pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
-    reader.model.statistics.quantiles = QUANTILES.to_vec();
+    (reader.model.statistics.quantiles, reader.model.statistics.seed) = (QUANTILES.to_vec(), SEED);
     // A stack is asked for its distribution, too.
     let is_stack = reader.model.analysis == Analysis::Dimensions || !reader.model.chains.is_empty();
     let is_uncertain = reader.model.uncertain().next().is_some() && reader.model.bounds.chebyshev.is_some();
@@ -30,6 +35,12 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
     if let Some(node) = fields.get("samples") {
         reader.model.statistics.samples = reader.count(node, *SAMPLES.start(), *SAMPLES.end());
     }
+    if let Some(node) = fields.get("seed") {
+        reader.model.statistics.seed = reader.count(node, 0, TUNING.most_seeds).unwrap_or(SEED);
+    }
+    if let Some(node) = fields.get("exposure") {
+        exposure(reader, node);
+    }
     if let Some(node) = fields.get("quantiles") {
         quantiles(reader, node);
     }
@@ -38,6 +49,18 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
     }
     if let Some(node) = fields.get("correlation") {
         correlations(reader, node);
+    }
+}
+
+/// A time of which motions are parts.
+fn exposure(reader: &mut Reader, node: &Node) {
+    let Some(time) = reader.number(node, Dimension::TIME) else { return };
+    if reader.model.trajectories.iter().all(|own| own.random().is_none()) {
+        reader.error(node.span.clone(), "without random excitations, motions do not fail one by one", None);
+    } else if time <= 0.0 {
+        reader.error(node.span.clone(), format!("a time of {time} s is none"), None);
+    } else {
+        reader.model.statistics.exposure = Some(time);
     }
 }
 

@@ -20,6 +20,13 @@ tuning! {
         trajectory_points: usize = 1000, moves "which models are refused";
         /// Times of a motion at which limits of excitations are compared.
         times_of_limits: usize = 101, moves "which models are refused";
+        /// Lines of a random excitation that does not give their number: about 12 % from one to the next on a road, and
+        /// less where the density is large.
+        lines: usize = 100, moves "realisations of random excitations";
+        /// Most lines of a random excitation.
+        most_lines: usize = 10_000, moves "which models are refused";
+        /// Largest seed.
+        most_seeds: usize = 1_000_000, moves "which models are refused";
         /// Most steps of a simulation: a shorter step must be a slip.
         steps: f64 = 1e9, moves "which models are refused";
         /// Most rows of output: a shorter output step must be a slip.

@@ -55,9 +55,19 @@ impl FunctionClass {
         (value(functional, &function), function)
     }
 
-    /// What the functional loses where cells are joined in pairs: as much or more than cells cost themselves, within
-    /// which no function changes.
+    /// What cells cost, within which no function changes: at most as much as a kernel costs that is straight in them.
+    /// Periods end where cells do, and cost nothing; of functions that are bounded with their rate it is what joining
+    /// cells in pairs costs.
     pub fn loss_of_cells(self, ends: &[f64], functional: &[Cell]) -> f64 {
+        match self {
+            Self::Bounded => at_changes(ends, &functional.iter().map(|[level, _]| *level).collect::<Vec<f64>>()),
+            Self::Held(_) => 0.0,
+            Self::Rate => at_changes(ends, &by_slopes(ends, functional)),
+            Self::BoundedRate(_) => self.in_pairs(ends, functional),
+        }
+    }
+
+    fn in_pairs(self, ends: &[f64], functional: &[Cell]) -> f64 {
         // From the end, where the kernel is largest as a rule.
         let joined = |pair: &[Cell]| pair.iter().fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
         let mut pairs: Vec<Cell> = functional.rchunks(2).map(joined).collect();
@@ -66,6 +76,19 @@ impl FunctionClass {
         of_pairs.reverse();
         (self.worst(ends, functional).0 - self.worst(&of_pairs, &pairs).0).max(0.0)
     }
+}
+
+/// What cells cost in which a kernel changes its sign, given its integrals over them. A straight one of slope s costs
+/// s d² min(x, 1 − x)² where its zero is at the share x of a cell of length d.
+fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
+    let length = |cell: usize| ends[cell] - begin(ends, cell);
+    let cost = |cell: usize| {
+        let [before, after] = [length(cell - 1), length(cell)];
+        let slope = (integrals[cell] / after - integrals[cell - 1] / before) / (0.5 * (before + after));
+        0.25 * slope.abs() * before.max(after).powi(2)
+    };
+    let changes = (1..integrals.len()).filter(|&cell| integrals[cell] * integrals[cell - 1] <= 0.0);
+    changes.map(cost).sum()
 }
 
 /// The functional's value for a function.
@@ -114,22 +137,27 @@ fn straight(ends: &[f64], cell: usize, from: f64, to: f64) -> Cell {
     [from - slope * begin, slope]
 }
 
-fn by_rate(ends: &[f64], functional: &[Cell]) -> Vec<Cell> {
+/// The functional's coefficients in terms of slopes.
+fn by_slopes(ends: &[f64], functional: &[Cell]) -> Vec<f64> {
     let mut slopes = vec![0.0; functional.len()];
     let mut levels_after = 0.0;
     for (cell, [level, slope]) in functional.iter().enumerate().rev() {
         let begin = begin(ends, cell);
-        slopes[cell] = sign(slope - level * begin + (ends[cell] - begin) * levels_after);
+        slopes[cell] = slope - level * begin + (ends[cell] - begin) * levels_after;
         levels_after += level;
     }
+    slopes
+}
+
+fn by_rate(ends: &[f64], functional: &[Cell]) -> Vec<Cell> {
     let mut from = 0.0;
     let of_cell = |(cell, slope): (usize, f64)| {
-        let to = from + slope * (ends[cell] - begin(ends, cell));
+        let to = from + sign(slope) * (ends[cell] - begin(ends, cell));
         let own = straight(ends, cell, from, to);
         from = to;
         own
     };
-    slopes.into_iter().enumerate().map(of_cell).collect()
+    by_slopes(ends, functional).into_iter().enumerate().map(of_cell).collect()
 }
 
 /// Breakpoints of a concave function within −1 and 1 on one side of where it is largest, the nearest to it first: how
@@ -302,9 +330,17 @@ mod tests {
     }
 
     #[test]
-    fn joined_cells_lose_what_changes_within_them() {
+    fn cells_cost_no_more_than_a_straight_kernel_loses_in_them() {
+        // h = τ − z over four cells: cells have the integrals k − 1/2 − z, and lose (z − 2)² or (3 − z)² of it.
         let ends = [1.0, 2.0, 3.0, 4.0];
-        let functional = [[1.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.5, 0.0]];
-        assert_eq!(FunctionClass::Bounded.loss_of_cells(&ends, &functional), 1.0);
+        for z in [2.0, 2.2, 2.5, 2.9] {
+            let functional: Vec<Cell> = (1..=4).map(|k| [f64::from(k) - 0.5 - z, 0.0]).collect();
+            let found = FunctionClass::Bounded.loss_of_cells(&ends, &functional);
+            let whole = 0.5 * (z * z + (4.0 - z).powi(2));
+            let lost = whole - FunctionClass::Bounded.worst(&ends, &functional).0;
+            let expected = (z - 2.0).min(3.0 - z).powi(2);
+            assert!((lost - expected).abs() < 1e-12 && lost <= found + 1e-12 && found <= 0.5, "{z}: {lost} {found}");
+        }
+        assert_eq!(FunctionClass::Held(2.0).loss_of_cells(&ends, &[[1.0, 0.0]; 4]), 0.0);
     }
 }

@@ -49,8 +49,8 @@ pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, 
 pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
 pub use samples::{SampleFormat, SampleTable};
 pub use statistics::{
-    Histogram, LawSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, Sensitivity, StatisticsResult,
-    StatisticsSummary, Uncertain, YieldSummary,
+    ExposureSummary, Histogram, LawSummary, NumberStatistics, OutputStatistics, OutputStatisticsSummary, RandomSummary,
+    Sensitivity, StatisticsResult, StatisticsSummary, Uncertain, YieldSummary,
 };
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{

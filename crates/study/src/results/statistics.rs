@@ -104,9 +104,21 @@ pub struct StatisticsSummary {
     /// The same of all requirements together, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub together: Option<YieldSummary>,
+    /// Under random excitations: motions are the samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub random: Option<RandomSummary>,
     /// What prevents it, or a part of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
+}
+
+/// Random excitations of samples.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RandomSummary {
+    /// Their names.
+    pub excitations: Vec<String>,
+    /// Seed of the samples.
+    pub seed: usize,
 }
 
 /// An output's distribution at the time at which its standard deviation is largest: worst case, RSS and statistics side
@@ -203,6 +215,9 @@ pub struct YieldSummary {
     pub ppm: f64,
     /// Of `ppm`.
     pub ppm_interval: [f64; 2],
+    /// Under random excitations: failures within a longer time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exposure: Option<ExposureSummary>,
     /// Capability at the worst time, (U − L)/(6σ); of a requirement with two limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cp: Option<f64>,
@@ -218,4 +233,16 @@ pub struct YieldSummary {
     /// Where so few fail that samples look for them: by what the share was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,
+}
+
+/// First passage of a limit within a time that is longer than the motion, of which parts fail independently of one
+/// another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExposureSummary {
+    /// The time, s.
+    pub time: f64,
+    /// Parts per million that fail within it.
+    pub ppm: f64,
+    /// Their 95 % confidence interval.
+    pub ppm_interval: [f64; 2],
 }

@@ -90,6 +90,9 @@ pub struct Summary {
     /// What excitations do to outputs, as constants and as functions of the time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub excitations: Vec<ExcitationSummary>,
+    /// Random excitations, of which bounds of a motion have one realisation.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub realisations: Vec<String>,
     /// Which tolerance matters: output by output, the parameters that contribute most first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<ContributionSummary>,

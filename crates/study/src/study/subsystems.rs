@@ -11,7 +11,7 @@ use super::ready::{Studied, studied};
 use super::reduced::{Parameters, together};
 use super::single;
 use super::{Options, RunError, feasible, zones};
-use crate::model::{Description, ParameterValue};
+use crate::model::{Analysis, Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
 use crate::results::{
@@ -251,6 +251,10 @@ impl<'a> Whole<'a> {
             summary.contributions = ContributionSummary::of(bounds);
         }
         (summary.reduced, summary.requirements) = (reduced, requirements);
+        if self.description.analysis == Analysis::Motion {
+            let random = self.description.trajectories.iter().filter(|own| own.random().is_some());
+            summary.realisations = random.map(|own| own.name.clone()).collect();
+        }
         summary.parameters = self.parameters;
         summary.assemblies = assemblies(self.description);
         summary.not_simulated = self.left_out;

@@ -2,7 +2,7 @@
 //!
 //! - `eigen`: frequencies, damping ratios and shapes; `follow`: which mode of one configuration is which of another;
 //! - `first_order`: eigenvalues where there are states; `roots`: the same of them;
-//! - `response`: the frequency response;
+//! - `response`: the frequency response; `random`: what random excitations do;
 //! - `outputs`: names and units of all that.
 
 mod eigen;
@@ -11,6 +11,7 @@ mod follow;
 mod gradients;
 mod likeness;
 mod outputs;
+mod random;
 mod response;
 mod roots;
 mod vibrations;

@@ -20,6 +20,7 @@ pub fn further_outputs(system: &mut System, vibrations: &Vibrations) {
     let model: Vec<OutputInfo> = system.outputs.iter().filter(|output| !output.is_derived()).cloned().collect();
     let quantities = vibrations.quantities();
     let expr = system.graph.constant(0.0);
+    let is_random = !system.random.is_empty();
     let mut add = |name: String, unit: String| {
         system.outputs.push(OutputInfo { name, unit, dimension: None, expr, of_results: None });
     };
@@ -45,6 +46,12 @@ pub fn further_outputs(system: &mut System, vibrations: &Vibrations) {
         for (place, _) in response.frequencies.iter().enumerate() {
             add(format!("response.{}.{place}.amplitude", response.name), unit.clone());
             add(format!("response.{}.{place}.phase", response.name), "rad".to_owned());
+        }
+    }
+    if is_random {
+        for output in &model {
+            add(format!("{}.rms", output.name), output.unit.clone());
+            add(format!("{}.crossings", output.name), "Hz".to_owned());
         }
     }
 }

@@ -7,6 +7,22 @@ use nalgebra::{DMatrix, DVector};
 use crate::numerics::{RowSpace, combined, dot};
 use crate::simulate::statics::{Linearised, reduced, times};
 
+/// Real and imaginary parts of forces, or of coordinates, n each.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// In phase.
+    pub re: Vec<f64>,
+    /// A quarter of a period ahead.
+    pub im: Vec<f64>,
+}
+
+impl Load {
+    /// None.
+    pub fn nothing(n: usize) -> Self {
+        Self { re: vec![0.0; n], im: vec![0.0; n] }
+    }
+}
+
 /// The equations about a configuration, ready for loads.
 pub struct Response<'l> {
     linear: &'l Linearised,
@@ -26,7 +42,13 @@ impl<'l> Response<'l> {
     /// Real and imaginary part of an output, whose derivatives by q, v, w and λ are given, under the load `force` at ω,
     /// rad/s. NaN at the frequency of a mode without damping.
     pub fn of(&self, force: &[f64], output: [&[f64]; 4], omega: f64) -> [f64; 2] {
-        let (k, n) = (self.space.null.len(), force.len());
+        let load = Load { re: force.to_vec(), im: vec![0.0; force.len()] };
+        self.to(&load, omega).map_or([f64::NAN; 2], |motion| self.output(&motion, &load, output, omega))
+    }
+
+    /// The motion under a load at ω, rad/s; `None` at the frequency of a mode without damping.
+    pub fn to(&self, load: &Load, omega: f64) -> Option<Load> {
+        let (k, n) = (self.space.null.len(), load.re.len());
         let [mass, damping, stiffness] = &self.small;
         let mut matrix = DMatrix::zeros(2 * k, 2 * k);
         for (row, column) in (0..k).flat_map(|row| (0..k).map(move |column| (row, column))) {
@@ -39,17 +61,24 @@ impl<'l> Response<'l> {
         }
         let mut right = DVector::zeros(2 * k);
         for (place, vector) in self.space.null.iter().enumerate() {
-            right[place] = dot(vector, force);
+            right[place] = dot(vector, &load.re);
+            right[k + place] = dot(vector, &load.im);
         }
         if k > 0 && !matrix.lu().solve_mut(&mut right) {
-            return [f64::NAN; 2];
+            return None;
         }
         let parts = right.as_slice();
         let [re, im] = [&parts[..k], &parts[k..]].map(|part| combined(&self.space.null, part, n));
+        Some(Load { re, im })
+    }
+
+    /// Real and imaginary part of an output in the motion under a load at ω, rad/s.
+    pub fn output(&self, motion: &Load, load: &Load, output: [&[f64]; 4], omega: f64) -> [f64; 2] {
+        let (n, Load { re, im }) = (load.re.len(), motion);
         let [by_q, by_v, by_w, by_lambda] = output;
         let by_position = |x: &[f64]| dot(by_q, x) - omega * omega * dot(by_w, x);
         let by_speed = |x: &[f64]| omega * dot(by_v, x);
-        let mut found = [by_position(&re) - by_speed(&im), by_position(&im) + by_speed(&re)];
+        let mut found = [by_position(re) - by_speed(im), by_position(im) + by_speed(re)];
         if by_lambda.iter().any(|&value| value != 0.0) {
             // What the load does not move, constraints hold.
             let dynamic = |x: &[f64]| {
@@ -58,9 +87,9 @@ impl<'l> Response<'l> {
             };
             let damped =
                 |x: &[f64]| times(&self.linear.damping, x).iter().map(|part| omega * part).collect::<Vec<f64>>();
-            let (of_re, of_im, damped_re, damped_im) = (dynamic(&re), dynamic(&im), damped(&re), damped(&im));
-            let rest_re: Vec<f64> = (0..n).map(|i| force[i] - of_re[i] + damped_im[i]).collect();
-            let rest_im: Vec<f64> = (0..n).map(|i| -of_im[i] - damped_re[i]).collect();
+            let (of_re, of_im, damped_re, damped_im) = (dynamic(re), dynamic(im), damped(re), damped(im));
+            let rest_re: Vec<f64> = (0..n).map(|i| load.re[i] - of_re[i] + damped_im[i]).collect();
+            let rest_im: Vec<f64> = (0..n).map(|i| load.im[i] - of_im[i] - damped_re[i]).collect();
             let rows = self.linear.jacobian.len();
             for (part, rest) in found.iter_mut().zip([rest_re, rest_im]) {
                 *part += dot(by_lambda, &self.space.multipliers(&rest, rows));

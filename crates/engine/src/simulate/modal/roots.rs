@@ -81,6 +81,11 @@ impl Root {
         }
     }
 
+    /// |λ|/2π of its eigenvalues, Hz.
+    pub fn frequencies(&self) -> impl Iterator<Item = f64> {
+        self.of.iter().map(|own| size(own.value) / TAU)
+    }
+
     /// The largest real part; NaN without eigenvalues.
     fn growth(&self) -> f64 {
         self.slowest().map_or(f64::NAN, |slowest| slowest.value.re)

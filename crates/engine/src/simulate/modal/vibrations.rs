@@ -10,6 +10,7 @@ use super::eigen::{Mode, modes};
 use super::first_order::eigenvalues;
 use super::follow::followed;
 use super::gradients::Gradients;
+use super::random::RandomLoads;
 use super::response::Response;
 use super::roots::{self, Kind, OutputChanges, Root};
 use crate::assemble::{ConstraintId, System};
@@ -30,6 +31,8 @@ pub struct Vibrations {
     /// Places of the coordinates whose velocities are states.
     states: Vec<usize>,
     gradients: Gradients,
+    /// Random excitations, if any.
+    random: Option<RandomLoads>,
     /// Outputs of the model itself.
     outputs: usize,
     /// Outputs that follow from the results.
@@ -64,6 +67,16 @@ pub enum Modes {
     OfStates { modes: Vec<Root>, growth: f64 },
 }
 
+impl Modes {
+    /// Frequencies of all modes that are followed, Hz.
+    fn frequencies(&self) -> Vec<f64> {
+        match self {
+            Self::OfMasses { modes, .. } => modes.iter().map(|mode| mode.frequency.abs() / TAU).collect(),
+            Self::OfStates { modes, .. } => modes.iter().flat_map(Root::frequencies).collect(),
+        }
+    }
+}
+
 impl Vibrations {
     /// Of a mechanism with so many degrees of freedom and this nominal start (the layout's registers).
     pub fn new(system: &System, redundant: &[ConstraintId], freedom: usize, nominal: &[f64]) -> Self {
@@ -80,6 +93,7 @@ impl Vibrations {
             redundant: redundant.to_vec(),
             states: (0..system.q.len()).filter(|&place| system.coordinates[place].is_state).collect(),
             gradients: Gradients::new(system, outputs),
+            random: RandomLoads::new(system, outputs),
             outputs,
             derived: system.outputs.len() - outputs,
             number: (*number).min(freedom),
@@ -221,6 +235,11 @@ impl Vibrations {
             told.extend(changes.iter().map(in_phase));
         }
         told.extend(self.responses_of(state, &linear, Some(&nominal.phases)));
+        if let Some(random) = &self.random {
+            let found =
+                random.tell(state, &self.scale, &Response::new(&linear), &gradients, &place.modes.frequencies());
+            told.extend(found.into_iter().flatten());
+        }
         told
     }
 

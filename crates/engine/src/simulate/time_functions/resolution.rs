@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use symdiff::{Expr, Graph, Interval, Ranges};
 
 use super::terms::{Condition, functions};
+use crate::assemble::UncertainParameter;
 use crate::simulate::diagnostics::written;
 use crate::simulate::simulator::Simulator;
 
@@ -124,8 +125,12 @@ impl TimeFunctions {
             let rate = graph.derivative(of, system.time);
             (ranges_of(graph, &symbols, [of, rate]), written(graph, of))
         };
-        let parameters: Vec<Interval> =
-            system.parameters.iter().map(|parameter| Interval::new(parameter.lower, parameter.upper)).collect();
+        // One realisation of a random excitation is as fast as another.
+        let interval = |own: &UncertainParameter| match own.is_seed {
+            true => Interval::point(own.nominal),
+            false => Interval::new(own.lower, own.upper),
+        };
+        let parameters: Vec<Interval> = system.parameters.iter().map(interval).collect();
         let nominal: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let mut terms = Vec::new();
         for (expr, frozen) in functions.terms {

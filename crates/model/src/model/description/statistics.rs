@@ -9,6 +9,10 @@ pub struct Statistics {
     pub asked: bool,
     /// Number of samples; the default where it is left out.
     pub samples: Option<usize>,
+    /// Seed of samples of random excitations.
+    pub seed: usize,
+    /// Time within which failures are counted, s, where it is longer than the motion.
+    pub exposure: Option<f64>,
     /// Shares below the quantiles.
     pub quantiles: Vec<f64>,
     /// By the names of uncertain parameters; those that are not in are uniform.

@@ -13,10 +13,16 @@ use crate::syntax::source::Span;
 use crate::syntax::yaml::Entry;
 
 const DEVIATION: &str = ".deviation";
+const SEED: &str = ".seed";
 
 /// Name of the parameter by which something of a name deviates.
 pub fn deviation_of(name: &str) -> String {
     format!("{name}{DEVIATION}")
+}
+
+/// Name of the parameter that chooses the realisation of a random excitation.
+pub fn seed_of(name: &str) -> String {
+    format!("{name}{SEED}")
 }
 
 /// The place of the parameter whose deviation has this name.

@@ -204,6 +204,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .collect(),
         errors: ErrorSummary::of(bounds),
         excitations,
+        realisations: Vec::new(),
         contributions: ContributionSummary::of(bounds),
         reduced: results.found.reduced,
         requirements: results.found.requirements,

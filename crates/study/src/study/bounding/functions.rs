@@ -67,7 +67,8 @@ impl FunctionEnds {
         }
     }
 
-    /// Gives rows whose steps' error is not measured that of the worse of the two around them.
+    /// Gives each row the largest of the steps' errors that are measured in it and in the rows next to it on both
+    /// sides: a difference that changes its sign says nothing where it is small.
     pub fn spread_steps(&mut self) {
         let rows = self.ends.len() / self.outputs.max(1);
         for output in 0..self.outputs {
@@ -75,12 +76,11 @@ impl FunctionEnds {
             let measured: Vec<(usize, f64)> =
                 (0..rows).filter_map(|row| self.steps[at(row)].map(|error| (row, error))).collect();
             for row in 0..rows {
-                let after = measured.partition_point(|(own, _)| *own < row);
-                let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
-                let errors: Vec<f64> =
-                    around.filter_map(|number| measured.get(number)).map(|(_, error)| *error).collect();
-                let worse = (!errors.is_empty()).then(|| largest(errors));
-                self.steps[at(row)] = Some(self.steps[at(row)].or(worse).unwrap_or(f64::NAN));
+                let after = measured.partition_point(|(own, _)| *own <= row);
+                let before = measured.partition_point(|(own, _)| *own < row);
+                let around = &measured[before.saturating_sub(1)..(after + 1).min(measured.len())];
+                let worst = (!around.is_empty()).then(|| largest(around.iter().map(|(_, error)| *error)));
+                self.steps[at(row)] = Some(worst.unwrap_or(f64::NAN));
             }
         }
     }

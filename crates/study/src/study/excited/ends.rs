@@ -27,7 +27,13 @@ const LEARNT: usize = 8;
 const ROUNDS: usize = 2;
 
 /// Rows in which the steps' error of ends that are not followed is measured.
-const CHECKED: usize = 8;
+const CHECKED: usize = 16;
+
+/// Error of steps over the change by halved ones where a function jumps: by the scheme, a jump takes a step.
+const FIRST_ORDER: f64 = 2.0;
+
+/// Factor by which these estimates may be wrong, as with validation samples.
+const SAFETY: f64 = 1.25;
 
 /// An end of an output that is not linear in the functions.
 struct Bent {
@@ -232,10 +238,12 @@ impl Search<'_, '_> {
         let asked: Vec<Asked> =
             points.iter().zip(&known).map(|(point, climb)| (point, climb.row, climb.output)).collect();
         let halved = self.motions.values(&asked, 2)?;
+        let jumps = self.motions.jumps();
         for (climb, halved) in known.into_iter().zip(halved) {
             self.note(climb);
-            let error = step_error(&[climb.sign * climb.reached()], &[halved]);
-            self.found.note_steps(climb.row, climb.output, error);
+            let direct = climb.sign * climb.reached();
+            let error = if jumps { FIRST_ORDER * (halved - direct).abs() } else { step_error(&[direct], &[halved]) };
+            self.found.note_steps(climb.row, climb.output, SAFETY * error);
         }
         Ok(())
     }

@@ -46,6 +46,11 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         self.simulator.program.outputs.len()
     }
 
+    /// Whether some function jumps.
+    pub fn jumps(&self) -> bool {
+        self.excitations.iter().any(|own| own.class.jumps())
+    }
+
     /// Whether there are uncertain parameters beside those that excitations are as constants.
     pub fn has_parameters(&self) -> bool {
         self.simulator.system.parameters.len() > self.excitations.len()

@@ -3,7 +3,8 @@
 //! `expand` makes outputs of their arguments; `plan` lists the accumulated quantities, `values` what follows from them;
 //! `ensemble` is what the methods see, and `bound` asks them; `verdicts` decides requirements, some of them `by_rows`
 //! (`found` has all of it); `answers` puts those of subsystems together; `keeping`, `kept` and `margins` evaluate them
-//! after the run; `refine` runs a model until all are decided.
+//! after the run; `refine` runs a model until all are decided. `simulated` has
+//! those of samples.
 
 mod answers;
 mod bound;
@@ -18,6 +19,7 @@ mod margins;
 mod part;
 mod plan;
 mod refine;
+mod simulated;
 mod values;
 mod verdicts;
 
@@ -29,3 +31,4 @@ pub(super) use found::Found;
 pub use kept::KeptReduced;
 pub use margins::{Margins, MarginsOfPart, ReducedValues};
 pub(super) use refine::run;
+pub(super) use simulated::values_of_samples;

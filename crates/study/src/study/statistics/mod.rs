@@ -1,9 +1,11 @@
 //! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation,
-//! and the linearised tolerance stack.
+//! and the linearised tolerance stack. Under random excitations they are of simulated motions.
 
 mod causes;
 mod laws;
 mod numbers;
+mod random;
+mod realisations;
 mod requirements;
 mod rows;
 mod stack;
@@ -31,6 +33,7 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     let (bounds, mut summary, kept) = reduced::run(description, options, true)?;
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
+        _ if random::is_random(description) => random::of_motions(description, shown, options),
         Some(kept) => of_run((description, shown), options, &bounds, kept),
         None => Err("there is no surrogate over the whole box".to_owned()),
     };
@@ -96,6 +99,7 @@ fn of_run(
         reduced,
         requirements,
         together,
+        random: None,
         failure: note,
     };
     let outputs = outputs.into_iter().map(|(_, output)| output).collect();

@@ -156,6 +156,7 @@ impl<'a> Together<'a> {
             interval,
             ppm: 1e6 * fails,
             ppm_interval: [ppm(interval[1]), ppm(interval[0])],
+            exposure: None,
             cp: None,
             cpk: None,
             time: None,
