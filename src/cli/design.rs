@@ -9,7 +9,7 @@ use super::verdicts::{requirements, short};
 use super::{Failure, Status, interrupt, load};
 use crate::export::{DESIGN_OVERLAY, rounded, write_design};
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{Criterion, DesignPoint, DesignStudy};
+use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy};
 use crate::study::{self, DesignError, DesignOptions, RunError};
 
 pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, Failure> {
@@ -120,6 +120,9 @@ fn overview(found: &DesignStudy) -> String {
     text += "\n";
     if let Some(best) = found.best().filter(|best| !best.requirements.is_empty()) {
         text += &format!("{}\n", requirements(&best.requirements));
+    }
+    if let Some([Some(before), Some(after)]) = found.allocation.as_ref().map(Allocation::costs) {
+        text += &format!("  tolerances there cost {}; the cheapest that meet the requirements cost {}\n", short(before), short(after));
     }
     text
 }

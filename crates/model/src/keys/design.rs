@@ -18,8 +18,6 @@ schema_only! {
     pub enum ObjectiveName {
         /// The largest margin of all requirements, each as a share of its limit.
         Margin,
-        /// The cheapest tolerances that meet all requirements; parameters have a `cost`.
-        Cost,
     }
 
     /// What a design is to achieve.

@@ -1,6 +1,6 @@
 //! `design:` and `objective:`.
 
-use super::description::{Cost, Design, Free, Objective};
+use super::description::{Design, Free, Objective};
 use super::parameters::Riding;
 use super::requirements;
 use crate::grammar::formulas::{Written, evaluate};
@@ -128,14 +128,14 @@ fn limit(reader: &mut Reader, node: &Node, dimension: Option<Dimension>) -> Opti
 }
 
 fn read_objective(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<Objective> {
-    let help = "`margin`, `cost`, `{ least: OUTPUT }` or `{ most: OUTPUT }`";
+    let help = "`margin`, `{ least: OUTPUT }` and `{ most: OUTPUT }`";
     if let Value::Mapping(entries) = &node.value {
         let own = reader.fields::<keys::ObjectiveKinds>(node, fields.key_span("objective"))?;
         let given: Vec<&Entry> =
             entries.iter().filter(|entry| matches!(entry.key.as_str(), "least" | "most")).collect();
         let [entry] = given.as_slice() else {
             if !given.is_empty() || own.lacks_all(&["least", "most"]) {
-                reader.error(node.span.clone(), "an objective is one output", help.to_owned());
+                reader.error(node.span.clone(), "an objective is one output", "`{ least: OUTPUT }` or `{ most: OUTPUT }`".to_owned());
             }
             return None;
         };
@@ -144,29 +144,17 @@ fn read_objective(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<O
         return Some(Objective::Worst { is_largest, distance: Box::new(distance) });
     }
     let scalar = reader.scalar(node, "an objective")?;
-    let objective = match scalar.text.trim() {
-        "margin" => Objective::Margin,
-        "cost" => Objective::Cost,
-        other => {
-            let message = format!("`{}` is no objective", clip(other));
-            reader.error(node.span.clone(), message, format!("objectives are {help}"));
-            return None;
-        }
-    };
+    if scalar.text.trim() != "margin" {
+        let message = format!("`{}` is no objective", clip(scalar.text.trim()));
+        reader.error(node.span.clone(), message, format!("objectives are {help}"));
+        return None;
+    }
     if reader.model.requirements.is_empty() {
-        let message = format!("the objective `{}` is that of requirements, and the model has none", scalar.text.trim());
-        reader.error(node.span.clone(), message, "e.g. `requirements: { clears: x >= 0.4 m }`".to_owned());
+        let help = "e.g. `requirements: { clears: x >= 0.4 m }`".to_owned();
+        reader.error(node.span.clone(), "a margin is that of requirements, and the model has none", help);
         return None;
     }
-    let is_priced = |cost: &Cost| !matches!(cost, Cost::Fixed);
-    if matches!(objective, Objective::Cost)
-        && !reader.model.statistics.costs.iter().any(|(_, cost)| is_priced(cost))
-    {
-        let help = "e.g. `cost: { reciprocal: 2 }` of a parameter with a tolerance".to_owned();
-        reader.error(node.span.clone(), "no tolerance has a cost", help);
-        return None;
-    }
-    Some(objective)
+    Some(Objective::Margin)
 }
 
 /// Reports free parameters that nothing reads; in a variant that omits parts, they are not free.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Criterion, NotMet, RequirementSummary};
+use super::{Allocation, Criterion, NotMet, RequirementSummary};
 use crate::grammar::display_unit::DisplayUnit;
 
 /// A parameter whose nominal value was free.
@@ -87,7 +87,7 @@ pub struct DesignProfile {
 }
 
 /// What a search for nominal values found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct DesignStudy {
     /// Name of the model.
     pub model: String,
@@ -105,6 +105,9 @@ pub struct DesignStudy {
     pub nominal_point: Option<DesignPoint>,
     /// Requirements that the best point does not meet.
     pub not_met: Vec<NotMet>,
+    /// The cheapest tolerances at the best point, and cost against margin there; absent where tolerances have no cost.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub allocation: Option<Allocation>,
     /// The objective about the best point, by parameter.
     pub profiles: Vec<DesignProfile>,
     /// Simulations for surrogates.

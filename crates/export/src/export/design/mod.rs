@@ -6,6 +6,7 @@ mod profile;
 
 use std::path::{Path, PathBuf};
 
+use super::allocation;
 use super::csv::number;
 use super::error::ExportError;
 use super::folder::AtomicFiles;
@@ -33,6 +34,11 @@ pub fn write_design(dir: &Path, design: &DesignStudy) -> Result<Vec<PathBuf>, Ex
     for (stem, own) in unique_stems(names).iter().zip(&design.profiles) {
         let svg = profile::drawn(design, own)?;
         files.add(&format!("{stem}.design.svg"), svg.as_bytes())?;
+        drawn.push(svg);
+    }
+    if let Some(allocation) = design.allocation.as_ref().filter(|own| !own.trade.is_empty()) {
+        let svg = allocation::plot(allocation);
+        files.add("cost.design.svg", svg.as_bytes())?;
         drawn.push(svg);
     }
     files.add("design.html", page::page(design, drawn).as_bytes())?;

@@ -1,10 +1,11 @@
 //! The page of a design.
 
 use super::{criterion, piece, points, shown};
+use crate::export::allocation::shown_unit;
 use crate::export::report::{Section, plain_page};
 use crate::export::rounded::{rounded, shown as shown_in, significant};
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{DesignPoint, DesignStudy};
+use crate::results::{Allocation, DesignPoint, DesignStudy, ToleranceZone};
 
 /// The page with these figures.
 pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
@@ -32,6 +33,7 @@ pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
             shown_in(unit, -own.margin)
         )));
     }
+    sections.extend(design.allocation.as_ref().map(allocated));
     sections.extend(figures.into_iter().map(Section::Figure));
     plain_page(&format!("{}: design", design.model), &sections)
 }
@@ -87,4 +89,20 @@ fn requirements(best: &DesignPoint) -> Section {
     };
     let headings = ["requirement", "", "verdict", "margin", "error"].map(str::to_owned).to_vec();
     Section::Table("Requirements at the optimum", headings, best.requirements.iter().map(row).collect())
+}
+
+/// What the tolerances may become at the optimum.
+fn allocated(allocation: &Allocation) -> Section {
+    let row = |own: &crate::results::AllocatedTolerance| {
+        let (scale, unit) = shown_unit(own);
+        let zone = |zone: ToleranceZone| {
+            let [above, below] = [zone.above, zone.below].map(|side| rounded(significant(scale * side, 4)));
+            format!("+{above} -{below} {unit}").trim_end().to_owned()
+        };
+        let cost = |cost: Option<f64>| cost.map_or_else(String::new, |cost| rounded(significant(cost, 4)));
+        let grade = own.grade.clone().unwrap_or_default();
+        vec![own.parameter.clone(), zone(own.before), zone(own.after), grade, cost(own.cost_before), cost(own.cost_after)]
+    };
+    let headings = ["parameter", "tolerance", "cheapest", "grade", "cost", "then"].map(str::to_owned).to_vec();
+    Section::Table("Tolerances at the optimum", headings, allocation.tolerances.iter().map(row).collect())
 }

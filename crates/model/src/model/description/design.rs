@@ -29,8 +29,6 @@ pub struct Free {
 pub enum Objective {
     /// The least margin of all requirements, each as a share of its limit.
     Margin,
-    /// The cost of tolerances that meet all requirements.
-    Cost,
     /// The worst value of an output.
     Worst {
         /// Whether the largest value is to be small; else the smallest one is to be large.

@@ -1,5 +1,6 @@
 //! Parameters that are free or uncertain, and the models and samples with chosen nominal values.
 
+use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::Chebyshev;
 use crate::model::{Description, Free, Law, ParameterValue};
 use crate::numerics::statistics::Distribution;
@@ -33,6 +34,8 @@ pub struct Axes {
     all: Vec<Axis>,
     /// Of the free ones: names, and ends of their ranges.
     pub free: Vec<Free>,
+    /// The units in which people see these, SI.
+    shown: Vec<f64>,
 }
 
 impl Axis {
@@ -69,7 +72,9 @@ impl Axes {
             let free = number.map(|number| (number, free[number].relative));
             Some(Axis { name: parameter.name.clone(), nominal, deviations, free })
         };
-        Self { all: description.parameters.iter().filter_map(axis).collect(), free: free.to_vec() }
+        let shown = free.iter().map(|own| description.parameter_units.get(&own.name).map_or(1.0, DisplayUnit::si));
+        let shown = shown.collect();
+        Self { all: description.parameters.iter().filter_map(axis).collect(), free: free.to_vec(), shown }
     }
 
     /// Number of uncertain parameters.
@@ -102,8 +107,9 @@ impl Axes {
     pub fn rounded(&self, point: &[f64]) -> Vec<Vec<f64>> {
         let mut all = vec![point.to_vec()];
         for (axis, own) in self.free.iter().enumerate() {
-            let digits = DIGITS - symdiff::math::log10(own.upper - own.lower).floor() as i32;
-            let unit = 10_f64.powi(digits.clamp(-300, 300));
+            let width = (own.upper - own.lower) / self.shown[axis];
+            let digits = DIGITS - symdiff::math::log10(width).floor() as i32;
+            let unit = 10_f64.powi(digits.clamp(-300, 300)) / self.shown[axis];
             let near = |value: f64| (value / unit).clamp(own.lower, own.upper);
             let value = point[axis] * unit;
             let choices = if axis < ROUNDED { vec![near(value.floor()), near(value.ceil())] } else { vec![near(value.round())] };

@@ -29,7 +29,7 @@ pub struct Merit {
 impl Goal {
     pub fn of(design: &Design) -> Self {
         match design.objective {
-            Objective::Margin | Objective::Cost => Self::Margin,
+            Objective::Margin => Self::Margin,
             Objective::Worst { .. } => Self::Last,
         }
     }

@@ -19,9 +19,9 @@ mod worst;
 
 use std::ops::Range;
 
-use super::{Options, RunError, reduced, statistics};
-use crate::model::{Description, Objective};
-use crate::results::{Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
+use super::{AllocateError, AllocateOptions, Options, RunError, allocate, reduced, statistics};
+use crate::model::{Cost, Description, Objective};
+use crate::results::{Allocation, Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
 use axes::{Axes, without_tolerances};
 use goal::Goal;
 use instants::{at_instants, required};
@@ -35,6 +35,9 @@ use worst::{Assessed, Worst};
 
 /// Optima that are reported at most.
 const REPORTED: usize = 3;
+
+/// How many times the model's tolerances are allocated, at most.
+const WIDEST: f64 = 3.0;
 
 /// Optima nearer than this share of their ranges along each axis are one.
 const ALIKE: f64 = 0.02;
@@ -127,10 +130,6 @@ pub fn design(description: &Description, asked: DesignOptions, options: &Options
         Objective::Margin => {
             DesignObjective { text: "margin".to_owned(), unit: String::new(), display: None, is_least }
         }
-        Objective::Cost => {
-            let message = "`objective: cost` is that of `mbint allocate` at each candidate";
-            return Err(DesignError::Unsuitable(message.to_owned()));
-        }
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
     pool.map_err(RunError::from)?.install(|| {
@@ -139,8 +138,29 @@ pub fn design(description: &Description, asked: DesignOptions, options: &Options
         let [model, at_instants] = [model, at_instants].map(|own| reduced::expanded(&own).into_owned());
         let axes = Axes::of(&model, &design.free);
         let question = Question { model, at_instants, instants, goal: Goal::of(design), is_least, share: asked.share };
-        designed(&question, &axes, objective, options)
+        let mut found = designed(&question, &axes, objective, options)?;
+        found.allocation = allocated(description, &axes, &found, asked, options)?;
+        Ok(found)
     })
+}
+
+/// What the tolerances may become at the best point, and cost against margin there, where they have costs.
+fn allocated(
+    description: &Description,
+    axes: &Axes,
+    found: &DesignStudy,
+    asked: DesignOptions,
+    options: &Options,
+) -> Result<Option<Allocation>, DesignError> {
+    let is_priced = |cost: &Cost| !matches!(cost, Cost::Fixed);
+    let priced = description.statistics.costs.iter().any(|(_, cost)| is_priced(cost));
+    let Some(best) = found.best().filter(|best| best.is_feasible && priced) else { return Ok(None) };
+    let asked = AllocateOptions { share: asked.share, widest: WIDEST };
+    match allocate(&axes.at(description, &best.values), asked, options) {
+        Ok(allocation) => Ok(Some(allocation)),
+        Err(AllocateError::Unsuitable(_)) => Ok(None),
+        Err(AllocateError::Run(error)) => Err(error.into()),
+    }
 }
 
 fn designed(
@@ -197,6 +217,7 @@ fn designed(
         optima,
         model_point,
         nominal_point,
+        allocation: None,
         profiles,
         simulations,
         confirming,

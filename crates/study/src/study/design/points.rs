@@ -85,19 +85,30 @@ struct Margins {
     simulations: usize,
 }
 
-/// Those of a model at a point. An objective of an output over time is that of its bounds in the rows, as `mbint run`
-/// prints them.
+/// Those of a model at a point. Margins of outputs over time are those of the bounds in the rows, as `mbint run` prints
+/// them; verdicts have what is between the rows, too.
 fn margins(question: &Question, mut model: Description, options: &Options) -> Result<Option<Margins>, DesignError> {
-    let over_time = |own: &Requirement| own.times.is_some() && !own.of_results && !own.places.is_empty();
-    let is_objective = question.goal == Goal::Last;
-    let objective = model.requirements.pop_if(|own| is_objective && over_time(own));
+    model.requirements.truncate(question.required());
+    let objective = &question.model.requirements[question.required()..];
+    // One of reduced outputs is a requirement of the study.
+    model.requirements.extend(objective.iter().filter(|own| !is_over_time(own)).cloned());
     let Some((bounds, summary, _)) = checked(reduced::run(&model, options, false), options)? else { return Ok(None) };
-    let mut all: Vec<[f64; 2]> = summary.requirements.iter().map(|own| [own.margin, own.error]).collect();
-    if let Some(own) = objective {
-        let rows = own.places.iter().flat_map(|&place| of_rows(&bounds, place));
-        all.push(rows.min_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or([f64::NAN; 2]));
-    }
+    let mut known = summary.requirements.iter();
+    let margin = |own: &Requirement| {
+        let of_study = known.next();
+        if is_over_time(own) {
+            let rows = own.places.iter().flat_map(|&place| of_rows(&bounds, place));
+            return rows.min_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or([f64::NAN; 2]);
+        }
+        of_study.map_or([f64::NAN; 2], |own| [own.margin, own.error])
+    };
+    let all = question.model.requirements.iter().map(margin).collect();
     Ok(Some(Margins { all, simulations: run_simulations(&summary), requirements: summary.requirements }))
+}
+
+/// Whether a requirement is of outputs of the motion over time.
+fn is_over_time(own: &Requirement) -> bool {
+    own.times.is_some_and(|(from, to)| from < to) && !own.of_results && !own.places.is_empty()
 }
 
 /// Lower bounds of an output with their errors, in all rows.

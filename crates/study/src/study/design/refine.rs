@@ -2,7 +2,7 @@
 
 use super::axes::Axes;
 use super::points::{Studied, studied};
-use super::search::{self, Optimum, local};
+use super::search::{self, Optimum, SHARP, local};
 use super::surface::Surface;
 use super::{DesignError, Found, Question};
 use crate::results::DesignKind;
@@ -10,7 +10,7 @@ use crate::study::Options;
 
 /// Narrower regions, as shares of the ranges to either side; each is tried so often where the optimum is at its edge.
 const REGIONS: [f64; 2] = [0.12, 0.03];
-const MOVES: usize = 4;
+const MOVES: usize = 8;
 
 /// An optimum nearer to the edge of a region than this share of it is on it.
 const EDGE: f64 = 1e-3;
@@ -36,7 +36,7 @@ pub fn refined(
         for _ in 0..MOVES {
             let surface = Surface::new(question, axes, &about(&point, &ranges, share), &point, options)?;
             all.add(&surface);
-            point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point).point;
+            point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, SHARP).point;
             let is_inside = !is_at_edge(&point, &surface.region, &ranges);
             last = Some(surface);
             if is_inside || (options.interrupted)() {
@@ -82,7 +82,7 @@ fn confirmed(
         if is_feasible || (options.interrupted)() {
             break;
         }
-        point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point).point;
+        point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, SHARP).point;
     }
     Ok(best)
 }

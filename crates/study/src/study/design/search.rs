@@ -8,25 +8,31 @@ use super::goal::{Goal, Merit};
 use super::surface::Surface;
 use super::worst::Assessed;
 use super::{DesignError, Question};
-use crate::numerics::{Design, Linear, best_step};
+use crate::numerics::{Design, Linear, best_step, corners};
 use crate::study::Options;
 
 /// Starts that are compared, for each free parameter, and those that are followed.
 const STARTS: usize = 16;
 const MOST_STARTS: usize = 96;
-const FOLLOWED: usize = 6;
+const FOLLOWED: usize = 4;
 
-/// The trust region in shares of the region: at first, at most, and where the search ends.
+/// The trust region in shares of the region: at first, and at most.
 const FIRST: f64 = 0.2;
 const LARGEST: f64 = 0.5;
-const SMALLEST: f64 = 1e-5;
+
+/// Where a search ends, in the same shares: one over whole ranges, and one that makes an optimum sharper.
+const ROUGH: f64 = 1e-3;
+pub const SHARP: f64 = 1e-4;
+
+/// Corners of the tolerances at which starts are compared.
+const CASES: usize = 16;
 
 /// How the trust region changes after a step that is better, and one that is not.
 const WIDER: f64 = 1.6;
 const NARROWER: f64 = 0.4;
 
-/// The trust region when at last nothing may be missed.
-const RESTORED: f64 = 1e-3;
+/// The trust region when at last nothing may be missed, in multiples of the smallest.
+const RESTORED: f64 = 100.0;
 
 /// What a violation counts, in multiples of what a goal gains by it.
 const PRICE: f64 = 5.0;
@@ -53,11 +59,11 @@ pub fn optima(
 ) -> Result<Vec<Optimum>, DesignError> {
     let goal = question.goal;
     let mut found: Vec<Optimum> = Vec::new();
-    for start in starts(surface, &mut *question.assessed(surface)?, goal, known) {
+    for start in starts(surface, goal, known) {
         if (options.interrupted)() {
             return Err(DesignError::Interrupted);
         }
-        let own = local(surface, &mut *question.assessed(surface)?, goal, &start);
+        let own = local(surface, &mut *question.assessed(surface)?, goal, &start, ROUGH);
         match found.iter_mut().find(|other| are_alike(surface, &other.point, &own.point)) {
             Some(other) if own.merit.is_better(&other.merit) => *other = own,
             Some(_) => {}
@@ -69,19 +75,27 @@ pub fn optima(
 }
 
 /// The points to begin at: those known, and the best of those spread over the region that are apart.
-fn starts(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let k = surface.region.len();
     let spread = Design::Sobol.points(k, (STARTS * k).min(MOST_STARTS), 0..(STARTS * k).min(MOST_STARTS));
     let in_region = |shares: &Vec<f64>| -> Vec<f64> {
         shares.iter().zip(&surface.region).map(|(share, [lower, upper])| lower + share * (upper - lower)).collect()
     };
-    let mut all: Vec<Optimum> = spread
-        .iter()
-        .map(|shares| {
-            let point = in_region(shares);
-            Optimum { merit: goal.merit(&assessed.slacks(&point)), point }
-        })
-        .collect();
+    // A few cases tell which are worth it.
+    let cases: Vec<Vec<f64>> = corners(surface.axes.uncertain(), CASES);
+    let points: Vec<Vec<f64>> = spread.iter().map(in_region).collect();
+    let samples: Vec<Vec<f64>> =
+        points.iter().flat_map(|point| cases.iter().map(|xi| surface.axes.sample(point, xi))).collect();
+    let slacks = surface.slacks(&samples);
+    let own = |(index, point): (usize, Vec<f64>)| {
+        let least = |requirement: usize| {
+            let own = &slacks[requirement * samples.len() + index * cases.len()..][..cases.len()];
+            own.iter().copied().fold(f64::INFINITY, f64::min)
+        };
+        let slacks: Vec<f64> = (0..surface.count()).map(least).collect();
+        Optimum { merit: goal.merit(&slacks), point }
+    };
+    let mut all: Vec<Optimum> = points.into_iter().enumerate().map(own).collect();
     all.sort_by(|a, b| a.merit.order(&b.merit));
     let mut chosen = known.to_vec();
     for own in all {
@@ -101,19 +115,25 @@ fn are_alike(surface: &Surface, a: &[f64], b: &[f64]) -> bool {
     along.into_iter().all(|((a, b), [lower, upper])| (a - b).abs() <= ALIKE * (upper - lower))
 }
 
-/// The optimum that a search from a start ends at.
-pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: &[f64]) -> Optimum {
+/// The optimum that a search from a start ends at, with steps down to the share `smallest` of the region.
+pub fn local(
+    surface: &Surface,
+    assessed: &mut dyn Assessed,
+    goal: Goal,
+    start: &[f64],
+    smallest: f64,
+) -> Optimum {
     let inside = |value: f64, [lower, upper]: &[f64; 2]| value.clamp(*lower, *upper);
     let point: Vec<f64> = start.iter().zip(&surface.region).map(|(value, ends)| inside(*value, ends)).collect();
     let mut best = Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
     let (mut radius, mut weight) = (FIRST, 0.0_f64);
     for _ in 0..STEPS {
         // A step along limits leaves them by its square: it counts what is missed. At last nothing may be missed.
-        if radius < SMALLEST && (weight.is_infinite() || best.merit.violation == 0.0) {
+        if radius < smallest && (weight.is_infinite() || best.merit.violation == 0.0) {
             break;
         }
-        if radius < SMALLEST {
-            (radius, weight) = (RESTORED, f64::INFINITY);
+        if radius < smallest {
+            (radius, weight) = (RESTORED * smallest, f64::INFINITY);
         }
         let [goals, limits] = goal.split(surface.count(), assessed.linearised(&best.point));
         weight = weight.max(price(surface, &goals, &limits));
