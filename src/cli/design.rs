@@ -12,6 +12,9 @@ use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy};
 use crate::study::{self, DesignError, DesignOptions, RunError};
 
+/// A smaller gain is not printed.
+const SHOWN: f64 = 5e-4;
+
 pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
     let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
@@ -100,7 +103,7 @@ fn overview(found: &DesignStudy) -> String {
         found.confirming,
     );
     text += &points(found);
-    if let Some(gain) = found.gain() {
+    if let Some(gain) = found.gain().filter(|gain| gain.abs() >= SHOWN) {
         text += &format!(
             "  worst case {:.1} % {} than at the optimum without tolerances\n",
             100.0 * gain.abs(),

@@ -7,6 +7,9 @@ use crate::export::rounded::{rounded, shown as shown_in, significant};
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{Allocation, DesignPoint, DesignStudy, ToleranceZone};
 
+/// A smaller gain is not told.
+const SHOWN: f64 = 5e-4;
+
 /// The page with these figures.
 pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
     let mut sections = vec![Section::Text(format!(
@@ -15,7 +18,7 @@ pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
         criterion(design)
     ))];
     sections.push(all(design));
-    if let Some(gain) = design.gain() {
+    if let Some(gain) = design.gain().filter(|gain| gain.abs() >= SHOWN) {
         sections.push(Section::Text(format!(
             "At the optimum without tolerances the worst case is {}; at the optimum with tolerances it is {} % {}.",
             design.nominal_point.as_ref().map_or_else(String::new, |point| objective(design, point.worst)),
