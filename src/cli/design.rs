@@ -125,7 +125,11 @@ fn overview(found: &DesignStudy) -> String {
         text += &format!("{}\n", requirements(&best.requirements));
     }
     if let Some([Some(before), Some(after)]) = found.allocation.as_ref().map(Allocation::costs) {
-        text += &format!("  tolerances there cost {}; the cheapest that meet the requirements cost {}\n", short(before), short(after));
+        text += &format!(
+            "  tolerances there cost {}; the cheapest that meet the requirements cost {}\n",
+            short(before),
+            short(after)
+        );
     }
     text
 }

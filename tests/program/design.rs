@@ -67,8 +67,11 @@ fn a_yield_is_asked_for() {
 
 #[test]
 fn a_model_without_a_design_is_told_what_it_lacks() {
-    let model: String = PLATE.lines().filter(|line| !line.starts_with("design") && !line.starts_with("objective"))
-        .map(|line| format!("{line}\n")).collect();
+    let model: String = PLATE
+        .lines()
+        .filter(|line| !line.starts_with("design") && !line.starts_with("objective"))
+        .map(|line| format!("{line}\n"))
+        .collect();
     let (_, error) = place(&model).run("design plate.yaml -o out", 2);
     assert!(error.contains("the model has no `design`"), "{error}");
 }

@@ -1,4 +1,4 @@
-//! Free nominal values, and what they are to achieve.
+//! Free nominal values, and their objective.
 
 use schemars::JsonSchema;
 

@@ -135,7 +135,11 @@ fn read_objective(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<O
             entries.iter().filter(|entry| matches!(entry.key.as_str(), "least" | "most")).collect();
         let [entry] = given.as_slice() else {
             if !given.is_empty() || own.lacks_all(&["least", "most"]) {
-                reader.error(node.span.clone(), "an objective is one output", "`{ least: OUTPUT }` or `{ most: OUTPUT }`".to_owned());
+                reader.error(
+                    node.span.clone(),
+                    "an objective is one output",
+                    "`{ least: OUTPUT }` or `{ most: OUTPUT }`".to_owned(),
+                );
             }
             return None;
         };

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, black_box, bodies, bounds, design, effects, excitations, fmu, instances, joints, motion_times, parameters,
-    requests, requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
+    analysis, black_box, bodies, bounds, design, effects, excitations, fmu, instances, joints, motion_times,
+    parameters, requests, requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
 };
 use crate::expand::dimensions::{self, Chain};
 use crate::expand::overrides::Override;

@@ -21,7 +21,7 @@ pub struct DesignParameter {
     pub searched: [f64; 2],
 }
 
-/// What was looked for.
+/// Objective of a design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DesignObjective {
     /// `least toe`, `most stroke`, or `margin`.
@@ -91,7 +91,7 @@ pub struct DesignProfile {
 pub struct DesignStudy {
     /// Name of the model.
     pub model: String,
-    /// What was looked for.
+    /// Objective.
     pub objective: DesignObjective,
     /// How requirements and objective count.
     pub criterion: Criterion,

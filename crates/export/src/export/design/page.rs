@@ -66,9 +66,8 @@ fn all(design: &DesignStudy) -> Section {
 fn ranges(design: &DesignStudy) -> Section {
     let row = |index: usize| {
         let own = &design.parameters[index];
-        let interval = |[lower, upper]: [f64; 2]| {
-            format!("{} to {}", shown(design, index, lower), shown(design, index, upper))
-        };
+        let interval =
+            |[lower, upper]: [f64; 2]| format!("{} to {}", shown(design, index, lower), shown(design, index, upper));
         let best = design.best();
         let at_limit = best.is_some_and(|best| best.at_limits.contains(&own.name));
         vec![
@@ -104,7 +103,14 @@ fn allocated(allocation: &Allocation) -> Section {
         };
         let cost = |cost: Option<f64>| cost.map_or_else(String::new, |cost| rounded(significant(cost, 4)));
         let grade = own.grade.clone().unwrap_or_default();
-        vec![own.parameter.clone(), zone(own.before), zone(own.after), grade, cost(own.cost_before), cost(own.cost_after)]
+        vec![
+            own.parameter.clone(),
+            zone(own.before),
+            zone(own.after),
+            grade,
+            cost(own.cost_before),
+            cost(own.cost_after),
+        ]
     };
     let headings = ["parameter", "tolerance", "cheapest", "grade", "cost", "then"].map(str::to_owned).to_vec();
     Section::Table("Tolerances at the optimum", headings, allocation.tolerances.iter().map(row).collect())

@@ -1,4 +1,4 @@
-//! Nominal values that are free, and what they are to achieve.
+//! Nominal values that are free, and their objective.
 
 use super::Requirement;
 
@@ -7,7 +7,7 @@ use super::Requirement;
 pub struct Design {
     /// Parameters whose nominal values are free; at least one.
     pub free: Vec<Free>,
-    /// What is looked for.
+    /// Objective.
     pub objective: Objective,
 }
 

@@ -112,7 +112,8 @@ impl Axes {
             let unit = 10_f64.powi(digits.clamp(-300, 300)) / self.shown[axis];
             let near = |value: f64| (value / unit).clamp(own.lower, own.upper);
             let value = point[axis] * unit;
-            let choices = if axis < ROUNDED { vec![near(value.floor()), near(value.ceil())] } else { vec![near(value.round())] };
+            let choices =
+                if axis < ROUNDED { vec![near(value.floor()), near(value.ceil())] } else { vec![near(value.round())] };
             let with = |choice: &f64, point: &Vec<f64>| {
                 let mut point = point.clone();
                 point[axis] = *choice;

@@ -8,7 +8,7 @@ use crate::numerics::Linear;
 /// Violations that differ by less are equal, and one of less is none: shares of limits.
 const ROUNDING: f64 = 1e-9;
 
-/// What is looked for, of the slacks of all requirements.
+/// Objective, in the slacks of all requirements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
     /// The least of all is to be large.
@@ -22,7 +22,7 @@ pub enum Goal {
 pub struct Merit {
     /// By how much the requirements are missed that have to hold, as a share of a limit.
     pub violation: f64,
-    /// What is to be large.
+    /// The objective, which is to be large.
     pub value: f64,
 }
 

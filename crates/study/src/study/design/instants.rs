@@ -21,8 +21,8 @@ pub fn required(description: &Description) -> Description {
         slacks.flat_map(Formula::names).any(|(own, _)| own == name)
     };
     model.reduced.retain(|own| is_named(&own.name));
-    let of_results = description.requirements.iter().any(|own| own.of_results)
-        || model.reduced.iter().any(|own| own.of_results);
+    let of_results =
+        description.requirements.iter().any(|own| own.of_results) || model.reduced.iter().any(|own| own.of_results);
     if !of_results && description.black_box.is_none() {
         model.outputs.clear();
         model.chains.clear();

@@ -59,7 +59,7 @@ pub enum DesignError {
     Interrupted,
 }
 
-/// What is asked of a model: its requirements, of which the objective's may be the last.
+/// Question to a model: its requirements, of which the objective's may be the last.
 struct Question {
     model: Description,
     /// The same with requirements at instants, of which surrogates are made; and which of these stand for each.

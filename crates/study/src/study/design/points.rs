@@ -86,7 +86,7 @@ struct Margins {
 }
 
 /// Those of a model at a point. Margins of outputs over time are those of the bounds in the rows, as `mbint run` prints
-/// them; verdicts have what is between the rows, too.
+/// them; verdicts are of peaks between the rows, too.
 fn margins(question: &Question, mut model: Description, options: &Options) -> Result<Option<Margins>, DesignError> {
     model.requirements.truncate(question.required());
     let objective = &question.model.requirements[question.required()..];

@@ -15,7 +15,7 @@ const MOVES: usize = 8;
 /// An optimum nearer to the edge of a region than this share of it is on it.
 const EDGE: f64 = 1e-3;
 
-/// What is kept in reserve, in multiples of what a study has missed.
+/// Reserve of a requirement, in multiples of what a study has missed.
 const RESERVED: f64 = 1.2;
 
 /// Studies that correct the surrogate, at most.
@@ -70,7 +70,8 @@ fn confirmed(
         for (requirement, known) in found.margins.iter().enumerate().filter(|(_, known)| known.is_finite()) {
             // What a rounded point misses is kept in reserve, too.
             let missed = (-known).max(0.0);
-            surface.reserves[requirement] += surface.scales[requirement] * left[requirement] - known + RESERVED * missed;
+            surface.reserves[requirement] +=
+                surface.scales[requirement] * left[requirement] - known + RESERVED * missed;
         }
         let is_better = |best: &Studied| match is_feasible == best.found.is_feasible {
             true => found.merit.is_better(&best.merit),

@@ -116,19 +116,13 @@ fn are_alike(surface: &Surface, a: &[f64], b: &[f64]) -> bool {
 }
 
 /// The optimum that a search from a start ends at, with steps down to the share `smallest` of the region.
-pub fn local(
-    surface: &Surface,
-    assessed: &mut dyn Assessed,
-    goal: Goal,
-    start: &[f64],
-    smallest: f64,
-) -> Optimum {
+pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: &[f64], smallest: f64) -> Optimum {
     let inside = |value: f64, [lower, upper]: &[f64; 2]| value.clamp(*lower, *upper);
     let point: Vec<f64> = start.iter().zip(&surface.region).map(|(value, ends)| inside(*value, ends)).collect();
     let mut best = Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
     let (mut radius, mut weight) = (FIRST, 0.0_f64);
     for _ in 0..STEPS {
-        // A step along limits leaves them by its square: it counts what is missed. At last nothing may be missed.
+        // A step along limits leaves them by its square: violations have a price. At last nothing may be missed.
         if radius < smallest && (weight.is_infinite() || best.merit.violation == 0.0) {
             break;
         }
