@@ -214,7 +214,8 @@ fn gains(name: &str) {
     let found = Model::from_file(path).unwrap().study().design(Criterion::WorstCase).unwrap();
     let (best, nominal) = (found.best().unwrap(), found.nominal_point.as_ref().unwrap());
     assert!(best.is_feasible, "{best:?}");
-    assert!(best.worst - best.error >= 1.2 * (nominal.worst + nominal.error), "{found:?}");
+    let error = best.error + nominal.error;
+    assert!(best.worst - nominal.worst - error >= 0.2 * nominal.worst.abs(), "{found:?}");
     assert!(best.nominal < nominal.nominal, "the other is better without tolerances");
 }
 

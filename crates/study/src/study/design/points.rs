@@ -6,9 +6,9 @@ use super::refine::about;
 use super::surface::{self, Surface, scale};
 use super::{DesignError, Question};
 use crate::model::{Description, Requirement};
-use crate::results::{Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Verdict, foremost};
+use crate::results::{Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost};
 use crate::study::allocate::run_simulations;
-use crate::study::{Options, RunError, reduced, statistics};
+use crate::study::{Kept, Options, RunError, reduced, statistics, subsystems};
 
 /// Half of the region, as a share of the ranges, of the surrogate of which a quantile is told.
 const QUANTILE: f64 = 1e-3;
@@ -37,7 +37,9 @@ pub fn studied(
 ) -> Result<Option<Studied>, DesignError> {
     let options = Options { methods: None, store: None, ..*options };
     let at = axes.at(&question.model, point);
-    let [nominal, found] = [without_tolerances(&at), at].map(|model| margins(question, model, &options));
+    // Only the verdicts of optima are worth more simulations.
+    let study = if kind == DesignKind::Optimum { reduced::run } else { subsystems::run };
+    let [nominal, found] = [without_tolerances(&at), at].map(|model| margins(question, model, study, &options));
     let (Some(nominal), Some(found)) = (nominal?, found?) else { return Ok(None) };
     let Margins { all, mut requirements, simulations } = found;
     let slacks = |all: &[[f64; 2]]| -> Vec<f64> {
@@ -77,6 +79,9 @@ pub fn studied(
     Ok(Some(studied))
 }
 
+/// A run of a model, which may refine itself.
+type Study = fn(&Description, &Options, bool) -> Result<(Bounds, Summary, Option<Kept>), RunError>;
+
 /// Margins by a study.
 struct Margins {
     /// With their errors, the objective's last.
@@ -87,12 +92,17 @@ struct Margins {
 
 /// Those of a model at a point. Margins of outputs over time are those of the bounds in the rows, as `mbint run` prints
 /// them; verdicts are of peaks between the rows, too.
-fn margins(question: &Question, mut model: Description, options: &Options) -> Result<Option<Margins>, DesignError> {
+fn margins(
+    question: &Question,
+    mut model: Description,
+    study: Study,
+    options: &Options,
+) -> Result<Option<Margins>, DesignError> {
     model.requirements.truncate(question.required());
     let objective = &question.model.requirements[question.required()..];
     // One of reduced outputs is a requirement of the study.
     model.requirements.extend(objective.iter().filter(|own| !is_over_time(own)).cloned());
-    let Some((bounds, summary, _)) = checked(reduced::run(&model, options, false), options)? else { return Ok(None) };
+    let Some((bounds, summary, _)) = checked(study(&model, options, false), options)? else { return Ok(None) };
     let mut known = summary.requirements.iter();
     let margin = |own: &Requirement| {
         let of_study = known.next();

@@ -37,6 +37,9 @@ const RESTORED: f64 = 100.0;
 /// What a violation counts, in multiples of what a goal gains by it.
 const PRICE: f64 = 5.0;
 
+/// Steps that are tried again with the cases that they showed, before the trust region shrinks.
+const AGAIN: usize = 4;
+
 /// Most steps of a search.
 const STEPS: usize = 120;
 
@@ -120,7 +123,7 @@ pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: 
     let inside = |value: f64, [lower, upper]: &[f64; 2]| value.clamp(*lower, *upper);
     let point: Vec<f64> = start.iter().zip(&surface.region).map(|(value, ends)| inside(*value, ends)).collect();
     let mut best = Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
-    let (mut radius, mut weight) = (FIRST, 0.0_f64);
+    let (mut radius, mut weight, mut again) = (FIRST, 0.0_f64, 0);
     for _ in 0..STEPS {
         // A step along limits leaves them by its square: violations have a price. At last nothing may be missed.
         if radius < smallest && (weight.is_infinite() || best.merit.violation == 0.0) {
@@ -140,9 +143,11 @@ pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: 
         let merit = goal.merit(&assessed.slacks(&point));
         if merit.is_better_by(&best.merit, weight) {
             best = Optimum { point, merit };
-            radius = (WIDER * radius).min(LARGEST);
+            (radius, again) = ((WIDER * radius).min(LARGEST), 0);
+        } else if assessed.has_learnt() && again < AGAIN {
+            again += 1;
         } else {
-            radius *= NARROWER;
+            (radius, again) = (NARROWER * radius, 0);
         }
     }
     best

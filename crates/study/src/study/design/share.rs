@@ -73,6 +73,10 @@ impl Assessed for Yield<'_> {
         slacks
     }
 
+    fn has_learnt(&self) -> bool {
+        false
+    }
+
     fn linearised(&mut self, point: &[f64]) -> Vec<(usize, Linear)> {
         let all: Vec<usize> = (0..self.values.len()).collect();
         let points = around(self.surface, point);

@@ -4,7 +4,7 @@ use super::surface::Surface;
 use crate::numerics::{ExtremeSearch, Extremes, Linear};
 
 /// Worst cases that are remembered for each requirement; those nearer than this, in ξ, are one.
-const REMEMBERED: usize = 8;
+const REMEMBERED: usize = 12;
 const ALIKE: f64 = 0.05;
 
 /// A difference quotient's step, as a share of the region's width.
@@ -14,6 +14,9 @@ const STEP: f64 = 1e-4;
 pub trait Assessed {
     /// The least slack of each requirement.
     fn slacks(&mut self, point: &[f64]) -> Vec<f64>;
+
+    /// Whether the last point showed a case that was not known: a step from the point before may be better now.
+    fn has_learnt(&self) -> bool;
 
     /// Slacks that are least there, or were about points before, with their derivatives with respect to the point and
     /// the requirement's number.
@@ -27,12 +30,19 @@ pub struct Worst<'s> {
     before: Vec<Extremes>,
     /// ξ of the worst cases so far, by requirement, the latest last.
     known: Vec<Vec<Vec<f64>>>,
+    has_learnt: bool,
 }
 
 impl<'s> Worst<'s> {
     pub fn new(surface: &'s Surface) -> Self {
         let known = vec![Vec::new(); surface.count()];
-        Self { surface, search: ExtremeSearch::new(surface.axes.uncertain()), before: Vec::new(), known }
+        Self {
+            surface,
+            search: ExtremeSearch::new(surface.axes.uncertain()),
+            before: Vec::new(),
+            known,
+            has_learnt: false,
+        }
     }
 }
 
@@ -50,8 +60,10 @@ impl Assessed for Worst<'_> {
         };
         let places: Vec<Vec<f64>> = self.known.iter().flatten().cloned().collect();
         let Ok(found) = self.search.extremes(surface.count(), &self.before, &places, evaluate);
+        self.has_learnt = false;
         for (known, found) in self.known.iter_mut().zip(&found) {
             let is_near = |other: &Vec<f64>| other.iter().zip(&found.lowest).all(|(a, b)| (a - b).abs() < ALIKE);
+            self.has_learnt |= !known.iter().any(is_near);
             known.retain(|other| !is_near(other));
             known.push(found.lowest.clone());
             let spare = known.len().saturating_sub(REMEMBERED);
@@ -60,6 +72,10 @@ impl Assessed for Worst<'_> {
         let slacks = found.iter().map(|found| found.range.lower).collect();
         self.before = found;
         slacks
+    }
+
+    fn has_learnt(&self) -> bool {
+        self.has_learnt
     }
 
     fn linearised(&mut self, point: &[f64]) -> Vec<(usize, Linear)> {
