@@ -237,6 +237,15 @@ struct Found {
 }
 
 impl Found {
+    /// Whether an optimum is known that is as good as at a point.
+    fn has(&self, axes: &Axes, point: &[f64]) -> bool {
+        let is_near = |other: &Studied| {
+            let along = other.point.iter().zip(point).zip(&axes.free);
+            along.into_iter().all(|((a, b), own)| (a - b).abs() <= ALIKE * (own.upper - own.lower))
+        };
+        self.optima.iter().any(is_near)
+    }
+
     /// Counts a surrogate.
     fn add(&mut self, surface: &Surface) {
         self.simulations += surface.simulations;
@@ -258,25 +267,16 @@ fn found(
     let rough = optima(question, &surface, known, options)?;
     let (searched, simulations) = (surface.region.clone(), surface.simulations);
     let mut all = Found { optima: Vec::new(), surface, searched, simulations, confirming: 0 };
-    let ranges = axes.ranges();
-    let are_alike = |a: &[f64], b: &[f64]| {
-        let along = a.iter().zip(b).zip(&ranges);
-        along.into_iter().all(|((a, b), [lower, upper])| (a - b).abs() <= ALIKE * (upper - lower))
-    };
     for own in rough {
         if all.optima.len() >= most || ((options.interrupted)() && !all.optima.is_empty()) {
             break;
         }
         // A search may have come to an optimum that is known by now.
-        if all.optima.iter().any(|other| are_alike(&other.point, &own.point)) {
+        if all.has(axes, &own.point) {
             continue;
         }
         let Some(found) = refined(question, axes, &own, &mut all, options)? else { continue };
-        match all.optima.iter_mut().find(|other| are_alike(&other.point, &found.point)) {
-            Some(other) if found.merit.is_better(&other.merit) => *other = found,
-            Some(_) => {}
-            None => all.optima.push(found),
-        }
+        all.optima.push(found);
     }
     if all.optima.is_empty() {
         return Err(DesignError::NoSurrogate);

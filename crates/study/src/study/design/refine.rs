@@ -21,7 +21,8 @@ const RESERVED: f64 = 1.2;
 /// Studies that correct the surrogate, at most.
 const CORRECTIONS: usize = 4;
 
-/// The optimum near to a rough one, with its study; `None` where the mechanism cannot be run there.
+/// The optimum near to a rough one, with its study; `None` where the mechanism cannot be run there, or
+/// the optimum is known.
 pub fn refined(
     question: &Question,
     axes: &Axes,
@@ -44,7 +45,7 @@ pub fn refined(
             }
         }
     }
-    match last {
+    match last.filter(|_| !all.has(axes, &point)) {
         Some(surface) => confirmed(question, axes, point, surface, all, options),
         None => Ok(None),
     }
