@@ -2,8 +2,7 @@
 
 use super::axes::{Axes, without_tolerances};
 use super::goal::{Goal, Merit};
-use super::refine::about;
-use super::surface::{self, Surface, scale};
+use super::surface::{self, Surface, about, scale};
 use super::{DesignError, Question};
 use crate::model::{Description, Requirement};
 use crate::results::{Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost};

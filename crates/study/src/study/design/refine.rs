@@ -3,7 +3,7 @@
 use super::axes::Axes;
 use super::points::{Studied, studied};
 use super::search::{self, Optimum, SHARP, local};
-use super::surface::Surface;
+use super::surface::{Surface, about};
 use super::{DesignError, Found, Question};
 use crate::results::DesignKind;
 use crate::study::Options;
@@ -87,15 +87,6 @@ fn confirmed(
         point = local(&surface, &mut *question.assessed(&surface)?, question.goal, &point, SHARP).point;
     }
     Ok(best)
-}
-
-/// The part of the ranges within a share of them to either side of a point.
-pub fn about(point: &[f64], ranges: &[[f64; 2]], share: f64) -> Vec<[f64; 2]> {
-    let along = |(value, [lower, upper]): (&f64, &[f64; 2])| {
-        let half = share * (upper - lower);
-        [(value - half).max(*lower), (value + half).min(*upper)]
-    };
-    point.iter().zip(ranges).map(along).collect()
 }
 
 /// Whether a point is at an end of a region where the range does not end.

@@ -110,6 +110,15 @@ impl Surface {
     }
 }
 
+/// The part of the ranges within a share of them to either side of a point.
+pub fn about(point: &[f64], ranges: &[[f64; 2]], share: f64) -> Vec<[f64; 2]> {
+    let along = |(value, [lower, upper]): (&f64, &[f64; 2])| {
+        let half = share * (upper - lower);
+        [(value - half).max(*lower), (value + half).min(*upper)]
+    };
+    point.iter().zip(ranges).map(along).collect()
+}
+
 /// Whether every margin has a surrogate that can be relied on.
 fn is_known(kept: &Kept) -> bool {
     kept.margins().is_some_and(|margins| (0..margins.count()).all(|own| margins.error(own).is_finite()))
