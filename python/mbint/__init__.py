@@ -8,6 +8,7 @@ The command ``mbint`` does the work; this package writes its input and reads its
 """
 
 from ._command import MbintError, command, version
+from .designing import Design, design
 from .fitting import Fit, fit
 from .functions import bounds
 from .gradients import gradient
@@ -18,6 +19,7 @@ from .study import Study, run
 
 __all__ = [
     "Allocation",
+    "Design",
     "Fit",
     "MbintError",
     "Result",
@@ -27,6 +29,7 @@ __all__ = [
     "check",
     "command",
     "cost",
+    "design",
     "fit",
     "gradient",
     "run",

@@ -86,6 +86,24 @@ def test_parameters_are_fitted() -> None:
     assert wrong.result["unexplained"]["worst"][0] in (0, 1)
 
 
+def test_nominal_values_are_designed() -> None:
+    plate = {
+        "parameters": {"a": "0.9 m ± 1%", "b": 0.8},
+        "outputs": {"edge": "a + b", "area": "a*b"},
+        "requirements": {"large": {"output": "area", "min": 1}},
+        "design": {"a": "0.5 to 1.5 m", "b": [0.5, 1.5]},
+        "objective": {"least": "edge"},
+    }
+    # 1.01 a + b is least where 0.99 a b = 1.
+    found = mbint.design(plate)
+    assert found.feasible
+    edge = 2 * (1.01 / 0.99) ** 0.5
+    assert found.points.loc["optimum", "worst"] == pytest.approx(edge, rel=1e-3)
+    assert found.result["parameters"][0]["range"] == [0.5, 1.5]
+    assert mbint.run(plate, set=found.overlay).result.verdicts["verdict"][0] == "holds"
+    assert not mbint.design(plate | {"requirements": {"large": {"output": "area", "min": 4}}}).feasible
+
+
 def test_bounds_are_recorded_and_compared(tmp_path: Path) -> None:
     assert not mbint.snapshot(STACK, tmp_path, check=True)
     assert mbint.snapshot(STACK, tmp_path)

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::export::ExportError;
 use crate::model::UnknownScene;
-use crate::study::{AllocateError, CostError, DataError, FitError, GradientError, RunError, VerifyError};
+use crate::study::{AllocateError, CostError, DataError, DesignError, FitError, GradientError, RunError, VerifyError};
 use crate::syntax::Diagnostics;
 
 /// Why there is no model, or nothing of it could be run.
@@ -49,6 +49,9 @@ pub enum Error {
     /// There is no fit.
     #[error(transparent)]
     Fit(Box<FitError>),
+    /// There is no design.
+    #[error(transparent)]
+    Design(Box<DesignError>),
     /// The files could not be written.
     #[error(transparent)]
     Write(#[from] ExportError),
@@ -86,6 +89,17 @@ impl From<FitError> for Error {
             FitError::Run(error) => Self::Run(error),
             FitError::Interrupted => Self::Interrupted,
             error => Self::Fit(Box::new(error)),
+        }
+    }
+}
+
+impl From<DesignError> for Error {
+    fn from(error: DesignError) -> Self {
+        match error {
+            DesignError::Run(error) => Self::Run(error),
+            DesignError::Unsuitable(message) => Self::Unsuitable(message),
+            DesignError::Interrupted => Self::Interrupted,
+            error => Self::Design(Box::new(error)),
         }
     }
 }

@@ -3,8 +3,10 @@
 use super::{Error, Samples, StudyResult};
 use crate::methods::{BoundsRequest, Certified, Chebyshev, Scan, Taylor};
 use crate::model::{Description, Stepping};
-use crate::results::{Allocation, CostStudy, Criterion, Fit};
-use crate::study::{AllocateOptions, CostOptions, Measurements, NoiseBound, Options, allocate, cost, fit, run};
+use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Fit};
+use crate::study::{
+    AllocateOptions, CostOptions, DesignOptions, Measurements, NoiseBound, Options, allocate, cost, design, fit, run,
+};
 
 /// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
 pub struct Study<'a> {
@@ -153,6 +155,20 @@ impl<'a> Study<'a> {
         let noise: Vec<NoiseBound> = noise.iter().map(bound).collect();
         let measurements = Measurements::read(data, &self.description, &noise)?;
         Ok(fit(&self.description, &measurements, &self.options)?)
+    }
+
+    /// The nominal values, within the ranges of the model's `design`, that are best in its `objective` with the
+    /// tolerances about them: in every case, or for a share of the production.
+    ///
+    /// # Errors
+    /// [`Error::Unsuitable`]: the model has no `design`. [`Error::Run`]: it cannot be run. [`Error::Design`]: its
+    /// margins have no surrogate over any part of the ranges.
+    pub fn design(self, criterion: Criterion) -> Result<DesignStudy, Error> {
+        let share = match criterion {
+            Criterion::WorstCase => None,
+            Criterion::Share(share) => Some(share),
+        };
+        Ok(design(&self.description, DesignOptions { share }, &self.options)?)
     }
 
     /// Outputs over time at points: for each a value, SI, of each of [`Model::uncertain`](super::Model::uncertain).

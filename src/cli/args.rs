@@ -1,6 +1,7 @@
 //! The arguments of the command line.
 
 mod allocate;
+mod design;
 mod explain;
 mod export;
 mod fit;
@@ -21,6 +22,7 @@ use super::status;
 use crate::model::Override;
 use crate::results::Method;
 pub(super) use allocate::AllocateArgs;
+pub(super) use design::DesignArgs;
 pub(super) use explain::ExplainArgs;
 pub(super) use export::{ExportArgs, UnitVersion};
 pub(super) use fit::FitArgs;
@@ -51,6 +53,8 @@ pub(super) enum Command {
     Sweep(SweepArgs),
     /// Find the loosest, or cheapest, tolerances that meet all requirements.
     Allocate(AllocateArgs),
+    /// Find the nominal values that are best with the tolerances about them.
+    Design(DesignArgs),
     /// Differentiate every output by every uncertain parameter, over time.
     Gradient(GradientArgs),
     /// Find the parameters that agree with measured values.

@@ -9,6 +9,7 @@ mod black_box;
 mod check;
 mod console;
 mod cost;
+mod design;
 mod effects;
 mod excitations;
 mod explain;
@@ -150,6 +151,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Sweep(args) => sweep::sweep(args, console),
         Command::Allocate(args) => allocate::allocate(args, console),
         Command::Gradient(args) => gradient::gradient(args, console),
+        Command::Design(args) => design::design(args, console),
         Command::Fit(args) => fit::fit(args, console),
         Command::Verify(args) => verify::verify(&args, console),
         Command::Check(args) => check::check(&args, console),

@@ -22,6 +22,7 @@ mod composition;
 mod controllers;
 mod convergence;
 mod deep_trees;
+mod design;
 mod drawing_linkages;
 mod excitations;
 mod explicit;

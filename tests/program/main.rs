@@ -13,6 +13,7 @@ mod cli;
 mod cost;
 mod declared_units;
 mod dependencies;
+mod design;
 mod docs_effects;
 mod everyday;
 mod export;

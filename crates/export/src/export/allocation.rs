@@ -106,7 +106,7 @@ pub fn shown_unit(own: &AllocatedTolerance) -> (f64, &str) {
 }
 
 /// Cost against the share of the nominal margins that is left.
-fn plot(allocation: &Allocation) -> String {
+pub(super) fn plot(allocation: &Allocation) -> String {
     let together = allocation.costs()[1].is_none();
     let percent = |point: &TradePoint| (100.0 * point.margin, point.cost);
     let line: Vec<(f64, f64)> = allocation.trade.iter().map(percent).collect();

@@ -39,6 +39,8 @@ pub struct Reader<'d, S> {
     pub corners: Vec<Corner>,
     /// Whether the parameter's value is uncertain.
     pub varies: Vec<bool>,
+    /// Parameters whose nominal values are to be chosen: other samples may have other values.
+    pub free: HashSet<String>,
     /// Whether a parameter has no value because of an error that was reported.
     pub broken: bool,
     /// Parameters that something speaks of, other parameters aside.
@@ -104,6 +106,7 @@ impl<'d, S> Reader<'d, S> {
             kinds: Vec::new(),
             corners: Vec::new(),
             varies: Vec::new(),
+            free: HashSet::new(),
             broken: false,
             used: Vec::new(),
             used_trajectories: HashSet::new(),

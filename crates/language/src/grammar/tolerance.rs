@@ -18,6 +18,9 @@ use crate::syntax::yaml::{Node, Scalar, Value};
 /// What may stand between a value and its deviation.
 const SIGNS: [&str; 3] = ["±", "+/-", "+-"];
 
+/// What stands between the ends of a range.
+const TO: &str = " to ";
+
 /// A number in parts, each with its place.
 #[derive(Clone, Debug)]
 pub struct Toleranced {
@@ -103,6 +106,25 @@ pub fn read(node: &Node) -> Result<Toleranced, Box<Diagnostic>> {
         return Ok(Toleranced::of(None, Deviation::Either(node.clone())));
     }
     Ok(Toleranced { value: Some(node.clone()), deviation: None })
+}
+
+/// The ends of `0.2 to 0.3 m`, `[0.2, 0.3] m` or a list; `None` of any other form.
+///
+/// # Errors
+/// An interval that is begun but not finished.
+pub fn range(node: &Node) -> Result<Option<[Node; 2]>, Box<Diagnostic>> {
+    let ends = match &node.value {
+        Value::Scalar(scalar) if !scalar.text.trim_start().starts_with('[') => {
+            let whole = Text { node, scalar };
+            let Some(at) = scalar.text.find(TO) else { return Ok(None) };
+            let [left, right] = [0..at, at + TO.len()..scalar.text.len()].map(|part| whole.trimmed(part));
+            let unit = own_unit(&scalar.text[right.clone()]);
+            return Ok(Some([whole.with_unit(left, unit), whole.part(right)]));
+        }
+        _ => read(node)?.deviation,
+    };
+    let Some(Deviation::Between(Node { value: Value::Sequence(ends), .. })) = ends else { return Ok(None) };
+    Ok(<[Node; 2]>::try_from(ends).ok())
 }
 
 /// Whether a text is a number with a tolerance, and not a formula. In a formula `+-` is a sum with a negative number.

@@ -8,6 +8,7 @@ use schemars::transform::{RecursiveTransform, Transform};
 mod black_box;
 mod bodies;
 mod constraints;
+mod design;
 mod dimensions;
 mod model;
 mod parts;
@@ -20,6 +21,7 @@ mod zones;
 
 pub use black_box::*;
 pub use bodies::*;
+pub use design::*;
 pub use dimensions::*;
 pub use model::*;
 pub use parts::*;
@@ -100,6 +102,7 @@ mod tests {
         same_keys::<BlackBoxFile>();
         same_keys::<RefineFile>();
         same_keys::<DimensionFile>();
+        same_keys::<ObjectiveKinds>();
         same_keys::<ZoneFile>();
         same_keys::<Scene>();
         same_keys::<SceneSimulation>();

@@ -68,6 +68,11 @@ grammar! {
         outputs: Option<IndexMap<String, OutputFile>>,
         /// Requirements on outputs: names with comparisons, e.g. `clears: x3 >= 0.4 m`.
         requirements: Option<IndexMap<String, RequirementFile>>,
+        /// Parameters whose nominal values `mbint design` chooses, with ranges, e.g. `rod: 0.2 to 0.3 m`. Tolerances go
+        /// with the values.
+        design: Option<IndexMap<String, DesignRange>>,
+        /// What `mbint design` looks for.
+        objective: Option<ObjectiveFile>,
         /// How long, and in which steps; `analysis: statics` needs none.
         simulation: Option<Simulation>,
         /// Which bounds to compute; without this, Chebyshev of order 5.

@@ -3,6 +3,7 @@
 mod analysis;
 mod black_box;
 mod body;
+mod design;
 mod index;
 mod reduced;
 mod robot;
@@ -26,6 +27,7 @@ pub use crate::robots::urdf::robot::{Shape, Visual};
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
 pub use black_box::{BlackBox, BoxOutput, FmuProgram, Program, Protocol, Refine};
 pub use body::{Body, FlexibleBeam, Inertia, Point, Standing};
+pub use design::{Design, Free, Objective};
 use index::NameIndex;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
@@ -75,6 +77,8 @@ pub struct Description {
     pub reduced: Vec<ReducedOutput>,
     /// Requirements on outputs.
     pub requirements: Vec<Requirement>,
+    /// Nominal values that are free, and what they are to achieve.
+    pub design: Option<Design>,
     /// Units in which outputs and reduced outputs are shown, by their names; the others in SI.
     pub display: BTreeMap<String, DisplayUnit>,
     /// Units other than SI in which parameters are written, by their names.
@@ -220,6 +224,7 @@ impl Description {
             outputs: Vec::new(),
             reduced: Vec::new(),
             requirements: Vec::new(),
+            design: None,
             display: BTreeMap::new(),
             parameter_units: BTreeMap::new(),
             simulation: Simulation {

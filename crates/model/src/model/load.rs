@@ -5,8 +5,9 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, black_box, bodies, bounds, effects, excitations, fmu, instances, joints, motion_times, parameters,
-    random, requests, requirements, sections, space, states, statistics, tables, teeth, trajectories, zone_sizes,
+    analysis, black_box, bodies, bounds, design, effects, excitations, fmu, instances, joints, motion_times,
+    parameters, random, requests, requirements, sections, space, states, statistics, tables, teeth, trajectories,
+    zone_sizes,
 };
 use crate::expand::dimensions::{self, Chain};
 use crate::expand::overrides::Override;
@@ -304,7 +305,8 @@ fn describe(
     });
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
-    parameters::read(&mut reader, parameter_entries, overrides);
+    design::declare(&mut reader, &fields);
+    let free = parameters::read(&mut reader, parameter_entries, overrides);
     black_box::read(&mut reader, &fields, parameter_entries, Path::new(origin.name));
     trajectories::read(&mut reader, &fields);
     excitations::read(&mut reader, &fields);
@@ -334,6 +336,7 @@ fn describe(
     analysis::fit_time(&mut reader.model);
     requirements::read(&mut reader, requirement_entries);
     motion_times::check(&mut reader, output_entries, requirement_entries);
+    design::read(&mut reader, &fields, &free);
     if variant.partial {
         reader.idle = parameters::idle(&reader);
     }
@@ -357,6 +360,7 @@ fn describe(
     fmu::check_parameters(&mut reader, &fields, parameter_entries);
     let is_count = |name: &str| parts.is_some_and(|parts| parts.is_count(name));
     let mut unused = parameters::unused(&reader, parameter_entries, is_count);
+    design::check_used(&mut reader, &fields, &unused, variant.partial);
     unused.extend(unused_excitations);
     let Reader { mut model, idle, .. } = reader;
     model.parameters.retain(|parameter| !idle.contains(&parameter.name));

@@ -4,6 +4,7 @@
 //! `Diagnostics` collects them all, each with its place.
 
 mod description;
+mod design;
 mod names;
 mod references;
 

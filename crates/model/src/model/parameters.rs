@@ -49,8 +49,20 @@ pub(super) struct Draft {
     deviation: Option<usize>,
 }
 
-/// Reads the parameters; after this, formulas of them can be checked and evaluated.
-pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span)]) {
+/// How the tolerance of a parameter whose nominal value is free goes with that.
+pub(super) struct Riding {
+    /// Its name.
+    pub name: String,
+    /// Whether its value is a number, and no formula of others.
+    pub is_number: bool,
+    /// Whether a tolerance class gives the deviations, by the size.
+    pub has_class: bool,
+    /// Whether the deviations upwards and downwards are shares of the value.
+    pub relative: [bool; 2],
+}
+
+/// Reads the parameters; after this, formulas of them can be checked and evaluated. Returns those that are free.
+pub(super) fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span)]) -> Vec<Riding> {
     let mut entries = entries;
     let mut own = entries.iter().enumerate().filter(|(_, entry)| !is_of_robot(&entry.key));
     if let Some((first, entry)) = own.nth(TUNING.parameters) {
@@ -82,9 +94,21 @@ pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span
     }
     sort(reader, &order);
     let places: Vec<Span> = order.iter().map(|&index| drafts[index].name_span.clone()).collect();
+    let free = entries.iter().zip(&drafts).filter(|(entry, _)| reader.free.contains(&entry.key));
+    let riding = free.map(|(entry, draft)| riding(&entry.key, draft)).collect();
     corners::read(reader, &places);
     let none = vec![false; drafts.len()];
     reader.used_by_parameters = std::mem::replace(&mut reader.used, none);
+    riding
+}
+
+fn riding(name: &str, draft: &Draft) -> Riding {
+    let Spec { tolerance, plus, minus, class, .. } = &draft.spec;
+    let is_share = |node: &Node| {
+        node.scalar().and_then(|scalar| number_and_unit(&scalar.text)).is_some_and(|(_, unit, _)| unit == "%")
+    };
+    let relative = [plus, minus].map(|side| tolerance.as_ref().or(side.as_ref()).is_some_and(is_share));
+    Riding { name: name.to_owned(), is_number: draft.uses.is_empty(), has_class: class.is_some(), relative }
 }
 
 fn find_overrides<'o>(

@@ -79,17 +79,10 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
         return None;
     }
     let of_reduced = names_reduced(reader, &of);
-    let side = |reader: &mut Reader, node: &Node| match of_reduced {
-        true => {
-            let length = reader.scalar(node, "a formula")?.text.len();
-            results_by_name::part(reader, node, 0..length, &REDUCED)
-        }
-        false => reduced::formula_of_outputs(reader, node),
-    };
     let (mut limited, mut texts) = (Vec::new(), Vec::new());
     for (key, limit) in limits {
-        let own = side(reader, node)?;
-        let found = side(reader, limit)?;
+        let own = side(reader, node, of_reduced)?;
+        let found = side(reader, limit, of_reduced)?;
         if let (Some(found), Some(wanted)) = (found.dimension, own.dimension) {
             reader.check_fits(&limit.span, found, wanted);
         }
@@ -111,6 +104,28 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
     }
     let found = required(reader, entry, texts.join(" and "), limited, (of_reduced, times));
     timed(reader, &fields, found, times)
+}
+
+/// A side of a comparison of reduced outputs, or of outputs over time.
+fn side(reader: &mut Reader, node: &Node, of_reduced: bool) -> Option<Source> {
+    match of_reduced {
+        true => {
+            let length = reader.scalar(node, "a formula")?.text.len();
+            results_by_name::part(reader, node, 0..length, &REDUCED)
+        }
+        false => reduced::formula_of_outputs(reader, node),
+    }
+}
+
+/// How far a quantity is below zero, or above it: its worst value is the margin with the other sign.
+pub(super) fn distance_from_zero(reader: &mut Reader, entry: &Entry, is_upper: bool) -> Option<Requirement> {
+    let of = reader.scalar(&entry.value, "an output")?.text.trim().to_owned();
+    let of_reduced = names_reduced(reader, &of);
+    let own = side(reader, &entry.value, of_reduced)?;
+    let limit = Source { formula: Formula::number(0.0), dimension: own.dimension };
+    let limited = Limited { of: of.clone(), own, limit, is_upper };
+    let found = required(reader, entry, of, vec![limited], (of_reduced, (0.0, f64::INFINITY)));
+    Some(Requirement { limits: Vec::new(), ..found })
 }
 
 /// `from` and `to`, or `at`.

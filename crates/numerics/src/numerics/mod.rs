@@ -10,7 +10,8 @@
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`SegmentMotions`]: responses cut at events;
 //! - [`pave`]: polynomials and intervals for their values → parameters with which they have these;
-//! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
+//! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters;
+//! - [`best_step`]: linearised goals and limits → the step within a box at which the least goal is largest.
 
 mod along;
 mod bernstein;
@@ -35,6 +36,7 @@ mod lattice;
 mod least_squares;
 mod ledger;
 mod leja;
+mod linear_program;
 mod observed_order;
 mod paving;
 mod peak;
@@ -76,6 +78,7 @@ pub use functions_of_time::{Cell, FunctionClass, value};
 pub use gradient_fit::{Derivatives, GradientFit};
 pub use least_squares::LeastSquares;
 pub use ledger::Ledger;
+pub use linear_program::best_step;
 pub use observed_order::{Correction, Differences, corrections};
 pub use paving::{Boxes, LeastExcess, Paving, PavingLimits, Tubes, least_excess, pave};
 pub use polynomial_range::{PolynomialRange, RangeKind};

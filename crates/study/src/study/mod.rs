@@ -9,7 +9,8 @@
 //! bounds the part of a box in which there is a motion, `cost` runs one model with many settings to find the cost of
 //! accuracy, `explain` lists what a model is compiled to, and `price` estimates a run. `drawing` and `motion` show the
 //! mechanism, `internal` confines a panic, `statistics` evaluates kept surrogates, and `allocate` searches tolerances.
-//! `fit` compares with measured values, and `verify` with manufactured solutions.
+//! `fit` compares with measured values, `design` searches nominal values, and `verify` measures orders against
+//! manufactured motions.
 //!
 //! A type has its methods in its own file; other files have functions that take it. So the imports of a file are
 //! all that it uses, and a test finds circles.
@@ -24,6 +25,7 @@ mod bounding;
 mod chains;
 mod code;
 mod cost;
+mod design;
 mod deterministic;
 mod drawing;
 mod ensemble;
@@ -66,6 +68,7 @@ pub use allocate::{AllocateError, AllocateOptions, allocate};
 pub use answers::{Evaluator, Kept, assemblies};
 pub use code::{CodeError, code};
 pub use cost::{CostError, CostOptions, cost};
+pub use design::{DesignError, DesignOptions, design};
 pub use drawing::drawing;
 pub use explain::{explain, language_costs};
 pub use feasible::Survey;

@@ -1,6 +1,6 @@
 //! The corners of the parameters' intervals, at which every formula is checked.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::grammar::formulas::evaluate;
 use crate::grammar::reader::Corner;
@@ -28,7 +28,7 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
     let choices = if beyond.is_some() { vec![Choice::new()] } else { choices(&uncertain) };
     let positions: HashMap<&str, usize> =
         parameters.iter().enumerate().map(|(index, parameter)| (parameter.name.as_str(), index)).collect();
-    let varies = varies(parameters, &positions);
+    let varies = varies(parameters, &positions, &reader.free);
     let corners = evaluated(parameters, &positions, &varies, choices);
     let infinite: Vec<(usize, String)> = (0..parameters.len())
         .filter_map(|index| {
@@ -74,11 +74,12 @@ fn choices(uncertain: &[(usize, f64, f64)]) -> Vec<Choice> {
     choices
 }
 
-/// Of each parameter, whether it is uncertain or depends on one that is.
-fn varies(parameters: &[Parameter], positions: &HashMap<&str, usize>) -> Vec<bool> {
+/// Of each parameter, whether it is uncertain or free, or depends on one that is.
+fn varies(parameters: &[Parameter], positions: &HashMap<&str, usize>, free: &HashSet<String>) -> Vec<bool> {
     parameters.iter().fold(Vec::new(), |mut varies: Vec<bool>, parameter| {
         varies.push(match &parameter.value {
             ParameterValue::Interval { .. } => true,
+            ParameterValue::Formula(_) if free.contains(&parameter.name) => true,
             ParameterValue::Formula(formula) => formula
                 .names()
                 .any(|(name, _)| positions.get(name).is_some_and(|&index| varies.get(index).copied().unwrap_or(false))),

@@ -34,7 +34,7 @@ pub fn owner(entries: &[Entry], name: &str) -> Option<usize> {
 /// Adds the deviations of uncertain parameters whose values depend on uncertain ones. They may be set like parameters
 /// of the file.
 pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &[(Override, Span)]) {
-    let varies = varying(drafts);
+    let varies = varying(reader, drafts);
     let own = drafts.len();
     for index in 0..own {
         let draft = &drafts[index];
@@ -68,9 +68,11 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
     }
 }
 
-/// Whether each parameter is uncertain, or depends on one that is.
-fn varying(drafts: &[Draft]) -> Vec<bool> {
-    let mut varies: Vec<bool> = drafts.iter().map(|draft| draft.spec.is_uncertain()).collect();
+/// Whether each parameter is uncertain or free, or depends on one that is.
+fn varying(reader: &Reader, drafts: &[Draft]) -> Vec<bool> {
+    let is_free = |index: usize| reader.free.contains(&reader.model.parameters[index].name);
+    let own = |(index, draft): (usize, &Draft)| draft.spec.is_uncertain() || is_free(index);
+    let mut varies: Vec<bool> = drafts.iter().enumerate().map(own).collect();
     let mut users = vec![Vec::new(); drafts.len()];
     for (index, draft) in drafts.iter().enumerate() {
         draft.uses.iter().for_each(|&used| users[used].push(index));

@@ -1,0 +1,117 @@
+//! The page of a design.
+
+use super::{criterion, piece, points, shown};
+use crate::export::allocation::shown_unit;
+use crate::export::report::{Section, plain_page};
+use crate::export::rounded::{rounded, shown as shown_in, significant};
+use crate::grammar::display_unit::ShownUnit;
+use crate::results::{Allocation, DesignPoint, DesignStudy, ToleranceZone};
+
+/// A smaller gain is not told.
+const SHOWN: f64 = 5e-4;
+
+/// The page with these figures.
+pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
+    let mut sections = vec![Section::Text(format!(
+        "Objective: {}, for {}. Every figure is that of a study at the point.",
+        design.objective.text,
+        criterion(design)
+    ))];
+    sections.push(all(design));
+    if let Some(gain) = design.gain().filter(|gain| gain.abs() >= SHOWN) {
+        sections.push(Section::Text(format!(
+            "At the optimum without tolerances the worst case is {}; at the optimum with tolerances it is {} % {}.",
+            design.nominal_point.as_ref().map_or_else(String::new, |point| objective(design, point.worst)),
+            rounded(significant(100.0 * gain.abs(), 3)),
+            if gain < 0.0 { "worse" } else { "better" }
+        )));
+    }
+    sections.push(ranges(design));
+    sections.extend(design.best().map(requirements));
+    for own in &design.not_met {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        sections.push(Section::Text(format!(
+            "No values within the ranges meet {}: the nearest miss it by {}.",
+            own.requirement,
+            shown_in(unit, -own.margin)
+        )));
+    }
+    sections.extend(design.allocation.as_ref().map(allocated));
+    sections.extend(figures.into_iter().map(Section::Figure));
+    plain_page(&format!("{}: design", design.model), &sections)
+}
+
+/// The objective's value; a margin in percent.
+fn objective(design: &DesignStudy, value: f64) -> String {
+    if design.objective.text == "margin" {
+        return format!("{} %", rounded(significant(100.0 * value, 5)));
+    }
+    shown_in(ShownUnit::of(&design.objective.display, &design.objective.unit), value)
+}
+
+fn all(design: &DesignStudy) -> Section {
+    let mut headings = vec!["point".to_owned()];
+    headings.extend(design.parameters.iter().map(|own| own.name.clone()));
+    headings.extend(["nominal", "worst case", "error", "requirements"].map(str::to_owned));
+    let row = |(name, point): (String, &DesignPoint)| {
+        let mut cells = vec![name];
+        cells.extend(point.values.iter().enumerate().map(|(index, value)| shown(design, index, *value)));
+        cells.extend([point.nominal, point.worst, significant(point.error, 2)].map(|value| objective(design, value)));
+        cells.push(if point.is_feasible { "hold" } else { "not met" }.to_owned());
+        cells
+    };
+    Section::Table("Points", headings, points(design).map(row).collect())
+}
+
+fn ranges(design: &DesignStudy) -> Section {
+    let row = |index: usize| {
+        let own = &design.parameters[index];
+        let interval =
+            |[lower, upper]: [f64; 2]| format!("{} to {}", shown(design, index, lower), shown(design, index, upper));
+        let best = design.best();
+        let at_limit = best.is_some_and(|best| best.at_limits.contains(&own.name));
+        vec![
+            own.name.clone(),
+            interval(own.range),
+            interval(own.searched),
+            best.map_or_else(String::new, |best| piece(design, best, index)),
+            if at_limit { "at an end of the range" } else { "" }.to_owned(),
+        ]
+    };
+    let headings = ["parameter", "range", "searched", "best, with its tolerance", ""].map(str::to_owned).to_vec();
+    Section::Table("Parameters", headings, (0..design.parameters.len()).map(row).collect())
+}
+
+fn requirements(best: &DesignPoint) -> Section {
+    let row = |own: &crate::results::RequirementSummary| {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        let margin = shown_in(unit, own.margin);
+        let error = shown_in(unit, significant(own.error, 2));
+        vec![own.name.clone(), own.text.clone(), own.verdict.name().to_owned(), margin, error]
+    };
+    let headings = ["requirement", "", "verdict", "margin", "error"].map(str::to_owned).to_vec();
+    Section::Table("Requirements at the optimum", headings, best.requirements.iter().map(row).collect())
+}
+
+/// What the tolerances may become at the optimum.
+fn allocated(allocation: &Allocation) -> Section {
+    let row = |own: &crate::results::AllocatedTolerance| {
+        let (scale, unit) = shown_unit(own);
+        let zone = |zone: ToleranceZone| {
+            let [above, below] = [zone.above, zone.below].map(|side| rounded(significant(scale * side, 4)));
+            format!("+{above} -{below} {unit}").trim_end().to_owned()
+        };
+        let cost = |cost: Option<f64>| cost.map_or_else(String::new, |cost| rounded(significant(cost, 4)));
+        let grade = own.grade.clone().unwrap_or_default();
+        vec![
+            own.parameter.clone(),
+            zone(own.before),
+            zone(own.after),
+            grade,
+            cost(own.cost_before),
+            cost(own.cost_after),
+        ]
+    };
+    let headings = ["parameter", "tolerance", "cheapest", "grade", "cost", "then"].map(str::to_owned).to_vec();
+    Section::Table("Tolerances at the optimum", headings, allocation.tolerances.iter().map(row).collect())
+}

@@ -1,0 +1,131 @@
+//! Nominal values before and after they are chosen.
+
+use serde::Serialize;
+
+use super::{Allocation, Criterion, NotMet, RequirementSummary};
+use crate::grammar::display_unit::DisplayUnit;
+
+/// A parameter whose nominal value was free.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DesignParameter {
+    /// Its name.
+    pub name: String,
+    /// Its SI unit; empty where dimensionless or unknown.
+    pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
+    /// Ends of its range, SI.
+    pub range: [f64; 2],
+    /// Ends of the part of it that was searched: less where the mechanism cannot be assembled everywhere.
+    pub searched: [f64; 2],
+}
+
+/// Objective of a design.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DesignObjective {
+    /// `least toe`, `most stroke`, or `margin`.
+    pub text: String,
+    /// SI unit of its value; empty where dimensionless, unknown, or a share of limits.
+    pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
+    /// Whether small values are good.
+    pub is_least: bool,
+}
+
+/// The kind of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DesignKind {
+    /// The model's own nominal values.
+    Model,
+    /// The best ones if there were no tolerances.
+    Nominal,
+    /// The best ones with tolerances, at least near by.
+    Optimum,
+}
+
+/// A choice of nominal values, with a study of its own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DesignPoint {
+    /// Origin.
+    pub kind: DesignKind,
+    /// By parameter, SI.
+    pub values: Vec<f64>,
+    /// Deviations upwards and downwards about each, SI.
+    pub deviations: Vec<[f64; 2]>,
+    /// The objective without deviations, in its SI unit.
+    pub nominal: f64,
+    /// The objective in the worst case, or its quantile for a share of the production.
+    pub worst: f64,
+    /// How far that may be from the truth.
+    pub error: f64,
+    /// Verdicts of the study.
+    pub requirements: Vec<RequirementSummary>,
+    /// The share that fulfils all requirements, at least; absent for worst cases.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub share: Option<f64>,
+    /// Whether all requirements hold by that study.
+    pub is_feasible: bool,
+    /// Parameters whose range ends there.
+    pub at_limits: Vec<String>,
+}
+
+/// The objective along one parameter, through the best point: on a surrogate of the ranges, where there is one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DesignProfile {
+    /// Index of the parameter.
+    pub parameter: usize,
+    /// Its values, SI, ascending.
+    pub values: Vec<f64>,
+    /// The objective without deviations.
+    pub nominal: Vec<f64>,
+    /// The objective in the worst case, or its quantile.
+    pub worst: Vec<f64>,
+}
+
+/// What a search for nominal values found.
+#[derive(Clone, Debug, Serialize)]
+pub struct DesignStudy {
+    /// Name of the model.
+    pub model: String,
+    /// Objective.
+    pub objective: DesignObjective,
+    /// How requirements and objective count.
+    pub criterion: Criterion,
+    /// Free parameters.
+    pub parameters: Vec<DesignParameter>,
+    /// Optima, the best first; where no point is feasible, the nearest ones.
+    pub optima: Vec<DesignPoint>,
+    /// The model's own point; absent where it cannot be run.
+    pub model_point: Option<DesignPoint>,
+    /// The best point without tolerances, with its worst case; absent without tolerances, or where it cannot be run.
+    pub nominal_point: Option<DesignPoint>,
+    /// Requirements that the best point does not meet.
+    pub not_met: Vec<NotMet>,
+    /// The cheapest tolerances at the best point, and cost against margin there; absent where tolerances have no cost.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub allocation: Option<Allocation>,
+    /// The objective about the best point, by parameter.
+    pub profiles: Vec<DesignProfile>,
+    /// Simulations for surrogates.
+    pub simulations: usize,
+    /// Simulations of the studies at points.
+    pub confirming: usize,
+}
+
+impl DesignStudy {
+    /// The best point.
+    pub fn best(&self) -> Option<&DesignPoint> {
+        self.optima.first()
+    }
+
+    /// By how much the worst case is better than that of the nominal optimum, as a share of that.
+    pub fn gain(&self) -> Option<f64> {
+        let (best, nominal) = (self.best()?, self.nominal_point.as_ref()?);
+        let gain = if self.objective.is_least { nominal.worst - best.worst } else { best.worst - nominal.worst };
+        (nominal.worst != 0.0).then(|| gain / nominal.worst.abs())
+    }
+}

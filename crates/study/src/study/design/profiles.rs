@@ -1,0 +1,32 @@
+//! The objective along each free parameter, through a point.
+
+use super::surface::Surface;
+use super::{DesignError, Question};
+use crate::results::DesignProfile;
+
+/// Points of a profile.
+const POINTS: usize = 41;
+
+/// The profiles through a point on a surrogate; none of one that does not have the point.
+pub fn profiles(question: &Question, surface: &Surface, point: &[f64]) -> Result<Vec<DesignProfile>, DesignError> {
+    let is_inside = point.iter().zip(&surface.region).all(|(value, [lower, upper])| (lower..=upper).contains(&value));
+    if !is_inside {
+        return Ok(Vec::new());
+    }
+    let sign = if question.is_least { -1.0 } else { 1.0 };
+    let mut assessed = question.assessed(surface)?;
+    let mut of = |(parameter, [lower, upper]): (usize, &[f64; 2])| {
+        let value = |index: usize| lower + (upper - lower) * index as f64 / (POINTS - 1) as f64;
+        let values: Vec<f64> = (0..POINTS).map(value).collect();
+        let mut profile = DesignProfile { parameter, values, nominal: Vec::new(), worst: Vec::new() };
+        for value in &profile.values {
+            let mut moved = point.to_vec();
+            moved[parameter] = *value;
+            let merit = |slacks: &[f64]| sign * question.goal.merit(slacks).value;
+            profile.nominal.push(merit(&surface.slacks(&[surface.axes.nominal(&moved)])));
+            profile.worst.push(merit(&assessed.slacks(&moved)));
+        }
+        profile
+    };
+    Ok(surface.region.iter().enumerate().map(&mut of).collect())
+}

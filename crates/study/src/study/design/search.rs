@@ -1,0 +1,172 @@
+//! Local optima over a region: from several starts, each by linear programs within a trust region.
+//!
+//! The worst case over tolerances has kinks where it moves from corner to corner, but the slack of each case known so
+//! far is a smooth function of the point. So the step is the one that makes the least of their linearisations largest,
+//! and cases found at its end belong to the next one.
+
+use super::goal::{Goal, Merit};
+use super::surface::Surface;
+use super::worst::Assessed;
+use super::{DesignError, Question};
+use crate::numerics::{Design, Linear, best_step, corners};
+use crate::study::Options;
+
+/// Starts that are compared, for each free parameter, and those that are followed.
+const STARTS: usize = 16;
+const MOST_STARTS: usize = 96;
+const FOLLOWED: usize = 4;
+
+/// The trust region in shares of the region: at first, and at most.
+const FIRST: f64 = 0.2;
+const LARGEST: f64 = 0.5;
+
+/// Where a search ends, in the same shares: one over whole ranges, and one that makes an optimum sharper.
+const ROUGH: f64 = 1e-3;
+pub const SHARP: f64 = 1e-4;
+
+/// Corners of the tolerances at which starts are compared.
+const CASES: usize = 16;
+
+/// How the trust region changes after a step that is better, and one that is not.
+const WIDER: f64 = 1.6;
+const NARROWER: f64 = 0.4;
+
+/// The trust region when at last nothing may be missed, in multiples of the smallest.
+const RESTORED: f64 = 100.0;
+
+/// What a violation counts, in multiples of what a goal gains by it.
+const PRICE: f64 = 5.0;
+
+/// Steps that are tried again with the cases that they showed, before the trust region shrinks.
+const AGAIN: usize = 4;
+
+/// Most steps of a search.
+const STEPS: usize = 120;
+
+/// Optima nearer than this, as a share of the region along each axis, are one.
+const ALIKE: f64 = 0.02;
+
+/// A point with its merit.
+#[derive(Clone, Debug)]
+pub struct Optimum {
+    pub point: Vec<f64>,
+    pub merit: Merit,
+}
+
+/// Local optima of a region, the best first; searches begin at `known` points and at some spread over it.
+pub fn optima(
+    question: &Question,
+    surface: &Surface,
+    known: &[Vec<f64>],
+    options: &Options,
+) -> Result<Vec<Optimum>, DesignError> {
+    let goal = question.goal;
+    let mut found: Vec<Optimum> = Vec::new();
+    for start in starts(surface, goal, known) {
+        if (options.interrupted)() {
+            return Err(DesignError::Interrupted);
+        }
+        let own = local(surface, &mut *question.assessed(surface)?, goal, &start, ROUGH);
+        match found.iter_mut().find(|other| are_alike(surface, &other.point, &own.point)) {
+            Some(other) if own.merit.is_better(&other.merit) => *other = own,
+            Some(_) => {}
+            None => found.push(own),
+        }
+    }
+    found.sort_by(|a, b| a.merit.order(&b.merit));
+    Ok(found)
+}
+
+/// The points to begin at: those known, and the best of those spread over the region that are apart.
+fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let k = surface.region.len();
+    let spread = Design::Sobol.points(k, (STARTS * k).min(MOST_STARTS), 0..(STARTS * k).min(MOST_STARTS));
+    let in_region = |shares: &Vec<f64>| -> Vec<f64> {
+        shares.iter().zip(&surface.region).map(|(share, [lower, upper])| lower + share * (upper - lower)).collect()
+    };
+    // A few cases tell which are worth it.
+    let cases: Vec<Vec<f64>> = corners(surface.axes.uncertain(), CASES);
+    let points: Vec<Vec<f64>> = spread.iter().map(in_region).collect();
+    let samples: Vec<Vec<f64>> =
+        points.iter().flat_map(|point| cases.iter().map(|xi| surface.axes.sample(point, xi))).collect();
+    let slacks = surface.slacks(&samples);
+    let own = |(index, point): (usize, Vec<f64>)| {
+        let least = |requirement: usize| {
+            let own = &slacks[requirement * samples.len() + index * cases.len()..][..cases.len()];
+            own.iter().copied().fold(f64::INFINITY, f64::min)
+        };
+        let slacks: Vec<f64> = (0..surface.count()).map(least).collect();
+        Optimum { merit: goal.merit(&slacks), point }
+    };
+    let mut all: Vec<Optimum> = points.into_iter().enumerate().map(own).collect();
+    all.sort_by(|a, b| a.merit.order(&b.merit));
+    let mut chosen = known.to_vec();
+    for own in all {
+        let distance = |other: &Vec<f64>| {
+            let along = other.iter().zip(&own.point).zip(&surface.region);
+            along.map(|((a, b), [lower, upper])| ((a - b) / (upper - lower)).abs()).fold(0.0, f64::max)
+        };
+        if chosen.len() < known.len() + FOLLOWED && chosen.iter().all(|other| distance(other) > FIRST) {
+            chosen.push(own.point);
+        }
+    }
+    chosen
+}
+
+fn are_alike(surface: &Surface, a: &[f64], b: &[f64]) -> bool {
+    let along = a.iter().zip(b).zip(&surface.region);
+    along.into_iter().all(|((a, b), [lower, upper])| (a - b).abs() <= ALIKE * (upper - lower))
+}
+
+/// The optimum that a search from a start ends at, with steps down to the share `smallest` of the region.
+pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: &[f64], smallest: f64) -> Optimum {
+    let inside = |value: f64, [lower, upper]: &[f64; 2]| value.clamp(*lower, *upper);
+    let point: Vec<f64> = start.iter().zip(&surface.region).map(|(value, ends)| inside(*value, ends)).collect();
+    let mut best = Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
+    let (mut radius, mut weight, mut again) = (FIRST, 0.0_f64, 0);
+    for _ in 0..STEPS {
+        // A step along limits leaves them by its square: violations have a price. At last nothing may be missed.
+        if radius < smallest && (weight.is_infinite() || best.merit.violation == 0.0) {
+            break;
+        }
+        if radius < smallest {
+            (radius, weight) = (RESTORED * smallest, f64::INFINITY);
+        }
+        let [goals, limits] = goal.split(surface.count(), assessed.linearised(&best.point));
+        weight = weight.max(price(surface, &goals, &limits));
+        let ends = |sign: f64| -> Vec<f64> {
+            let along = best.point.iter().zip(&surface.region);
+            along.map(|(own, ends)| inside(own + sign * radius * (ends[1] - ends[0]), ends) - own).collect()
+        };
+        let step = best_step(&goals, &limits, &ends(-1.0), &ends(1.0));
+        let point: Vec<f64> = best.point.iter().zip(&step).map(|(own, step)| own + step).collect();
+        let merit = goal.merit(&assessed.slacks(&point));
+        if merit.is_better_by(&best.merit, weight) {
+            best = Optimum { point, merit };
+            (radius, again) = ((WIDER * radius).min(LARGEST), 0);
+        } else if assessed.has_learnt() && again < AGAIN {
+            again += 1;
+        } else {
+            (radius, again) = (NARROWER * radius, 0);
+        }
+    }
+    best
+}
+
+/// The best of some points; the one given where there is none.
+pub fn best_of(assessed: &mut dyn Assessed, goal: Goal, points: Vec<Vec<f64>>, given: Vec<f64>) -> Vec<f64> {
+    let own = |point: Vec<f64>| Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
+    let best = points.into_iter().map(own).min_by(|a, b| a.merit.order(&b.merit));
+    best.map_or(given, |best| best.point)
+}
+
+/// What a violation has to count at least, so that no goal is worth it: by the changes of the goals and of the limit
+/// that is nearest over the region.
+fn price(surface: &Surface, goals: &[Linear], limits: &[Linear]) -> f64 {
+    let change = |own: &Linear| {
+        let along = own.slopes.iter().zip(&surface.region);
+        along.map(|(slope, [lower, upper])| (slope * (upper - lower)).abs()).sum::<f64>()
+    };
+    let nearest = limits.iter().min_by(|a, b| a.value.total_cmp(&b.value)).map(change).filter(|change| *change > 0.0);
+    nearest.map_or(0.0, |nearest| PRICE * goals.iter().map(change).fold(0.0, f64::max) / nearest)
+}

@@ -1,0 +1,93 @@
+//! What a share of the production leaves, as a function of the nominal values.
+
+use super::goal::Goal;
+use super::surface::Surface;
+use super::worst::{Assessed, around, quotients};
+use crate::numerics::Linear;
+use crate::numerics::statistics::{Mixture, weighted_quantile};
+use crate::study::statistics::Laws;
+
+/// Samples.
+const POINTS: usize = 1 << 12;
+
+/// Samples about the quantile from which its derivatives are taken, as shares of what may fail, and at least so many.
+const BESIDE: [f64; 2] = [0.4, 2.5];
+const LEAST: usize = 64;
+
+/// Of a share of the samples of the parameters' laws, which go with the nominal values.
+pub struct Yield<'s> {
+    surface: &'s Surface,
+    goal: Goal,
+    /// Values of the uncertain parameters, about a point.
+    values: Vec<Vec<f64>>,
+    weights: Vec<f64>,
+    from: Vec<f64>,
+    may_fail: f64,
+}
+
+impl<'s> Yield<'s> {
+    /// Of these laws about a point.
+    pub fn new(surface: &'s Surface, goal: Goal, laws: &Laws, from: &[f64], share: f64) -> Self {
+        let (points, weights) = Mixture::default().replicate(0, laws.dimension(), POINTS);
+        let values = points.iter().map(|scores| laws.of_scores(scores)).collect();
+        Self { surface, goal, values, weights, from: from.to_vec(), may_fail: 1.0 - share }
+    }
+
+    /// Requirements that are to be fulfilled together.
+    fn groups(&self) -> Vec<Vec<usize>> {
+        let count = self.surface.count();
+        match self.goal {
+            Goal::Margin => vec![(0..count).collect()],
+            Goal::Last => vec![(0..count - 1).collect(), vec![count - 1]],
+        }
+    }
+
+    /// What each sample leaves of the requirements of a group, about a point.
+    fn least(&self, point: &[f64], group: &[usize], samples: &[usize]) -> Vec<f64> {
+        let moved: Vec<Vec<f64>> =
+            samples.iter().map(|&own| self.surface.axes.moved(&self.values[own], &self.from, point)).collect();
+        let slacks = self.surface.slacks(&moved);
+        let least =
+            |sample: usize| group.iter().map(|own| slacks[own * moved.len() + sample]).fold(f64::INFINITY, f64::min);
+        (0..moved.len()).map(least).collect()
+    }
+
+    /// Samples about the quantile of some values.
+    fn beside(&self, values: &[f64]) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..values.len()).collect();
+        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
+        let place = |times: f64| ((times * self.may_fail * values.len() as f64) as usize).min(values.len());
+        let (from, to) = (place(BESIDE[0]), place(BESIDE[1]));
+        if to < from + LEAST { order[..LEAST].to_vec() } else { order[from..to].to_vec() }
+    }
+}
+
+impl Assessed for Yield<'_> {
+    fn slacks(&mut self, point: &[f64]) -> Vec<f64> {
+        let mut slacks = vec![f64::INFINITY; self.surface.count()];
+        let all: Vec<usize> = (0..self.values.len()).collect();
+        for group in self.groups() {
+            let quantile = weighted_quantile(&self.least(point, &group, &all), &self.weights, self.may_fail);
+            group.into_iter().for_each(|own| slacks[own] = quantile);
+        }
+        slacks
+    }
+
+    fn has_learnt(&self) -> bool {
+        false
+    }
+
+    fn linearised(&mut self, point: &[f64]) -> Vec<(usize, Linear)> {
+        let all: Vec<usize> = (0..self.values.len()).collect();
+        let points = around(self.surface, point);
+        let of_group = |group: Vec<usize>| {
+            let first = *group.first()?;
+            let values = self.least(point, &group, &all);
+            let beside = self.beside(&values);
+            let mean = |own: &Vec<f64>| self.least(own, &group, &beside).iter().sum::<f64>() / beside.len() as f64;
+            let slopes = quotients(&points.iter().map(mean).collect::<Vec<_>>(), &points).slopes;
+            Some((first, Linear { value: weighted_quantile(&values, &self.weights, self.may_fail), slopes }))
+        };
+        self.groups().into_iter().filter_map(of_group).collect()
+    }
+}

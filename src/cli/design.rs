@@ -1,0 +1,175 @@
+//! `mbint design`: nominal values that are best with the tolerances about them.
+
+use super::args::{DesignArgs, Format};
+use super::console::{BOLD, Console, count, file_names, to_json};
+use super::progress::Progress;
+use super::run::with_folder;
+use super::table::{Align, Table};
+use super::verdicts::{requirements, short};
+use super::{Failure, Status, interrupt, load};
+use crate::export::{DESIGN_OVERLAY, rounded, write_design};
+use crate::grammar::display_unit::ShownUnit;
+use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy};
+use crate::study::{self, DesignError, DesignOptions, RunError};
+
+/// A smaller gain is not printed.
+const SHOWN: f64 = 5e-4;
+
+pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, Failure> {
+    let given = args.set.given()?;
+    let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
+    let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
+    let progress = Progress::new(&model.name, !args.run.quiet);
+    let options = study::Options {
+        threads: args.run.threads.number(),
+        costly: args.yes,
+        stage: &|stage| progress.stage(stage),
+        interrupted: &interrupt::asked,
+        ..study::Options::default()
+    };
+    let found = match study::design(&model, DesignOptions { share: args.share }, &options) {
+        Ok(found) => found,
+        Err(_) if interrupt::asked() => return Ok(Status::Interrupted),
+        Err(error) => {
+            let message = format!("{}: {error}", model.name);
+            return Err(match error {
+                DesignError::Unsuitable(_) | DesignError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
+                    Failure::Wrong(message)
+                }
+                _ => Failure::Failed(message),
+            });
+        }
+    };
+    drop(progress);
+    interrupt::wait_for(&folder)?;
+    let files = write_design(&folder, &found);
+    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    match args.format {
+        Format::Json => console.print(&to_json(&found)?)?,
+        Format::Text if args.run.quiet => {}
+        Format::Text => {
+            let mut text = overview(&found);
+            text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
+            text += &format!("  mbint run {} --with {}\n", args.model.display(), folder.join(DESIGN_OVERLAY).display());
+            console.print(&text)?;
+        }
+    }
+    Ok(verdict(&found, console))
+}
+
+/// Says what the best point does not fulfil.
+fn verdict(found: &DesignStudy, console: &mut Console) -> Status {
+    let Some(best) = found.best().filter(|best| !best.is_feasible) else { return Status::Done };
+    for own in &found.not_met {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        let message = format!(
+            "{}: no values within the ranges meet `{}`: the nearest miss it by {} {} (± {:.1e})",
+            found.model,
+            own.requirement,
+            short(-unit.of_si(own.margin)),
+            unit.text,
+            unit.of_si(own.error)
+        );
+        console.error(&message);
+    }
+    match (found.not_met.iter().any(|own| own.margin < -own.error), found.criterion, best.share) {
+        (_, Criterion::Share(wanted), Some(share)) => {
+            let percent = |share: f64| rounded((1e6 * share).floor() / 1e4);
+            let message = format!(
+                "{}: no values within the ranges give a yield of {} %: the nearest give {} %",
+                found.model,
+                percent(wanted),
+                percent(share)
+            );
+            console.error(&message);
+            Status::NotMet
+        }
+        (true, ..) => Status::NotMet,
+        (false, ..) => Status::Unresolved,
+    }
+}
+
+/// Prints the result for people.
+fn overview(found: &DesignStudy) -> String {
+    let criterion = match found.criterion {
+        Criterion::WorstCase => "in every case".to_owned(),
+        Criterion::Share(share) => format!("for {} % of the production", rounded(100.0 * share)),
+    };
+    let mut text = format!(
+        "{BOLD}{}{BOLD:#}: {}, {criterion}\n  {} for surrogates, {} to confirm\n\n",
+        found.model,
+        found.objective.text,
+        count(found.simulations, "simulation", "simulations"),
+        found.confirming,
+    );
+    text += &points(found);
+    if let Some(gain) = found.gain().filter(|gain| gain.abs() >= SHOWN) {
+        text += &format!(
+            "  worst case {:.1} % {} than at the optimum without tolerances\n",
+            100.0 * gain.abs(),
+            if gain < 0.0 { "worse" } else { "better" }
+        );
+    }
+    let narrow = found.parameters.iter().filter(|own| own.searched != own.range);
+    for own in narrow {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        let [lower, upper] = own.searched.map(|end| short(unit.of_si(end)));
+        text += &format!("  {} was searched from {lower} to {upper} {}\n", own.name, unit.text);
+    }
+    let at_limits: Vec<&str> = found.best().iter().flat_map(|best| &best.at_limits).map(String::as_str).collect();
+    if !at_limits.is_empty() {
+        text += &format!("  at an end of its range: {}\n", at_limits.join(", "));
+    }
+    text += "\n";
+    if let Some(best) = found.best().filter(|best| !best.requirements.is_empty()) {
+        text += &format!("{}\n", requirements(&best.requirements));
+    }
+    if let Some([Some(before), Some(after)]) = found.allocation.as_ref().map(Allocation::costs) {
+        text += &format!(
+            "  tolerances there cost {}; the cheapest that meet the requirements cost {}\n",
+            short(before),
+            short(after)
+        );
+    }
+    text
+}
+
+/// A column for each point: values, then the objective.
+fn points(found: &DesignStudy) -> String {
+    let model = found.model_point.as_ref().map(|point| ("model", point));
+    let nominal = found.nominal_point.as_ref().map(|point| ("no tolerances", point));
+    let optima = ["optimum", "second", "third"].into_iter().zip(&found.optima);
+    let columns: Vec<(&str, &DesignPoint)> = model.into_iter().chain(nominal).chain(optima).collect();
+    let heading = |index: usize| columns.get(index).map_or("", |(heading, _)| heading);
+    let mut table = Table::new([
+        ("", Align::Left),
+        ("unit", Align::Left),
+        (heading(0), Align::Right),
+        (heading(1), Align::Right),
+        (heading(2), Align::Right),
+        (heading(3), Align::Right),
+        (heading(4), Align::Right),
+    ]);
+    let mut row = |name: &str, unit: &str, cell: &dyn Fn(&DesignPoint) -> String| {
+        let cell = |index: usize| columns.get(index).map_or_else(String::new, |(_, point)| cell(point));
+        table.row([name.to_owned(), unit.to_owned(), cell(0), cell(1), cell(2), cell(3), cell(4)]);
+    };
+    for (index, own) in found.parameters.iter().enumerate() {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        row(&own.name, unit.text, &|point| short(unit.of_si(point.values[index])));
+    }
+    let unit = ShownUnit::of(&found.objective.display, &found.objective.unit);
+    let is_margin = found.objective.text == "margin";
+    let unit = if is_margin { ShownUnit { text: "%", si: 0.01 } } else { unit };
+    let worst = match found.criterion {
+        Criterion::WorstCase => "worst case".to_owned(),
+        Criterion::Share(share) => format!("{} % within", rounded(100.0 * share)),
+    };
+    row("nominal", unit.text, &|point| short(unit.of_si(point.nominal)));
+    row(&worst, unit.text, &|point| short(unit.of_si(point.worst)));
+    row("± error", unit.text, &|point| format!("{:.1e}", unit.of_si(point.error)));
+    if columns.iter().any(|(_, point)| !point.requirements.is_empty()) {
+        row("requirements", "", &|point| if point.is_feasible { "hold" } else { "not met" }.to_owned());
+    }
+    table.render(2)
+}

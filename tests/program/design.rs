@@ -1,0 +1,77 @@
+//! `mbint design`: its files, and what it says where no values meet the requirements.
+
+use std::fs;
+
+use crate::place::Place;
+
+const PLATE: &str = "
+model: plate
+parameters:
+  a: { value: 900, unit: mm, tolerance: 1%, cost: { reciprocal: 2 } }
+  b: { value: 800, unit: mm, tolerance: 2 mm }
+outputs: { edge: { formula: a + b, unit: mm }, area: a*b }
+requirements: { large: { output: area, min: 1 m^2 } }
+design: { a: 0.5 to 1.5 m, b: 500 to 1500 mm }
+objective: { least: edge }
+";
+
+fn place(model: &str) -> Place {
+    let place = Place::new();
+    fs::write(place.path().join("plate.yaml"), model).unwrap();
+    place
+}
+
+#[test]
+fn the_best_values_are_an_overlay() {
+    let place = place(PLATE);
+    let (printed, _) = place.run("design plate.yaml -o out", 0);
+    assert!(printed.contains("least edge, in every case") && printed.contains("no tolerances"), "{printed}");
+    let files = place.files("out");
+    assert_eq!(
+        files,
+        ["a.design.svg", "b.design.svg", "cost.design.svg", "design.csv", "design.html", "design.json", "design.yaml"]
+    );
+    // A run with them meets the requirement, which the model's own values do not.
+    let overlay = fs::read_to_string(place.path().join("out/design.yaml")).unwrap();
+    assert!(overlay.contains(" mm ± ") && overlay.contains("b: "), "{overlay}");
+    place.run("run plate.yaml -o before --no-report", 4);
+    let (run, _) = place.run("run plate.yaml --with out/design.yaml -o after --no-report", 0);
+    assert!(run.contains("holds"), "{run}");
+    // JSON has the same, in SI; the table too.
+    let (json, _) = place.run("design plate.yaml -o out --format json --quiet", 0);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let file = fs::read_to_string(place.path().join("out/design.json")).unwrap();
+    assert_eq!(json, serde_json::from_str::<serde_json::Value>(&file).unwrap());
+    let table = fs::read_to_string(place.path().join("out/design.csv")).unwrap();
+    let best = table.lines().find(|line| line.starts_with("optimum,")).unwrap();
+    assert_eq!(best.split(',').nth(1).unwrap().parse::<f64>().unwrap(), json["optima"][0]["values"][0]);
+    let page = fs::read_to_string(place.path().join("out/design.html")).unwrap();
+    assert!(page.contains("Requirements at the optimum") && page.matches("<svg").count() == 3, "{page}");
+}
+
+#[test]
+fn the_nearest_values_are_told_where_none_will_do() {
+    let place = place(&PLATE.replace("min: 1 m^2", "min: 4 m^2"));
+    let (printed, error) = place.run("design plate.yaml -o out", 4);
+    assert!(error.contains("no values within the ranges meet `large`: the nearest miss it by"), "{error}");
+    assert!(printed.contains("at an end of its range: a, b"), "{printed}");
+    let overlay = fs::read_to_string(place.path().join("out/design.yaml")).unwrap();
+    assert!(overlay.contains("requirements are not met") && overlay.contains("a: 1500 mm"), "{overlay}");
+}
+
+#[test]
+fn a_yield_is_asked_for() {
+    let (printed, _) = place(PLATE).run("design plate.yaml -o out --yield 95%", 0);
+    assert!(printed.contains("for 95 % of the production") && printed.contains("95 % within"), "{printed}");
+}
+
+#[test]
+fn a_model_without_a_design_is_told_what_it_lacks() {
+    let model: String = PLATE
+        .lines()
+        .filter(|line| !line.starts_with("design") && !line.starts_with("objective"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let (_, error) = place(&model).run("design plate.yaml -o out", 2);
+    assert!(error.contains("the model has no `design`"), "{error}");
+}
