@@ -225,6 +225,7 @@ fn the_toe_of_a_double_wishbone_gains() {
 }
 
 #[test]
+#[ignore = "slow: 40 s on two busy cores"]
 fn the_dose_of_a_ventilator_gains() {
     gains("four_bar_ventilator");
 }
