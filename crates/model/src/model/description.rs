@@ -77,7 +77,7 @@ pub struct Description {
     pub reduced: Vec<ReducedOutput>,
     /// Requirements on outputs.
     pub requirements: Vec<Requirement>,
-    /// Nominal values that are free, and what they are to achieve.
+    /// Nominal values that are free, and the objective for them.
     pub design: Option<Design>,
     /// Units in which outputs and reduced outputs are shown, by their names; the others in SI.
     pub display: BTreeMap<String, DisplayUnit>,

@@ -238,7 +238,7 @@ impl Manufactured {
             }
         }
         let mut accelerations: Vec<ChebyshevSeries> = velocities.iter().map(ChebyshevSeries::derivative).collect();
-        // Derivatives amplify rounding; the constraints' own rates say what it is.
+        // Derivatives amplify rounding; the constraints' own rates remove it.
         let (mut rates, mut changes) = (Vec::new(), Vec::new());
         for &time in &times {
             let at = |series: &[ChebyshevSeries]| series.iter().map(|own| own.at(time)).collect::<Vec<f64>>();
