@@ -2,7 +2,7 @@
 
 use super::args::AllocateArgs;
 use super::console::{BOLD, Console, count, file_names};
-use super::progress::Progress;
+use super::question::ask;
 use super::run::with_folder;
 use super::table::{Align, Table};
 use super::verdicts::{requirements, short};
@@ -16,18 +16,11 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
     let given = args.set.given()?;
     let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
     let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
-    let progress = Progress::new(&model.name, !args.run.quiet);
-    let options = study::Options {
-        threads: args.run.threads.number(),
-        costly: args.yes,
-        stage: &|stage| progress.stage(stage),
-        interrupted: &interrupt::asked,
-        ..study::Options::default()
-    };
     // An interruption keeps what a study has confirmed.
     interrupt::keep_results(true);
     let asked = AllocateOptions { share: args.share, widest: args.widest };
-    let found = match study::allocate(&model, asked, &options) {
+    let found = ask(&model.name, &args.run, args.yes, |options| study::allocate(&model, asked, options));
+    let found = match found {
         Ok(found) => found,
         Err(AllocateError::Run(_)) if interrupt::asked() => {
             console.error(&format!("{}: interrupted before tolerances were confirmed", model.name));
@@ -43,7 +36,6 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
             });
         }
     };
-    drop(progress);
     interrupt::wait_for(&folder)?;
     let files = write_allocation(&folder, &found);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;

@@ -1,8 +1,8 @@
 //! `mbint design`: nominal values that are best with the tolerances about them.
 
-use super::args::{DesignArgs, Format};
-use super::console::{BOLD, Console, count, file_names, to_json};
-use super::progress::Progress;
+use super::args::DesignArgs;
+use super::console::{BOLD, Console, count, file_names};
+use super::question::{answer, ask};
 use super::run::with_folder;
 use super::table::{Align, Table};
 use super::verdicts::{requirements, short};
@@ -19,15 +19,10 @@ pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, 
     let given = args.set.given()?;
     let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
     let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
-    let progress = Progress::new(&model.name, !args.run.quiet);
-    let options = study::Options {
-        threads: args.run.threads.number(),
-        costly: args.yes,
-        stage: &|stage| progress.stage(stage),
-        interrupted: &interrupt::asked,
-        ..study::Options::default()
-    };
-    let found = match study::design(&model, DesignOptions { share: args.share }, &options) {
+    let found = ask(&model.name, &args.run, args.yes, |options| {
+        study::design(&model, DesignOptions { share: args.share }, options)
+    });
+    let found = match found {
         Ok(found) => found,
         Err(_) if interrupt::asked() => return Ok(Status::Interrupted),
         Err(error) => {
@@ -40,20 +35,14 @@ pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, 
             });
         }
     };
-    drop(progress);
     interrupt::wait_for(&folder)?;
     let files = write_design(&folder, &found);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
-    match args.format {
-        Format::Json => console.print(&to_json(&found)?)?,
-        Format::Text if args.run.quiet => {}
-        Format::Text => {
-            let mut text = overview(&found);
-            text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
-            text += &format!("  mbint run {} --with {}\n", args.model.display(), folder.join(DESIGN_OVERLAY).display());
-            console.print(&text)?;
-        }
-    }
+    answer(&found, args.format, args.run.quiet, console, || {
+        let mut text = overview(&found);
+        text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
+        text + &format!("  mbint run {} --with {}\n", args.model.display(), folder.join(DESIGN_OVERLAY).display())
+    })?;
     Ok(verdict(&found, console))
 }
 

@@ -1,8 +1,8 @@
 //! `mbint fit`: parameters that agree with measured values.
 
-use super::args::{FitArgs, Format};
-use super::console::{BOLD, Console, count, file_names, to_json};
-use super::progress::Progress;
+use super::args::FitArgs;
+use super::console::{BOLD, Console, count, file_names};
+use super::question::{answer, ask};
 use super::run::with_folder;
 use super::table::{Align, Table};
 use super::verdicts::short;
@@ -29,15 +29,8 @@ pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failur
     let table = table.map_err(|error| of_data(&error))?;
     let measurements = Measurements::read(&table, &model, &args.noise).map_err(|error| of_data(&error))?;
     let Some((model, folder)) = with_folder(Some(model), args.output.as_ref())? else { return Ok(Status::Wrong) };
-    let progress = Progress::new(&model.name, !args.run.quiet);
-    let options = study::Options {
-        threads: args.run.threads.number(),
-        costly: args.yes,
-        stage: &|stage| progress.stage(stage),
-        interrupted: &interrupt::asked,
-        ..study::Options::default()
-    };
-    let found = match study::fit(&model, &measurements, &options) {
+    let found = ask(&model.name, &args.run, args.yes, |options| study::fit(&model, &measurements, options));
+    let found = match found {
         Ok(found) => found,
         Err(_) if interrupt::asked() => return Ok(Status::Interrupted),
         Err(error) => {
@@ -50,23 +43,17 @@ pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failur
             });
         }
     };
-    drop(progress);
     interrupt::wait_for(&folder)?;
     let files = write_fit(&folder, &found);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
-    match args.format {
-        Format::Json => console.print(&to_json(&found)?)?,
-        Format::Text if args.run.quiet => {}
-        Format::Text => {
-            let mut text = overview(&found);
-            text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
-            if found.set.is_some() {
-                text +=
-                    &format!("  mbint run {} --with {}\n", args.model.display(), folder.join(FIT_OVERLAY).display());
-            }
-            console.print(&text)?;
+    answer(&found, args.format, args.run.quiet, console, || {
+        let mut text = overview(&found);
+        text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
+        if found.set.is_some() {
+            text += &format!("  mbint run {} --with {}\n", args.model.display(), folder.join(FIT_OVERLAY).display());
         }
-    }
+        text
+    })?;
     Ok(match (&found.set, &found.unexplained) {
         (_, Some(unexplained)) => {
             console.error(&contradiction(&found, unexplained));

@@ -1,8 +1,8 @@
 //! `mbint gradient`: derivatives of outputs over time by all uncertain parameters.
 
-use super::args::{Format, GradientArgs};
-use super::console::{BOLD, Console, file_names, to_json};
-use super::progress::Progress;
+use super::args::GradientArgs;
+use super::console::{BOLD, Console, file_names};
+use super::question::{answer, ask};
 use super::run::with_folder;
 use super::table::{Align, Table};
 use super::verdicts::short;
@@ -19,18 +19,12 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
     let given = args.set.given()?;
     let model = load::load(&args.model, &given, args.run.scene.as_ref(), console)?;
     let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
-    let progress = Progress::new(&model.name, !args.run.quiet);
-    let options = study::Options {
-        threads: args.run.threads.number(),
-        stage: &|stage| progress.stage(stage),
-        interrupted: &interrupt::asked,
-        ..study::Options::default()
-    };
-    let found = match study::gradient(&model, &options) {
+    let found = ask(&model.name, &args.run, true, |options| study::gradient(&model, options).map_err(Box::new));
+    let found = match found {
         Err(error) if error.is_interruption() => return Ok(Status::Interrupted),
         found => found.map_err(|error| {
             let message = format!("{}: {error}", model.name);
-            match error {
+            match *error {
                 GradientError::NoParameter | GradientError::NoOutput | GradientError::None(_) => {
                     Failure::Wrong(message)
                 }
@@ -41,19 +35,13 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
             }
         })?,
     };
-    drop(progress);
     let rows: Vec<usize> = (0..found.outputs.len()).map(|output| row(&found, output, args.at)).collect();
     interrupt::wait_for(&folder)?;
     let files = write_gradients(&folder, &found, &rows);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
-    match args.format {
-        Format::Json => console.print(&to_json(&found)?)?,
-        Format::Text if args.run.quiet => {}
-        Format::Text => {
-            let text = overview(&found, &rows) + &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
-            console.print(&text)?;
-        }
-    }
+    answer(&found, args.format, args.run.quiet, console, || {
+        overview(&found, &rows) + &format!("  {}: {}\n", folder.display(), file_names(files.iter()))
+    })?;
     Ok(Status::Done)
 }
 

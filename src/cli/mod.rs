@@ -29,6 +29,7 @@ mod new;
 mod overview;
 mod profile;
 mod progress;
+mod question;
 mod record;
 mod report;
 mod request;

@@ -1,11 +1,11 @@
 //! `mbint verify`: orders of a model's own manufactured motions.
 
-use super::args::{Format, VerifyArgs};
-use super::console::{BOLD, Console, to_json};
-use super::progress::Progress;
+use super::args::VerifyArgs;
+use super::console::{BOLD, Console, count};
+use super::question::{answer, ask};
 use super::table::{Align, Table};
 use super::verdicts::short;
-use super::{Failure, Status, interrupt, load};
+use super::{Failure, Status, load};
 use crate::results::{Convergence, FormulationVerification, Quantity, Verification};
 use crate::study::{self, RunError, VerifyError};
 
@@ -17,14 +17,8 @@ pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status,
     let Some(model) = load::load(&args.model, &given, args.run.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let progress = Progress::new(&model.name, !args.run.quiet);
-    let options = study::Options {
-        threads: args.run.threads.number(),
-        stage: &|stage| progress.stage(stage),
-        interrupted: &interrupt::asked,
-        ..study::Options::default()
-    };
-    let found = match study::verify(&model, &options) {
+    let found = ask(&model.name, &args.run, true, |options| study::verify(&model, options));
+    let found = match found {
         Err(VerifyError::Interrupted) => return Ok(Status::Interrupted),
         found => found.map_err(|error| {
             let message = format!("{}: {error}", model.name);
@@ -34,12 +28,7 @@ pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status,
             }
         })?,
     };
-    drop(progress);
-    match args.format {
-        Format::Json => console.print(&to_json(&found)?)?,
-        Format::Text if args.run.quiet => {}
-        Format::Text => console.print(&overview(&found))?,
-    }
+    answer(&found, args.format, args.run.quiet, console, || overview(&found))?;
     Ok(if found.is_verified() { Status::Done } else { Status::NotMet })
 }
 
@@ -52,12 +41,11 @@ fn overview(found: &Verification) -> String {
 }
 
 fn formulation(own: &FormulationVerification) -> String {
-    let counted = |count: usize, of: &str| format!("{count} {of}{}", if count == 1 { "" } else { "s" });
     let mut text = format!(
         "\n  {} coordinates: {}, {}",
         own.formulation,
-        counted(own.coordinates, "coordinate"),
-        counted(own.constraints, "constraint")
+        count(own.coordinates, "coordinate", "coordinates"),
+        count(own.constraints, "constraint", "constraints")
     );
     if !own.redundant.is_empty() {
         text += &format!(", redundant: {}", own.redundant.join(", "));

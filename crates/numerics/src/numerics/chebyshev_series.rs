@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{DMatrix, DVector};
 use symdiff::math;
+
+use super::least_squares::LeastSquares;
 
 /// Σ cₖ Tₖ(τ), τ ∈ [−1, 1] over a span.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,25 +30,24 @@ impl ChebyshevSeries {
     pub fn through(span: [f64; 2], values: &[f64]) -> Self {
         let degree = values.len() - 1;
         let half = |index: usize| if index == 0 || index == degree { 0.5 } else { 1.0 };
+        let cosines: Vec<f64> = (0..2 * degree).map(|index| math::cos(PI * index as f64 / degree as f64)).collect();
         let coefficient = |k: usize| {
             let term = |(node, value): (usize, &f64)| {
                 // The nodes ascend, τ = −cos(π node/degree).
-                half(node) * value * math::cos(PI * (k * (degree - node) % (2 * degree)) as f64 / degree as f64)
+                half(node) * value * cosines[k * (degree - node) % (2 * degree)]
             };
             half(k) * 2.0 / degree as f64 * values.iter().enumerate().map(term).sum::<f64>()
         };
         Self { span, coefficients: (0..=degree).map(coefficient).collect() }
     }
 
-    /// Of this degree, nearest to values at times within the span in the sense of least squares; `None` where they do
-    /// not determine it.
-    pub fn fitted(span: [f64; 2], degree: usize, times: &[f64], values: &[f64]) -> Option<Self> {
+    /// For each function the series of this degree that is nearest to its values at times within the span, in the sense
+    /// of least squares; `None` where they do not determine it.
+    pub fn fitted(span: [f64; 2], degree: usize, times: &[f64], functions: &[Vec<f64>]) -> Option<Vec<Self>> {
         let terms: Vec<Vec<f64>> = times.iter().map(|&time| polynomials(scaled(span, time), degree)).collect();
-        let matrix = DMatrix::from_fn(times.len(), degree + 1, |row, column| terms[row][column]);
-        let qr = (times.len() > degree).then(|| matrix.qr())?;
-        let right = qr.q().tr_mul(&DVector::from_column_slice(values));
-        let coefficients = qr.r().solve_upper_triangular(&right)?;
-        Some(Self { span, coefficients: coefficients.iter().copied().collect() })
+        let squares = LeastSquares::new(&terms, vec![1.0; times.len()])?;
+        let fit = |values: &Vec<f64>| Some(Self { span, coefficients: squares.fit(values)?.0 });
+        functions.iter().map(fit).collect()
     }
 
     /// Its coefficients, from that of the constant on.
@@ -140,10 +140,14 @@ mod tests {
     fn a_fit_of_a_polynomial_is_that() {
         let times: Vec<f64> = (0..9).map(|row| 0.5 + 0.25 * f64::from(row)).collect();
         let values: Vec<f64> = times.iter().map(|t| 1.0 - t + 2.0 * t * t * t).collect();
-        let series = ChebyshevSeries::fitted(SPAN, 3, &times, &values).unwrap();
+        let line: Vec<f64> = times.iter().map(|t| 2.0 * t).collect();
+        let [series, other] = &ChebyshevSeries::fitted(SPAN, 3, &times, &[values.clone(), line]).unwrap()[..] else {
+            panic!("two functions have two series")
+        };
+        assert!((other.at(0.9) - 1.8).abs() < 1e-13);
         assert!((series.at(0.9) - (0.1 + 2.0 * 0.729)).abs() < 1e-13);
         assert!((series.derivative().at(0.9) - (-1.0 + 6.0 * 0.81)).abs() < 1e-12);
-        assert!(ChebyshevSeries::fitted(SPAN, 9, &times, &values).is_none());
+        assert!(ChebyshevSeries::fitted(SPAN, 9, &times, &[values]).is_none());
     }
 
     #[test]

@@ -28,7 +28,7 @@ use instants::{at_instants, required};
 use points::{Studied, not_met, studied};
 use profiles::profiles;
 use refine::refined;
-use search::optima;
+use search::{are_alike, optima};
 use share::Yield;
 use surface::Surface;
 use worst::{Assessed, Worst};
@@ -38,9 +38,6 @@ const REPORTED: usize = 3;
 
 /// How many times the model's tolerances are allocated, at most.
 const WIDEST: f64 = 3.0;
-
-/// Optima nearer than this share of their ranges along each axis are one.
-const ALIKE: f64 = 0.02;
 
 /// Why there is no design.
 #[derive(Debug, thiserror::Error)]
@@ -239,11 +236,8 @@ struct Found {
 impl Found {
     /// Whether an optimum is known that is as good as at a point.
     fn has(&self, axes: &Axes, point: &[f64]) -> bool {
-        let is_near = |other: &Studied| {
-            let along = other.point.iter().zip(point).zip(&axes.free);
-            along.into_iter().all(|((a, b), own)| (a - b).abs() <= ALIKE * (own.upper - own.lower))
-        };
-        self.optima.iter().any(is_near)
+        let ranges = axes.ranges();
+        self.optima.iter().any(|other| are_alike(&ranges, &other.point, point))
     }
 
     /// Counts a surrogate.

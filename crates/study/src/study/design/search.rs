@@ -67,7 +67,7 @@ pub fn optima(
             return Err(DesignError::Interrupted);
         }
         let own = local(surface, &mut *question.assessed(surface)?, goal, &start, ROUGH);
-        match found.iter_mut().find(|other| are_alike(surface, &other.point, &own.point)) {
+        match found.iter_mut().find(|other| are_alike(&surface.region, &other.point, &own.point)) {
             Some(other) if own.merit.is_better(&other.merit) => *other = own,
             Some(_) => {}
             None => found.push(own),
@@ -113,8 +113,9 @@ fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
     chosen
 }
 
-fn are_alike(surface: &Surface, a: &[f64], b: &[f64]) -> bool {
-    let along = a.iter().zip(b).zip(&surface.region);
+/// Whether two optima of a region are one.
+pub fn are_alike(region: &[[f64; 2]], a: &[f64], b: &[f64]) -> bool {
+    let along = a.iter().zip(b).zip(region);
     along.into_iter().all(|((a, b), [lower, upper])| (a - b).abs() <= ALIKE * (upper - lower))
 }
 

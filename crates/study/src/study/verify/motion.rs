@@ -289,21 +289,15 @@ fn range(values: &[f64]) -> (f64, f64) {
 fn followed(nominal: &Nominal, end: f64, system: &System, near: bool) -> Option<Vec<ChebyshevSeries>> {
     let rows = nominal.times.iter().take_while(|&&time| time <= end * (1.0 + 1e-12)).count();
     let (times, states) = (&nominal.times[..rows], &nominal.states[..rows]);
-    let n = system.q.len();
-    let mut fit = Vec::new();
-    for index in 0..states.first()?.len() {
-        let mut values: Vec<f64> = states.iter().map(|state| state[index]).collect();
-        if index < n {
-            moved(&mut values, index, system.coordinates[index].scale);
-        }
-        let own = ChebyshevSeries::fitted([0.0, end], FOLLOWING, times, &values)?;
-        let (least, most) = range(&values);
-        if index < n && near {
-            let allowed = NEAR * (most - least).max(1e-6 * system.coordinates[index].scale);
-            let is_near = times.iter().zip(&values).all(|(&time, value)| (own.at(time) - value).abs() <= allowed);
-            is_near.then_some(())?;
-        }
-        fit.push(own);
-    }
-    Some(fit)
+    let mut functions: Vec<Vec<f64>> =
+        (0..states.first()?.len()).map(|index| states.iter().map(|state| state[index]).collect()).collect();
+    let scales = system.coordinates.iter().map(|coordinate| coordinate.scale);
+    functions.iter_mut().zip(scales.clone()).enumerate().for_each(|(index, (own, scale))| moved(own, index, scale));
+    let fit = ChebyshevSeries::fitted([0.0, end], FOLLOWING, times, &functions)?;
+    let is_near = |((own, values), scale): ((&ChebyshevSeries, &Vec<f64>), f64)| {
+        let (least, most) = range(values);
+        let allowed = NEAR * (most - least).max(1e-6 * scale);
+        times.iter().zip(values).all(|(&time, value)| (own.at(time) - value).abs() <= allowed)
+    };
+    (!near || fit.iter().zip(&functions).zip(scales).all(is_near)).then_some(fit)
 }
