@@ -1,7 +1,5 @@
 //! Elements → [`Robot`]: bodies with their frames, joints and masses. What couples and drives them is in `couplings`.
 
-use std::collections::HashSet;
-
 use super::couplings;
 use super::document::{Attribute, Item};
 use super::flags::on;
@@ -197,9 +195,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let (Some(named), Some(written)) = (item.get("name"), self.written(item)) else { return };
         let (position, rotation) = self.values.frame(item, class, &["site"]);
         let pose = around.pose.then(&algebra::vector(position), &rotation);
-        let mut taken: HashSet<String> =
-            self.whole.robot.bodies[body].sites.iter().map(|site| site.name.clone()).collect();
-        let name = names::in_formulas(&written, &mut taken);
+        let name = names::in_formulas(&written, self.whole.names.taken_by_sites.entry(body).or_default());
         let place = self.whole.robot.bodies[body].sites.len();
         if self.whole.names.sites.insert(written.clone(), (body, place)).is_some() {
             self.values.error(named.span.clone(), format!("a second site is called `{}`", clip(&written)), None);
@@ -225,8 +221,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let index = self.whole.robot.joints.len();
         let written = self.written(item);
         let plain = written.clone().unwrap_or_else(|| format!("joint_{index}"));
-        let mut taken: HashSet<String> = self.whole.robot.joints.iter().map(|joint| joint.name.clone()).collect();
-        let name = names::in_formulas(&plain, &mut taken);
+        let name = names::in_formulas(&plain, &mut self.whole.names.taken_by_joints);
         if let Some(written) = written
             && self.whole.names.joints.insert(written.clone(), index).is_some()
         {

@@ -178,7 +178,10 @@ pub struct Actuator {
 /// What names of the file stand for.
 #[derive(Default)]
 pub struct Names {
+    /// Names in formulas of bodies, of joints, and of the sites of each body.
     pub taken: HashSet<String>,
+    pub taken_by_joints: HashSet<String>,
+    pub taken_by_sites: HashMap<usize, HashSet<String>>,
     pub bodies: HashMap<String, usize>,
     pub joints: HashMap<String, usize>,
     /// Body and place among its sites.
