@@ -172,7 +172,10 @@ fn every_model_that_has_both_moves_alike() {
             Stepping::Fixed(step) => duration / 1000.0 / (duration / 1000.0 / step).ceil(),
             Stepping::Tolerance(_) => duration / 1000.0,
         };
-        agree(&description.clone().duration(duration).rows_every(duration / 10.0), step, 1e-4);
+        // Verdicts are searched over the box, which the motions have no part in.
+        let mut description = description.clone();
+        description.requirements.clear();
+        agree(&description.duration(duration).rows_every(duration / 10.0), step, 1e-4);
     }
 }
 
