@@ -12,8 +12,8 @@ pub use mbint_study::results;
 pub use methods::Method;
 #[doc(inline)]
 pub use results::{
-    Convergence, FormulationVerification, GradientParameter, Gradients, OutputGradients, Quantity, SchemeVerification,
-    Summary, Verification,
+    Convergence, EffectBalance, Exchange, FormulationVerification, GradientParameter, Gradients, OutputGradients,
+    PowerBalance, Quantity, SchemeVerification, Summary, Verification,
 };
 #[doc(inline)]
 pub use syntax::Diagnostics;

@@ -6,7 +6,9 @@ use super::question::{answer, ask};
 use super::table::{Align, Table};
 use super::verdicts::short;
 use super::{Failure, Status, load};
-use crate::results::{Convergence, FormulationVerification, Quantity, Verification};
+use crate::results::{
+    Convergence, EffectBalance, Exchange, FormulationVerification, PowerBalance, Quantity, Verification,
+};
 use crate::study::{self, RunError, VerifyError};
 
 /// Orders that exceed that of theory by more than this factor tell only that they do.
@@ -76,7 +78,43 @@ fn formulation(own: &FormulationVerification) -> String {
             table.row([scheme.scheme.clone(), none(), none(), none(), none(), none(), why.clone()]);
         }
     }
-    text + &table.render(2)
+    text += &table.render(2);
+    if let Some(balance) = &own.balance {
+        text += &balanced(balance);
+    }
+    text
+}
+
+/// The balance of power, with a table of effects.
+fn balanced(balance: &PowerBalance) -> String {
+    let verdict = if balance.is_verified() { "" } else { "  not balanced" };
+    let mut text = format!("  power: balanced to {} of {} W{verdict}\n", short(balance.defect), short(balance.size));
+    if balance.effects.is_empty() {
+        return text;
+    }
+    let mut table = Table::new([
+        ("effect", Align::Left),
+        ("kind", Align::Left),
+        ("energy", Align::Left),
+        ("power, W", Align::Right),
+        ("puts in", Align::Right),
+        ("takes", Align::Right),
+    ]);
+    balance.effects.iter().for_each(|effect| table.row(of_effect(effect)));
+    text += &table.render(2);
+    text
+}
+
+fn of_effect(own: &EffectBalance) -> [String; 6] {
+    let exchange = own.exchange();
+    let (word, puts_in, takes) = match exchange {
+        Exchange::None => ("none", 0.0, 0.0),
+        Exchange::Conserves => ("kept", 0.0, 0.0),
+        Exchange::Dissipates => ("taken", 0.0, own.taken),
+        Exchange::Drives => ("put in", own.put_in, own.taken),
+    };
+    let (effect, kind) = (own.effect.clone(), own.kind.clone());
+    [effect, kind, word.to_owned(), short(own.power), short(puts_in), short(takes)]
 }
 
 fn row(scheme: String, own: &Convergence) -> [String; 7] {

@@ -1,6 +1,6 @@
 //! Orders of manufactured motions: models of which theory is known, and what stands against a verification.
 
-use mbint::{Error, Model, Quantity, Verification};
+use mbint::{Error, Exchange, Model, Quantity, Verification};
 
 fn of_file(path: &str) -> Model {
     Model::from_file(format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))).unwrap()
@@ -66,4 +66,56 @@ fn a_kink_is_named() {
     assert!(!found.is_verified());
     let why = found.formulations[0].failure.as_deref().unwrap();
     assert!(why.contains("not smooth"), "{why}");
+}
+
+/// What the effects of a block on a spring do to its energy, in both formulations; the equations' rows are balanced.
+fn exchanges(effects: &str) -> Vec<Exchange> {
+    let text = format!(
+        "model: block\nbodies:\n  block: {{ mass: 2, inertia: 0.1, coordinates: [x, y, angle], points: {{ P: [0.3, -0.2] }} }}\n\
+         effects:\n{effects}initial: {{ block.x: 0.4, block.y: 0.1, block.angle: 0.2, block.vx: 1, block.angular_velocity: 3 }}\n\
+         outputs: {{ x: block.x }}\nsimulation: {{ duration: 0.5, step: 1e-3 }}\n"
+    );
+    let found = Model::from_yaml_str("block.yaml", &text).unwrap().verify().unwrap();
+    let balance = found.formulations[0].balance.as_ref().unwrap();
+    assert!(balance.size > 1.0 && balance.defect < 1e-14, "{balance:?}");
+    balance.effects.iter().map(|effect| effect.exchange()).collect()
+}
+
+#[test]
+fn effects_keep_take_or_put_in_energy() {
+    let found = exchanges(
+        "  weight: { gravity: { acceleration: [0, -9.81] } }
+  spring: { spring_damper: { between: [ground, block.P], stiffness: 80, free_length: 0.1 } }
+  damper: { spring_damper: { between: [ground, block.P], damping: 3 } }
+  air: { drag: { on: block.P, linear: 2, quadratic: 0.5 } }
+  wind: { drag: { on: block, linear: 2, wind: [5, 0] } }
+  push: { force: { on: block.P, value: [\"cos(40*t)\", 3] } }
+  nothing: { force: { on: block.P, value: [0, 0] } }
+",
+    );
+    use Exchange::{Conserves, Dissipates, Drives, None};
+    assert_eq!(found, [Conserves, Conserves, Dissipates, Dissipates, Drives, Drives, None]);
+}
+
+#[test]
+fn powers_are_balanced_in_every_formulation() {
+    // Joints of several axes, rolling, gear teeth, states, and contacts that open.
+    for name in [
+        "delta_robot.yaml",
+        "coin.yaml",
+        "planetary_gear.yaml",
+        "held_arm.yaml",
+        "heavy_top.yaml",
+        "wiper.yaml",
+    ] {
+        let found = of_model(name);
+        for formulation in &found.formulations {
+            let balance = formulation.balance.as_ref().unwrap();
+            assert!(
+                balance.is_verified() && balance.defect < 1e-12,
+                "{name}, {}: {balance:?}",
+                formulation.formulation
+            );
+        }
+    }
 }

@@ -187,6 +187,16 @@ impl<'g> AppliedForces<'g> {
         moved.len()
     }
 
+    /// The wrench on each body, about its frame's origin, without what acts under conditions.
+    pub fn wrenches(&self) -> &[Wrench<'g>] {
+        &self.bodies
+    }
+
+    /// Generalised forces on coordinates of joints, modes and states, by their index in q.
+    pub fn efforts(&self) -> impl Iterator<Item = (usize, Scalar<'g>)> {
+        self.coordinates.iter().map(|(&index, &effort)| (index, effort))
+    }
+
     /// The wrench on each body, with what acts on its children, and on theirs.
     pub fn with_children(&self, m: &Mechanism<'g, '_>) -> Vec<Wrench<'g>> {
         let mut totals = self.bodies.clone();

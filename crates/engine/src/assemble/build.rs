@@ -13,6 +13,7 @@ use super::cuts::{cuts_of_several_axes, other_cuts};
 use super::inputs::MechanismInput;
 use super::links::links_of;
 use super::mechanism::Mechanism;
+use super::power_balance::PowerBalance;
 use super::questions::Questions;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, Overlap, System};
@@ -117,7 +118,9 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     let mut constraints = Constraints::of(&mut m, description, length, &mut left_out)?;
     let (mut applied, effects) = apply_effects(&mut m, description, &mut left_out)?;
     let sampled = m.sampled_states(description, std::mem::take(&mut applied.sampled));
+    let powers = if questions.powers { Some(m.powers(description)?) } else { None };
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
+    let powers = powers.map(|effects| PowerBalance { kinetic: m.kinetic_energy().expr(), effects });
     let outputs = m.outputs()?;
     let random = m.random_inputs()?;
     let mut start = m.start(description)?;
@@ -190,6 +193,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
             modes,
             declared_parameters,
             effects,
+            powers,
             left_out,
             space,
             formulation,

@@ -42,6 +42,7 @@ mod nearest;
 mod number_formulas;
 mod placement;
 mod pose;
+mod power_balance;
 mod questions;
 mod reaction;
 mod recursion;
@@ -69,6 +70,7 @@ pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inputs::{InputInfo, RandomInput};
 pub use inventory::Inventory;
 pub use number_formulas::NumberFormulas;
+pub use power_balance::{EffectPower, PowerBalance};
 pub use questions::Questions;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,

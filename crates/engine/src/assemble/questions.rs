@@ -23,6 +23,8 @@ pub struct Questions<'d> {
     pub cut: Vec<usize>,
     /// Whether excitations are functions of the time, which inputs give, and not constants.
     pub as_functions: bool,
+    /// Whether the powers of all effects are asked for.
+    pub powers: bool,
 }
 
 impl<'d> Questions<'d> {
@@ -36,6 +38,7 @@ impl<'d> Questions<'d> {
             merged: Cow::Borrowed(&[]),
             cut: Vec::new(),
             as_functions: false,
+            powers: false,
         }
     }
 

@@ -220,7 +220,8 @@ impl<'g> Mechanism<'g, '_> {
             .collect()
     }
 
-    fn kinetic_energy(&self) -> Scalar<'g> {
+    /// T of all bodies, J.
+    pub fn kinetic_energy(&self) -> Scalar<'g> {
         let bodies = self.bodies.iter().map(|body| body.kinetic_energy());
         self.g.sum(bodies.chain([self.kinetic_energy_of_flexible]))
     }

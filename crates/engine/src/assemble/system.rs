@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::inputs::{InputInfo, RandomInput};
+use super::power_balance::PowerBalance;
 use symdiff::{Expr, Formula, Graph};
 
 use crate::grammar::quantity::Dimension;
@@ -75,6 +76,8 @@ pub struct System {
     pub declared_parameters: Vec<Parameter>,
     /// What each effect came to, in file order.
     pub effects: Vec<EffectInfo>,
+    /// Energies and powers, where they are asked for.
+    pub powers: Option<PowerBalance>,
     /// What the model says and no equation holds.
     pub left_out: Vec<LeftOut>,
     /// In how many dimensions the bodies move, and why.

@@ -9,6 +9,7 @@
 //!   `start`: the tapes of a consistent start (`start_equations`, `start_program`, `start_factors`), `at_sample` the
 //!   numbers that it is planned by, `nearest` what decides where it is open; `rounding`: how exactly constraints can
 //!   be computed; `equation_tapes`: the equations alone;
+//! - `powers`: the balance of power as outputs;
 //! - `switches`: where the equations switch, as at contacts; `combinations`: numbers through which several parameters
 //!   act alone;
 //! - `layout`: the memory that all of them share.
@@ -24,6 +25,7 @@ mod layout;
 mod links;
 mod nearest;
 mod newton_matrix;
+mod powers;
 mod program;
 mod rounding;
 mod scheme;
@@ -42,6 +44,7 @@ pub use equation_tapes::{EquationsProgram, compile_equations};
 pub use equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 pub use layout::Layout;
 pub use nearest::OpenStart;
+pub use powers::{OF_EFFECT, OF_WHOLE, observing_powers};
 pub use program::{PivotSample, Program, Watched};
 pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};

@@ -59,4 +59,7 @@ pub use summary::{
     AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, EventSummary, EventsFollowed, MethodSummary,
     ParameterSummary, PieceSummary, SingularSummary, SubsystemSummary, Summary,
 };
-pub use verification::{Convergence, FormulationVerification, Quantity, SchemeVerification, Verification};
+pub use verification::{
+    Convergence, EffectBalance, Exchange, FormulationVerification, PowerBalance, Quantity, SchemeVerification,
+    Verification,
+};

@@ -50,6 +50,78 @@ pub struct SchemeVerification {
     pub failure: Option<String>,
 }
 
+/// What an effect does to the mechanism's energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Exchange {
+    /// No power.
+    None,
+    /// All power is stored.
+    Conserves,
+    /// Energy is only taken.
+    Dissipates,
+    /// Energy is put in, at times at least.
+    Drives,
+}
+
+/// Power of an effect along a motion.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct EffectBalance {
+    /// Its name in the model.
+    pub effect: String,
+    /// E.g. `spring_damper`.
+    pub kind: String,
+    /// Largest power that it exchanges with the bodies, W.
+    pub power: f64,
+    /// Largest power that it puts in beside the one that its potential energy loses, W.
+    pub put_in: f64,
+    /// Largest power that it takes beside the one that its potential energy gains, W.
+    pub taken: f64,
+}
+
+/// Balance of power along a motion: the virtual power of the equations' rows against the rate of kinetic energy and the
+/// powers of all effects, which are summed body by body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PowerBalance {
+    /// Largest defect, as a share of `size`.
+    pub defect: f64,
+    /// Largest sum of the sizes of all terms, W.
+    pub size: f64,
+    /// By effect, in file order.
+    pub effects: Vec<EffectBalance>,
+}
+
+/// Share of a power that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl EffectBalance {
+    /// With the power at one more instant, and the rate at which energy is stored.
+    pub fn add(&mut self, power: f64, stored: f64) {
+        let more = |most: f64, own: f64| if own > most || own.is_nan() { own } else { most };
+        self.power = more(self.power, power.abs());
+        self.put_in = more(self.put_in, power + stored);
+        self.taken = more(self.taken, -(power + stored));
+    }
+
+    /// What it does to the energy.
+    pub fn exchange(&self) -> Exchange {
+        let least = ROUNDING * self.power;
+        match (self.put_in <= least, self.taken <= least) {
+            _ if self.power == 0.0 => Exchange::None,
+            (true, true) => Exchange::Conserves,
+            (true, false) => Exchange::Dissipates,
+            _ => Exchange::Drives,
+        }
+    }
+}
+
+impl PowerBalance {
+    /// Whether powers are balanced to rounding.
+    pub fn is_verified(&self) -> bool {
+        self.defect <= ROUNDING
+    }
+}
+
 /// What a formulation's equations were found to be.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FormulationVerification {
@@ -65,6 +137,8 @@ pub struct FormulationVerification {
     pub singular_at_start: Vec<String>,
     /// Length of the manufactured motion, s.
     pub duration: f64,
+    /// Balance of power along it.
+    pub balance: Option<PowerBalance>,
     /// By scheme.
     pub schemes: Vec<SchemeVerification>,
     /// Why nothing could be verified.
@@ -184,7 +258,8 @@ impl SchemeVerification {
 impl FormulationVerification {
     /// Whether all schemes do what theory tells.
     pub fn is_verified(&self) -> bool {
-        self.failure.is_none() && self.schemes.iter().all(SchemeVerification::is_verified)
+        let is_balanced = self.balance.as_ref().is_none_or(PowerBalance::is_verified);
+        self.failure.is_none() && is_balanced && self.schemes.iter().all(SchemeVerification::is_verified)
     }
 }
 

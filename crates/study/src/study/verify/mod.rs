@@ -2,9 +2,10 @@
 //! 20): does *this* mechanism, with *these* effects, integrate as theory tells?
 //!
 //! `motion` makes a smooth motion on the constraints, near the nominal one, and the loads with which it fulfils the
-//! equations of motion; `loaded` is the system with these loads, whose exact solution is then known; `orders` measures
+//! equations of motion; `balance` compares the powers of all effects with the mechanism's energy along it; `loaded` is the system with these loads, whose exact solution is then known; `orders` measures
 //! how its errors fall with the steps.
 
+mod balance;
 mod loaded;
 mod motion;
 mod orders;
@@ -21,6 +22,7 @@ use crate::simulate::{
     Integration, Observed, Schedule, SimulationError, Simulator, Steps, choose_independent, integrator,
 };
 
+use balance::balance;
 use loaded::{loaded, observed};
 use motion::{Equations, Manufactured, Nominal};
 use orders::convergence;
@@ -96,7 +98,7 @@ pub fn verify(description: &Description, options: &Options) -> Result<Verificati
     let mut formulations = Vec::new();
     for formulation in [Formulation::Absolute, Formulation::Joint] {
         (options.stage)("compiling");
-        let questions = Questions { formulation, ..Questions::of(description) };
+        let questions = Questions { formulation, powers: true, ..Questions::of(description) };
         let simulator = match compiled(&questions) {
             // Absolute coordinates are there already.
             Err(RunError::Build(BuildError::NoJointCoordinates { .. })) => continue,
@@ -120,6 +122,7 @@ fn of_formulation(
         redundant: system.constraint_names(&mobility.redundant),
         singular_at_start: system.constraint_names(&mobility.singular_at_start),
         duration: 0.0,
+        balance: None,
         schemes: Vec::new(),
         failure: None,
     };
@@ -140,6 +143,8 @@ fn of_formulation(
         }
     };
     found.duration = motion.end;
+    (options.stage)("balance of power");
+    found.balance = balance(system, &motion, &parameters, &redundant);
     let start: Vec<f64> = motion.positions.iter().map(|own| own.at(0.0)).collect();
     let independent = choose_independent(simulator, &parameters, &start, 0.0);
     let independent: Vec<usize> = independent.into_iter().map(|coordinate| coordinate.number()).collect();

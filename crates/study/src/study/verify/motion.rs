@@ -170,8 +170,8 @@ impl<'s> Equations<'s> {
         Some(())
     }
 
-    /// Residuals of the equations of motion (n), then of the velocity constraints.
-    fn residuals(&mut self, motion: &Manufactured, time: f64) -> Vec<f64> {
+    /// Sets all symbols to their values on the motion.
+    fn follow(&mut self, motion: &Manufactured, time: f64) {
         let layout = self.layout().clone();
         let at = |series: &[ChebyshevSeries]| series.iter().map(|own| own.at(time)).collect::<Vec<f64>>();
         self.set(layout.time..layout.time + 1, [time]);
@@ -180,6 +180,20 @@ impl<'s> Equations<'s> {
         self.set(layout.w, at(&motion.accelerations));
         self.set(layout.lambda, at(&motion.multipliers));
         self.tile.run(self.program.residual());
+    }
+
+    /// The system's outputs on the motion.
+    pub fn outputs(&mut self, motion: &Manufactured, time: f64) -> Vec<f64> {
+        self.follow(motion, time);
+        for tape in [self.program.rates(), self.program.jacobian(), self.program.observe()] {
+            self.tile.run(tape);
+        }
+        self.program.outputs.iter().map(|&register| self.value(register)).collect()
+    }
+
+    /// Residuals of the equations of motion (n), then of the velocity constraints.
+    fn residuals(&mut self, motion: &Manufactured, time: f64) -> Vec<f64> {
+        self.follow(motion, time);
         self.tile.run(self.program.rates());
         let slips = &self.program.constraint_rates[0][self.system.constraint.len()..];
         self.program.motion.iter().chain(slips).map(|&register| self.value(register)).collect()
