@@ -6,6 +6,7 @@ pub mod dormand_prince;
 pub mod finite_elements;
 pub mod power;
 pub mod random;
+pub mod registry;
 pub mod restitution;
 pub mod runge_kutta;
 

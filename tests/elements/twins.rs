@@ -1,120 +1,17 @@
 //! Every element of the registries in an assembly: twins that are turned, mirrored, or carried along steadily move as
 //! the original does.
 
-use mbint::inner::elements::JointKind;
-use mbint::inner::model::{Description, EffectKind, load_str};
+use mbint::inner::model::{Description, load_str};
 use mbint::inner::results::Bounds;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 
 use crate::common::{curve, nominal};
-
-/// What the examples name: of effects as in `explain --effects`, of joints as in their own test. Bodies that only turn
-/// are left out in space.
-struct Mechanism {
-    ground: &'static str,
-    bodies: &'static [&'static str],
-    turning: &'static [&'static str],
-    points: fn(&str) -> &'static str,
-    joints: &'static str,
-    of_plane: &'static str,
-    starts: &'static str,
-    section: &'static str,
-}
-
-const OF_EFFECTS: Mechanism = Mechanism {
-    ground: "",
-    bodies: &["arm", "cart", "ball"],
-    turning: &["pinion", "wheel", "spur", "rim"],
-    points: |body| match body {
-        "arm" => "pin: [-0.2, 0], tip: [0.2, 0], socket: [0.3, 2]",
-        "cart" => "hook: [0.1, 0.1]",
-        _ => "",
-    },
-    joints: "hinge: { revolute: [ground, arm.pin] }, rail: { prismatic: { between: [ground, cart], axis: x } }",
-    of_plane: ", mesh: { gear: { between: [spur, rim], ratio: -0.5 } }",
-    starts: "hinge.angle: 0, hinge.angular_velocity: 0.4, rail.displacement: 1, rail.velocity: -0.3",
-    section: "effects",
-};
-
-const OF_EFFECTS_AT_REST: &str = "hinge.angle: 0, hinge.angular_velocity: 0, rail.displacement: 1, rail.velocity: 0";
-
-const OF_JOINTS: Mechanism = Mechanism {
-    ground: "beside: [0.05, 0.05]",
-    bodies: &[
-        "arm", "bead", "bob", "cart", "disc", "crank", "follower", "foot", "fork", "frame", "gear", "lever", "link", "nut", "puck",
-        "rod", "shaft", "slider", "spindle",
-    ],
-    turning: &["wheel", "pinion"],
-    points: |body| match body {
-        "arm" => "P: [0.2, 0]",
-        "crank" => "A: [-0.1, 0], P: [0.1, 0]",
-        "foot" => "P: [0, -0.1]",
-        "fork" => "A: [-0.1, 0]",
-        "link" => "S: [0.1, 0]",
-        "rod" => "A: [-0.2, 0]",
-        "shaft" => "P: [0.1, 0]",
-        _ => "",
-    },
-    joints: "axle: { revolute: [ground, gear] }, guide: { prismatic: { between: [ground, cart], axis: x } }, \
-             pivot: { revolute: [ground, lever] }, thread: { revolute: THREAD }",
-    of_plane: "",
-    starts: "",
-    section: "joints",
-};
+use crate::common::registry::{Mechanism, OF_EFFECTS, OF_JOINTS, effects, joints};
 
 impl Mechanism {
-    /// The assembly `all` with an element, in the plane or in space.
-    fn assembly(&self, spatial: bool, keyword: &str, example: &str) -> String {
-        let mut bodies = format!("      ground: {{ points: {{ {} }} }}\n", self.ground);
-        for (place, body) in self.bodies.iter().enumerate() {
-            let inertia = if spatial { "[0.02, 0.03, 0.04]" } else { "0.03" };
-            bodies += &format!(
-                "      {body}: {{ mass: {}, inertia: {inertia}, points: {{ {} }} }}\n",
-                1.0 + 0.1 * place as f64,
-                (self.points)(body)
-            );
-        }
-        let turning = if spatial { &[] } else { self.turning };
-        for body in turning {
-            bodies += &format!("      {body}: {{ inertia: 0.01, coordinates: [angle] }}\n");
-        }
-        let it = format!("it: {{ {keyword}: {example} }}");
-        let mut effects = String::new();
-        for (place, body) in self.bodies.iter().enumerate() {
-            let push = 1.0 + 0.3 * place as f64;
-            effects += &format!("push_{body}: {{ force: {{ on: {body}, value: [{push}, -0.7] }} }}, turn_{body}: {{ torque: {{ on: {body}, value: 0.02 }} }}, ");
-        }
-        for body in turning {
-            effects += &format!("turn_{body}: {{ torque: {{ on: {body}, value: 0.02 }} }}, ");
-        }
-        let thread = if spatial { "{ between: [ground.beside, spindle], axis: x }" } else { "[ground.beside, spindle]" };
-        let mut joints = self.joints.replace("THREAD", thread) + if spatial { "" } else { self.of_plane };
-        match self.section {
-            "joints" => joints += &format!(", {it}"),
-            _ => effects += &it,
-        }
-        let starts = if self.starts.is_empty() {
-            // What a start is nearest to weighs angles against lengths of the model's size, so that the wheel's angle
-            // is given.
-            let wheel = if spatial { "" } else { "wheel.angle: 0" };
-            let place = if spatial { ["0.5, bob.z: 0", "0, follower.z: 0"] } else { ["0.5", "0.03"] };
-            format!("initial: {{ {} }}\n    guess: {{ bob.y: 0, bob.x: {}, follower.x: 0, follower.y: {} }}", wheel, place[0], place[1])
-        } else {
-            let free = if spatial {
-                "ball.z: 0, ball.vz: 0.1, ball.omega: [0.1, 0.2, 0.3]"
-            } else {
-                "ball.angle: 0.1, ball.angular_velocity: 0.3"
-            };
-            // A flexible body starts as a rigid one, and this one between two joints at rest.
-            let rest = if keyword == "superelement" { OF_EFFECTS_AT_REST } else { self.starts };
-            format!("initial: {{ {}, ball.x: 0.5, ball.y: 2, ball.vx: 0.2, ball.vy: -0.1, {free} }}", rest)
-        };
-        format!("assemblies:\n  all:\n    bodies:\n{bodies}    joints: {{ {joints} }}\n    effects: {{ {effects} }}\n    {starts}\n")
-    }
-
     /// The model with these instances, of which all bodies are observed.
-    fn model(&self, spatial: bool, (keyword, example): (&str, &str), twins: &[Twin]) -> Result<Description, String> {
+    fn with_twins(&self, spatial: bool, (keyword, example): (&str, &str), twins: &[Twin]) -> Result<Description, String> {
         let mut instances = String::new();
         let mut outputs = String::new();
         for (place, twin) in twins.iter().enumerate() {
@@ -229,20 +126,20 @@ fn twins_of(
     twins: &[Twin],
     refused: &[(&str, &str)],
 ) -> Option<[usize; 2]> {
-    mechanism.model(spatial, example, &[ORIGINAL]).ok()?;
+    mechanism.with_twins(spatial, example, &[ORIGINAL]).ok()?;
     let what = format!("{} {}", example.0, if spatial { "in space" } else { "in the plane" });
     let mut chosen = twins.to_vec();
     for (_, words) in refused.iter().filter(|(keyword, _)| *keyword == example.0) {
         let (kept, out): (Vec<_>, Vec<_>) = chosen
             .into_iter()
-            .partition(|twin| mechanism.model(spatial, example, &[ORIGINAL, *twin]).is_ok());
+            .partition(|twin| mechanism.with_twins(spatial, example, &[ORIGINAL, *twin]).is_ok());
         for twin in out {
-            let message = mechanism.model(spatial, example, &[twin]).err().unwrap_or_default();
+            let message = mechanism.with_twins(spatial, example, &[twin]).err().unwrap_or_default();
             assert!(message.contains(words), "{what}: {message}");
         }
         chosen = kept;
     }
-    let description = mechanism.model(spatial, example, &chosen).unwrap_or_else(|wrong| panic!("{what}: {wrong}"));
+    let description = mechanism.with_twins(spatial, example, &chosen).unwrap_or_else(|wrong| panic!("{what}: {wrong}"));
     let bounds = nominal(&description);
     for (place, twin) in chosen.iter().enumerate().skip(1) {
         compare(mechanism, spatial, &bounds, place, twin, &what);
@@ -264,17 +161,6 @@ fn twins(mechanism: &Mechanism, examples: &[(&str, &str)], refused: &[(&str, &st
         assert!(compared != before || refused.contains(&(example.0, "every body")), "{} is in no mechanism", example.0);
     }
     compared
-}
-
-/// Examples of effects, by their keywords.
-fn effects() -> Vec<(&'static str, String)> {
-    // Impacts of microseconds are nothing for these steps.
-    EffectKind::docs().iter().map(|docs| (docs.keyword, docs.example.replace("1e9", "1e4"))).collect()
-}
-
-/// Examples of joints, by their keywords.
-fn joints() -> Vec<(&'static str, String)> {
-    JointKind::docs().iter().map(|docs| (docs.element.keyword, docs.element.example.to_owned())).collect()
 }
 
 /// Effects without an image in some instances, with the words of the message.

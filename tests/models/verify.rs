@@ -100,14 +100,9 @@ fn effects_keep_take_or_put_in_energy() {
 #[test]
 fn powers_are_balanced_in_every_formulation() {
     // Joints of several axes, rolling, gear teeth, states, and contacts that open.
-    for name in [
-        "delta_robot.yaml",
-        "coin.yaml",
-        "planetary_gear.yaml",
-        "held_arm.yaml",
-        "heavy_top.yaml",
-        "wiper.yaml",
-    ] {
+    for name in
+        ["delta_robot.yaml", "coin.yaml", "planetary_gear.yaml", "held_arm.yaml", "heavy_top.yaml", "wiper.yaml"]
+    {
         let found = of_model(name);
         for formulation in &found.formulations {
             let balance = formulation.balance.as_ref().unwrap();

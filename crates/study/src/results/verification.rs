@@ -103,7 +103,7 @@ impl EffectBalance {
         self.taken = more(self.taken, -(power + stored));
     }
 
-    /// What it does to the energy.
+    /// The exchange of energy that it shows.
     pub fn exchange(&self) -> Exchange {
         let least = ROUNDING * self.power;
         match (self.put_in <= least, self.taken <= least) {
@@ -205,15 +205,13 @@ impl Convergence {
     /// The error of rounding, as far as it is known.
     fn rounding(&self) -> f64 {
         match self.errors.as_slice() {
-            [.., (_, before), (_, last)] if self.is_flat() => before.min(*last).max(self.rounding),
+            [.., (_, before), (_, last)] if self.is_flat() => before.max(*last).max(self.rounding),
             _ => self.rounding,
         }
     }
 
-    /// Orders after errors that rounding does not touch, those of the longest steps first. Where rounding touches the
-    /// second of two errors, the order between them only looks lower.
-    fn known(&self) -> impl DoubleEndedIterator<Item = f64> {
-        let least = TOUCHED * self.rounding();
+    /// Orders after errors larger than `least`, those of the longest steps first.
+    fn known(&self, least: f64) -> impl DoubleEndedIterator<Item = f64> {
         self.orders.iter().zip(&self.errors).filter(move |(_, (_, before))| *before > least).map(|(order, _)| *order)
     }
 
@@ -229,11 +227,17 @@ impl Convergence {
         is_clean && self.orders.len() >= 2 && self.orders.iter().rev().take(2).all(is_near)
     }
 
-    /// The observed order: the last one; where rounding ends the errors' fall, the largest of the last three, which it
-    /// only lowers. `None` where there are none: steps of any length are exact.
+    /// The observed order after errors that rounding does not touch: the last one; where rounding ends the errors' fall,
+    /// the largest of the last three, which it only lowers, and of those below the stated rounding, as far as errors
+    /// fell there. `None` where there are none: steps of any length are exact.
     fn observed(&self) -> Option<f64> {
-        let ends = self.is_flat() || self.is_exact();
-        self.known().rev().take(if ends { 3 } else { 1 }).reduce(f64::max)
+        let stated = TOUCHED * self.rounding();
+        if !(self.is_flat() || self.is_exact()) {
+            return self.known(stated).next_back();
+        }
+        let largest = |least: f64| self.known(least).rev().take(3).reduce(f64::max);
+        let reached = self.errors.iter().fold(stated, |least, (_, error)| least.min(TOUCHED * error));
+        largest(stated).map(|order| largest(reached).map_or(order, |below| order.max(below)))
     }
 
     /// Whether shorter steps would tell no more: errors are those of rounding, or two orders are that of theory.
@@ -288,6 +292,15 @@ mod tests {
         let own = of_errors(2.0, &[4e-2, 1e-2]);
         assert!(!own.is_settled() && own.is_verified);
         assert!(of_errors(2.0, &[1.6e-1, 4e-2, 1e-2]).is_settled());
+    }
+
+    /// The stated rounding is that of the worst quantity: errors that fall below it by the order of theory have it.
+    #[test]
+    fn errors_below_the_stated_rounding_have_orders() {
+        let own = of_errors(4.0, &[3.5e-13, 1.1e-13, 7.2e-15]);
+        assert!(own.is_verified && own.order.unwrap() > 3.9, "{own:?}");
+        let exact = of_errors(4.0, &[2e-13, 1e-13, 3e-15]);
+        assert!(exact.is_verified && exact.order.is_none(), "{exact:?}");
     }
 
     #[test]

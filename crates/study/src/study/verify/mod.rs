@@ -2,8 +2,9 @@
 //! 20): does *this* mechanism, with *these* effects, integrate as theory tells?
 //!
 //! `motion` makes a smooth motion on the constraints, near the nominal one, and the loads with which it fulfils the
-//! equations of motion; `balance` compares the powers of all effects with the mechanism's energy along it; `loaded` is the system with these loads, whose exact solution is then known; `orders` measures
-//! how its errors fall with the steps.
+//! equations of motion; `balance` compares the powers of all effects with the mechanism's energy along it; `loaded` is
+//! the system with these loads, whose exact solution is then known; `orders` measures how its errors fall with the
+//! steps.
 
 mod balance;
 mod loaded;

@@ -4,6 +4,8 @@
 //! constraints at Chebyshev nodes, by the shortest way; the series through these points is the motion. It fulfils the
 //! constraints to rounding where it is resolved, and velocities and accelerations are its derivatives.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 use symdiff::{Tile, math};
 
@@ -38,7 +40,7 @@ const CORRECTIONS: usize = 40;
 /// A series is resolved where its last quarter is less than this share of its size.
 const RESOLVED: f64 = 1e-11;
 /// The same for loads, which have accelerations in them.
-const LOADS_RESOLVED: f64 = 1e-8;
+const LOADS_RESOLVED: f64 = 1e-9;
 /// Coefficients below this share of the largest are rounding, which derivatives would amplify.
 const ROUNDING: f64 = 3e-16;
 
@@ -200,17 +202,28 @@ impl<'s> Equations<'s> {
     }
 }
 
-/// Through values of several functions at nodes, without rounding; `None` where one is not resolved.
-fn series(span: [f64; 2], values: &[Vec<f64>], resolved: f64) -> Option<Vec<ChebyshevSeries>> {
+/// Through values of several functions at nodes, without rounding; `None` where one is not resolved. Functions are
+/// compared with the largest of their group: states may be of any size.
+fn series(
+    span: [f64; 2],
+    values: &[Vec<f64>],
+    resolved: f64,
+    group: impl Fn(usize) -> usize,
+) -> Option<Vec<ChebyshevSeries>> {
     let count = values.first().map_or(0, Vec::len);
     let mut found = Vec::with_capacity(count);
+    let mut sizes = BTreeMap::new();
     for index in 0..count {
         let of_one: Vec<f64> = values.iter().map(|row| row[index]).collect();
-        found.push(ChebyshevSeries::through(span, &of_one));
+        let own = ChebyshevSeries::through(span, &of_one);
+        let size: &mut f64 = sizes.entry(group(index)).or_default();
+        *size = size.max(own.size());
+        found.push(own);
     }
-    let size = found.iter().map(ChebyshevSeries::size).fold(0.0, f64::max);
-    let is_resolved = |own: &ChebyshevSeries| own.tail() <= resolved * size;
-    found.iter().all(is_resolved).then(|| found.into_iter().map(|own| own.chopped(ROUNDING * size)).collect())
+    let is_resolved = |(index, own): (usize, &ChebyshevSeries)| own.tail() <= resolved * sizes[&group(index)];
+    let all = found.iter().enumerate().all(is_resolved);
+    let chopped = |(index, own): (usize, ChebyshevSeries)| own.chopped(ROUNDING * sizes[&group(index)]);
+    all.then(|| found.into_iter().enumerate().map(chopped).collect())
 }
 
 impl Manufactured {
@@ -236,6 +249,9 @@ impl Manufactured {
     fn of_fit(fit: &[ChebyshevSeries], end: f64, equations: &mut Equations) -> Result<Self, NotVerified> {
         let n = equations.system.q.len();
         let span = [0.0, end];
+        let coordinates = &equations.system.coordinates;
+        // Of the motion, of states, and slips behind them.
+        let group = |index: usize| coordinates.get(index).map_or(2, |coordinate| usize::from(coordinate.is_state));
         let times = ChebyshevSeries::nodes(span, NODES);
         let mut values = Vec::with_capacity(times.len());
         for &time in &times {
@@ -243,7 +259,7 @@ impl Manufactured {
             equations.closed(time, &mut q).ok_or(NotVerified::NotClosed { time })?;
             values.push(q);
         }
-        let mut positions = series(span, &values, RESOLVED).ok_or(NotVerified::NotSmooth { end })?;
+        let mut positions = series(span, &values, RESOLVED, group).ok_or(NotVerified::NotSmooth { end })?;
         let mut velocities: Vec<ChebyshevSeries> = positions.iter().map(ChebyshevSeries::derivative).collect();
         for (index, coordinate) in equations.system.coordinates.iter().enumerate() {
             if coordinate.is_state {
@@ -263,8 +279,8 @@ impl Manufactured {
             rates.push(v);
             changes.push(w);
         }
-        velocities = series(span, &rates, RESOLVED).ok_or(NotVerified::NotSmooth { end })?;
-        accelerations = series(span, &changes, LOADS_RESOLVED).unwrap_or(accelerations);
+        velocities = series(span, &rates, RESOLVED, group).ok_or(NotVerified::NotSmooth { end })?;
+        accelerations = series(span, &changes, LOADS_RESOLVED, group).unwrap_or(accelerations);
         let multipliers = fit[2 * n..].to_vec();
         let mut motion = Self { end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![] };
         for nodes in LOADS {
@@ -273,7 +289,7 @@ impl Manufactured {
             if values.iter().flatten().any(|value| !value.is_finite()) {
                 return Err(NotVerified::NotFinite { end });
             }
-            if let Some(mut all) = series(span, &values, LOADS_RESOLVED) {
+            if let Some(mut all) = series(span, &values, LOADS_RESOLVED, group) {
                 motion.slips = all.split_off(n);
                 motion.loads = all;
                 return Ok(motion);

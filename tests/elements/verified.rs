@@ -1,0 +1,101 @@
+//! Every element of the registries is verified by a manufactured motion of a mechanism with its example, and the table
+//! of the orders is a page of the reference.
+
+use std::fmt::Write;
+
+use mbint::{Convergence, Exchange, FormulationVerification, Model, Verification};
+
+use crate::common::registry::{Mechanism, OF_EFFECTS, OF_JOINTS, effects, joints};
+
+const HEAD: &str = "# Verification of the elements
+
+Every effect and joint stands with the example of its reference in a small mechanism, in the plane, in space or in both, \
+and is verified as [`mbint verify`](../guides/verify.md) does it: a motion that is exact because its loads are added, with \
+steps of half the length until orders settle. The orders are the lowest of positions, velocities, accelerations, states and \
+reactions, in absolute and in joint coordinates; theory tells 2, 4 and 8 (explicit: at least 4, where rounding comes \
+first). Power is the largest defect of its balance, as a share of the powers; energy is what the effect does beside its \
+potential energy. `MBINT_UPDATE_DOCS=1 cargo test --test elements verified -- --ignored` writes this page; the same test fails where an \
+element is not verified.
+
+| element | space | HHT-I3 | extrapolated | explicit | power | energy |
+|---|---|--:|--:|--:|--:|---|
+";
+
+/// Elements whose examples have no smooth motion, with the words of the reason; their own tests measure orders.
+const NOT_SMOOTH: [(&str, &str); 4] = [
+    ("backlash", "not smooth"),
+    ("clearance_joint", "not smooth"),
+    ("sampled", "change at instants"),
+    ("tyre", "not smooth"),
+];
+
+/// The lowest order of a scheme in all formulations; `exact` where errors are rounding's with steps of any length.
+fn order(found: &Verification, scheme: usize) -> String {
+    let all = |own: &FormulationVerification| own.schemes[scheme].convergence.clone();
+    let orders: Vec<f64> =
+        found.formulations.iter().flat_map(all).filter_map(|own: Convergence| own.order).collect();
+    let lowest = orders.into_iter().reduce(f64::min);
+    lowest.map_or("exact".to_owned(), |lowest| format!("{lowest:.2}"))
+}
+
+/// What an effect does to the energy along the motion; nothing for joints.
+fn energy(found: &Verification) -> &'static str {
+    let balance = found.formulations[0].balance.as_ref().unwrap();
+    match balance.effects.iter().find(|effect| effect.effect == "it").map(|effect| effect.exchange()) {
+        None => "",
+        Some(Exchange::None) => "none",
+        Some(Exchange::Conserves) => "kept",
+        Some(Exchange::Dissipates) => "taken",
+        Some(Exchange::Drives) => "put in",
+    }
+}
+
+/// A row of the table; `None` where the example does not stand in this space.
+fn row(mechanism: &Mechanism, spatial: bool, keyword: &str, example: &str) -> Option<Result<String, String>> {
+    let space = if spatial { "space" } else { "plane" };
+    let model = Model::from_yaml_str("registry.yaml", &mechanism.text(spatial, keyword, example)).ok()?;
+    let found = model.verify().unwrap_or_else(|error| panic!("{keyword}: {error}"));
+    if let Some(why) = found.formulations.iter().find_map(|own| own.failure.as_ref()) {
+        let is_known = NOT_SMOOTH.iter().any(|(of, words)| *of == keyword && why.contains(words));
+        let row = format!("| `{keyword}` | {space} | | | | | not verified: {why} |\n");
+        return Some(if is_known { Ok(row) } else { Err(row) });
+    }
+    let defect = found.formulations.iter().map(|own| own.balance.as_ref().unwrap().defect).fold(0.0, f64::max);
+    let [hht, extrapolated, explicit] = [0, 1, 2].map(|scheme| order(&found, scheme));
+    let energy = energy(&found);
+    // The lowest order of theory 2, to within 0.1.
+    let is_second = hht == "exact" || hht.parse::<f64>().is_ok_and(|order| order >= 1.9);
+    if !found.is_verified() || !is_second {
+        return Some(Err(format!("{keyword} in the {space}: {found:?}")));
+    }
+    Some(Ok(format!("| `{keyword}` | {space} | {hht} | {extrapolated} | {explicit} | {defect:.0e} | {energy} |\n")))
+}
+
+#[test]
+#[ignore = "a minute: manufactured motions of all elements"]
+fn every_element_is_verified() {
+    let mut page = HEAD.to_owned();
+    let mut wrong = String::new();
+    for (mechanism, examples) in [(&OF_EFFECTS, effects()), (&OF_JOINTS, joints())] {
+        for (keyword, example) in examples {
+            let rows: Vec<_> =
+                [false, true].into_iter().filter_map(|spatial| row(mechanism, spatial, keyword, &example)).collect();
+            if rows.is_empty() {
+                writeln!(wrong, "{keyword} stands in no mechanism").unwrap();
+            }
+            for row in rows {
+                match row {
+                    Ok(row) => page += &row,
+                    Err(why) => writeln!(wrong, "{why}").unwrap(),
+                }
+            }
+        }
+    }
+    println!("{page}");
+    assert!(wrong.is_empty(), "{wrong}");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/verification.md");
+    if std::env::var_os("MBINT_UPDATE_DOCS").is_some() {
+        std::fs::write(&path, &page).unwrap();
+    }
+    assert!(std::fs::read_to_string(&path).unwrap() == page, "MBINT_UPDATE_DOCS=1 writes:\n{page}");
+}
