@@ -118,10 +118,13 @@ impl<S: SymbolTable> Reader<'_, S> {
                 self.error(node.span.clone(), message, "split it into parameters".to_owned());
                 None
             }
-            Ok(formula) => Some(match own_names {
-                Some(names) => self.in_model(formula, names.scope),
-                None => formula,
-            }),
+            Ok(formula) => {
+                self.mentions_names(node, scalar, &formula, part.start);
+                Some(match own_names {
+                    Some(names) => self.in_model(formula, names.scope),
+                    None => formula,
+                })
+            }
             Err(error) => {
                 let span = part.start + error.span.start..part.start + error.span.end;
                 let fraction = text.trim_start().starts_with('(').then(|| unit_names::of_fraction(text)).flatten();
@@ -214,13 +217,14 @@ impl<S: SymbolTable> Reader<'_, S> {
             Some((own, dimension)) if own == name => Kind::motion(dimension),
             _ => self.symbol(name).map_or(Kind::Any, |symbol| self.kind_of(symbol)),
         };
-        let kind = dimension::analyse(formula, name, |spline| self.table(spline), &mut mismatches);
+        let kinds = dimension::of_terms(formula, name, |spline| self.table(spline), &mut mismatches);
+        self.mentions_formula(node, offset, formula, &kinds);
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;
             let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
             self.error(place, mismatch.message, None);
         }
-        kind
+        kinds.last().copied().unwrap_or(Kind::Any)
     }
 
     /// Dimensions of a table's argument and value.
@@ -273,7 +277,9 @@ impl<S: SymbolTable> Reader<'_, S> {
                 }
                 self.refuse_ambiguous(node);
                 self.suspect_quantity(unit.to_si(value), wanted);
-                Formula::number(unit.to_si(value))
+                let formula = Formula::number(unit.to_si(value));
+                self.mentions_formula(node, 0, &formula, &[Kind::parameter(wanted)]);
+                formula
             }
             Written::Formula(formula) => {
                 if !self.check_names(node, &formula, 0, context) {

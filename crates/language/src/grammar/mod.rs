@@ -14,6 +14,7 @@ mod friction;
 mod image;
 mod kinds;
 pub mod mapping;
+pub mod mentions;
 mod mesh;
 pub mod motions;
 pub mod names;
