@@ -160,7 +160,9 @@ fn snippet(value: &Value, field: &mut usize) -> String {
 }
 
 fn values(schema: &Schema, model: Option<&Model>, path: &Path, text: &Text, at: &Context) -> Vec<Proposal> {
-    let is_number = schema.is_number(&at.path);
+    // A requirement is a formula with a comparison in it.
+    let is_requirement = matches!(at.path.as_slice(), [.., Step::Key(section), Step::Key(_)] if section == "requirements");
+    let is_number = is_requirement || schema.is_number(&at.path);
     let written = &text.as_str()[at.written.clone()];
     let before = written.get(..written.len() - at.word.len().min(written.len())).unwrap_or_default();
     let last = at.path.iter().rev().find_map(|step| match step {

@@ -31,22 +31,28 @@ pub fn hover(schema: &Schema, model: Option<&Model>, path: &Path, text: &Text, o
     if at.slot == Slot::Comment {
         return None;
     }
-    let formula = model.and_then(|model| formula(model, path, offset));
+    let around = |least: usize| model.and_then(|model| formula(model, path, offset, least));
     let name = model.and_then(|model| name(model, path, text, offset, &word));
     if let Some(mut own) = name {
-        if let Some(around) = formula.filter(|around| around.span.len() > own.span.len()) {
+        if let Some(around) = around(word.len() + 1) {
             own.text.push_str(&format!("\n\n---\n\n{}", around.text));
         }
         return Some(own);
     }
     let of_word = |text: String| Hover { text, span: word.clone() };
     let written = &text.as_str()[word.clone()];
+    // A part of the motion has no definition of its own.
+    if let Some(model) = model
+        && let Some(meaning) = full_name(model, path, &word, written).and_then(|full| member(model, &full))
+    {
+        return Some(of_word(format!("**{written}**\n\n{meaning}")));
+    }
     if at.slot == Slot::Value
         && let Some(text) = function_or_unit(written, schema.is_number(&at.path))
     {
         return Some(of_word(text));
     }
-    formula.or_else(|| key_or_word(schema, &at, text, &word).map(of_word))
+    around(0).or_else(|| key_or_word(schema, &at, text, &word).map(of_word))
 }
 
 /// Bytes of the dotted word at a byte.
@@ -153,30 +159,27 @@ fn definition_line(model: &Model, extents: &[super::names::Location], file: &Pat
     Some(if first.chars().count() > 120 { format!("{}…", first.chars().take(119).collect::<String>()) } else { first.to_owned() })
 }
 
-/// The formula at a byte: the smallest part of it that is more than a number, with its value.
-fn formula(model: &Model, path: &Path, offset: usize) -> Option<Hover> {
+/// The formula at a byte: the smallest part of it of at least so many bytes that is more than a number, with its value.
+fn formula(model: &Model, path: &Path, offset: usize, least: usize) -> Option<Hover> {
     let known = model.known.as_ref()?;
     let sources = &model.opened.reading.diagnostics.sources;
-    let place = |own: &ReadFormula, span: Range<usize>| -> Option<Range<usize>> {
-        let start = own.start?;
-        let (source, span) = sources.locate(&(start + span.start..start + span.end))?;
-        (Path::new(&source.name) == path && span.start <= offset && offset <= span.end).then_some(span)
+    // Bytes of the document that a span is, if the pointer is on them.
+    let here = |span: Range<usize>| -> Option<Range<usize>> {
+        let (source, span) = sources.locate(&span)?;
+        (Path::new(&source.name) == path && span.contains(&offset)).then_some(span)
     };
     let mut best: Option<(Range<usize>, &ReadFormula, usize)> = None;
     for own in &model.opened.mentions.formulas {
-        let Some((_, in_file)) = sources.locate(&own.span).filter(|(source, span)| {
-            Path::new(&source.name) == path && span.start <= offset && offset <= span.end
-        }) else {
-            continue;
-        };
+        let Some(whole) = here(own.span.clone()) else { continue };
         let last = own.formula.terms().len() - 1;
         for (index, (term, span)) in own.formula.terms().iter().enumerate() {
-            let is_whole = index == last;
-            if !is_whole && matches!(term, Term::Number(_)) {
-                continue;
-            }
-            let span = if is_whole { Some(in_file.clone()) } else { place(own, span.clone()).filter(|span| !span.is_empty()) };
-            let Some(span) = span else { continue };
+            let part = || own.start.and_then(|start| here(start + span.start..start + span.end));
+            let span = match index == last {
+                true => Some(whole.clone()),
+                false if matches!(term, Term::Number(_)) => None,
+                false => part(),
+            };
+            let Some(span) = span.filter(|span| span.len() >= least) else { continue };
             if best.as_ref().is_none_or(|(known, ..)| span.len() < known.len()) {
                 best = Some((span, own, index));
             }

@@ -130,14 +130,29 @@ impl Names {
         names
     }
 
-    /// Notes each part of a name that has a definition, where the part is written.
+    /// Notes a name where it is written. In a text of several lines only the text is known: names are words of it.
     fn mention(&mut self, mention: &Mention, sources: &Sources, files: &mut Files, known: Option<&Description>) {
         let Some(at) = files.locate(sources, &mention.span) else { return };
         let Some(written) = sources.locate(&mention.span).map(|(source, span)| &source.text[span]) else { return };
         let quotes = usize::from(written.starts_with(['"', '\'']));
-        let written = written.get(quotes..written.len() - quotes).unwrap_or_default();
-        let mut end = at.span.start + quotes + written.len();
-        let mut written: Vec<&str> = written.split('.').collect();
+        let inner = written.get(quotes..written.len() - quotes).unwrap_or_default();
+        let is_name = mention.name.strip_suffix(inner).is_some_and(|rest| rest.is_empty() || rest.ends_with('.'));
+        let starts = if is_name || !written.contains(['\n', '\\', '"', '\'']) {
+            vec![(quotes, inner)]
+        } else {
+            let own = std::iter::successors(Some(mention.name.as_str()), |name| name.split_once('.').map(|(_, rest)| rest));
+            let found = own.map(|name| words(written, name)).find(|found| !found.is_empty());
+            found.unwrap_or_default()
+        };
+        for (start, text) in starts {
+            let end = at.span.start + start + text.len();
+            self.parts(mention, text, &at.file, end, known);
+        }
+    }
+
+    /// Notes each part of a name that has a definition; the text of the name, or of the end of it, ends at a byte.
+    fn parts(&mut self, mention: &Mention, text: &str, file: &Rc<PathBuf>, mut end: usize, known: Option<&Description>) {
+        let mut written: Vec<&str> = text.split('.').collect();
         let mut prefix = mention.name.as_str();
         // From the last part to the first, as long as they are written so.
         while let Some(part) = written.pop() {
@@ -146,7 +161,7 @@ impl Names {
             }
             let start = end - part.len();
             if let Some(symbol) = self.meant(prefix, mention, known) {
-                let at = Location { file: Rc::clone(&at.file), span: start..end };
+                let at = Location { file: Rc::clone(file), span: start..end };
                 self.occurrences.push(Occurrence { at, symbol, is_definition: false });
             }
             end = start.saturating_sub(1);
@@ -198,6 +213,15 @@ impl Names {
         all.dedup();
         all
     }
+}
+
+/// Where a name stands as a word of a text.
+fn words<'n>(text: &str, name: &'n str) -> Vec<(usize, &'n str)> {
+    let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+    let is_word = |start: &usize| {
+        !text[..*start].ends_with(is_part) && !text[start + name.len()..].starts_with(is_part) && !name.is_empty()
+    };
+    text.match_indices(name).map(|(start, _)| start).filter(is_word).map(|start| (start, name)).collect()
 }
 
 /// The symbol that one stands for.

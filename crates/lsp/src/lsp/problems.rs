@@ -1,6 +1,6 @@
 //! Diagnostics of models as the protocol has them, and the fixes that they propose.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use lsp_types::{
@@ -36,6 +36,7 @@ pub fn of_model(workspace: &Workspace, model: &Model, of_mechanism: Option<&str>
         let range = texts.get(&path)?.range(&span);
         Some((path, range))
     };
+    let mut said: HashSet<(PathBuf, u32, u32, String)> = HashSet::new();
     for own in model.opened.reading.diagnostics.iter() {
         let at = own.span.as_ref().map_or_else(|| Some((model.path.clone(), Range::default())), place);
         let Some((path, range)) = at else { continue };
@@ -57,10 +58,11 @@ pub fn of_model(workspace: &Workspace, model: &Model, of_mechanism: Option<&str>
             related_information: (!related.is_empty()).then_some(related),
             ..Diagnostic::default()
         };
-        // The same in several instances is one.
-        let all = found.entry(path).or_default();
-        if !all.iter().any(|known| known.range == diagnostic.range && known.message == diagnostic.message) {
-            all.push(diagnostic);
+        // The same in several instances is one, whatever their names.
+        let instance = own.span.as_ref().and_then(|span| sources.within(span)).map(|within| within.instance.as_str());
+        let message = instance.map_or_else(|| own.message.clone(), |name| own.message.replace(name, ""));
+        if said.insert((path.clone(), range.start.line, range.start.character, message)) {
+            found.entry(path).or_default().push(diagnostic);
         }
     }
     if let (Some(message), Some(all)) = (of_mechanism, found.get_mut(&model.path)) {

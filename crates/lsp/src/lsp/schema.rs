@@ -128,7 +128,11 @@ impl Schema {
 
     /// Kinds of which a value is one: elements, with their descriptions and values.
     pub fn kinds(&self, path: &[Step]) -> Vec<KeyInfo<'_>> {
-        let is_choice = |schema: &&&Value| schema.get("maxProperties").and_then(Value::as_u64) == Some(1);
+        // One kind, and perhaps how often it is there.
+        let is_choice = |schema: &&&Value| {
+            let is_one = schema.get("minProperties").and_then(Value::as_u64) == Some(1);
+            is_one && schema.get("maxProperties").is_some()
+        };
         let schemas = self.at(path);
         let Some(schema) = schemas.iter().find(is_choice) else { return Vec::new() };
         let properties = schema.get("properties").and_then(Value::as_object).into_iter().flatten();

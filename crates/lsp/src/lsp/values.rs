@@ -128,7 +128,7 @@ mod tests {
 
     const MODEL: &str = "
 parameters: { l: { value: 0.2, unit: m, tolerance: 10% }, half: l/2, k: 3 }
-bodies: { arm: { mass: 1, inertia: l^2, points: { A: [half, 0] } } }
+bodies: { arm: { mass: 1, inertia: 1, points: { A: [half, 0] } } }
 joints: { pin: { revolute: [ground, arm.A] } }
 effects: { spring: { spring_damper: { between: [ground, arm], stiffness: k } } }
 outputs: { x: arm.x, f: spring.force }
