@@ -327,7 +327,11 @@ impl<S: SymbolTable> Reader<'_, S> {
     pub fn require(&mut self, node: &Node, formula: &Formula, holds: impl Fn(f64) -> bool, requirement: &str) {
         let varies = self.is_uncertain(formula);
         let corners = if varies { self.corners.len() } else { self.corners.len().min(1) };
+        let used: Vec<usize> = formula.names().filter_map(|(name, _)| self.parameter(name)).collect();
         for corner in 0..corners {
+            if corner > 0 && self.is_nominal(corner, &used) {
+                continue;
+            }
             let Some(value) = self.evaluate(formula, corner) else { return };
             if self.broken && !value.is_finite() {
                 return;
@@ -355,21 +359,29 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
+    fn parameter(&self, name: &str) -> Option<usize> {
+        match self.symbol(name) {
+            Some(Symbol::Parameter(index)) => Some(index),
+            _ => None,
+        }
+    }
+
+    /// Whether parameters have their nominal values at a corner: a formula of them has the same value there.
+    fn is_nominal(&self, corner: usize, parameters: &[usize]) -> bool {
+        let value = |corner: usize, index: usize| self.corners[corner].values.get(index).map(|value| value.to_bits());
+        parameters.iter().all(|&index| value(corner, index) == value(0, index))
+    }
+
     /// The formula's value at a corner; `None` where it is made of more than parameters.
     pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
         let corner = self.corners.get(corner)?;
-        evaluate(formula, |name| match self.symbol(name) {
-            Some(Symbol::Parameter(index)) => corner.values.get(index).copied(),
-            _ => None,
-        })
+        evaluate(formula, |name| corner.values.get(self.parameter(name)?).copied())
     }
 
     /// Whether an uncertain parameter stands behind a name of the formula.
     pub fn is_uncertain(&self, formula: &Formula) -> bool {
-        formula.names().any(|(name, _)| match self.symbol(name) {
-            Some(Symbol::Parameter(index)) => self.varies.get(index).copied().unwrap_or(false),
-            _ => false,
-        })
+        let varies = |index: usize| self.varies.get(index).copied().unwrap_or(false);
+        formula.names().any(|(name, _)| self.parameter(name).is_some_and(varies))
     }
 
     /// A number that is the same for every sample.

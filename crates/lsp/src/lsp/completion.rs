@@ -6,10 +6,11 @@ use lsp_types::{CompletionItem, CompletionItemKind, CompletionTextEdit, Document
 use serde_json::Value;
 
 use super::context::{Context, Slot, Step, context};
-use super::hover::{kind_in_words, value_of_parameter};
+use super::hover::kind_in_words;
 use super::members::members;
 use super::schema::{KeyInfo, Schema};
 use super::text::Text;
+use super::values::Values;
 use super::workspace::Model;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::reference;
@@ -259,6 +260,7 @@ fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -
     let is_global = kinds.iter().all(|kind| matches!(kind, NameKind::Assembly | NameKind::Scene));
     let Some(prefix) = (if is_global { Some(String::new()) } else { prefix(model, path, at) }) else { return Vec::new() };
     let mut found: Vec<(usize, Proposal)> = Vec::new();
+    let parameters = model.known.as_deref().filter(|_| kinds.contains(&NameKind::Parameter)).map(Values::of);
     for (name, kind) in &model.names_known {
         let Some(order) = kinds.iter().position(|own| own == kind) else { continue };
         let Some(local) = name.strip_prefix(&prefix) else { continue };
@@ -269,13 +271,13 @@ fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -
             // Parts of an instance are its members.
             continue;
         }
-        found.push((order, proposal(model, local, name, *kind)));
+        found.push((order, proposal(model, parameters.as_ref(), local, name, *kind)));
     }
     found.sort_by_key(|(order, _)| *order);
     found.into_iter().map(|(_, own)| own).collect()
 }
 
-fn proposal(model: &Model, local: &str, name: &str, kind: NameKind) -> Proposal {
+fn proposal(model: &Model, parameters: Option<&Values>, local: &str, name: &str, kind: NameKind) -> Proposal {
     let item = match kind {
         NameKind::Parameter => CompletionItemKind::VARIABLE,
         NameKind::Body | NameKind::Instance | NameKind::Assembly => CompletionItemKind::MODULE,
@@ -285,7 +287,7 @@ fn proposal(model: &Model, local: &str, name: &str, kind: NameKind) -> Proposal 
     };
     let output = || model.known.as_ref()?.outputs.iter().find(|own| own.name == name).map(|own| own.unit.clone());
     let detail = match kind {
-        NameKind::Parameter => value_of_parameter(model, name),
+        NameKind::Parameter => parameters.and_then(|values| values.of_parameter(name)),
         NameKind::Output => output().filter(|unit| !unit.is_empty()).map(|unit| format!("output, {unit}")),
         _ => None,
     };

@@ -9,7 +9,7 @@ use super::context::{Context, Slot, Step, context};
 use super::names::Named;
 use super::schema::Schema;
 use super::text::Text;
-use super::values::{in_words, resolve, unit_of};
+use super::values::{Values, in_words, unit_of};
 use super::workspace::Model;
 use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
@@ -69,7 +69,7 @@ fn name(model: &Model, path: &Path, text: &Text, offset: usize, word: &Range<usi
     let symbol = &model.names.symbols[found.symbol];
     let mut lines = vec![headline(model, symbol)];
     if symbol.kind == NameKind::Parameter {
-        lines.extend(value_of_parameter(model, &symbol.name));
+        lines.extend(model.known.as_ref().and_then(|known| Values::of(known).of_parameter(&symbol.name)));
     }
     // The whole name may say more than the part: `crank.B.vx`.
     let written = text.as_str().get(word.clone()).unwrap_or_default();
@@ -116,13 +116,6 @@ pub fn kind_in_words(kind: NameKind) -> &'static str {
         NameKind::Port => "port",
         NameKind::Scene => "scene",
     }
-}
-
-/// The value of a parameter, as the model could be read last.
-pub fn value_of_parameter(model: &Model, name: &str) -> Option<String> {
-    let known = model.known.as_ref()?;
-    let value = resolve(known, &symdiff::Formula::name(name))?;
-    Some(in_words(value, &unit_of(known, name).unwrap_or_default()))
 }
 
 /// The full name that a word of a document is part of the text of.
@@ -189,7 +182,7 @@ fn formula(model: &Model, path: &Path, offset: usize, least: usize) -> Option<Ho
     let dimension = own.kinds.get(index).and_then(|kind| kind.dimension());
     let what = dimension.map_or_else(|| "a number".to_owned(), |dimension| dimension.to_string());
     let unit = dimension.map_or_else(String::new, |dimension| dimension.unit());
-    let value = match resolve(known, &own.formula.part(index)) {
+    let value = match Values::of(known).resolve(&own.formula.part(index)) {
         Some(value) => in_words(value, &unit),
         None => "follows the motion: a run computes it".to_owned(),
     };

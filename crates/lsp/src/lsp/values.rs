@@ -1,6 +1,6 @@
 //! Values of names and formulas of a model: nominal, and over the intervals of its parameters.
 
-use symdiff::{Builder, Formula, Interval, Ranges, Scalar};
+use symdiff::{Builder, Expr, Formula, Interval, Ranges, Scalar};
 
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::evaluate;
@@ -17,68 +17,80 @@ pub struct Resolved {
     pub interval: Option<[f64; 2]>,
 }
 
-/// The value of a formula; `None` where it is made of more than parameters.
-pub fn resolve(model: &Description, formula: &Formula) -> Option<Resolved> {
-    let of_parameters = |name: &str| matches!(model.symbol(name), Some(Symbol::Parameter(_)));
-    if !formula.names().all(|(name, _)| of_parameters(name)) {
-        return None;
-    }
-    let nominal = nominal_values(model);
-    let value = |name: &str| match model.symbol(name) {
-        Some(Symbol::Parameter(index)) => nominal.get(index).copied().flatten(),
-        _ => None,
-    };
-    let nominal = evaluate(formula, value)?;
-    Some(Resolved { nominal, interval: enclosure(model, formula) })
+/// The parameters of a model, from which values of formulas are computed.
+pub struct Values<'m> {
+    model: &'m Description,
+    /// Nominal values.
+    nominal: Vec<Option<f64>>,
+    /// Expressions in the uncertain parameters.
+    builder: Builder,
+    exprs: Vec<Option<Expr>>,
+    /// The uncertain parameters with their intervals.
+    symbols: Vec<Expr>,
+    bounds: Vec<Interval>,
 }
 
-/// Nominal values of all parameters.
-fn nominal_values(model: &Description) -> Vec<Option<f64>> {
-    let mut values: Vec<Option<f64>> = Vec::with_capacity(model.parameters.len());
-    for parameter in &model.parameters {
-        let value = match &parameter.value {
-            ParameterValue::Interval { nominal, .. } => Some(*nominal),
-            ParameterValue::Formula(formula) => evaluate(formula, |name| match model.symbol(name) {
-                Some(Symbol::Parameter(index)) => values.get(index).copied().flatten(),
-                _ => None,
-            }),
-        };
-        values.push(value);
+impl<'m> Values<'m> {
+    /// Of a model.
+    pub fn of(model: &'m Description) -> Self {
+        let (builder, count) = (Builder::new(), model.parameters.len());
+        let (nominal, exprs) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut own = Self { model, nominal, builder, exprs, symbols: Vec::new(), bounds: Vec::new() };
+        // Each follows from those before it.
+        for parameter in &model.parameters {
+            let (nominal, expr) = match &parameter.value {
+                ParameterValue::Interval { nominal, lower, upper } => {
+                    let symbol = own.builder.variable(&parameter.name).expr();
+                    own.symbols.push(symbol);
+                    own.bounds.push(Interval::new(*lower, *upper));
+                    (Some(*nominal), Some(symbol))
+                }
+                ParameterValue::Formula(formula) => (own.nominal(formula), own.expr(formula)),
+            };
+            own.nominal.push(nominal);
+            own.exprs.push(expr);
+        }
+        own
     }
-    values
-}
 
-/// An enclosure over the box of the uncertain parameters; `None` where the formula depends on none of them.
-fn enclosure(model: &Description, formula: &Formula) -> Option<[f64; 2]> {
-    let builder = Builder::new();
-    let (mut symbols, mut bounds) = (Vec::new(), Vec::new());
-    let mut values: Vec<Option<Scalar>> = Vec::with_capacity(model.parameters.len());
-    let known = |values: &[Option<Scalar>], name: &str| match model.symbol(name) {
-        Some(Symbol::Parameter(index)) => values.get(index).copied().flatten().map(Scalar::expr),
-        _ => None,
-    };
-    for parameter in &model.parameters {
-        let value = match &parameter.value {
-            ParameterValue::Interval { lower, upper, .. } => {
-                let symbol = builder.variable(&parameter.name);
-                symbols.push(symbol.expr());
-                bounds.push(Interval::new(*lower, *upper));
-                Some(symbol)
-            }
-            ParameterValue::Formula(own) => {
-                own.build(&builder, |name| known(&values, name).map(|expr| builder.scalar(expr)).ok_or(())).ok()
-            }
-        };
-        values.push(value);
+    /// The value of a formula; `None` where it is made of more than parameters.
+    pub fn resolve(&self, formula: &Formula) -> Option<Resolved> {
+        Some(Resolved { nominal: self.nominal(formula)?, interval: self.enclosure(formula) })
     }
-    let root = formula.build(&builder, |name| known(&values, name).map(|expr| builder.scalar(expr)).ok_or(())).ok()?;
-    if root.as_constant().is_some() {
-        return None;
+
+    /// The value of a parameter with its unit, in words.
+    pub fn of_parameter(&self, name: &str) -> Option<String> {
+        let value = self.resolve(&Formula::name(name))?;
+        Some(in_words(value, &unit_of(self.model, name).unwrap_or_default()))
     }
-    let graph = builder.graph();
-    let ranges = Ranges::new(&graph, &symbols, &[root.expr()]);
-    let found = ranges.enclose(&bounds, &mut Vec::new()).next()?;
-    (found.lower().is_finite() && found.upper().is_finite()).then_some([found.lower(), found.upper()])
+
+    fn parameter(&self, name: &str) -> Option<usize> {
+        match self.model.symbol(name) {
+            Some(Symbol::Parameter(index)) => Some(index),
+            _ => None,
+        }
+    }
+
+    fn nominal(&self, formula: &Formula) -> Option<f64> {
+        evaluate(formula, |name| self.nominal.get(self.parameter(name)?).copied().flatten())
+    }
+
+    fn expr(&self, formula: &Formula) -> Option<Expr> {
+        let of_name = |name: &str| self.exprs.get(self.parameter(name)?).copied().flatten();
+        let built = formula.build(&self.builder, |name| of_name(name).map(|expr| self.builder.scalar(expr)).ok_or(()));
+        built.ok().map(Scalar::expr)
+    }
+
+    /// An enclosure over the box of the uncertain parameters; `None` where the formula depends on none of them.
+    fn enclosure(&self, formula: &Formula) -> Option<[f64; 2]> {
+        let root = self.expr(formula)?;
+        if self.builder.scalar(root).as_constant().is_some() {
+            return None;
+        }
+        let ranges = Ranges::new(&self.builder.graph(), &self.symbols, &[root]);
+        let found = ranges.enclose(&self.bounds, &mut Vec::new()).next()?;
+        (found.lower().is_finite() && found.upper().is_finite()).then_some([found.lower(), found.upper()])
+    }
 }
 
 /// The SI unit of what a name stands for; empty for a pure number, `None` where it is unknown.
@@ -138,7 +150,8 @@ simulation: { duration: 1, step: 0.01 }
     #[test]
     fn values_intervals_and_units() {
         let model = crate::model::load_str("m.yaml", MODEL, &[]).unwrap();
-        let resolved = |text: &str| resolve(&model, &Formula::parse(text).unwrap());
+        let values = Values::of(&model);
+        let resolved = |text: &str| values.resolve(&Formula::parse(text).unwrap());
         assert_eq!(resolved("2*k").unwrap(), Resolved { nominal: 6.0, interval: None });
         let half = resolved("half + 1").unwrap();
         let [lower, upper] = half.interval.unwrap();

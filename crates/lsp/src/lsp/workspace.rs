@@ -248,3 +248,28 @@ fn section(text: &str, name: &str) -> Vec<Entry> {
         _ => Vec::new(),
     }
 }
+#[cfg(test)]
+mod bench {
+    #[test]
+    fn times() {
+        let p = std::path::Path::new("/tmp/perf44_model.yaml");
+        let text = std::fs::read_to_string(p).unwrap();
+        let t = std::time::Instant::now();
+        let mut d = crate::syntax::Diagnostics::new("", text.as_str());
+        crate::syntax::yaml::parse(&text, &mut d);
+        eprintln!("yaml {:?}", t.elapsed());
+        let t = std::time::Instant::now();
+        let r = crate::model::read_rooted(p, &[], None);
+        eprintln!("read plain {:?} {}", t.elapsed(), r.description.is_some());
+        let open = crate::syntax::within::OpenTexts::new([(p.to_owned(), text.clone())]);
+        let t = std::time::Instant::now();
+        let o = crate::model::read_open(p, &open, None);
+        eprintln!("read open {:?}", t.elapsed());
+        let t = std::time::Instant::now();
+        let n = super::Names::of(&o, o.reading.description.as_ref());
+        eprintln!("names {:?} {}", t.elapsed(), n.occurrences.len());
+        let t = std::time::Instant::now();
+        let c = o.reading.description.clone();
+        eprintln!("clone {:?} {}", t.elapsed(), c.is_some());
+    }
+}
