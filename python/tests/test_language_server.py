@@ -162,7 +162,9 @@ async def test_an_error_appears_while_typing_with_its_cure(client: LanguageClien
 @pytest.mark.asyncio
 async def test_an_error_of_the_mechanism_appears_as_check_prints_it(client: LanguageClient) -> None:
     held = MODEL.replace("arm.hinge] }\n", "arm.hinge] }\n  other: { revolute: [ground, arm.tip] }\n", 1)
-    editor = Editor(client, "held.yaml", held.replace("points: {", "points: { far: [9, 9],", 1).replace("arm.tip]", "arm.far]"))
+    editor = Editor(
+        client, "held.yaml", held.replace("points: {", "points: { far: [9, 9],", 1).replace("arm.tip]", "arm.far]")
+    )
     command = [os.environ.get("MBINT", "mbint"), "check", "--format", "json", "-"]
     process = await asyncio.create_subprocess_exec(*command, stdin=-1, stdout=-1, stderr=-1)
     printed, _ = await process.communicate(editor.text.encode())
@@ -218,7 +220,9 @@ async def test_hover_has_documentation_unit_value_and_interval(client: LanguageC
     inertia = [1.5 * length**2 / 12 for length in (0.5, 0.49, 0.51)]
     numbers = [float(number) for number in re.findall(r"\d+\.\d+(?:e-?\d+)?", whole)[:3]]
     assert numbers == pytest.approx(inertia, rel=1e-5) and "kg*m^2" in whole
-    assert "velocity" not in await editor.hover("arm.tip.|y") and "along the ground's y, m" in await editor.hover("arm.tip.|y")
+    assert "velocity" not in await editor.hover("arm.tip.|y") and "along the ground's y, m" in await editor.hover(
+        "arm.tip.|y"
+    )
     assert "rest" not in await editor.hover("iner|tia:") and "kg*m^2" in await editor.hover("iner|tia:")
     assert "N*m" in await editor.hover("stiff|ness: 3") and "joint **hinge**" in await editor.hover("swing: hi|nge")
     spring = await editor.hover("torsional_spring|_damper")
@@ -295,7 +299,11 @@ async def test_files_out_of_the_models_folder_are_not_read(client: LanguageClien
 
 @pytest.mark.asyncio
 async def test_outline_folding_and_formatting(client: LanguageClient) -> None:
-    untidy = MODEL.replace("  arm: {", "     arm: {", 1).replace("[ground, arm]", "[ground,arm]").replace("outputs:\n", "\n\n\noutputs:   \n")
+    untidy = (
+        MODEL.replace("  arm: {", "     arm: {", 1)
+        .replace("[ground, arm]", "[ground,arm]")
+        .replace("outputs:\n", "\n\n\noutputs:   \n")
+    )
     editor = Editor(client, "outline.yaml", untidy)
     outline = await client.text_document_document_symbol_async(lsp.DocumentSymbolParams(editor.identifier))
     assert [own.name for own in outline] == re.findall(r"^(\w+):", MODEL, re.MULTILINE)

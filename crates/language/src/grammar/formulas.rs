@@ -120,6 +120,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             }
             Ok(formula) => {
                 self.mentions_names(node, scalar, &formula, part.start);
+                self.mentions_tables(node, scalar, &formula, part.start);
                 Some(match own_names {
                     Some(names) => self.in_model(formula, names.scope),
                     None => formula,
@@ -321,67 +322,6 @@ impl<S: SymbolTable> Reader<'_, S> {
         let formula = self.formula(node, context, wanted)?;
         self.require(node, &formula, holds, requirement);
         Some(formula)
-    }
-
-    /// Checks a formula of parameters at all their corners; a formula with other names is not checked.
-    pub fn require(&mut self, node: &Node, formula: &Formula, holds: impl Fn(f64) -> bool, requirement: &str) {
-        let varies = self.is_uncertain(formula);
-        let corners = if varies { self.corners.len() } else { self.corners.len().min(1) };
-        let used: Vec<usize> = formula.names().filter_map(|(name, _)| self.parameter(name)).collect();
-        for corner in 0..corners {
-            if corner > 0 && self.is_nominal(corner, &used) {
-                continue;
-            }
-            let Some(value) = self.evaluate(formula, corner) else { return };
-            if self.broken && !value.is_finite() {
-                return;
-            }
-            let problem = if !value.is_finite() {
-                // Reported where every formula is checked to be finite.
-                if !requirement.is_empty() {
-                    return;
-                }
-                "is not a finite number"
-            } else if !holds(value) {
-                requirement
-            } else {
-                continue;
-            };
-            let text = node.scalar().map_or("", |scalar| scalar.text.as_str());
-            let label = &self.corners[corner].label;
-            let message = if formula.as_number().is_some() || !value.is_finite() {
-                format!("`{}` {problem}{label}", clip(text))
-            } else {
-                format!("`{}` {problem}, but is {value}{label}", clip(text))
-            };
-            self.error(node.span.clone(), message, None);
-            return;
-        }
-    }
-
-    fn parameter(&self, name: &str) -> Option<usize> {
-        match self.symbol(name) {
-            Some(Symbol::Parameter(index)) => Some(index),
-            _ => None,
-        }
-    }
-
-    /// Whether parameters have their nominal values at a corner: a formula of them has the same value there.
-    fn is_nominal(&self, corner: usize, parameters: &[usize]) -> bool {
-        let value = |corner: usize, index: usize| self.corners[corner].values.get(index).map(|value| value.to_bits());
-        parameters.iter().all(|&index| value(corner, index) == value(0, index))
-    }
-
-    /// The formula's value at a corner; `None` where it is made of more than parameters.
-    pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
-        let corner = self.corners.get(corner)?;
-        evaluate(formula, |name| corner.values.get(self.parameter(name)?).copied())
-    }
-
-    /// Whether an uncertain parameter stands behind a name of the formula.
-    pub fn is_uncertain(&self, formula: &Formula) -> bool {
-        let varies = |index: usize| self.varies.get(index).copied().unwrap_or(false);
-        formula.names().any(|(name, _)| self.parameter(name).is_some_and(varies))
     }
 
     /// A number that is the same for every sample.

@@ -4,10 +4,13 @@
 
 use std::cell::RefCell;
 
-use symdiff::Formula;
+use symdiff::formula::Term;
+use symdiff::{Formula, Unary};
 
 use super::dimension::Kind;
+use super::reader::Reader;
 use super::report::Report;
+use super::symbols::SymbolTable;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Scalar};
 
@@ -143,6 +146,21 @@ impl Report<'_> {
             let (formula, kinds) = (formula.clone(), kinds.to_vec());
             all.formulas.push(ReadFormula { start, span: node.span.clone(), formula, kinds });
         });
+    }
+}
+
+impl<S: SymbolTable> Reader<'_, S> {
+    /// Notes the tables of a formula that begins at a byte of a scalar: a call begins with the name of its table.
+    pub(super) fn mentions_tables(&self, node: &Node, scalar: &Scalar, formula: &Formula, offset: usize) {
+        for (term, span) in formula.terms() {
+            let Term::Unary(Unary::Spline(spline, _), _) = term else { continue };
+            let Some(table) = self.tables.iter().find(|table| table.spline == *spline) else { continue };
+            let start = offset + span.start;
+            if scalar.text.get(start..).is_some_and(|text| text.starts_with(&table.name)) {
+                let span = scalar.place(&node.span, start..start + table.name.len());
+                self.mentions(Some(NameKind::Table), &table.name, &span);
+            }
+        }
     }
 }
 

@@ -74,7 +74,8 @@ pub fn help_beside<'c>(
 
 /// The text that a help proposes for the marked one: a near name, or a quoted formula or interval.
 pub fn replacement(help: &str) -> Option<&str> {
-    let before = ["did you mean `", "quote the formula: `", "quote the interval: `", "quote the text: `", "with an index: `"];
+    let before =
+        ["did you mean `", "quote the formula: `", "quote the interval: `", "quote the text: `", "with an index: `"];
     let begun = before.iter().find_map(|phrase| help.split_once(phrase)).map(|(_, rest)| rest)?;
     // What was too long to be shown is not known.
     begun.split_once('`').map(|(text, _)| text).filter(|text| !text.is_empty() && !text.contains('…'))

@@ -47,7 +47,11 @@ impl OpenTexts {
 impl Within {
     /// For the model of a path.
     pub fn of(model: &Path, root: Option<&Path>) -> Self {
-        Self { folder: model.parent().unwrap_or(Path::new("")).to_owned(), root: root.map(Path::to_owned), open: OpenTexts::default() }
+        Self {
+            folder: model.parent().unwrap_or(Path::new("")).to_owned(),
+            root: root.map(Path::to_owned),
+            open: OpenTexts::default(),
+        }
     }
 
     /// The same, with texts that stand for files.
@@ -71,7 +75,8 @@ impl Within {
     /// Where the model may not name it.
     pub fn find(&self, from: &Path, name: &str) -> Result<PathBuf, Box<Diagnostic>> {
         let path = normal(&from.join(name));
-        let folders: Vec<PathBuf> = [Some(&self.folder), self.root.as_ref()].into_iter().flatten().map(|folder| real(folder)).collect();
+        let folders: Vec<PathBuf> =
+            [Some(&self.folder), self.root.as_ref()].into_iter().flatten().map(|folder| real(folder)).collect();
         let below = |path: &Path| folders.iter().any(|folder| path.starts_with(folder));
         let named = below(&normal(&real(&self.folder).join(&path)));
         // A link may lead out of the folder, or into it.

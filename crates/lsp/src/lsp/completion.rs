@@ -20,7 +20,14 @@ use crate::model::InstanceKind;
 const OF_COORDINATES: [&str; 2] = ["initial", "guess"];
 
 /// Proposals at a byte of a document.
-pub fn complete(schema: &Schema, model: Option<&Model>, path: &Path, text: &Text, offset: usize, snippets: bool) -> Vec<CompletionItem> {
+pub fn complete(
+    schema: &Schema,
+    model: Option<&Model>,
+    path: &Path,
+    text: &Text,
+    offset: usize,
+    snippets: bool,
+) -> Vec<CompletionItem> {
     let at = context(text.as_str(), offset);
     let items = match at.slot {
         Slot::Comment => Vec::new(),
@@ -145,10 +152,13 @@ fn snippet(value: &Value, field: &mut usize) -> String {
     match value {
         Value::Object(entries) if entries.is_empty() => "{}".to_owned(),
         Value::Object(entries) => {
-            let entries: Vec<String> = entries.iter().map(|(key, value)| format!("{key}: {}", snippet(value, field))).collect();
+            let entries: Vec<String> =
+                entries.iter().map(|(key, value)| format!("{key}: {}", snippet(value, field))).collect();
             format!("{{ {} }}", entries.join(", "))
         }
-        Value::Array(items) => format!("[{}]", items.iter().map(|item| snippet(item, field)).collect::<Vec<_>>().join(", ")),
+        Value::Array(items) => {
+            format!("[{}]", items.iter().map(|item| snippet(item, field)).collect::<Vec<_>>().join(", "))
+        }
         scalar => {
             *field += 1;
             let text = scalar.as_str().map_or_else(|| scalar.to_string(), str::to_owned);
@@ -162,7 +172,8 @@ fn snippet(value: &Value, field: &mut usize) -> String {
 
 fn values(schema: &Schema, model: Option<&Model>, path: &Path, text: &Text, at: &Context) -> Vec<Proposal> {
     // A requirement is a formula with a comparison in it.
-    let is_requirement = matches!(at.path.as_slice(), [.., Step::Key(section), Step::Key(_)] if section == "requirements");
+    let is_requirement =
+        matches!(at.path.as_slice(), [.., Step::Key(section), Step::Key(_)] if section == "requirements");
     let is_number = is_requirement || schema.is_number(&at.path);
     let written = &text.as_str()[at.written.clone()];
     let before = written.get(..written.len() - at.word.len().min(written.len())).unwrap_or_default();
@@ -174,9 +185,12 @@ fn values(schema: &Schema, model: Option<&Model>, path: &Path, text: &Text, at: 
         return units();
     }
     let mut items: Vec<Proposal> = Vec::new();
-    items.extend(schema.words(&at.path).into_iter().map(|own| {
-        Proposal::new(own.word, CompletionItemKind::ENUM_MEMBER).documentation(own.description)
-    }));
+    items.extend(
+        schema
+            .words(&at.path)
+            .into_iter()
+            .map(|own| Proposal::new(own.word, CompletionItemKind::ENUM_MEMBER).documentation(own.description)),
+    );
     let is_text = schema.is_text(&at.path);
     let Some(model) = model.filter(|_| is_text || is_number) else { return items };
     let of_members = members_at(model, path, at);
@@ -245,12 +259,15 @@ fn prefix(model: &Model, path: &Path, at: &Context) -> Option<String> {
     let symbols = &model.names.symbols;
     let own = symbols.iter().find(|own| own.kind == NameKind::Assembly && own.name == *assembly)?;
     let whole = own.extents.iter().find(|extent| extent.file.as_path() == path)?;
-    let inside = symbols.iter().filter(|own| matches!(own.kind, NameKind::Body | NameKind::Joint | NameKind::Parameter)).find(|own| {
-        let is_inside = |extent: &super::names::Location| {
-            extent.file == whole.file && whole.span.start <= extent.span.start && extent.span.end <= whole.span.end
-        };
-        own.extents.iter().any(is_inside)
-    })?;
+    let inside = symbols
+        .iter()
+        .filter(|own| matches!(own.kind, NameKind::Body | NameKind::Joint | NameKind::Parameter))
+        .find(|own| {
+            let is_inside = |extent: &super::names::Location| {
+                extent.file == whole.file && whole.span.start <= extent.span.start && extent.span.end <= whole.span.end
+            };
+            own.extents.iter().any(is_inside)
+        })?;
     inside.name.rsplit_once('.').map(|(instance, _)| format!("{instance}."))
 }
 
@@ -258,16 +275,22 @@ fn prefix(model: &Model, path: &Path, at: &Context) -> Option<String> {
 fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -> Vec<Proposal> {
     let Some(model) = model else { return Vec::new() };
     let is_global = kinds.iter().all(|kind| matches!(kind, NameKind::Assembly | NameKind::Scene));
-    let Some(prefix) = (if is_global { Some(String::new()) } else { prefix(model, path, at) }) else { return Vec::new() };
+    let Some(prefix) = (if is_global { Some(String::new()) } else { prefix(model, path, at) }) else {
+        return Vec::new();
+    };
     let mut found: Vec<(usize, Proposal)> = Vec::new();
     let parameters = model.known.as_deref().filter(|_| kinds.contains(&NameKind::Parameter)).map(Values::of);
     for (name, kind) in &model.names_known {
         let Some(order) = kinds.iter().position(|own| own == kind) else { continue };
         let Some(local) = name.strip_prefix(&prefix) else { continue };
         let of_motion = matches!(kind, NameKind::Body | NameKind::Joint | NameKind::Effect | NameKind::Output);
-        if local.contains('.') && prefix.is_empty() && of_motion && model.names_known.iter().any(|(own, kind)| {
-            *kind == NameKind::Instance && name.strip_prefix(own.as_str()).is_some_and(|rest| rest.starts_with('.'))
-        }) {
+        if local.contains('.')
+            && prefix.is_empty()
+            && of_motion
+            && model.names_known.iter().any(|(own, kind)| {
+                *kind == NameKind::Instance && name.strip_prefix(own.as_str()).is_some_and(|rest| rest.starts_with('.'))
+            })
+        {
             // Parts of an instance are its members.
             continue;
         }

@@ -148,7 +148,10 @@ fn read_line(line: &str, offset: usize, frames: &mut Vec<Frame>, open: usize) ->
             let own = at;
             at += 1 + content[at + 1..].len() - content[at + 1..].trim_start().len();
             // The list is the value of the key above, in its column or deeper.
-            if frames.last().is_some_and(|frame| frame.indent == Some(own) && !frame.is_list && frame.siblings.is_empty()) {
+            if frames
+                .last()
+                .is_some_and(|frame| frame.indent == Some(own) && !frame.is_list && frame.siblings.is_empty())
+            {
                 frames.pop();
             } else if let Some(frame) = frames.last_mut().filter(|frame| frame.indent == Some(own) && !frame.is_list) {
                 frame.key = frame.siblings.last().cloned();
@@ -179,7 +182,9 @@ fn read_line(line: &str, offset: usize, frames: &mut Vec<Frame>, open: usize) ->
                 frames.push(Frame::new(None, letter == '['));
                 start = offset + index + 1;
             }
-            (None, '}' | ']') if frames.last().is_some_and(|own| own.indent.is_none() && own.is_list == (letter == ']')) => {
+            (None, '}' | ']')
+                if frames.last().is_some_and(|own| own.indent.is_none() && own.is_list == (letter == ']')) =>
+            {
                 frames.pop();
                 start = offset + index + 1;
             }

@@ -149,7 +149,11 @@ fn definition_line(model: &Model, extents: &[super::names::Location], file: &Pat
     let source = sources.find(|source| Path::new(&source.name) == file)?;
     let text = source.text.get(extent.span.clone())?;
     let first = text.lines().next()?;
-    Some(if first.chars().count() > 120 { format!("{}…", first.chars().take(119).collect::<String>()) } else { first.to_owned() })
+    Some(if first.chars().count() > 120 {
+        format!("{}…", first.chars().take(119).collect::<String>())
+    } else {
+        first.to_owned()
+    })
 }
 
 /// The formula at a byte: the smallest part of it of at least so many bytes that is more than a number, with its value.

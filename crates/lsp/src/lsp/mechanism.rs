@@ -5,9 +5,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
+use std::time::Duration;
 
 use crate::model::Description;
 use crate::study;
+
+/// How long an editor has been quiet when mechanisms are examined.
+const QUIET: Duration = Duration::from_millis(400);
 
 /// A model to be examined.
 pub struct Question {
@@ -34,8 +38,11 @@ pub fn examine(answer: impl Fn(Answer) + Send + 'static) -> Sender<Question> {
     let (questions, received): (Sender<Question>, Receiver<Question>) = channel();
     thread::spawn(move || {
         while let Ok(first) = received.recv() {
-            let latest: BTreeMap<PathBuf, Question> =
-                std::iter::once(first).chain(received.try_iter()).map(|own| (own.path.clone(), own)).collect();
+            let mut latest = BTreeMap::from([(first.path.clone(), first)]);
+            // Equations are not built while someone types.
+            while let Ok(next) = received.recv_timeout(QUIET) {
+                latest.insert(next.path.clone(), next);
+            }
             for Question { path, reading, scenes } in latest.into_values() {
                 answer(Answer { path, reading, error: scenes.iter().find_map(|(name, model)| error(name, model)) });
             }

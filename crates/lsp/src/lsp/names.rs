@@ -83,8 +83,11 @@ impl Names {
         // A symbol that turns out to be another one stands for that.
         let mut same: Vec<usize> = Vec::new();
         for Definition { kind, name, span, extent } in &opened.mentions.definitions {
-            let (Some(at), Some(extent)) = (files.locate(sources, span), files.locate(sources, extent)) else { continue };
-            let of_name = names.by_name.get(name).and_then(|all| all.iter().find(|&&own| names.symbols[own].kind == *kind));
+            let (Some(at), Some(extent)) = (files.locate(sources, span), files.locate(sources, extent)) else {
+                continue;
+            };
+            let of_name =
+                names.by_name.get(name).and_then(|all| all.iter().find(|&&own| names.symbols[own].kind == *kind));
             let (of_name, of_place) = (of_name.copied(), by_location.get(&at).copied());
             let symbol = match (of_name, of_place) {
                 (Some(symbol), None) | (None, Some(symbol)) => root(&same, symbol),
@@ -122,9 +125,7 @@ impl Names {
             let extents = std::mem::take(&mut names.symbols[other].extents);
             names.symbols[root(&same, other)].extents.extend(extents);
         }
-        let key = |own: &Occurrence| {
-            (Rc::clone(&own.at.file), own.at.span.start, own.at.span.end, !own.is_definition)
-        };
+        let key = |own: &Occurrence| (Rc::clone(&own.at.file), own.at.span.start, own.at.span.end, !own.is_definition);
         names.occurrences.sort_by_cached_key(key);
         names.occurrences.dedup_by(|next, own| next.at == own.at);
         names
@@ -140,7 +141,8 @@ impl Names {
         let starts = if is_name || !written.contains(['\n', '\\', '"', '\'']) {
             vec![(quotes, inner)]
         } else {
-            let own = std::iter::successors(Some(mention.name.as_str()), |name| name.split_once('.').map(|(_, rest)| rest));
+            let own =
+                std::iter::successors(Some(mention.name.as_str()), |name| name.split_once('.').map(|(_, rest)| rest));
             let found = own.map(|name| words(written, name)).find(|found| !found.is_empty());
             found.unwrap_or_default()
         };
@@ -151,7 +153,14 @@ impl Names {
     }
 
     /// Notes each part of a name that has a definition; the text of the name, or of the end of it, ends at a byte.
-    fn parts(&mut self, mention: &Mention, text: &str, file: &Rc<PathBuf>, mut end: usize, known: Option<&Description>) {
+    fn parts(
+        &mut self,
+        mention: &Mention,
+        text: &str,
+        file: &Rc<PathBuf>,
+        mut end: usize,
+        known: Option<&Description>,
+    ) {
         let mut written: Vec<&str> = text.split('.').collect();
         let mut prefix = mention.name.as_str();
         // From the last part to the first, as long as they are written so.
@@ -179,7 +188,9 @@ impl Names {
         let by_symbol = || {
             Some(match known?.symbol(&mention.name)? {
                 Symbol::Parameter(_) => NameKind::Parameter,
-                Symbol::Coordinate { .. } | Symbol::AngularMotion { .. } | Symbol::RollPitchYaw { .. } => NameKind::Body,
+                Symbol::Coordinate { .. } | Symbol::AngularMotion { .. } | Symbol::RollPitchYaw { .. } => {
+                    NameKind::Body
+                }
                 Symbol::Point { .. } => NameKind::Body,
                 Symbol::JointCoordinate { .. } | Symbol::Reaction { .. } => NameKind::Joint,
                 Symbol::Sensor { .. } => NameKind::Effect,

@@ -48,7 +48,13 @@ pub fn definitions(workspace: &Workspace, model: &Model, path: &Path, offset: us
 }
 
 /// Where what stands at a byte is used, and perhaps where it is defined.
-pub fn references(workspace: &Workspace, model: &Model, path: &Path, offset: usize, with_definition: bool) -> Vec<Location> {
+pub fn references(
+    workspace: &Workspace,
+    model: &Model,
+    path: &Path,
+    offset: usize,
+    with_definition: bool,
+) -> Vec<Location> {
     locations(workspace, model, path, offset, |own| with_definition || !own.is_definition)
 }
 
@@ -85,7 +91,13 @@ pub fn name_at<'m>(model: &'m Model, path: &Path, text: &Text, offset: usize) ->
 ///
 /// # Errors
 /// Where there is no name, or the model would have errors with the new one.
-pub fn rename(workspace: &Workspace, model: &Model, path: &Path, offset: usize, new: &str) -> Result<WorkspaceEdit, RenameError> {
+pub fn rename(
+    workspace: &Workspace,
+    model: &Model,
+    path: &Path,
+    offset: usize,
+    new: &str,
+) -> Result<WorkspaceEdit, RenameError> {
     let symbol = model.names.at(path, offset).ok_or(RenameError::NoName)?.symbol;
     let mut letters = new.chars();
     let is_name = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_')

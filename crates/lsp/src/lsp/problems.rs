@@ -19,7 +19,11 @@ use crate::syntax::suggest;
 const SOURCE: &str = "mbint";
 
 /// Diagnostics of a model by file; also of files without any. `of_mechanism` is the error of the mechanism as a whole.
-pub fn of_model(workspace: &Workspace, model: &Model, of_mechanism: Option<&str>) -> BTreeMap<PathBuf, Vec<Diagnostic>> {
+pub fn of_model(
+    workspace: &Workspace,
+    model: &Model,
+    of_mechanism: Option<&str>,
+) -> BTreeMap<PathBuf, Vec<Diagnostic>> {
     let mut found: BTreeMap<PathBuf, Vec<Diagnostic>> = BTreeMap::new();
     let mut texts: BTreeMap<PathBuf, Text> = BTreeMap::new();
     let sources = &model.opened.reading.diagnostics.sources;
@@ -93,7 +97,8 @@ pub fn fixes(workspace: &Workspace, model: &Model, path: &Path, range: Range) ->
         let (at, written) = (document.text.range(&span), &source.text[span]);
         let title = format!("Replace `{}` by `{new}`", suggest::clip(written));
         let edit = TextEdit { range: at, new_text };
-        let known = |action: &CodeActionOrCommand| matches!(action, CodeActionOrCommand::CodeAction(own) if own.title == title);
+        let known =
+            |action: &CodeActionOrCommand| matches!(action, CodeActionOrCommand::CodeAction(own) if own.title == title);
         if actions.iter().any(known) {
             continue;
         }

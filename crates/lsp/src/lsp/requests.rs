@@ -101,7 +101,8 @@ impl Answers<'_> {
         let names = &self.workspace.model_of(&path)?.names;
         let symbol = names.at(&path, offset)?.symbol;
         let here = names.of_symbol(symbol).filter(|own| own.at.file.as_path() == path);
-        let kind = |is_definition| if is_definition { DocumentHighlightKind::WRITE } else { DocumentHighlightKind::READ };
+        let kind =
+            |is_definition| if is_definition { DocumentHighlightKind::WRITE } else { DocumentHighlightKind::READ };
         Some(
             here.map(|own| DocumentHighlight {
                 range: document.text.range(&own.at.span),

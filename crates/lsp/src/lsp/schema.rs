@@ -48,7 +48,10 @@ impl Schema {
                 Step::Item => schema.get("items").into_iter().collect::<Vec<_>>(),
                 Step::Key(key) => {
                     let known = schema.get("properties").and_then(|keys| keys.get(key));
-                    known.or_else(|| schema.get("additionalProperties").filter(|own| own.is_object())).into_iter().collect()
+                    known
+                        .or_else(|| schema.get("additionalProperties").filter(|own| own.is_object()))
+                        .into_iter()
+                        .collect()
                 }
             });
             found = next.flat_map(|schema| self.choices(schema)).collect();

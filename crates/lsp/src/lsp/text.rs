@@ -107,7 +107,8 @@ mod tests {
     fn a_change_replaces_a_range_or_all() {
         let text = Text::new("a: 1\nb: 2\n");
         let range = LspRange { start: Position { line: 0, character: 3 }, end: Position { line: 1, character: 1 } };
-        let change = |range, text: &str| TextDocumentContentChangeEvent { range, range_length: None, text: text.into() };
+        let change =
+            |range, text: &str| TextDocumentContentChangeEvent { range, range_length: None, text: text.into() };
         assert_eq!(text.changed(change(Some(range), "7\nc")).as_str(), "a: 7\nc: 2\n");
         assert_eq!(text.changed(change(None, "x")).as_str(), "x");
     }

@@ -127,7 +127,8 @@ impl Workspace {
             read.insert(path.clone());
             used.insert(path);
         }
-        self.models.retain(|path, model| used.contains(path) || self.documents.keys().any(|own| model.files.contains(own)));
+        self.models
+            .retain(|path, model| used.contains(path) || self.documents.keys().any(|own| model.files.contains(own)));
         read.into_iter().filter(|path| self.models.contains_key(path)).collect()
     }
 
@@ -246,30 +247,5 @@ fn section(text: &str, name: &str) -> Vec<Entry> {
     match root.as_ref().and_then(|root| root.get(name)).map(|node| &node.value) {
         Some(Value::Mapping(entries)) => entries.clone(),
         _ => Vec::new(),
-    }
-}
-#[cfg(test)]
-mod bench {
-    #[test]
-    fn times() {
-        let p = std::path::Path::new("/tmp/perf44_model.yaml");
-        let text = std::fs::read_to_string(p).unwrap();
-        let t = std::time::Instant::now();
-        let mut d = crate::syntax::Diagnostics::new("", text.as_str());
-        crate::syntax::yaml::parse(&text, &mut d);
-        eprintln!("yaml {:?}", t.elapsed());
-        let t = std::time::Instant::now();
-        let r = crate::model::read_rooted(p, &[], None);
-        eprintln!("read plain {:?} {}", t.elapsed(), r.description.is_some());
-        let open = crate::syntax::within::OpenTexts::new([(p.to_owned(), text.clone())]);
-        let t = std::time::Instant::now();
-        let o = crate::model::read_open(p, &open, None);
-        eprintln!("read open {:?}", t.elapsed());
-        let t = std::time::Instant::now();
-        let n = super::Names::of(&o, o.reading.description.as_ref());
-        eprintln!("names {:?} {}", t.elapsed(), n.occurrences.len());
-        let t = std::time::Instant::now();
-        let c = o.reading.description.clone();
-        eprintln!("clone {:?} {}", t.elapsed(), c.is_some());
     }
 }

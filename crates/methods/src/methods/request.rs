@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::{BoundsRequest, Method};
-use crate::grammar::mentions::NameKind;
 use crate::grammar::mapping::Grammar;
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::RangeKind;

@@ -3,8 +3,8 @@
 use super::description::{Design, Free, Objective};
 use super::parameters::Riding;
 use super::requirements;
-use crate::grammar::mentions::NameKind;
 use crate::grammar::formulas::{Written, evaluate};
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::tolerance;

@@ -53,6 +53,7 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
         reader.error(name_spans[index].clone(), message, None);
     }
     reader.broken = corners.iter().any(|corner| corner.values.iter().any(|value| !value.is_finite()));
+    reader.corners_of = moved(&corners, reader.model.parameters.len());
     reader.corners = corners;
     reader.varies = varies;
 }
@@ -110,7 +111,9 @@ fn evaluated(
                     chosen.iter().find(|(chosen, _)| *chosen == index).map_or(*nominal, |(_, value)| *value)
                 }
                 ParameterValue::Formula(_) if !varies[index] && !corners.is_empty() => corners[0].values[index],
-                ParameterValue::Formula(_) if is_as_nominal(&corners, &values, &used[index]) => corners[0].values[index],
+                ParameterValue::Formula(_) if is_as_nominal(&corners, &values, &used[index]) => {
+                    corners[0].values[index]
+                }
                 ParameterValue::Formula(formula) => {
                     evaluate(formula, |name| positions.get(name).and_then(|&used| values.get(used).copied()))
                         .unwrap_or(f64::NAN)
@@ -132,4 +135,11 @@ fn is_as_nominal(corners: &[Corner], values: &[f64], used: &[usize]) -> bool {
     let Some(nominal) = corners.first().map(|corner| &corner.values) else { return false };
     let bits = |values: &[f64], index: usize| values.get(index).map(|value| value.to_bits());
     used.iter().all(|&index| index < values.len() && bits(values, index) == bits(nominal, index))
+}
+
+/// For each parameter the corners at which its value is not the nominal one.
+fn moved(corners: &[Corner], parameters: usize) -> Vec<Vec<usize>> {
+    let is_moved =
+        |corner: &usize, index: usize| corners[*corner].values[index].to_bits() != corners[0].values[index].to_bits();
+    (0..parameters).map(|index| (1..corners.len()).filter(|corner| is_moved(corner, index)).collect()).collect()
 }
