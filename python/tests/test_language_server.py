@@ -1,6 +1,7 @@
 """`mbint lsp` by a client that speaks the protocol (pytest-lsp). The variable MBINT names the command."""
 
 import asyncio
+import json
 import os
 import re
 import shutil
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 import pytest_lsp
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
 MODELS = Path(__file__).resolve().parents[2] / "models"
@@ -117,7 +119,7 @@ class Editor:
 
     async def completions(self, place: str) -> dict[str, lsp.CompletionItem]:
         found = await self.client.text_document_completion_async(lsp.CompletionParams(**self.at(place)))
-        return {item.label: item for item in found or []}
+        return {item.label: item for item in found.items}
 
     async def hover(self, place: str) -> str:
         found = await self.client.text_document_hover_async(lsp.HoverParams(**self.at(place)))
@@ -168,8 +170,6 @@ async def test_an_error_of_the_mechanism_appears_as_check_prints_it(client: Lang
     command = [os.environ.get("MBINT", "mbint"), "check", "--format", "json", "-"]
     process = await asyncio.create_subprocess_exec(*command, stdin=-1, stdout=-1, stderr=-1)
     printed, _ = await process.communicate(editor.text.encode())
-    import json
-
     [checked] = json.loads(printed)
     assert checked["error"]
     [found] = await editor.diagnostics()
@@ -246,7 +246,7 @@ async def test_definitions_references_and_new_names(client: LanguageClient) -> N
     renamed = await editor.rename("[ground, ar|m.hinge]", "lever")
     assert renamed[editor.uri] == re.sub(r"\barm\b(?=[.:\]])", "lever", MODEL)
     for wrong, reason in [("two words", "cannot be a name"), ("half", "half"), ("t", "t")]:
-        with pytest.raises(Exception, match=reason):
+        with pytest.raises(JsonRpcException, match=reason):
             await editor.rename("half: len|gth/2", wrong)
 
 
@@ -336,7 +336,7 @@ async def test_every_name_of_the_models_here_can_be_changed(client: LanguageClie
                 params = lsp.RenameParams(editor.identifier, own.selection_range.start, f"{own.name}_new")
                 try:
                     edit = await client.text_document_rename_async(params)
-                except Exception as refused:
+                except JsonRpcException as refused:
                     assert re.search(rf"repeat: {{ \w+: \[[^\]]*\b{own.name}\b", text), refused
                     continue
                 assert edit.changes[editor.uri], own.name

@@ -19,6 +19,7 @@ pub mod mentions;
 mod mesh;
 pub mod motions;
 pub mod names;
+mod notes;
 mod on_joint;
 mod own_names;
 mod pairs;

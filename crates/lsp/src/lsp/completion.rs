@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
-use lsp_types::{CompletionItem, CompletionItemKind, CompletionTextEdit, Documentation, InsertTextFormat, TextEdit};
+use lsp_types::{
+    CompletionItem, CompletionItemKind, CompletionList, CompletionTextEdit, Documentation, InsertTextFormat, TextEdit,
+};
 use serde_json::Value;
 
 use super::context::{Context, Slot, Step, context};
 use super::hover::kind_in_words;
 use super::members::members;
+use super::proposal::Proposal;
 use super::schema::{KeyInfo, Schema};
 use super::text::Text;
 use super::values::Values;
@@ -15,6 +18,9 @@ use super::workspace::Model;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::reference;
 use crate::model::InstanceKind;
+
+/// Names of a kind that are proposed.
+const MOST_OF_A_KIND: usize = 100;
 
 /// Sections whose keys are names of coordinates.
 const OF_COORDINATES: [&str; 2] = ["initial", "guess"];
@@ -27,7 +33,7 @@ pub fn complete(
     text: &Text,
     offset: usize,
     snippets: bool,
-) -> Vec<CompletionItem> {
+) -> CompletionList {
     let at = context(text.as_str(), offset);
     let items = match at.slot {
         Slot::Comment => Vec::new(),
@@ -54,42 +60,9 @@ pub fn complete(
             ..CompletionItem::default()
         }
     };
-    items.into_iter().enumerate().map(edited).collect()
-}
-
-/// Something that may be typed.
-pub struct Proposal {
-    /// As it is listed.
-    pub label: String,
-    /// What is typed, where it is not the label.
-    pub insert: Option<String>,
-    /// Whether `insert` has fields to be filled in.
-    pub is_snippet: bool,
-    /// Its kind.
-    pub kind: CompletionItemKind,
-    /// Beside the label.
-    pub detail: Option<String>,
-    /// Below it.
-    pub documentation: Option<String>,
-}
-
-impl Proposal {
-    /// Of a text with nothing else.
-    pub fn new(label: impl Into<String>, kind: CompletionItemKind) -> Self {
-        Self { label: label.into(), insert: None, is_snippet: false, kind, detail: None, documentation: None }
-    }
-
-    /// With text beside the label.
-    #[must_use]
-    pub fn detail(self, detail: impl Into<String>) -> Self {
-        Self { detail: Some(detail.into()).filter(|detail| !detail.is_empty()), ..self }
-    }
-
-    /// With text below the label.
-    #[must_use]
-    pub fn documentation(self, text: impl Into<String>) -> Self {
-        Self { documentation: Some(text.into()).filter(|text| !text.is_empty()), ..self }
-    }
+    // An editor asks again, with more letters, where names were left out.
+    let is_incomplete = model.is_some_and(|model| model.names_known.len() > MOST_OF_A_KIND);
+    CompletionList { is_incomplete, items: items.into_iter().enumerate().map(edited).collect() }
 }
 
 fn keys(schema: &Schema, model: Option<&Model>, path: &Path, at: &Context, snippets: bool) -> Vec<Proposal> {
@@ -278,11 +251,16 @@ fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -
     let Some(prefix) = (if is_global { Some(String::new()) } else { prefix(model, path, at) }) else {
         return Vec::new();
     };
-    let mut found: Vec<(usize, Proposal)> = Vec::new();
+    let typed = at.typed.to_lowercase();
+    let mut found: Vec<(usize, &str, &str, NameKind)> = Vec::new();
+    let mut counts = vec![0; kinds.len()];
     let parameters = model.known.as_deref().filter(|_| kinds.contains(&NameKind::Parameter)).map(Values::of);
     for (name, kind) in &model.names_known {
         let Some(order) = kinds.iter().position(|own| own == kind) else { continue };
         let Some(local) = name.strip_prefix(&prefix) else { continue };
+        if counts[order] == MOST_OF_A_KIND || !local.to_lowercase().contains(&typed) {
+            continue;
+        }
         let of_motion = matches!(kind, NameKind::Body | NameKind::Joint | NameKind::Effect | NameKind::Output);
         if local.contains('.')
             && prefix.is_empty()
@@ -294,10 +272,12 @@ fn names(model: Option<&Model>, path: &Path, at: &Context, kinds: &[NameKind]) -
             // Parts of an instance are its members.
             continue;
         }
-        found.push((order, proposal(model, parameters.as_ref(), local, name, *kind)));
+        counts[order] += 1;
+        found.push((order, local, name, *kind));
     }
-    found.sort_by_key(|(order, _)| *order);
-    found.into_iter().map(|(_, own)| own).collect()
+    found.sort_by_key(|(order, ..)| *order);
+    let of = |(_, local, name, kind)| proposal(model, parameters.as_ref(), local, name, kind);
+    found.into_iter().map(of).collect()
 }
 
 fn proposal(model: &Model, parameters: Option<&Values>, local: &str, name: &str, kind: NameKind) -> Proposal {

@@ -34,6 +34,8 @@ pub struct Context {
     pub word: Range<usize>,
     /// What stands before the last dot of the word: `crank.B` of `crank.B.v`.
     pub owner: String,
+    /// What stands behind it.
+    pub typed: String,
     /// Bytes of the value, or of the key, up to the cursor.
     pub written: Range<usize>,
     /// Keys that stand in the same mapping before the cursor.
@@ -111,8 +113,9 @@ pub fn context(text: &str, offset: usize) -> Context {
             None => {}
         }
     }
-    let owner = text[word.clone()].rsplit_once('.').map_or_else(String::new, |(owner, _)| owner.to_owned());
-    Context { path, slot, word, owner, written, siblings }
+    let (owner, typed) = text[word.clone()].rsplit_once('.').unwrap_or(("", &text[word.clone()]));
+    let (owner, typed) = (owner.to_owned(), typed.to_owned());
+    Context { path, slot, word, owner, typed, written, siblings }
 }
 
 /// Closes blocks that a line in a column ends: of the block with that column, the key.

@@ -192,7 +192,9 @@ fn lay(text: &Text, node: &Node, column: usize, lines: &mut [Line]) {
             }
         }
         Value::Scalar(_) => {
-            let (first, last) = (text.line_of(node.span.start), text.line_of(node.span.end.max(1) - 1));
+            // A text in a block ends where the next key begins.
+            let end = source[..node.span.end].trim_end().len().max(node.span.start + 1);
+            let (first, last) = (text.line_of(node.span.start), text.line_of(end - 1));
             // A text behind `|` begins on a line of its own.
             let is_behind = source[text.line(first).start..node.span.start].trim().is_empty();
             lines[(first + usize::from(!is_behind)).min(last + 1)..=last].fill(Line::Text);

@@ -3,8 +3,8 @@
 
 use lsp_types::CompletionItemKind;
 
-use super::completion::Proposal;
 use super::hover::kind_in_words;
+use super::proposal::Proposal;
 use super::values::unit_of;
 use super::workspace::Model;
 use crate::grammar::mentions::NameKind;

@@ -10,6 +10,7 @@ mod names;
 mod navigation;
 mod outline;
 mod problems;
+mod proposal;
 mod requests;
 mod schema;
 mod server;

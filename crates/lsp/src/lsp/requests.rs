@@ -74,7 +74,8 @@ impl Answers<'_> {
     fn completion(&self, params: CompletionParams) -> Option<CompletionResponse> {
         let (path, document, offset) = self.place(&params.text_document_position)?;
         let model = self.workspace.model_of(&path);
-        Some(CompletionResponse::Array(complete(self.schema, model, &path, &document.text, offset, self.snippets)))
+        let list = complete(self.schema, model, &path, &document.text, offset, self.snippets);
+        Some(CompletionResponse::List(list))
     }
 
     fn hover(&self, params: HoverParams) -> Option<Hover> {

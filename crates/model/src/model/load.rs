@@ -5,9 +5,9 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, black_box, bodies, bounds, design, effects, excitations, fmu, instances, joints, motion_times, open,
-    parameters, random, requests, requirements, sections, space, states, statistics, tables, teeth, trajectories,
-    zone_sizes,
+    analysis, black_box, bodies, bounds, definitions, design, effects, excitations, fmu, instances, joints,
+    motion_times, parameters, random, requests, requirements, sections, space, states, statistics, tables, teeth,
+    trajectories, zone_sizes,
 };
 use crate::expand::dimensions::{self, Chain};
 use crate::expand::overrides::Override;
@@ -277,7 +277,7 @@ fn describe(
 ) -> (Description, Vec<Diagnostic>) {
     let root = &variant.root;
     let mut reader = Reader::new(origin.report(diagnostics), origin.empty());
-    open::note_definitions(&reader, root);
+    definitions::note(&reader, root);
     reader.model.chains = origin.chains.clone();
     reader.model.zones = origin.zones.clone();
     reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());

@@ -3,6 +3,7 @@
 //! `load` goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! `Diagnostics` collects them all, each with its place.
 
+mod definitions;
 mod description;
 mod design;
 mod names;

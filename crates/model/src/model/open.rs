@@ -3,11 +3,9 @@
 use std::path::Path;
 
 use super::load::{Origin, Reading, read_from, read_rooted, shown};
-use super::names::Reader;
-use crate::grammar::mentions::{Mentions, NameKind, Notes};
+use crate::grammar::mentions::{Mentions, Notes};
 use crate::robots::{mjcf, urdf};
 use crate::syntax::within::{OpenTexts, Within};
-use crate::syntax::yaml::{Node, Value};
 
 /// A model that is open in an editor.
 #[derive(Clone, Debug)]
@@ -28,37 +26,4 @@ pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
     let files = Within::of(path, root).with_open(open);
     let reading = read_from(Origin::of(&name, files, Some(&notes)), text, &[]);
     Opened { reading, mentions: notes.into_inner() }
-}
-
-/// Sections whose keys are names.
-const SECTIONS: [(&str, NameKind); 10] = [
-    ("parameters", NameKind::Parameter),
-    ("bodies", NameKind::Body),
-    ("joints", NameKind::Joint),
-    ("effects", NameKind::Effect),
-    ("states", NameKind::State),
-    ("outputs", NameKind::Output),
-    ("requirements", NameKind::Requirement),
-    ("tables", NameKind::Table),
-    ("trajectories", NameKind::Trajectory),
-    ("excitations", NameKind::Excitation),
-];
-
-/// Notes the names that a tree, which is written out, gives a meaning.
-pub(super) fn note_definitions(reader: &Reader, root: &Node) {
-    if reader.mentions.is_none() {
-        return;
-    }
-    for (section, kind) in SECTIONS {
-        let Some(Value::Mapping(entries)) = root.get(section).map(|node| &node.value) else { continue };
-        for entry in entries {
-            reader.defines(kind, &entry.key, entry);
-            let points = entry.value.get("points").filter(|_| kind == NameKind::Body).map(|node| &node.value);
-            if let Some(Value::Mapping(points)) = points {
-                for point in points {
-                    reader.defines(NameKind::Point, &format!("{}.{}", entry.key, point.key), point);
-                }
-            }
-        }
-    }
 }
