@@ -129,7 +129,7 @@ fn half_typed_texts_are_answered() {
     ];
     let files = models();
     let mut answers = 0;
-    for round in 0..150 {
+    for round in 0..80 {
         let file = &files[random(files.len())];
         let text = fs::read_to_string(file).unwrap();
         let letters: Vec<char> = text.chars().collect();
@@ -180,7 +180,7 @@ fn half_typed_texts_are_answered() {
         }
         session.tell("textDocument/didClose", json!({ "textDocument": document }));
     }
-    assert_eq!(answers, 150 * 2 * 11);
+    assert_eq!(answers, 80 * 2 * 11);
     session.ask("shutdown", Value::Null);
     session.tell("exit", Value::Null);
     assert_eq!(session.code(), 0);
@@ -202,9 +202,10 @@ fn formatted_models_mean_the_same() {
         let wide = |line: &str| {
             let indent = line.len() - line.trim_start().len();
             let line = line.replace(" }", "}").replace("{ ", "{");
-            format!("{}{line}  ", " ".repeat(indent))
+            // Spaces at the ends of lines belong to texts of several lines, which have no keys.
+            let end = if line.contains(':') { "  " } else { "" };
+            format!("{}{line}{end}", " ".repeat(indent))
         };
-        // Texts of several lines are indented with what is around them; the reader of YAML joins them.
         let untidy = text.lines().map(wide).collect::<Vec<_>>().join("\n");
         let uri = uri(&file);
         session.open(&uri, &untidy);

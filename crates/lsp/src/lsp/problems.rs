@@ -137,3 +137,24 @@ pub fn edit_of(changes: impl IntoIterator<Item = (Uri, Vec<TextEdit>)>) -> Works
 pub fn address(workspace: &Workspace, path: &Path) -> Option<Uri> {
     workspace.documents.get(path).map(|own| own.uri.clone()).or_else(|| uri_of(path))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_that_help_proposes() {
+        let fixed = |text: &str, span: Span, help: &str| {
+            let (span, new) = replaced(text, &span, suggest::replacement(help)?)?;
+            let mut text = text.to_owned();
+            text.replace_range(span, &new);
+            Some(text)
+        };
+        assert_eq!(fixed("x: crnk.y", 3..7, "did you mean `crank`?").as_deref(), Some("x: crank.y"));
+        assert_eq!(fixed("on: \"crnk\"", 4..10, "did you mean `crank`?").as_deref(), Some("on: \"crank\""));
+        let help = "quote the interval: `\"[1, 2] m\"`";
+        assert_eq!(fixed("a: [1, 2] m\nb: 1", 10..11, help).as_deref(), Some("a: \"[1, 2] m\"\nb: 1"));
+        assert_eq!(fixed("x: 1", 0..1, "the keys are `a` and `b`"), None);
+        assert_eq!(fixed("x: crnk", 3..7, "did you mean `a_name_that_was_cut…`?"), None);
+    }
+}

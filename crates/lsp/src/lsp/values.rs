@@ -157,6 +157,12 @@ simulation: { duration: 1, step: 0.01 }
         let [lower, upper] = half.interval.unwrap();
         assert!((half.nominal - 1.1).abs() < 1e-14 && (lower - 1.09).abs() < 1e-12 && (upper - 1.11).abs() < 1e-12);
         assert_eq!(resolved("arm.x + l"), None);
+        // A part of a formula needs no names but its own.
+        let whole = Formula::parse("arm.x + k*(half - l)").unwrap();
+        let product = whole.terms().iter().position(|(_, span)| *span == (8..20)).unwrap();
+        let part = values.resolve(&whole.part(product)).unwrap();
+        assert!((part.nominal + 0.3).abs() < 1e-14, "{part:?}");
+        assert_eq!(whole.part(product).names().map(|(name, _)| name).collect::<Vec<_>>(), ["k", "half", "l"]);
         let unit = |name: &str| unit_of(&model, name).unwrap();
         assert_eq!([unit("l"), unit("arm.vx"), unit("arm.A.ax")], ["m", "m/s", "m/s^2"]);
         assert_eq!([unit("spring.force"), unit("pin.force"), unit("energy"), unit("t")], ["N", "N", "N*m", "s"]);
