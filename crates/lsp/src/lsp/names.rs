@@ -14,7 +14,7 @@ use crate::model::{Description, Opened};
 use crate::syntax::source::Sources;
 
 /// A place in a file.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
     /// The file.
     pub file: Rc<PathBuf>,
@@ -79,7 +79,8 @@ impl Names {
     pub fn of(opened: &Opened, known: Option<&Description>) -> Self {
         let (sources, mut files) = (&opened.reading.diagnostics.sources, Files::default());
         let mut names = Self::default();
-        let mut by_location: HashMap<Location, usize> = HashMap::new();
+        // By the file, of which there is one object, and the offset.
+        let mut by_location: HashMap<(*const PathBuf, usize), usize> = HashMap::new();
         // A symbol that turns out to be another one stands for that.
         let mut same: Vec<usize> = Vec::new();
         for Definition { kind, name, span, extent } in &opened.mentions.definitions {
@@ -88,7 +89,8 @@ impl Names {
             };
             let of_name =
                 names.by_name.get(name).and_then(|all| all.iter().find(|&&own| names.symbols[own].kind == *kind));
-            let (of_name, of_place) = (of_name.copied(), by_location.get(&at).copied());
+            let key = (Rc::as_ptr(&at.file), at.span.start);
+            let (of_name, of_place) = (of_name.copied(), by_location.get(&key).copied());
             let symbol = match (of_name, of_place) {
                 (Some(symbol), None) | (None, Some(symbol)) => root(&same, symbol),
                 (Some(first), Some(second)) => {
@@ -107,7 +109,7 @@ impl Names {
                 names.by_name.entry(name.clone()).or_default().push(symbol);
             }
             if of_place.is_none() {
-                by_location.insert(at.clone(), symbol);
+                by_location.insert(key, symbol);
                 names.symbols[symbol].extents.push(extent);
                 names.occurrences.push(Occurrence { at, symbol, is_definition: true });
             }
@@ -125,9 +127,12 @@ impl Names {
             let extents = std::mem::take(&mut names.symbols[other].extents);
             names.symbols[root(&same, other)].extents.extend(extents);
         }
-        let key = |own: &Occurrence| (Rc::clone(&own.at.file), own.at.span.start, own.at.span.end, !own.is_definition);
-        names.occurrences.sort_by_cached_key(key);
-        names.occurrences.dedup_by(|next, own| next.at == own.at);
+        names.occurrences.sort_by(|a, b| {
+            let files = a.at.file.as_os_str().cmp(b.at.file.as_os_str());
+            let key = |own: &Occurrence| (own.at.span.start, own.at.span.end, !own.is_definition);
+            files.then_with(|| key(a).cmp(&key(b)))
+        });
+        names.occurrences.dedup_by(|next, own| next.at.span == own.at.span && Rc::ptr_eq(&next.at.file, &own.at.file));
         names
     }
 
