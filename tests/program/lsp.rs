@@ -1,5 +1,5 @@
-//! `mbint lsp` by plain messages: the end of a session, half-typed texts, and formatting, against another reader of YAML.
-//! What the answers are is tested by a client of the protocol in `python/tests/test_language_server.py`.
+//! `mbint lsp` by plain messages: the end of a session, half-typed texts, and formatting, compared with another reader
+//! of YAML. A client of the protocol tests the answers in `python/tests/test_language_server.py`.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};

@@ -1,6 +1,6 @@
 //! Names and formulas of a model with their locations, for editors.
 //!
-//! Readers note what they read where an editor asks for it; a run notes nothing.
+//! Readers note them where an editor asks for it; a run notes nothing.
 
 use std::cell::RefCell;
 
@@ -9,7 +9,7 @@ use symdiff::Formula;
 use super::dimension::Kind;
 use crate::syntax::source::Span;
 
-/// What a name is of.
+/// Kind of a named thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum NameKind {
     /// A parameter.
@@ -47,7 +47,7 @@ pub enum NameKind {
 /// Where a name gets its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Definition {
-    /// What it is of.
+    /// Kind of the named thing.
     pub kind: NameKind,
     /// The full name: `front_left.upright`; of a point with its body's.
     pub name: String,
@@ -62,7 +62,7 @@ pub struct Definition {
 pub struct Mention {
     /// The full name, perhaps with parts of the motion behind it: `crank.B.vx`.
     pub name: String,
-    /// What it is of, where only one kind can stand there.
+    /// Kind of the named thing, where only one kind can stand there.
     pub kind: Option<NameKind>,
     /// Its bytes; the text may be the end of the full name only.
     pub span: Span,
@@ -92,5 +92,5 @@ pub struct Mentions {
     pub formulas: Vec<ReadFormula>,
 }
 
-/// Where readers note what they read.
+/// Notes of readers.
 pub type Notes = RefCell<Mentions>;

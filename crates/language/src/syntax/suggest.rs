@@ -77,7 +77,7 @@ pub fn replacement(help: &str) -> Option<&str> {
     let before =
         ["did you mean `", "quote the formula: `", "quote the interval: `", "quote the text: `", "with an index: `"];
     let begun = before.iter().find_map(|phrase| help.split_once(phrase)).map(|(_, rest)| rest)?;
-    // What was too long to be shown is not known.
+    // A text that was too long to be shown is not known.
     begun.split_once('`').map(|(text, _)| text).filter(|text| !text.is_empty() && !text.contains('…'))
 }
 

@@ -1,9 +1,9 @@
-//! Where in a model's text a cursor is: keys around it, and whether a key or a value stands there. Half-typed texts have
-//! no tree, so that this reads lines: indentation, braces, brackets and quotes up to the cursor.
+//! Surroundings of a cursor in a model's text: keys around it, and whether a key or a value stands there. Half-typed
+//! texts have no tree, so that this reads lines: indentation, braces, brackets and quotes up to the cursor.
 
 use std::ops::Range;
 
-/// A step from a mapping or a list to what is in it.
+/// A step from a mapping or a list to one of its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
     /// The value of a key.

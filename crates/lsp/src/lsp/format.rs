@@ -64,7 +64,7 @@ fn with_spaces(text: &str, root: &Node) -> String {
 }
 
 fn add_gaps(text: &str, node: &Node, gaps: &mut Vec<(Range<usize>, String)>) {
-    // What is in a gap: white space, and one of these. Comments and line ends stay as they are.
+    // A gap has white space and one of these. Comments and line ends stay as they are.
     let mut add = |gap: Range<usize>, pad: bool| {
         let Some(written) = text.get(gap.clone()) else { return };
         let mark = written.trim();
@@ -107,7 +107,7 @@ fn add_gaps(text: &str, node: &Node, gaps: &mut Vec<(Range<usize>, String)>) {
     }
 }
 
-/// What is to become of a line.
+/// Indentation of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Line {
     /// Begins in this column.

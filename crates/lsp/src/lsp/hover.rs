@@ -63,7 +63,7 @@ fn word_at(text: &str, offset: usize) -> Range<usize> {
     offset - before..offset + behind
 }
 
-/// A name with its meaning: what it is of, its unit, value and definition.
+/// A name with its meaning: kind, unit, value and definition.
 fn name(model: &Model, path: &Path, text: &Text, offset: usize, word: &Range<usize>) -> Option<Hover> {
     let found = model.names.at(path, offset)?;
     let symbol = &model.names.symbols[found.symbol];

@@ -23,7 +23,7 @@ pub struct Question {
     pub scenes: Vec<(Option<String>, Arc<Description>)>,
 }
 
-/// What is wrong with a mechanism.
+/// The first error of a mechanism.
 pub struct Answer {
     /// The model's file.
     pub path: PathBuf,

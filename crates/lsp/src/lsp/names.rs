@@ -36,7 +36,7 @@ pub struct Occurrence {
 /// A name with a meaning.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// What it is of.
+    /// Kind of the named thing.
     pub kind: NameKind,
     /// Its full name; the first of those of several instances.
     pub name: String,
@@ -219,7 +219,7 @@ impl Names {
         self.occurrences.iter().filter(move |own| own.symbol == symbol)
     }
 
-    /// Full names with what they are of, sorted.
+    /// Full names with their kinds, sorted.
     pub fn all(&self) -> Vec<(&str, NameKind)> {
         let mut all: Vec<(&str, NameKind)> = Vec::new();
         for (name, symbols) in &self.by_name {

@@ -113,7 +113,7 @@ pub fn fixes(workspace: &Workspace, model: &Model, path: &Path, range: Range) ->
     actions
 }
 
-/// The bytes that a proposed text replaces, and the text: quotes stay, and what is to be quoted is found in the line.
+/// The bytes that a proposed text replaces, and the text. Quotes stay; a text to be quoted is found in the line.
 fn replaced(text: &str, span: &Span, new: &str) -> Option<(Span, String)> {
     let written = text.get(span.clone())?;
     if let Some(unquoted) = new.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {

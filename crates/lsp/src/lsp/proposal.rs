@@ -6,7 +6,7 @@ use lsp_types::CompletionItemKind;
 pub struct Proposal {
     /// As it is listed.
     pub label: String,
-    /// What is typed, where it is not the label.
+    /// The typed text, where it is not the label.
     pub insert: Option<String>,
     /// Whether `insert` has fields to be filled in.
     pub is_snippet: bool,

@@ -30,7 +30,7 @@ pub struct Answers<'a> {
     pub workspace: &'a Workspace,
     /// The language.
     pub schema: &'a Schema,
-    /// Whether the editor fills in fields of what it inserts.
+    /// Whether the editor fills in fields of inserted texts.
     pub snippets: bool,
 }
 

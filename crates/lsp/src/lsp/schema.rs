@@ -1,5 +1,5 @@
-//! The JSON Schema of model files, walked along the keys of a text: which keys and words may stand there, and what they
-//! are.
+//! The JSON Schema of model files, walked along the keys of a text: keys and words that may stand there, with their
+//! documentation.
 
 use serde_json::Value;
 

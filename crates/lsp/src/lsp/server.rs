@@ -204,7 +204,7 @@ impl<'c> Server<'c> {
         }
     }
 
-    /// Reads what has changed, and publishes what is wrong with it.
+    /// Reads changed texts, and publishes their diagnostics.
     fn refresh(&mut self) {
         let read = match study::caught("reading", || self.workspace.refresh()) {
             Ok(read) if read.is_empty() && self.published.keys().all(|file| self.is_shown(file)) => return,

@@ -1,8 +1,8 @@
 //! Open documents, and the models that they belong to, read anew where a text changed.
 //!
-//! A document is a model, or a file of assemblies. The latter belongs to the models that include it: those that are open,
-//! else those in its folder and the folders above it within the workspace, for an included file lies below the file that
-//! includes it. A file of assemblies without a model is read with an instance of each of them.
+//! A document is a model, or a file of assemblies. The latter belongs to the models that include it: open ones, else
+//! those in its folder and the folders above it within the workspace, because an included file lies below its model. A
+//! file of assemblies without a model is read with an instance of each of them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -89,7 +89,7 @@ impl Workspace {
         self.documents.insert(path, document);
     }
 
-    /// Closes a document: what is stored counts again.
+    /// Closes a document: the stored text counts again.
     pub fn close(&mut self, path: &Path) {
         self.documents.remove(path);
         self.changed.insert(path.to_owned());

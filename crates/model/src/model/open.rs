@@ -16,7 +16,7 @@ pub struct Opened {
     pub mentions: Mentions,
 }
 
-/// Reads a model, some of whose files are open in an editor. What is not open is read as [`read_rooted`] reads it.
+/// Reads a model, some of whose files are open in an editor. Other files are read as [`read_rooted`] reads them.
 pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
     let is_robot = urdf::is_urdf(path) || mjcf::is_mjcf(path);
     let Some(text) = open.get(path).filter(|_| !is_robot) else {

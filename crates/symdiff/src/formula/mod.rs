@@ -313,7 +313,7 @@ impl Formula {
     pub fn part(&self, node: usize) -> Self {
         let mut is_in = vec![false; self.terms.len()];
         is_in[node] = true;
-        // Operands stand before what is made of them.
+        // Operands stand before their results.
         for index in (0..=node).rev() {
             if let (true, term) = (is_in[index], &self.terms[index].0) {
                 term.operands().for_each(|operand| is_in[operand] = true);
