@@ -89,6 +89,8 @@ pub(super) enum Command {
     Submit(SubmitArgs),
     /// Print the JSON Schema of model files, for editors.
     Schema,
+    /// Serve an editor: a language server of model files on standard input and output.
+    Lsp(LspArgs),
     /// Write a small, commented model as a starting point.
     New(NewArgs),
     /// Print a completion script for a shell.
@@ -98,6 +100,16 @@ pub(super) enum Command {
     /// Answer points by a unit of FMI in an unpacked folder: a process that a run starts.
     #[command(hide = true)]
     AnswerFmu(AnswerFmuArgs),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct LspArgs {
+    #[command(flatten)]
+    pub root: RootArgs,
+
+    /// What editors say who know several ways to talk to a server: this is the only one.
+    #[arg(long, hide = true)]
+    pub stdio: bool,
 }
 
 #[derive(Debug, Args)]

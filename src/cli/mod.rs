@@ -22,6 +22,7 @@ mod joints;
 mod kept_run;
 mod listing;
 mod load;
+mod lsp;
 mod man;
 mod meshes;
 mod methods;
@@ -169,6 +170,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Merge(args) => shards::merge(args, console),
         Command::Submit(args) => shards::submit(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
+        Command::Lsp(args) => lsp::lsp(args),
         Command::New(args) => new::new(&args, console),
         Command::Man(args) => man::man(&args, console),
         Command::AnswerFmu(args) => answer_fmu::answer(&args),

@@ -20,6 +20,7 @@ mod export;
 mod faults;
 mod fit;
 mod fmu;
+mod lsp;
 mod old_models;
 mod parts;
 mod parts_nested;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Sources of the crates with their rooms. Each room stands on those before it, and knows none after it.
-const CRATES: [(&str, &[&str]); 9] = [
+const CRATES: [(&str, &[&str]); 10] = [
     ("crates/numerics/src", &["numerics"]),
     ("crates/language/src", &["syntax", "grammar", "multibody"]),
     ("crates/methods/src", &["methods"]),
@@ -15,6 +15,7 @@ const CRATES: [(&str, &[&str]); 9] = [
     ("crates/engine/src", &["reduce", "assemble", "compile", "simulate", "c_code"]),
     ("crates/study/src", &["results", "store", "black_box", "study"]),
     ("crates/export/src", &["export"]),
+    ("crates/lsp/src", &["lsp"]),
     ("src", &["api", "cli", "inner"]),
 ];
 

@@ -59,10 +59,20 @@ pub struct Mismatch {
 /// mismatch within it goes to `mismatches`.
 pub fn analyse(
     formula: &Formula,
-    mut name: impl FnMut(&str) -> Kind,
+    name: impl FnMut(&str) -> Kind,
     table: impl Fn(Spline) -> [Option<Dimension>; 2],
     mismatches: &mut Vec<Mismatch>,
 ) -> Kind {
+    of_terms(formula, name, table, mismatches).pop().unwrap_or(Kind::Any)
+}
+
+/// The same of every term of the formula, that of the formula last.
+pub fn of_terms(
+    formula: &Formula,
+    mut name: impl FnMut(&str) -> Kind,
+    table: impl Fn(Spline) -> [Option<Dimension>; 2],
+    mismatches: &mut Vec<Mismatch>,
+) -> Vec<Kind> {
     let mut kinds: Vec<Kind> = Vec::with_capacity(formula.terms().len());
     let is_half =
         |term: usize| matches!(formula.terms()[term].0, Term::Binary(Binary::Select | Binary::SelectElse, ..));
@@ -95,7 +105,7 @@ pub fn analyse(
             Kind::Any
         }));
     }
-    kinds.pop().unwrap_or(Kind::Any)
+    kinds
 }
 
 /// A table's value.

@@ -118,10 +118,14 @@ impl<S: SymbolTable> Reader<'_, S> {
                 self.error(node.span.clone(), message, "split it into parameters".to_owned());
                 None
             }
-            Ok(formula) => Some(match own_names {
-                Some(names) => self.in_model(formula, names.scope),
-                None => formula,
-            }),
+            Ok(formula) => {
+                self.mentions_names(node, scalar, &formula, part.start);
+                self.mentions_tables(node, scalar, &formula, part.start);
+                Some(match own_names {
+                    Some(names) => self.in_model(formula, names.scope),
+                    None => formula,
+                })
+            }
             Err(error) => {
                 let span = part.start + error.span.start..part.start + error.span.end;
                 let fraction = text.trim_start().starts_with('(').then(|| unit_names::of_fraction(text)).flatten();
@@ -214,13 +218,14 @@ impl<S: SymbolTable> Reader<'_, S> {
             Some((own, dimension)) if own == name => Kind::motion(dimension),
             _ => self.symbol(name).map_or(Kind::Any, |symbol| self.kind_of(symbol)),
         };
-        let kind = dimension::analyse(formula, name, |spline| self.table(spline), &mut mismatches);
+        let kinds = dimension::of_terms(formula, name, |spline| self.table(spline), &mut mismatches);
+        self.mentions_formula(node, offset, formula, &kinds);
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;
             let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
             self.error(place, mismatch.message, None);
         }
-        kind
+        kinds.last().copied().unwrap_or(Kind::Any)
     }
 
     /// Dimensions of a table's argument and value.
@@ -273,7 +278,9 @@ impl<S: SymbolTable> Reader<'_, S> {
                 }
                 self.refuse_ambiguous(node);
                 self.suspect_quantity(unit.to_si(value), wanted);
-                Formula::number(unit.to_si(value))
+                let formula = Formula::number(unit.to_si(value));
+                self.mentions_formula(node, 0, &formula, &[Kind::parameter(wanted)]);
+                formula
             }
             Written::Formula(formula) => {
                 if !self.check_names(node, &formula, 0, context) {
@@ -315,55 +322,6 @@ impl<S: SymbolTable> Reader<'_, S> {
         let formula = self.formula(node, context, wanted)?;
         self.require(node, &formula, holds, requirement);
         Some(formula)
-    }
-
-    /// Checks a formula of parameters at all their corners; a formula with other names is not checked.
-    pub fn require(&mut self, node: &Node, formula: &Formula, holds: impl Fn(f64) -> bool, requirement: &str) {
-        let varies = self.is_uncertain(formula);
-        let corners = if varies { self.corners.len() } else { self.corners.len().min(1) };
-        for corner in 0..corners {
-            let Some(value) = self.evaluate(formula, corner) else { return };
-            if self.broken && !value.is_finite() {
-                return;
-            }
-            let problem = if !value.is_finite() {
-                // Reported where every formula is checked to be finite.
-                if !requirement.is_empty() {
-                    return;
-                }
-                "is not a finite number"
-            } else if !holds(value) {
-                requirement
-            } else {
-                continue;
-            };
-            let text = node.scalar().map_or("", |scalar| scalar.text.as_str());
-            let label = &self.corners[corner].label;
-            let message = if formula.as_number().is_some() || !value.is_finite() {
-                format!("`{}` {problem}{label}", clip(text))
-            } else {
-                format!("`{}` {problem}, but is {value}{label}", clip(text))
-            };
-            self.error(node.span.clone(), message, None);
-            return;
-        }
-    }
-
-    /// The formula's value at a corner; `None` where it is made of more than parameters.
-    pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
-        let corner = self.corners.get(corner)?;
-        evaluate(formula, |name| match self.symbol(name) {
-            Some(Symbol::Parameter(index)) => corner.values.get(index).copied(),
-            _ => None,
-        })
-    }
-
-    /// Whether an uncertain parameter stands behind a name of the formula.
-    pub fn is_uncertain(&self, formula: &Formula) -> bool {
-        formula.names().any(|(name, _)| match self.symbol(name) {
-            Some(Symbol::Parameter(index)) => self.varies.get(index).copied().unwrap_or(false),
-            _ => false,
-        })
     }
 
     /// A number that is the same for every sample.

@@ -4,6 +4,7 @@
 //! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
 
 mod any_unit;
+mod corners;
 pub mod declared;
 pub mod dimension;
 pub mod display_unit;
@@ -14,9 +15,11 @@ mod friction;
 mod image;
 mod kinds;
 pub mod mapping;
+pub mod mentions;
 mod mesh;
 pub mod motions;
 pub mod names;
+mod notes;
 mod on_joint;
 mod own_names;
 mod pairs;

@@ -1,5 +1,6 @@
 //! References to bodies, points and joints by their names.
 
+use super::mentions::NameKind;
 use super::names;
 use super::reader::Reader;
 use super::report::Fields;
@@ -13,6 +14,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The body that is named.
     pub fn body_ref(&mut self, node: &Node) -> Option<usize> {
         let scalar = self.scalar(node, "the name of a body")?;
+        self.mentions_node(Some(NameKind::Body), node);
         let name = &*scalar.name();
         if let Some(body) = self.model.body(name) {
             return Some(body);
@@ -35,6 +37,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The point that is named: `body.point`, or `body` for the origin of its frame.
     pub fn point_ref(&mut self, node: &Node) -> Option<PointRef> {
         let scalar = self.scalar(node, "`body` or `body.point`")?;
+        self.mentions_node(Some(NameKind::Body), node);
         let text = &*scalar.name();
         if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
             return Some(place);
@@ -141,6 +144,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The joint that is named, with this coordinate.
     pub fn joint_ref(&mut self, node: &Node, coordinate: JointCoordinate) -> Option<usize> {
         let scalar = self.scalar(node, "the name of a joint")?;
+        self.mentions_node(Some(NameKind::Joint), node);
         let name = &*scalar.name();
         let Some(found) = self.model.joint(name) else {
             let help = suggest::help(name, "joints", self.model.joints());

@@ -37,6 +37,8 @@ pub struct Reader<'d, S> {
     pub kinds: Vec<Kind>,
     /// Parameter values at which requirements are checked.
     pub corners: Vec<Corner>,
+    /// For each parameter the corners at which its value is not the nominal one, ascending.
+    pub corners_of: Vec<Vec<usize>>,
     /// Whether the parameter's value is uncertain.
     pub varies: Vec<bool>,
     /// Parameters whose nominal values are to be chosen: other samples may have other values.
@@ -105,6 +107,7 @@ impl<'d, S> Reader<'d, S> {
             variable: None,
             kinds: Vec::new(),
             corners: Vec::new(),
+            corners_of: Vec::new(),
             varies: Vec::new(),
             free: HashSet::new(),
             broken: false,

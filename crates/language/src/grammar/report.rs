@@ -8,13 +8,13 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::mapping::Grammar;
+use super::mentions::Notes;
 use super::names;
 use super::quantity::Dimension;
 use super::values;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::read_text;
 use crate::syntax::tuning::TUNING;
 use crate::syntax::within::Within;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -25,6 +25,8 @@ pub struct Report<'d> {
     pub diagnostics: &'d mut Diagnostics,
     /// Where files are that the model may name.
     pub files: Within,
+    /// Names and formulas that were read, where an editor asks for them.
+    pub mentions: Option<&'d Notes>,
 }
 
 /// A mapping whose keys are known.
@@ -261,7 +263,7 @@ impl Report<'_> {
         let scalar = self.scalar(node, "the name of a file")?;
         let found = self.files.find(Path::new(""), &scalar.text).and_then(|path| {
             let path = self.files.full(&path);
-            let text = read_text(&path, TUNING.file_bytes)?;
+            let text = self.files.read(&path, TUNING.file_bytes)?;
             Ok((self.diagnostics.sources.add(path.display().to_string(), text.clone()), text))
         });
         match found {

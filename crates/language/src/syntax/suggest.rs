@@ -72,6 +72,15 @@ pub fn help_beside<'c>(
     }
 }
 
+/// The text that a help proposes for the marked one: a near name, or a quoted formula or interval.
+pub fn replacement(help: &str) -> Option<&str> {
+    let before =
+        ["did you mean `", "quote the formula: `", "quote the interval: `", "quote the text: `", "with an index: `"];
+    let begun = before.iter().find_map(|phrase| help.split_once(phrase)).map(|(_, rest)| rest)?;
+    // A text that was too long to be shown is not known.
+    begun.split_once('`').map(|(text, _)| text).filter(|text| !text.is_empty() && !text.contains('…'))
+}
+
 /// `` `a`, `b` and `c` ``.
 pub fn list(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();

@@ -1,10 +1,13 @@
 //! Which files a model may name: those in its folder or below, and those in a folder that the user names or below.
 
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
 use super::harmless;
 use super::suggest::clip;
+use super::text_file::read_text;
 
 /// Folders whose files a model may name.
 #[derive(Clone, Debug)]
@@ -13,12 +16,56 @@ pub struct Within {
     folder: PathBuf,
     /// That of `--root`.
     root: Option<PathBuf>,
+    /// Texts that stand for files as they are on the disk.
+    open: OpenTexts,
+}
+
+/// Texts of files that are being edited, by their full paths.
+#[derive(Clone, Debug, Default)]
+pub struct OpenTexts(Arc<BTreeMap<PathBuf, String>>);
+
+impl OpenTexts {
+    /// Of these files.
+    pub fn new(texts: impl IntoIterator<Item = (PathBuf, String)>) -> Self {
+        Self(Arc::new(texts.into_iter().map(|(path, text)| (real(&path), text)).collect()))
+    }
+
+    /// The same with another.
+    #[must_use]
+    pub fn with(&self, path: PathBuf, text: String) -> Self {
+        let mut texts = (*self.0).clone();
+        texts.insert(real(&path), text);
+        Self(Arc::new(texts))
+    }
+
+    /// The text of a file, if it is open.
+    pub fn get(&self, path: &Path) -> Option<&str> {
+        if self.0.is_empty() { None } else { self.0.get(&real(path)).map(String::as_str) }
+    }
 }
 
 impl Within {
     /// For the model of a path.
     pub fn of(model: &Path, root: Option<&Path>) -> Self {
-        Self { folder: model.parent().unwrap_or(Path::new("")).to_owned(), root: root.map(Path::to_owned) }
+        Self {
+            folder: model.parent().unwrap_or(Path::new("")).to_owned(),
+            root: root.map(Path::to_owned),
+            open: OpenTexts::default(),
+        }
+    }
+
+    /// The same, with texts that stand for files.
+    #[must_use]
+    pub fn with_open(self, open: &OpenTexts) -> Self {
+        Self { open: open.clone(), ..self }
+    }
+
+    /// The text of a file that the model may name, at most so many bytes of it: as it is edited, else as it is stored.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn read(&self, path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
+        self.open.get(path).map_or_else(|| read_text(path, most), |text| Ok(text.to_owned()))
     }
 
     /// The path, seen from the model's folder, of a file that is named from a folder, which is seen from there too.
@@ -28,7 +75,8 @@ impl Within {
     /// Where the model may not name it.
     pub fn find(&self, from: &Path, name: &str) -> Result<PathBuf, Box<Diagnostic>> {
         let path = normal(&from.join(name));
-        let folders: Vec<PathBuf> = [Some(&self.folder), self.root.as_ref()].into_iter().flatten().map(real).collect();
+        let folders: Vec<PathBuf> =
+            [Some(&self.folder), self.root.as_ref()].into_iter().flatten().map(|folder| real(folder)).collect();
         let below = |path: &Path| folders.iter().any(|folder| path.starts_with(folder));
         let named = below(&normal(&real(&self.folder).join(&path)));
         // A link may lead out of the folder, or into it.
@@ -55,7 +103,7 @@ impl Within {
 }
 
 /// A folder without links on the way to it; as it is named where it is not there.
-fn real(folder: &PathBuf) -> PathBuf {
+fn real(folder: &Path) -> PathBuf {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     folder
         .canonicalize()

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::{BoundsRequest, Method};
 use crate::grammar::mapping::Grammar;
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::RangeKind;
@@ -146,6 +147,7 @@ pub(super) fn per_parameter<S: SymbolTable>(
     let varies = |entry: &&Entry| !reader.idle.contains(&entry.key) && !reader.certain.contains(&entry.key);
     for entry in entries.iter().filter(varies).collect::<Vec<_>>() {
         let count = reader.count(&entry.value, least, most);
+        reader.mentions(Some(NameKind::Parameter), &entry.key, &entry.key_span);
         if uncertain.contains(&entry.key) {
             complete &= count.is_some();
             counts.insert(&entry.key, count.unwrap_or(default));

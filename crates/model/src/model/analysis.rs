@@ -4,6 +4,7 @@ use super::description::{
     Analysis, Description, Formulation, Joint, LinearisedAt, ModesRequest, ResponseRequest, Stepping,
 };
 use super::stack;
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::{Context, Symbol};
@@ -141,6 +142,7 @@ fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
 /// An output that is named, with its dimension.
 fn known_output(reader: &mut Reader, node: &Node) -> Option<(String, Option<Dimension>)> {
     let name = reader.scalar(node, "the name of an output")?.text.clone();
+    reader.mentions_node(Some(NameKind::Output), node);
     let found = reader.model.outputs.iter().find(|output| output.name == name);
     if let Some(output) = found {
         return Some((name, output.dimension));

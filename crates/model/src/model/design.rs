@@ -4,6 +4,7 @@ use super::description::{Design, Free, Objective};
 use super::parameters::Riding;
 use super::requirements;
 use crate::grammar::formulas::{Written, evaluate};
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::tolerance;
@@ -61,6 +62,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, riding: &[Riding]) {
 fn read_free(reader: &mut Reader, entry: &Entry, riding: &[Riding]) -> Option<Free> {
     let name = &entry.key;
     let at = entry.key_span.clone();
+    reader.mentions(Some(NameKind::Parameter), name, &at);
     let Some(own) = riding.iter().find(|own| own.name == *name) else {
         let known: Vec<String> = reader.model.parameters.iter().map(|own| own.name.clone()).collect();
         let help = suggest::help(name, "parameters", known.iter().map(String::as_str));

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, black_box, bodies, bounds, design, effects, excitations, fmu, instances, joints, motion_times,
-    parameters, random, requests, requirements, sections, space, states, statistics, tables, teeth, trajectories,
-    zone_sizes,
+    analysis, black_box, bodies, bounds, definitions, design, effects, excitations, fmu, instances, joints,
+    motion_times, parameters, random, requests, requirements, sections, space, states, statistics, tables, teeth,
+    trajectories, zone_sizes,
 };
 use crate::expand::dimensions::{self, Chain};
 use crate::expand::overrides::Override;
@@ -15,6 +15,7 @@ use crate::expand::parts::{self, Parts, WrittenOut};
 use crate::expand::scenes::{Scenes, Variant};
 use crate::expand::zones::{self, Zone};
 use crate::expand::{fmu as units, mjcf};
+use crate::grammar::mentions::Notes;
 use crate::grammar::report::Report;
 use crate::keys;
 use crate::model::names::Reader;
@@ -148,7 +149,12 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
 }
 
 fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Path>) -> Reading {
-    let origin = Origin { name, files: Within::of(Path::new(name), root), chains: Vec::new(), zones: Vec::new() };
+    read_from(Origin::of(name, Within::of(Path::new(name), root), None), text, overrides)
+}
+
+/// Reads a model from text that comes from somewhere.
+pub(super) fn read_from(origin: Origin, text: &str, overrides: &[Override]) -> Reading {
+    let name = origin.name;
     let mut diagnostics = Diagnostics::new(name, text);
     let mut placed = Vec::new();
     for wanted in overrides {
@@ -226,7 +232,7 @@ fn read_text_of(name: &str, text: &str, overrides: &[Override], root: Option<&Pa
 }
 
 /// Where a model comes from.
-struct Origin<'o> {
+pub(super) struct Origin<'o> {
     /// What diagnostics call it.
     name: &'o str,
     /// Files that it may name.
@@ -235,12 +241,22 @@ struct Origin<'o> {
     chains: Vec<Chain>,
     /// Its zones.
     zones: Vec<Zone>,
+    /// Where names and formulas are noted.
+    mentions: Option<&'o Notes>,
 }
 
-impl Origin<'_> {
+impl<'o> Origin<'o> {
+    /// Of a text, whose dimensions and zones are not read yet.
+    pub(super) fn of(name: &'o str, files: Within, mentions: Option<&'o Notes>) -> Self {
+        Self { name, files, chains: Vec::new(), zones: Vec::new(), mentions }
+    }
+
     /// A report that adds to these diagnostics.
-    fn report<'d>(&self, diagnostics: &'d mut Diagnostics) -> Report<'d> {
-        Report { diagnostics, files: self.files.clone() }
+    fn report<'d>(&self, diagnostics: &'d mut Diagnostics) -> Report<'d>
+    where
+        'o: 'd,
+    {
+        Report { diagnostics, files: self.files.clone(), mentions: self.mentions }
     }
 
     /// A model without contents, called after its file.
@@ -261,6 +277,7 @@ fn describe(
 ) -> (Description, Vec<Diagnostic>) {
     let root = &variant.root;
     let mut reader = Reader::new(origin.report(diagnostics), origin.empty());
+    definitions::note(&reader, root);
     reader.model.chains = origin.chains.clone();
     reader.model.zones = origin.zones.clone();
     reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());

@@ -3,6 +3,7 @@
 //! `load` goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! `Diagnostics` collects them all, each with its place.
 
+mod definitions;
 mod description;
 mod design;
 mod names;
@@ -22,6 +23,7 @@ mod joints;
 mod load;
 mod motion_times;
 mod named_outputs;
+mod open;
 mod overlay;
 mod parameters;
 mod random;
@@ -53,6 +55,7 @@ pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotat
 pub use crate::keys::{SCHEMA_VERSION, schema};
 pub use description::*;
 pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
+pub use open::{Opened, read_open};
 pub use overlay::read_overlay;
 pub use parameters::{deviation_of, seed_of};
 pub use tuning::tuning;

@@ -91,6 +91,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
 /// What a start value is of; reports a name that stands for nothing.
 fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
     let name = entry.key.as_str();
+    reader.mentions(None, name, &entry.key_span);
     let found = reader.model.symbol(name);
     if found.is_none() {
         let error = unknown::unknown(&reader.model, name, Context::Equation);

@@ -2,6 +2,7 @@
 
 use super::description::{Analysis, Correlation, ParameterValue};
 use super::parameters::law::{Place, named};
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::unit::number_and_unit;
@@ -166,6 +167,7 @@ fn names(reader: &mut Reader, node: &Node) -> Option<Vec<String>> {
     let mut names: Vec<String> = Vec::new();
     for item in items {
         let name = reader.scalar(item, "the name of a parameter")?.text.clone();
+        reader.mentions_node(Some(NameKind::Parameter), item);
         if !uncertain.contains(&name) {
             let message = format!("`{}` is no uncertain parameter", clip(&name));
             let help = suggest::help(&name, "uncertain parameters", uncertain.iter().map(String::as_str));

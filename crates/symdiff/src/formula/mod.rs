@@ -172,6 +172,16 @@ pub enum Term {
 }
 
 impl Term {
+    /// The positions of its operands.
+    pub fn operands(&self) -> impl Iterator<Item = usize> {
+        let [first, second] = match self {
+            Self::Unary(_, a) | Self::Degrees(a) => [Some(*a), None],
+            Self::Binary(_, a, b) | Self::Compared(a, b) => [Some(*a), Some(*b)],
+            Self::Number(_) | Self::Quantity(..) | Self::Name(_) => [None; 2],
+        };
+        first.into_iter().chain(second)
+    }
+
     /// The same with its operands at other positions.
     fn moved(&self, place: impl Fn(usize) -> usize) -> Self {
         match self {
@@ -296,6 +306,26 @@ impl Formula {
     /// All nodes, operands first, the result last.
     pub fn terms(&self) -> &[(Term, Range<usize>)] {
         &self.terms
+    }
+
+    /// The formula that one of its nodes is.
+    #[must_use]
+    pub fn part(&self, node: usize) -> Self {
+        let mut is_in = vec![false; self.terms.len()];
+        is_in[node] = true;
+        // Operands stand before their results.
+        for index in (0..=node).rev() {
+            if let (true, term) = (is_in[index], &self.terms[index].0) {
+                term.operands().for_each(|operand| is_in[operand] = true);
+            }
+        }
+        let mut places = vec![0; self.terms.len()];
+        let mut terms = Vec::new();
+        for (index, (term, span)) in self.terms.iter().enumerate().filter(|(index, _)| is_in[*index]) {
+            places[index] = terms.len();
+            terms.push((term.moved(|place| places[place]), span.clone()));
+        }
+        Self { terms }
     }
 
     /// Every use of a name with its place.

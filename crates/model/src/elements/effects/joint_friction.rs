@@ -19,6 +19,7 @@ use symdiff::{Formula, Scalar};
 
 use super::dry_friction::Resistance;
 use super::{DryFriction, ForceElement, Forces, TypedSensor};
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Sensor, Node, OnJoint, Reader, Reference, SymbolTable,
@@ -209,6 +210,7 @@ impl Group for FrictionJoint {
             reader.joint_ref(node, JointCoordinate::Angle);
             return None;
         };
+        reader.mentions_node(Some(NameKind::Joint), node);
         let Some(mode) = reader.model.friction_mode(joint) else {
             let message = format!("joint friction does not know how `{}` rubs", reader.model.joint_name(joint));
             let help = "it acts in revolute, prismatic and cylindrical joints".to_owned();

@@ -18,6 +18,7 @@ use symdiff::{Formula, Scalar};
 use super::dry_friction::Resistance;
 use super::{DryFriction, ForceElement, Forces, TypedSensor};
 use crate::elements::meshing::{Flanks, Meshing, Rim};
+use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, Group, JointCoordinate, Key, MeshKind, Node, Reader, Reference, Requirement, Sensor, SymbolTable,
@@ -177,6 +178,7 @@ impl Group for Teeth {
             reader.joint_ref(node, JointCoordinate::Angle);
             return None;
         };
+        reader.mentions_node(Some(NameKind::Joint), node);
         let Some(kind) = reader.model.mesh_kind(joint) else {
             let message = format!("`{}` has no teeth", reader.model.joint_name(joint));
             let help = "tooth friction acts in joints `gear`, `rack`, `planetary` and `worm`".to_owned();

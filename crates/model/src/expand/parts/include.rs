@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::Writer;
 use crate::expand::tuning::TUNING;
+use crate::grammar::mentions::NameKind;
 use crate::keys;
 use crate::syntax;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
-use crate::syntax::text_file::read_text;
 use crate::syntax::yaml::{self, Entry, Node, Value};
 
 /// Files that are read, with their names from the model's folder.
@@ -67,7 +67,7 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
     }
     included.read.push(path.clone());
     let full = writer.report.files.full(&path);
-    let text = match read_text(&full, syntax::tuning::TUNING.file_bytes) {
+    let text = match writer.report.files.read(&full, syntax::tuning::TUNING.file_bytes) {
         Ok(text) => text,
         Err(error) => {
             let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
@@ -98,6 +98,7 @@ impl Writer<'_, '_> {
             match self.definitions.get(&entry.key).map(|known| known.key_span.clone()) {
                 Some(first) => self.twice(&entry.key, &entry.key_span, &first),
                 None => {
+                    self.report.defines(NameKind::Assembly, &entry.key, entry);
                     self.definitions.insert(entry.key.clone(), Arc::new(entry.clone()));
                 }
             }

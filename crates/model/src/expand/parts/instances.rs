@@ -10,6 +10,7 @@ use crate::elements::effects::{self, EffectKind};
 use crate::elements::joints::JointKind;
 use crate::expand::instance::{Instance, InstanceKind};
 use crate::expand::tuning::TUNING;
+use crate::grammar::mentions::NameKind;
 use crate::keys;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::{Span, Within};
@@ -82,6 +83,7 @@ impl Writer<'_, '_> {
             Value::Sequence(items) => {
                 for item in items {
                     let Some(scalar) = self.report.scalar(item, "the name of a parameter") else { continue };
+                    self.report.mentions(Some(NameKind::Parameter), &format!("{name}.{}", scalar.text), &item.span);
                     if !entries.iter().any(|entry| entry.key == scalar.text) {
                         let help =
                             suggest::help(&scalar.text, "parameters of it", entries.iter().map(|e| e.key.as_str()));
@@ -126,6 +128,7 @@ impl Writer<'_, '_> {
                 filled.unwrap_or_else(|_| scalar.text.clone())
             }
         };
+        self.report.mentions(Some(NameKind::Assembly), &of, &node.span);
         let Some(definition) = self.definitions.get(&of).cloned() else {
             let mut known: Vec<&str> = self.definitions.keys().map(String::as_str).collect();
             known.sort_unstable();
@@ -140,6 +143,7 @@ impl Writer<'_, '_> {
             return;
         }
         let name = format!("{outer}{}", entry.key);
+        self.report.defines(NameKind::Instance, &name, entry);
         let given = fields.get("parameters").map_or(&[][..], |node| self.report.entries(node, "parameters")).to_vec();
         let Some(placement) = self.placement(&format!("{name}."), &fields) else { return };
         let outer = scalar.scope.clone();

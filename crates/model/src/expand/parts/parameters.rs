@@ -7,6 +7,7 @@ use symdiff::formula::indices::{self, Index};
 use super::Writer;
 use crate::expand::notation;
 use crate::expand::scenes::draft::overridden;
+use crate::grammar::mentions::NameKind;
 use crate::syntax::scope::Scope;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -55,6 +56,9 @@ impl Writer<'_, '_> {
         given: &[Entry],
         is_shared: impl Fn(&str) -> bool,
     ) -> Vec<Entry> {
+        for entry in given {
+            self.report.mentions(Some(NameKind::Parameter), &format!("{prefix}{}", entry.key), &entry.key_span);
+        }
         for entry in given.iter().filter(|entry| !own.iter().any(|known| known.key == entry.key)) {
             let help = suggest::help(&entry.key, "parameters of it", own.iter().map(|known| known.key.as_str()));
             let message = format!("assembly `{definition}` has no parameter `{}`", clip(&entry.key));

@@ -1,6 +1,7 @@
 //! `ports:`, bodies and points by which others hold an instance.
 
 use super::{Writer, mirror};
+use crate::grammar::mentions::NameKind;
 use crate::keys;
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::source::Span;
@@ -29,6 +30,7 @@ impl Writer<'_, '_> {
                 continue;
             }
             let name = format!("{prefix}{}", entry.key);
+            self.report.defines(NameKind::Port, &name, &entry);
             let span = entry.value.span.clone();
             let target = match &entry.value.value {
                 Value::Mapping(_) => self.point(prefix, &entry),
@@ -37,6 +39,7 @@ impl Writer<'_, '_> {
                     .scalar(&entry.value, "a body or a point of one")
                     .map(|scalar| scalar.name().into_owned()),
             };
+            self.report.mentions_node(Some(NameKind::Body), &entry.value);
             self.parts.ports.extend(target.map(|target| Port { name, target, span }));
         }
     }
@@ -46,6 +49,7 @@ impl Writer<'_, '_> {
         let fields = self.report.fields::<keys::PointPort>(&entry.value, entry.key_span.clone())?;
         let on = self.report.required(&fields, "on")?;
         let body = self.report.scalar(on, "the name of a body")?.name().into_owned();
+        self.report.mentions_node(Some(NameKind::Body), on);
         let keys = |key: &str| {
             let value = fields.get(key)?.clone();
             Some(Entry { key: key.to_owned(), key_span: fields.key_span(key), value })

@@ -5,6 +5,7 @@ use std::collections::{BTreeSet, HashSet};
 use super::{LeftOut, unknown};
 use crate::expand::notation::{self, field};
 use crate::expand::parts::patterns;
+use crate::grammar::mentions::NameKind;
 use crate::grammar::report::{Fields, Report};
 use crate::robots::urdf;
 use crate::syntax::source::Span;
@@ -203,6 +204,7 @@ impl Draft {
     fn parameters(&mut self, report: &mut Report, node: &Node, key_span: Span) {
         let has_robot = self.has_robot();
         for entry in report.entries(node, "parameters") {
+            report.mentions(Some(NameKind::Parameter), &entry.key, &entry.key_span);
             let Some(parameters) = self.section("parameters", key_span.clone(), node) else { return };
             let known = parameters.iter().position(|known| known.key == entry.key);
             match known {
@@ -266,7 +268,10 @@ fn names(report: &mut Report, node: &Node, wanted: &str) -> Vec<(String, Span)> 
         report.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), help);
         return Vec::new();
     };
-    let name = |item: &Node| Some((report.scalar(item, "a name")?.text.clone(), item.span.clone()));
+    let name = |item: &Node| {
+        report.mentions_node(None, item);
+        Some((report.scalar(item, "a name")?.text.clone(), item.span.clone()))
+    };
     items.iter().filter_map(name).collect()
 }
 

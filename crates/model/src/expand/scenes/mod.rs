@@ -7,6 +7,7 @@ pub mod draft;
 
 use self::draft::Draft;
 use crate::expand::tuning::TUNING;
+use crate::grammar::mentions::NameKind;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
 use crate::syntax::diagnostic::Diagnostic;
@@ -149,6 +150,7 @@ fn layers<'n>(report: &mut Report, mut entries: &'n [Entry]) -> Vec<Layer<'n>> {
                 .help("folders of results are called after scenes, and on some systems these would be one".to_owned());
             report.diagnostics.push(diagnostic.also(other.entry.key_span.clone(), "the other"));
         }
+        report.defines(NameKind::Scene, &entry.key, entry);
         if let Some(fields) = report.fields::<keys::Scene>(&entry.value, entry.key_span.clone()) {
             layers.push(Layer { entry, fields, extends: None });
         }
@@ -165,6 +167,7 @@ fn layers<'n>(report: &mut Report, mut entries: &'n [Entry]) -> Vec<Layer<'n>> {
 fn extended(report: &mut Report, layers: &[Layer], index: usize) -> Option<usize> {
     let node = layers[index].fields.get("extends")?;
     let name = &report.scalar(node, "the name of a scene")?.text;
+    report.mentions_node(Some(NameKind::Scene), node);
     let found = layers.iter().position(|layer| layer.entry.key == *name);
     if found.is_none() {
         let others = layers.iter().map(|layer| layer.entry.key.as_str());

@@ -53,6 +53,7 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
         reader.error(name_spans[index].clone(), message, None);
     }
     reader.broken = corners.iter().any(|corner| corner.values.iter().any(|value| !value.is_finite()));
+    reader.corners_of = moved(&corners, reader.model.parameters.len());
     reader.corners = corners;
     reader.varies = varies;
 }
@@ -95,6 +96,13 @@ fn evaluated(
     choices: Vec<Choice>,
 ) -> Vec<Corner> {
     let mut corners: Vec<Corner> = Vec::new();
+    let used = |parameter: &Parameter| match &parameter.value {
+        ParameterValue::Interval { .. } => Vec::new(),
+        ParameterValue::Formula(formula) => {
+            formula.names().filter_map(|(name, _)| positions.get(name).copied()).collect::<Vec<usize>>()
+        }
+    };
+    let used: Vec<Vec<usize>> = parameters.iter().map(used).collect();
     for chosen in choices {
         let mut values: Vec<f64> = Vec::with_capacity(parameters.len());
         for (index, parameter) in parameters.iter().enumerate() {
@@ -103,6 +111,9 @@ fn evaluated(
                     chosen.iter().find(|(chosen, _)| *chosen == index).map_or(*nominal, |(_, value)| *value)
                 }
                 ParameterValue::Formula(_) if !varies[index] && !corners.is_empty() => corners[0].values[index],
+                ParameterValue::Formula(_) if is_as_nominal(&corners, &values, &used[index]) => {
+                    corners[0].values[index]
+                }
                 ParameterValue::Formula(formula) => {
                     evaluate(formula, |name| positions.get(name).and_then(|&used| values.get(used).copied()))
                         .unwrap_or(f64::NAN)
@@ -116,4 +127,19 @@ fn evaluated(
         corners.push(Corner { values, label });
     }
     corners
+}
+
+/// Whether parameters have their nominal values among those of a corner: what follows from them has its nominal value,
+/// too.
+fn is_as_nominal(corners: &[Corner], values: &[f64], used: &[usize]) -> bool {
+    let Some(nominal) = corners.first().map(|corner| &corner.values) else { return false };
+    let bits = |values: &[f64], index: usize| values.get(index).map(|value| value.to_bits());
+    used.iter().all(|&index| index < values.len() && bits(values, index) == bits(nominal, index))
+}
+
+/// For each parameter the corners at which its value is not the nominal one.
+fn moved(corners: &[Corner], parameters: usize) -> Vec<Vec<usize>> {
+    let is_moved =
+        |corner: &usize, index: usize| corners[*corner].values[index].to_bits() != corners[0].values[index].to_bits();
+    (0..parameters).map(|index| (1..corners.len()).filter(|corner| is_moved(corner, index)).collect()).collect()
 }

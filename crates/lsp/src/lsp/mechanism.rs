@@ -1,0 +1,66 @@
+//! Errors of mechanisms as a whole, which are found beside the server's answers: equations are built and assembled.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use crate::model::Description;
+use crate::study;
+
+/// How long an editor has been quiet when mechanisms are examined.
+const QUIET: Duration = Duration::from_millis(400);
+
+/// A model to be examined.
+pub struct Question {
+    /// Its file.
+    pub path: PathBuf,
+    /// Which reading of it.
+    pub reading: u64,
+    /// Its scenes with their names; itself under no name where it has none.
+    pub scenes: Vec<(Option<String>, Arc<Description>)>,
+}
+
+/// The first error of a mechanism.
+pub struct Answer {
+    /// The model's file.
+    pub path: PathBuf,
+    /// Which reading of it.
+    pub reading: u64,
+    /// The first error.
+    pub error: Option<String>,
+}
+
+/// Starts to examine models, the latest reading of each; gives each answer to `answer`. Ends with the questions.
+pub fn examine(answer: impl Fn(Answer) + Send + 'static) -> Sender<Question> {
+    let (questions, received): (Sender<Question>, Receiver<Question>) = channel();
+    thread::spawn(move || {
+        while let Ok(first) = received.recv() {
+            let mut latest = BTreeMap::from([(first.path.clone(), first)]);
+            // Equations are not built while someone types.
+            while let Ok(next) = received.recv_timeout(QUIET) {
+                latest.insert(next.path.clone(), next);
+            }
+            for Question { path, reading, scenes } in latest.into_values() {
+                answer(Answer { path, reading, error: scenes.iter().find_map(|(name, model)| error(name, model)) });
+            }
+        }
+    });
+    questions
+}
+
+/// The error of a mechanism, as `mbint check` prints it.
+fn error(scene: &Option<String>, model: &Description) -> Option<String> {
+    let checked = study::caught("check", || {
+        study::ready(model)?;
+        study::structure(model).map(|_| ())
+    });
+    let error = match checked {
+        Ok(Ok(())) => return None,
+        Ok(Err(error)) => error.to_string(),
+        Err(error) => error.to_string(),
+    };
+    Some(scene.as_ref().map_or_else(|| error.clone(), |name| format!("scene {name}: {error}")))
+}

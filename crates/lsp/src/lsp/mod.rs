@@ -1,0 +1,22 @@
+//! The server and its answers; `serve` is the entrance.
+
+mod completion;
+mod context;
+mod format;
+mod hover;
+mod mechanism;
+mod members;
+mod names;
+mod navigation;
+mod outline;
+mod problems;
+mod proposal;
+mod requests;
+mod schema;
+mod server;
+mod text;
+mod uri;
+mod values;
+mod workspace;
+
+pub use server::{ServerError, serve};

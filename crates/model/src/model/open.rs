@@ -1,0 +1,29 @@
+//! Models as an editor has them: texts that are not stored yet, and names with their locations.
+
+use std::path::Path;
+
+use super::load::{Origin, Reading, read_from, read_rooted, shown};
+use crate::grammar::mentions::{Mentions, Notes};
+use crate::robots::{mjcf, urdf};
+use crate::syntax::within::{OpenTexts, Within};
+
+/// A model that is open in an editor.
+#[derive(Clone, Debug)]
+pub struct Opened {
+    /// As it was read.
+    pub reading: Reading,
+    /// Its names and formulas, as far as it could be read.
+    pub mentions: Mentions,
+}
+
+/// Reads a model, some of whose files are open in an editor. Other files are read as [`read_rooted`] reads them.
+pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
+    let is_robot = urdf::is_urdf(path) || mjcf::is_mjcf(path);
+    let Some(text) = open.get(path).filter(|_| !is_robot) else {
+        return Opened { reading: read_rooted(path, &[], root), mentions: Mentions::default() };
+    };
+    let (name, notes) = (shown(path), Notes::default());
+    let files = Within::of(path, root).with_open(open);
+    let reading = read_from(Origin::of(&name, files, Some(&notes)), text, &[]);
+    Opened { reading, mentions: notes.into_inner() }
+}
