@@ -25,6 +25,8 @@ pub struct EquationsProgram {
     pub motion_by: [Entries; 4],
     /// Φ_q after [`jacobian`](Self::jacobian).
     pub constraint_by_position: Entries,
+    /// Derivatives of Φ̈ by q and v after [`rates_jacobian`](Self::rates_jacobian).
+    pub constraint_acceleration_by: [Entries; 2],
     /// Registers of the outputs after [`observe`](Self::observe).
     pub outputs: Vec<usize>,
     /// (coordinate, register) of the positions, and of the velocities, that are given at the start, after
@@ -38,6 +40,7 @@ const RATES: usize = 1;
 const JACOBIAN: usize = 2;
 const OBSERVE: usize = 3;
 const GIVEN: usize = 4;
+const RATES_JACOBIAN: usize = 5;
 
 impl Tapes for EquationsProgram {
     fn lowered(&self) -> &Lowered {
@@ -66,6 +69,11 @@ impl EquationsProgram {
         &self.lowered.kernels[OBSERVE]
     }
 
+    /// Derivatives of Φ̈ by positions and velocities.
+    pub fn rates_jacobian(&self) -> &Tape {
+        &self.lowered.kernels[RATES_JACOBIAN]
+    }
+
     /// Given positions and velocities of the start.
     pub fn given(&self) -> &Tape {
         &self.lowered.kernels[GIVEN]
@@ -83,6 +91,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
     let mut matrices: Vec<SparseMatrix> =
         [&system.q, &system.v, &system.w, &system.lambda].map(|symbols| by(&mut graph, symbols)).into();
     matrices.push(jacobian);
+    let of_rates = [&system.q, &system.v].map(|symbols| graph.jacobian(&rate_of_rate, symbols));
     let kept = [&system.start.position, &system.start.velocity];
     let given: Vec<Expr> = kept.iter().flat_map(|values| values.iter().flatten().copied()).collect();
     let free = |values: &[Expr]| values.iter().map(|&value| (value, None)).collect::<Vec<_>>();
@@ -92,18 +101,26 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         matrices.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
         free(&given),
+        of_rates.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
     ];
     let lowered = lower(&graph, &layout.inputs(system), 1, layout.registers() as u32, &kernels);
 
     let (n, m) = (system.q.len(), system.lambda.len());
     let registers = |kernel: usize| lowered.outputs[kernel].iter().map(|&register| register as usize);
-    let mut derivatives = registers(JACOBIAN);
-    let mut entries = |matrix: &SparseMatrix| -> Entries {
-        matrix.entries().zip(derivatives.by_ref()).map(|((row, column, _), register)| (row, column, register)).collect()
+    let entries = |kernel: usize, matrices: &[SparseMatrix]| -> Vec<Entries> {
+        let mut derivatives = registers(kernel);
+        let entries = |matrix: &SparseMatrix| -> Entries {
+            let found = matrix.entries().zip(derivatives.by_ref());
+            found.map(|((row, column, _), register)| (row, column, register)).collect()
+        };
+        matrices.iter().map(entries).collect()
     };
-    let motion_by = std::array::from_fn(|place| entries(&matrices[place]));
-    let constraint_by_position = entries(&matrices[4]);
-    drop(derivatives);
+    let mut of_motion = entries(JACOBIAN, &matrices);
+    let constraint_by_position = of_motion.pop().unwrap_or_default();
+    let mut of_motion = of_motion.into_iter();
+    let motion_by = std::array::from_fn(|_| of_motion.next().unwrap_or_default());
+    let mut of_rates = entries(RATES_JACOBIAN, &of_rates).into_iter();
+    let constraint_acceleration_by = std::array::from_fn(|_| of_rates.next().unwrap_or_default());
     let mut given = registers(GIVEN);
     let kept = kept.map(|values| {
         let places = (0..n).filter(|&place| values[place].is_some());
@@ -117,6 +134,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         outputs: registers(OBSERVE).collect(),
         motion_by,
         constraint_by_position,
+        constraint_acceleration_by,
         kept,
         layout,
         lowered,

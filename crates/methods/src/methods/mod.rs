@@ -18,7 +18,7 @@ mod chebyshev;
 mod scan;
 mod taylor;
 
-pub use certified::Certified;
+pub use certified::{Certified, Proof};
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose, ends_of_combinations};
 pub use ensemble::{
     Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed,

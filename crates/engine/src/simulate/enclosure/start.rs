@@ -5,7 +5,7 @@ use symdiff::{Interval, ModelMemory, Tape};
 
 use super::EnclosureError;
 use super::krawczyk::{self, Image};
-use super::matrix::Models;
+use super::matrix::{Bounds, Models};
 use crate::assemble::CoordinateId;
 use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
@@ -178,15 +178,29 @@ impl Equations<'_> {
                 memory.model_mut(register).iter_mut().zip(change).for_each(|(x, change)| *x -= change);
             }
         }
+        self.prove(space, memory, &inverse).map(|_| ())
+    }
+
+    /// Gives the unknowns radii within which, about the polynomials in the memory, a solution is for every ξ. `inverse`
+    /// approximates that of the matrix. Returns a bound of |I − C J| over these radii.
+    pub(super) fn prove(
+        &self,
+        space: &ModelSpace,
+        memory: &mut ModelMemory,
+        inverse: &Models,
+    ) -> Result<Bounds, EnclosureError> {
+        self.set_radii(space, memory, None);
         let sizes = inverse.bounds(space);
         let missed = sizes.times(self.residual(space, memory).bounds(space).entries());
+        let mut proven = Bounds::default();
         let spread = krawczyk::enclose(missed.clone(), |y| {
             self.set_radii(space, memory, Some(y));
             let contraction = inverse.times(space, &self.matrix(space, memory)).off_identity(space).bounds(space);
+            proven = contraction.clone();
             Image { missed: missed.clone(), contraction }
         })?;
         self.set_radii(space, memory, Some(&spread));
-        Ok(())
+        Ok(proven)
     }
 
     fn set_radii(&self, space: &ModelSpace, memory: &mut ModelMemory, radii: Option<&[f64]>) {
@@ -195,7 +209,8 @@ impl Equations<'_> {
         }
     }
 
-    fn residual(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
+    /// Residuals over what is in the memory.
+    pub(super) fn residual(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         self.residual.iter().for_each(|tape| memory.run(tape));
         let mut residual = Models::zero(space, self.residuals.len(), 1);
         for (row, &register) in self.residuals.iter().enumerate() {
@@ -204,7 +219,8 @@ impl Equations<'_> {
         residual
     }
 
-    fn matrix(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
+    /// Derivatives by the unknowns over what is in the memory.
+    pub(super) fn matrix(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         memory.run(self.slopes);
         let mut matrix = Models::zero(space, self.residuals.len(), self.unknowns.len());
         for &(row, column, register) in &self.entries {

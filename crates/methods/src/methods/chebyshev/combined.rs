@@ -11,6 +11,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
+use crate::methods::certified::Proof;
 use crate::methods::ensemble::{
     Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
 };
@@ -264,11 +265,11 @@ impl Ensemble for Combined<'_> {
         Err("a combination of parameters has no Taylor polynomial of its own".into())
     }
 
-    fn obstacle_to_enclosure(&self) -> Option<String> {
+    fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
         Some("a combination of parameters".to_owned())
     }
 
-    fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
         None
     }
 

@@ -157,6 +157,7 @@ mod tests {
     use symdiff::taylor_model::ModelSpace;
 
     use super::*;
+    use crate::methods::certified::Proof;
     use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
     use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
 
@@ -263,10 +264,10 @@ mod tests {
         fn jets(&self, _: &JetSpace, _: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
             unreachable!()
         }
-        fn obstacle_to_enclosure(&self) -> Option<String> {
+        fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
             unreachable!()
         }
-        fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
             unreachable!()
         }
         fn scales(&self) -> &[f64] {
