@@ -13,7 +13,7 @@ use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
 
 /// Order of the polynomials by the number of parameters, of a proof of the motion: pieces and coefficients grow with
 /// powers of that number.
-const ORDER_OF_MOTION: [usize; 4] = [14, 14, 9, 7];
+const ORDER_OF_MOTION: [usize; 4] = [14, 12, 8, 6];
 
 /// The same of a proof of the scheme. (Slider crank, ±1 % of one: 8, 12 and 16 reach 0.51, 0.71 and 0.72 s in one
 /// piece.)
@@ -159,7 +159,9 @@ fn hull_of_pieces(ensemble: &dyn Ensemble, pieces: Vec<Enclosed>, simulations: u
     let lost = pieces.iter().filter_map(|piece| piece.lost.as_ref()).min_by(|a, b| a.time.total_cmp(&b.time));
     let note = lost.map(|Lost { time, why, .. }| {
         let pieces = pieces.len();
-        format!("{why} at t = {time} s (in one of {pieces} pieces of the box): certified bounds are unknown from there on")
+        format!(
+            "{why} at t = {time} s (in one of {pieces} pieces of the box): certified bounds are unknown from there on"
+        )
     });
     let simulated = Simulated { missing: ensemble.rows() - rows, ..Simulated::default() };
     MethodResult { note, ..bands.finish(simulations, simulated) }

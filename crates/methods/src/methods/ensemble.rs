@@ -323,7 +323,13 @@ pub trait Ensemble: Sync {
 
     /// Encloses the outputs over a piece of the box; `row` gets the Taylor models of one row after the other. Returns
     /// why it ended early; at an interruption it just ends.
-    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<Lost>;
+    fn enclose(
+        &self,
+        proof: Proof,
+        space: &ModelSpace,
+        piece: &ParameterBox,
+        row: &mut dyn FnMut(&[f64]),
+    ) -> Option<Lost>;
 
     /// Scale of every coordinate (n).
     fn scales(&self) -> &[f64];

@@ -71,7 +71,13 @@ impl Ensemble for OutputsAlone<'_> {
         self.0.obstacle_to_enclosure(proof)
     }
 
-    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+    fn enclose(
+        &self,
+        proof: Proof,
+        space: &ModelSpace,
+        piece: &ParameterBox,
+        row: &mut dyn FnMut(&[f64]),
+    ) -> Option<Lost> {
         self.0.enclose(proof, space, piece, row)
     }
 

@@ -31,8 +31,8 @@ use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, F
 use crate::methods::{Proof, Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
-    Certifier, Channel, Controller, Integrator, Interruption, Schedule, SimulationError,
-    Simulator, Steps, Stop, choose_independent, integrator,
+    Certifier, Channel, Controller, Integrator, Interruption, Schedule, SimulationError, Simulator, Steps, Stop,
+    choose_independent, integrator,
 };
 
 pub(super) use nominal::nominal;

@@ -35,8 +35,7 @@ impl Approximation {
             (0..of_box.rows).for_each(|row| space.lift(of_box.at(row, 0), lifted.at_mut(row, 0)));
             lifted
         };
-        let mut first =
-            Self { q: lift(&start.q), v: lift(&start.v), w: lift(&start.w), lambda: lift(&start.lambda) };
+        let mut first = Self { q: lift(&start.q), v: lift(&start.v), w: lift(&start.w), lambda: lift(&start.lambda) };
         first.integrate(space, start, cell);
         first
     }
@@ -108,12 +107,7 @@ impl Approximation {
     /// Hands each polynomial to its register.
     pub fn put(&self, program: &EquationsProgram, mut put: impl FnMut(usize, &[f64])) {
         let layout = &program.layout;
-        let blocks = [
-            (&layout.q, &self.q),
-            (&layout.v, &self.v),
-            (&layout.w, &self.w),
-            (&layout.lambda, &self.lambda),
-        ];
+        let blocks = [(&layout.q, &self.q), (&layout.v, &self.v), (&layout.w, &self.w), (&layout.lambda, &self.lambda)];
         for (registers, models) in blocks {
             registers.clone().enumerate().for_each(|(row, register)| put(register, models.at(row, 0)));
         }

@@ -23,6 +23,11 @@ impl Frame {
         Self { directions: identity.clone(), inverse: identity, radii }
     }
 
+    /// Largest radius.
+    pub fn size(&self) -> f64 {
+        self.radii.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Bound of |e|, 2n.
     pub fn error(&self, space: &ModelSpace) -> Vec<f64> {
         self.directions.bounds(space).times(&self.radii)
@@ -63,9 +68,8 @@ impl Frame {
         let errors = self.error(of_box);
         let lost = rounding.times(&self.radii);
         let missed = proven.missed.times(&errors);
-        let all: Vec<f64> = (0..lost.len())
-            .map(|row| up(lost[row] + missed[row] + proven.growth[row] + jump[row]))
-            .collect();
+        let all: Vec<f64> =
+            (0..lost.len()).map(|row| up(lost[row] + missed[row] + proven.growth[row] + jump[row])).collect();
         let seen = inverse.bounds(of_box).times(&all);
         let column = Bounds::of(seen.len(), 1, &seen);
         let beyond = resolvent(&contraction, &column).ok_or(EnclosureError::Unproven)?;

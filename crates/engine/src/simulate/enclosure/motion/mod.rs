@@ -36,13 +36,22 @@ const FIRST_HALF: f64 = 1.0 / 64.0;
 const LONGEST_HALF: f64 = 0.25;
 
 /// Half the length below which a cell is not halved, s.
-const SHORTEST_HALF: f64 = 1.0 / 65536.0;
+const SHORTEST_HALF: f64 = 1.0 / 32768.0;
 
-/// Defect of the accelerations, relative to their size, above which a cell is halved if that helps.
-const LARGE_DEFECT: f64 = 1e-11;
+/// Defect of the accelerations, relative to their size, above which a cell is halved.
+const LARGE_DEFECT: f64 = 1e-10;
 
 /// The same below which the next cell is twice as long.
-const SMALL_DEFECT: f64 = 1e-14;
+const SMALL_DEFECT: f64 = 1e-12;
+
+/// Factor by which r grows over a cell, above which the cell is halved.
+const LARGE_GAIN: f64 = 1.1;
+
+/// The same below which the next cell is twice as long.
+const SMALL_GAIN: f64 = 1.02;
+
+/// r whose growth does not matter: rounding.
+const ROUNDING: f64 = 1e-13;
 
 /// Last terms in ξ, relative to the size of the velocities, above which the box is too wide for the order.
 const LARGE_TAIL: f64 = 1e-8;
@@ -74,6 +83,21 @@ struct Passed {
     proven: Proven,
     /// At the cell's start.
     frame: Frame,
+}
+
+/// A cell that is proven, and what comes after it.
+struct Next {
+    cell: Cell,
+    approximation: Approximation,
+    proven: Proven,
+    /// The approximation at the cell's end.
+    end: Approximation,
+    /// At the cell's end.
+    frame: Frame,
+    /// Of the accelerations, relative to their size.
+    defect: f64,
+    /// Factor by which r grows.
+    gain: f64,
 }
 
 /// The true motion over a box, cell by cell.
@@ -128,7 +152,10 @@ impl<'s> MotionEnclosure<'s> {
         start::assemble(simulator, program, &fine.box_of, &mut rows, 0.0)?;
         let block = |registers: &std::ops::Range<usize>| {
             let mut models = Models::zero(&fine.box_of, registers.len(), 1);
-            registers.clone().enumerate().for_each(|(row, register)| models.at_mut(row, 0).copy_from_slice(rows.model(register)));
+            registers
+                .clone()
+                .enumerate()
+                .for_each(|(row, register)| models.at_mut(row, 0).copy_from_slice(rows.model(register)));
             models
         };
         let layout = &program.layout;
@@ -138,7 +165,8 @@ impl<'s> MotionEnclosure<'s> {
             w: block(&layout.w),
             lambda: block(&layout.lambda),
         };
-        let radii = layout.q.clone().chain(layout.v.clone()).map(|register| rows.model(register)[fine.box_of.size() - 1]);
+        let radii =
+            layout.q.clone().chain(layout.v.clone()).map(|register| rows.model(register)[fine.box_of.size() - 1]);
         let frame = Frame::new(&coarse.box_of, radii.collect());
         Ok(Self {
             program,
@@ -192,18 +220,10 @@ impl<'s> MotionEnclosure<'s> {
             let cell = Cell { middle: self.time + self.half, half: self.half };
             let can_halve = self.half > SHORTEST_HALF;
             match self.attempt(cell) {
-                Ok((approximation, proven)) => {
-                    let n = approximation.q.rows;
-                    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-                    let space = &self.spaces.fine.cell;
-                    let size = largest(&mut (0..n).map(|row| space.bound(approximation.w.at(row, 0))));
-                    let defect = largest(&mut proven.defect[n..].iter().copied()) / (size + 1e-6);
-                    let gained = self.last.as_ref().is_none_or(|last| last.cell.half > 0.5 * self.half);
-                    if defect > LARGE_DEFECT && can_halve && gained && self.half > 1.0 / 1024.0 {
-                        self.half *= 0.5;
-                        continue;
-                    }
-                    return self.accept(cell, approximation, proven, defect);
+                Ok(next) if can_halve && (next.defect > LARGE_DEFECT || next.gain > LARGE_GAIN) => self.half *= 0.5,
+                Ok(next) => {
+                    self.accept(next);
+                    return Ok(());
                 }
                 Err(EnclosureError::Unproven) if can_halve => self.half *= 0.5,
                 Err(why) => return Err(why),
@@ -212,7 +232,7 @@ impl<'s> MotionEnclosure<'s> {
     }
 
     /// An approximation over a cell, and its proof.
-    fn attempt(&mut self, cell: Cell) -> Result<(Approximation, Proven), EnclosureError> {
+    fn attempt(&mut self, cell: Cell) -> Result<Next, EnclosureError> {
         let MotionSpaces { fine, coarse } = self.spaces;
         let time = self.program.layout.time;
         fine.cell.jets().variable(0, cell.middle, cell.half, self.jets.jet_mut(time));
@@ -233,7 +253,7 @@ impl<'s> MotionEnclosure<'s> {
         }
         approximation.iterate(fine, self.program, &mut self.jets, &lifted, &self.start, cell)?;
         let size = |models: &Models| (0..models.rows).map(|row| fine.cell.bound(models.at(row, 0))).fold(0.0, f64::max);
-        let n = approximation.v.rows;
+        let n = approximation.q.rows;
         let tail = (0..n).map(|row| fine.last_in_parameters(approximation.v.at(row, 0))).fold(0.0, f64::max);
         if tail > LARGE_TAIL * size(&approximation.v) {
             return Err(EnclosureError::TooWide);
@@ -252,7 +272,27 @@ impl<'s> MotionEnclosure<'s> {
         };
         let slopes: Option<&Bounds> = self.last.as_ref().map(|last| &last.proven.slopes);
         let proven = claim.prove(&mut self.fine, &mut self.coarse, slopes)?;
-        Ok((approximation, proven))
+        let end = approximation.at(fine, 1.0);
+        let frame = self.frame.advance(coarse, &proven, &radii(fine, &end))?;
+        let defect =
+            proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
+        let gain = frame.size() / (self.frame.size() + ROUNDING);
+        Ok(Next { cell, approximation, proven, end, frame, defect, gain })
+    }
+
+    /// Goes on to the end of a cell.
+    fn accept(&mut self, next: Next) {
+        let Next { cell, approximation, proven, end, frame, defect, gain } = next;
+        let frame = std::mem::replace(&mut self.frame, frame);
+        self.start = end;
+        self.time = cell.end();
+        // Cells begin at multiples of their length.
+        let doubled = 2.0 * self.half;
+        let is_easy = defect < SMALL_DEFECT && gain < SMALL_GAIN;
+        if is_easy && doubled <= LONGEST_HALF && (self.time / (2.0 * doubled)).fract() == 0.0 {
+            self.half = doubled;
+        }
+        self.last = Some(Passed { cell, approximation, proven, frame });
     }
 
     /// Bound of the distance of ŷ(−1) from the polynomials at the cell's start, 2n.
@@ -271,28 +311,11 @@ impl<'s> MotionEnclosure<'s> {
         }
         jump
     }
+}
 
-    fn accept(
-        &mut self,
-        cell: Cell,
-        approximation: Approximation,
-        proven: Proven,
-        defect: f64,
-    ) -> Result<(), EnclosureError> {
-        let end = approximation.at(&self.spaces.fine, 1.0);
-        let last = self.spaces.fine.box_of.size() - 1;
-        let rows = [&end.q, &end.v].into_iter().flat_map(|models| (0..models.rows).map(|row| models.at(row, 0)[last]));
-        let jump: Vec<f64> = rows.collect();
-        let next = self.frame.advance(&self.spaces.coarse, &proven, &jump)?;
-        let frame = std::mem::replace(&mut self.frame, next);
-        self.start = end;
-        self.time = cell.end();
-        // Cells begin at multiples of half their length.
-        let doubled = 2.0 * self.half;
-        if defect < SMALL_DEFECT && doubled <= LONGEST_HALF && (self.time / doubled).fract() == 0.0 {
-            self.half = doubled;
-        }
-        self.last = Some(Passed { cell, approximation, proven, frame });
-        Ok(())
-    }
+/// Radii of positions and velocities, 2n.
+fn radii(space: &Space, end: &Approximation) -> Vec<f64> {
+    let last = space.box_of.size() - 1;
+    let rows = [&end.q, &end.v].into_iter().flat_map(|models| (0..models.rows).map(|row| models.at(row, 0)[last]));
+    rows.collect()
 }
