@@ -17,7 +17,7 @@ pub(super) struct Equations<'p> {
     unknowns: Vec<usize>,
     /// Registers of the residuals, after `residual`.
     residuals: Vec<usize>,
-    residual: [&'p Tape; 2],
+    residual: Vec<&'p Tape>,
     slopes: &'p Tape,
     /// (residual, unknown, register) after `slopes`.
     entries: Vec<(usize, usize, usize)>,
@@ -44,18 +44,27 @@ pub(super) fn assemble(
             memory.model_mut(start + place).copy_from_slice(&value);
         }
     }
-    let residuals = [&program.constraint, &program.constraint_rates[0]];
-    for ((kept, start), residuals) in program.kept.iter().zip(starts).zip(residuals) {
+    for (level, (kept, start)) in program.kept.iter().zip(starts).enumerate() {
         let free: Vec<usize> =
             (0..layout.q.len()).filter(|place| kept.iter().all(|(known, _)| known != place)).collect();
+        let nominal = |place: usize| simulator.nominal[start + place];
+        let is_open = program.closure[level].len() < free.len();
+        // The nominal values, which the memory has, are those of every ξ.
+        let is_known = match level {
+            0 => program.closure[0].is_empty() && free.iter().all(|&q| program.guess[q] == Some(nominal(q))),
+            _ => program.can_rest && free.iter().all(|&v| nominal(v) == 0.0),
+        };
+        if is_open && is_known {
+            continue;
+        }
         let column = |place: usize| free.iter().position(|&known| known == place);
-        let slopes = program.constraint_by_position.iter();
+        let slopes = program.closure_by[level].iter();
         let entries = slopes.filter_map(|&(row, place, register)| Some((row, column(place)?, register))).collect();
         let equations = Equations {
             unknowns: free.iter().map(|place| start + place).collect(),
-            residuals: residuals.clone(),
-            residual: [program.residual(), program.rates()],
-            slopes: program.jacobian(),
+            residuals: program.closure[level].clone(),
+            residual: vec![program.closure()],
+            slopes: program.closure_jacobian(),
             entries,
         };
         equations.solve(space, memory)?;
@@ -149,7 +158,7 @@ pub(super) fn accelerations(program: &EquationsProgram) -> Equations<'_> {
     Equations {
         unknowns: layout.w.clone().chain(layout.lambda.clone()).collect(),
         residuals: program.motion.iter().chain(&program.constraint_rates[1]).copied().collect(),
-        residual: [program.residual(), program.rates()],
+        residual: vec![program.residual(), program.rates()],
         slopes: program.jacobian(),
         entries,
     }
