@@ -13,7 +13,7 @@ use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
 
 /// Order of the polynomials by the number of parameters, of a proof of the motion: pieces and coefficients grow with
 /// powers of that number.
-const ORDER_OF_MOTION: [usize; 4] = [14, 12, 8, 6];
+const ORDER_OF_MOTION: [usize; 4] = [14, 12, 12, 8];
 
 /// The same of a proof of the scheme. (Slider crank, ±1 % of one: 8, 12 and 16 reach 0.51, 0.71 and 0.72 s in one
 /// piece.)
@@ -99,6 +99,8 @@ impl BoundingMethod for Certified {
 struct Enclosed {
     piece: ParameterBox,
     ranges: Vec<Range>,
+    /// The same since the row before; empty where that is not known.
+    between: Vec<Range>,
     lost: Option<Lost>,
 }
 
@@ -140,10 +142,12 @@ fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, piece: Par
     let mut ranges = Vec::with_capacity(ensemble.rows() * ensemble.outputs());
     let monomials = space.jets().monomials();
     let mut range = TaylorRange::new(monomials.variables(), monomials.order(), RangeKind::Tight);
-    let lost = ensemble.enclose(proof, space, &piece, &mut |models| {
+    let mut between = Vec::new();
+    let lost = ensemble.enclose(proof, space, &piece, &mut |models, since| {
         ranges.extend(models.chunks_exact(space.size()).map(|model| range_of(&mut range, model)));
+        between.extend(since.iter().map(|since| known(Range { lower: since.lower(), upper: since.upper() })));
     });
-    Enclosed { piece, ranges, lost }
+    Enclosed { piece, ranges, between, lost }
 }
 
 /// The hull of all pieces, unknown from where the first is lost.
@@ -156,6 +160,13 @@ fn hull_of_pieces(ensemble: &dyn Ensemble, pieces: Vec<Enclosed>, simulations: u
         // There is no surrogate: nothing lies outside, and how much too wide it is is not known.
         bands.set(row, output, pieces.iter().map(of_piece).reduce(hull).unwrap_or(Range::UNKNOWN), 0.0);
     }
+    let sees_all = !pieces.is_empty() && pieces.iter().all(|piece| piece.between.len() == piece.ranges.len());
+    let since = |row: usize, output: usize| {
+        let of_piece = |piece: &Enclosed| piece.between[row * outputs + output];
+        if row < rows { pieces.iter().map(of_piece).reduce(hull).unwrap_or(Range::UNKNOWN) } else { Range::UNKNOWN }
+    };
+    let of_output = |output: usize| (0..ensemble.rows()).map(|row| since(row, output)).collect();
+    let between = if sees_all { (0..outputs).map(of_output).collect() } else { Vec::new() };
     let lost = pieces.iter().filter_map(|piece| piece.lost.as_ref()).min_by(|a, b| a.time.total_cmp(&b.time));
     let note = lost.map(|Lost { time, why, .. }| {
         let pieces = pieces.len();
@@ -164,7 +175,7 @@ fn hull_of_pieces(ensemble: &dyn Ensemble, pieces: Vec<Enclosed>, simulations: u
         )
     });
     let simulated = Simulated { missing: ensemble.rows() - rows, ..Simulated::default() };
-    MethodResult { note, ..bands.finish(simulations, simulated) }
+    MethodResult { note, between, ..bands.finish(simulations, simulated) }
 }
 
 impl Enclosed {
@@ -195,8 +206,12 @@ fn range_of(range: &mut TaylorRange, model: &[f64]) -> Range {
     let varies = coefficients[1..].iter().any(|&c| c != 0.0);
     let margin = up(if varies { 100.0 * f64::EPSILON * size } else { 0.0 } + radius[0]);
     let wide = Range { lower: (found.lower - margin).next_down(), upper: (found.upper + margin).next_up() };
-    // An infinite radius says nothing.
-    if wide.lower.is_finite() && wide.upper.is_finite() { wide } else { Range::UNKNOWN }
+    known(wide)
+}
+
+/// A range without an end says nothing.
+fn known(range: Range) -> Range {
+    if range.lower.is_finite() && range.upper.is_finite() { range } else { Range::UNKNOWN }
 }
 
 /// What holds both; unknown where either is.

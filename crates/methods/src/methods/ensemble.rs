@@ -6,6 +6,7 @@
 use std::ops::Range as Rows;
 
 use serde::{Deserialize, Serialize};
+use symdiff::Interval;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
@@ -16,6 +17,10 @@ use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Takes the Taylor models of a row's outputs, and within which each output is since the row before; nothing where that
+/// is not known.
+pub type EnclosedRow<'r> = dyn FnMut(&[f64], &[Interval]) + 'r;
 
 /// A method ended at an interruption, and knows nothing.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
@@ -321,15 +326,9 @@ pub trait Ensemble: Sync {
     /// What prevents this proof, if something does.
     fn obstacle_to_enclosure(&self, proof: Proof) -> Option<String>;
 
-    /// Encloses the outputs over a piece of the box; `row` gets the Taylor models of one row after the other. Returns
-    /// why it ended early; at an interruption it just ends.
-    fn enclose(
-        &self,
-        proof: Proof,
-        space: &ModelSpace,
-        piece: &ParameterBox,
-        row: &mut dyn FnMut(&[f64]),
-    ) -> Option<Lost>;
+    /// Encloses the outputs over a piece of the box; `row` gets one row after the other. Returns why it ended early; at
+    /// an interruption it just ends.
+    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> Option<Lost>;
 
     /// Scale of every coordinate (n).
     fn scales(&self) -> &[f64];

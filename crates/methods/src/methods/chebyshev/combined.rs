@@ -11,6 +11,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
+use crate::methods::EnclosedRow;
 use crate::methods::certified::Proof;
 use crate::methods::ensemble::{
     Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
@@ -269,7 +270,7 @@ impl Ensemble for Combined<'_> {
         Some("a combination of parameters".to_owned())
     }
 
-    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
         None
     }
 

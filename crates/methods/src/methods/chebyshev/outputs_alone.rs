@@ -7,7 +7,9 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use crate::methods::certified::Proof;
-use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated};
+use crate::methods::ensemble::{
+    Closure, Combination, EnclosedRow, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated,
+};
 use crate::numerics::{ParameterBox, Range, Sample};
 
 /// The outputs of an ensemble, and nothing that they follow from.
@@ -71,13 +73,7 @@ impl Ensemble for OutputsAlone<'_> {
         self.0.obstacle_to_enclosure(proof)
     }
 
-    fn enclose(
-        &self,
-        proof: Proof,
-        space: &ModelSpace,
-        piece: &ParameterBox,
-        row: &mut dyn FnMut(&[f64]),
-    ) -> Option<Lost> {
+    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> Option<Lost> {
         self.0.enclose(proof, space, piece, row)
     }
 

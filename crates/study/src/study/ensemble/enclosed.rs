@@ -3,7 +3,7 @@
 use symdiff::taylor_model::ModelSpace;
 
 use super::Motions;
-use crate::methods::{Lost, Proof};
+use crate::methods::{EnclosedRow, Lost, Proof};
 use crate::numerics::ParameterBox;
 use crate::simulate::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces, Simulator};
 
@@ -39,7 +39,7 @@ pub(super) fn motion(
     motions: &Motions,
     space: &ModelSpace,
     piece: &ParameterBox,
-    row: &mut dyn FnMut(&[f64]),
+    row: &mut EnclosedRow,
 ) -> Option<Lost> {
     let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
     let monomials = space.jets().monomials();
@@ -53,7 +53,7 @@ pub(super) fn motion(
         if let Err((time, why)) = enclosure.observe(motions.schedule.time(next), &mut models) {
             return Some(lost(time, why));
         }
-        row(&models);
+        row(&models, enclosure.since());
     }
     None
 }
@@ -63,7 +63,7 @@ pub(super) fn scheme(
     motions: &Motions,
     space: &ModelSpace,
     piece: &ParameterBox,
-    row: &mut dyn FnMut(&[f64]),
+    row: &mut EnclosedRow,
 ) -> Option<Lost> {
     let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
     let first_step = motions.schedule.first_step();
@@ -79,7 +79,7 @@ pub(super) fn scheme(
         if let Err(why) = enclosure.observe(&mut models) {
             return Some(lost(motions.schedule.time(next), why));
         }
-        row(&models);
+        row(&models, &[]);
     }
     None
 }

@@ -27,7 +27,7 @@ use super::price::instructions_of_step;
 use super::reduced::Store;
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, FollowedEnds};
+use crate::methods::{self, Combination, DenseMotions, EnclosedRow, Ensemble, EnsembleError, FollowedEnds};
 use crate::methods::{Proof, Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
@@ -348,7 +348,7 @@ impl Ensemble for Motions<'_> {
         proof: Proof,
         space: &ModelSpace,
         piece: &ParameterBox,
-        row: &mut dyn FnMut(&[f64]),
+        row: &mut EnclosedRow,
     ) -> Option<methods::Lost> {
         match proof {
             Proof::Motion => enclosed::motion(self, space, piece, row),

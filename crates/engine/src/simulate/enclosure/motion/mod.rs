@@ -83,6 +83,8 @@ struct Passed {
     proven: Proven,
     /// At the cell's start.
     frame: Frame,
+    /// Outputs over the cell.
+    ranges: Vec<Interval>,
 }
 
 /// A cell that is proven, and what comes after it.
@@ -94,6 +96,8 @@ struct Next {
     end: Approximation,
     /// At the cell's end.
     frame: Frame,
+    /// Outputs over the cell.
+    ranges: Vec<Interval>,
     /// Of the accelerations, relative to their size.
     defect: f64,
     /// Factor by which r grows.
@@ -118,6 +122,8 @@ pub struct MotionEnclosure<'s> {
     time: f64,
     half: f64,
     last: Option<Passed>,
+    /// Within which each output is since the time before the one that was observed last.
+    since: Vec<Interval>,
 }
 
 impl<'s> MotionEnclosure<'s> {
@@ -181,6 +187,7 @@ impl<'s> MotionEnclosure<'s> {
             time: 0.0,
             half: FIRST_HALF,
             last: None,
+            since: Vec::new(),
         })
     }
 
@@ -189,10 +196,18 @@ impl<'s> MotionEnclosure<'s> {
     /// # Errors
     /// Where the motion cannot be proven, with the time up to which it is.
     pub fn observe(&mut self, time: f64, into: &mut Vec<f64>) -> Result<(), (f64, EnclosureError)> {
+        self.since.clear();
+        self.since.extend(self.last.iter().flat_map(|last| &last.ranges));
         while self.last.as_ref().is_none_or(|last| last.cell.end() < time) {
             self.pass().map_err(|why| (self.time, why))?;
+            let ranges = self.last.iter().flat_map(|last| &last.ranges);
+            if self.since.is_empty() {
+                self.since.extend(ranges);
+            } else {
+                self.since.iter_mut().zip(ranges).for_each(|(since, &range)| *since = since.hull(range));
+            }
         }
-        let Some(Passed { cell, approximation, proven, frame }) = &self.last else { return Ok(()) };
+        let Some(Passed { cell, approximation, proven, frame, .. }) = &self.last else { return Ok(()) };
         let Space { box_of, .. } = &self.spaces.fine;
         let tau = ((time - cell.middle) / cell.half).clamp(-1.0, 1.0);
         let errors = frame.error_at(&self.spaces.coarse, proven, tau);
@@ -212,6 +227,11 @@ impl<'s> MotionEnclosure<'s> {
         into.clear();
         self.program.outputs.iter().for_each(|&register| into.extend_from_slice(rows.model(register)));
         Ok(())
+    }
+
+    /// Within which each output is at all times from the one observed before to the last one.
+    pub fn since(&self) -> &[Interval] {
+        &self.since
     }
 
     /// Proves the next cell, as long as can be.
@@ -272,17 +292,21 @@ impl<'s> MotionEnclosure<'s> {
         };
         let slopes: Option<&Bounds> = self.last.as_ref().map(|last| &last.proven.slopes);
         let proven = claim.prove(&mut self.fine, &mut self.coarse, slopes)?;
+        // The memory has the tube, and all accelerations and multipliers in it.
+        self.coarse.run(self.program.observe());
+        let outputs = self.program.outputs.iter();
+        let ranges = outputs.map(|&register| coarse.cell.range(self.coarse.model(register))).collect();
         let end = approximation.at(fine, 1.0);
         let frame = self.frame.advance(coarse, &proven, &radii(fine, &end))?;
         let defect =
             proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
         let gain = frame.size() / (self.frame.size() + ROUNDING);
-        Ok(Next { cell, approximation, proven, end, frame, defect, gain })
+        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, gain })
     }
 
     /// Goes on to the end of a cell.
     fn accept(&mut self, next: Next) {
-        let Next { cell, approximation, proven, end, frame, defect, gain } = next;
+        let Next { cell, approximation, proven, end, frame, ranges, defect, gain } = next;
         let frame = std::mem::replace(&mut self.frame, frame);
         self.start = end;
         self.time = cell.end();
@@ -292,7 +316,7 @@ impl<'s> MotionEnclosure<'s> {
         if is_easy && doubled <= LONGEST_HALF && (self.time / (2.0 * doubled)).fract() == 0.0 {
             self.half = doubled;
         }
-        self.last = Some(Passed { cell, approximation, proven, frame });
+        self.last = Some(Passed { cell, approximation, proven, frame, ranges });
     }
 
     /// Bound of the distance of ŷ(−1) from the polynomials at the cell's start, 2n.

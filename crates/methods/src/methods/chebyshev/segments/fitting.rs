@@ -157,6 +157,7 @@ mod tests {
     use symdiff::taylor_model::ModelSpace;
 
     use super::*;
+    use crate::methods::EnclosedRow;
     use crate::methods::certified::Proof;
     use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
     use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
@@ -267,7 +268,7 @@ mod tests {
         fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
             unreachable!()
         }
-        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
             unreachable!()
         }
         fn scales(&self) -> &[f64] {
