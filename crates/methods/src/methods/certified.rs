@@ -109,7 +109,7 @@ fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
     let domain = ensemble.domain();
     if let Some(obstacle) = ensemble.obstacle_to_enclosure(proof) {
         let note = format!("not supported with --certify: {obstacle}");
-        return MethodResult { note: Some(note), ..hull_of_pieces(ensemble, Vec::new(), 0) };
+        return MethodResult { note: Some(note), ..hull_of_pieces(ensemble, proof, Vec::new(), 0) };
     }
     let space = ModelSpace::new(domain.dimension(), proof.orders()[domain.dimension()]);
     let mut open = vec![domain.clone()];
@@ -134,7 +134,7 @@ fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
             }
         }
     }
-    hull_of_pieces(ensemble, closed, simulations)
+    hull_of_pieces(ensemble, proof, closed, simulations)
 }
 
 /// One piece, as far as it goes.
@@ -151,7 +151,7 @@ fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, piece: Par
 }
 
 /// The hull of all pieces, unknown from where the first is lost.
-fn hull_of_pieces(ensemble: &dyn Ensemble, pieces: Vec<Enclosed>, simulations: usize) -> MethodResult {
+fn hull_of_pieces(ensemble: &dyn Ensemble, proof: Proof, pieces: Vec<Enclosed>, simulations: usize) -> MethodResult {
     let outputs = ensemble.outputs();
     let rows = pieces.iter().map(|piece| piece.ranges.len() / outputs.max(1)).min().unwrap_or(0);
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
@@ -175,7 +175,13 @@ fn hull_of_pieces(ensemble: &dyn Ensemble, pieces: Vec<Enclosed>, simulations: u
         )
     });
     let simulated = Simulated { missing: ensemble.rows() - rows, ..Simulated::default() };
-    MethodResult { note, between, ..bands.finish(simulations, simulated) }
+    let mut result = bands.finish(simulations, simulated);
+    if proof == Proof::Motion {
+        // No step is in it.
+        let known = |range: &Range| if range.lower.is_nan() { f64::NAN } else { 0.0 };
+        result.steps = result.bands.iter().map(|ranges| ranges.iter().map(known).collect()).collect();
+    }
+    MethodResult { note, between, ..result }
 }
 
 impl Enclosed {

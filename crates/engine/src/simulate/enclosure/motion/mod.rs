@@ -39,19 +39,22 @@ const LONGEST_HALF: f64 = 0.25;
 const SHORTEST_HALF: f64 = 1.0 / 32768.0;
 
 /// Defect of the accelerations, relative to their size, above which a cell is halved.
-const LARGE_DEFECT: f64 = 1e-10;
+const LARGE_DEFECT: f64 = 1e-12;
 
 /// The same below which the next cell is twice as long.
-const SMALL_DEFECT: f64 = 1e-12;
+const SMALL_DEFECT: f64 = 1e-13;
 
 /// Factor by which r grows over a cell, above which the cell is halved.
-const LARGE_GAIN: f64 = 1.1;
+const LARGE_GAIN: f64 = 1.05;
 
 /// The same below which the next cell is twice as long.
-const SMALL_GAIN: f64 = 1.02;
+const SMALL_GAIN: f64 = 1.01;
 
 /// r whose growth does not matter: rounding.
 const ROUNDING: f64 = 1e-13;
+
+/// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than ever shorter cells.
+const LARGE_REMAINDER: f64 = 1e-5;
 
 /// Last terms in ξ, relative to the size of the velocities, above which the box is too wide for the order.
 const LARGE_TAIL: f64 = 1e-8;
@@ -110,6 +113,8 @@ pub struct MotionEnclosure<'s> {
     program: &'s EquationsProgram,
     spaces: &'s MotionSpaces,
     solves_accelerations: bool,
+    /// Of the coordinates, n.
+    scales: Vec<f64>,
     fine: ModelMemory<'s>,
     coarse: ModelMemory<'s>,
     jets: JetMemory<'s>,
@@ -178,6 +183,7 @@ impl<'s> MotionEnclosure<'s> {
             program,
             spaces,
             solves_accelerations: simulator.solves_row_accelerations(),
+            scales: simulator.system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
             fine: of_cell,
             coarse: memory(&coarse.cell, 1),
             jets,
