@@ -196,3 +196,27 @@ simulation: { duration: 1, step: 0.01 }
     let failure = failure.expect("a jump has no proof");
     assert!(failure.contains("`floor` of positions or velocities"), "{failure}");
 }
+
+/// A body that turns freely about its axis of symmetry from an uncertain orientation: its point goes round at the given
+/// rate. Velocities of Euler parameters follow from the orientation at each parameter.
+#[test]
+fn a_free_body_turns_from_an_uncertain_orientation() {
+    let (bounds, failure) = certify(read(
+        "
+parameters: { a: { value: 0.4, unit: rad, tolerance: 10% } }
+bodies: { top: { mass: 1, inertia: [0.1, 0.1, 0.2], points: { rim: [1, 0, 0] } } }
+initial:
+  { top.x: 0, top.y: 0, top.z: 0, top.vx: 0, top.vy: 0, top.vz: 0, top.orientation: { rpy: [a, 0, 0] }, top.omega_body: [0, 0, 2] }
+outputs: { x: top.rim.x, y: top.rim.y, z: top.rim.z }
+simulation: { duration: 1, step: 1e-2, output_step: 0.25 }
+",
+    ));
+    assert_eq!(failure, None);
+    let of = |observed: fn(f64, f64) -> f64| -> Vec<Vec<f64>> {
+        let angles = box_of(21).map(|xi| 0.4 * (1.0 + 0.1 * xi));
+        angles.map(|a| bounds.times.iter().map(|t| observed(a, 2.0 * t)).collect()).collect()
+    };
+    assert!(excess(&bounds, "x", &of(|_, turned| turned.cos())) < 1e-8);
+    assert!(excess(&bounds, "y", &of(|a, turned| a.cos() * turned.sin())) < 1e-2);
+    assert!(excess(&bounds, "z", &of(|a, turned| a.sin() * turned.sin())) < 1e-2);
+}

@@ -36,15 +36,14 @@ pub(super) fn assemble(
         space.constant(Interval::point(simulator.nominal[register]), memory.model_mut(register));
     }
     set_time(space, memory, layout.time, 0.0);
-    memory.run(program.given());
     let starts = [layout.q.start, layout.v.start];
-    for (kept, start) in program.kept.iter().zip(starts) {
+    for (level, (kept, start)) in program.kept.iter().zip(starts).enumerate() {
+        // Given velocities may be functions of the positions, which are known by then.
+        memory.run(program.given());
         for &(place, given) in kept {
             let value = memory.model(given).to_vec();
             memory.model_mut(start + place).copy_from_slice(&value);
         }
-    }
-    for (level, (kept, start)) in program.kept.iter().zip(starts).enumerate() {
         let free: Vec<usize> =
             (0..layout.q.len()).filter(|place| kept.iter().all(|(known, _)| known != place)).collect();
         let nominal = |place: usize| simulator.nominal[start + place];

@@ -304,6 +304,10 @@ impl<'s> MotionEnclosure<'s> {
         let ranges = outputs.map(|&register| coarse.cell.range(self.coarse.model(register))).collect();
         let end = approximation.at(fine, 1.0);
         let frame = self.frame.advance(coarse, &proven, &radii(fine, &end))?;
+        let errors = frame.error(&coarse.box_of);
+        if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
+            return Err(EnclosureError::TooWide);
+        }
         let defect =
             proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
         let gain = frame.size() / (self.frame.size() + ROUNDING);
