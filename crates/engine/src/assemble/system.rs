@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::inputs::{InputInfo, RandomInput};
-use symdiff::{Expr, Formula, Graph, Node, Unary};
+use symdiff::{Expr, Formula, Graph};
 
 use crate::grammar::quantity::Dimension;
 use crate::model::{Analysis, ModesRequest, Parameter, Space};
@@ -364,20 +364,6 @@ impl System {
     /// The coordinates of the mechanism, without those of states.
     pub fn coordinates_of_motion(&self) -> impl Iterator<Item = &CoordinateInfo> {
         self.coordinates.iter().filter(|coordinate| !coordinate.is_state)
-    }
-
-    /// Whether `floor` of the motion stands in an equation: the equations jump, and no derivative shows it.
-    pub fn jumps_with_the_motion(&self) -> bool {
-        let roots: Vec<Expr> = [&self.inertia, &self.force, &self.constraint].into_iter().flatten().copied().collect();
-        let of_motion: Vec<Expr> = [&self.q, &self.v, &self.w, &self.lambda].into_iter().flatten().copied().collect();
-        let jumps = |expr: &Expr| match self.graph.node(*expr) {
-            Node::Unary(Unary::Floor, argument) => {
-                let symbols = self.graph.symbols_of(&[argument]);
-                of_motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok())
-            }
-            _ => false,
-        };
-        self.graph.reachable(&roots).iter().any(jumps)
     }
 
     /// Whether an output depends on accelerations or multipliers.

@@ -5,47 +5,12 @@ use symdiff::taylor_model::{ModelSpace, up};
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Lost, Simulated};
+use super::proof::Proof;
 use super::registry::{About, BoundingMethod, Refusal, Registered};
 use super::request::Problem;
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
-
-/// Order of the polynomials by the number of parameters, of a proof of the motion: pieces and coefficients grow with
-/// powers of that number.
-const ORDER_OF_MOTION: [usize; 4] = [14, 12, 12, 8];
-
-/// The same of a proof of the scheme. (Slider crank, ±1 % of one: 8, 12 and 16 reach 0.51, 0.71 and 0.72 s in one
-/// piece.)
-const ORDER_OF_SCHEME: [usize; 3] = [0, 12, 6];
-
-/// What is proven.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Proof {
-    /// The differential equation's motion.
-    #[default]
-    Motion,
-    /// The motion as HHT-I3's steps of the given length define it.
-    Scheme,
-}
-
-impl Proof {
-    /// Orders of polynomials, by the number of parameters.
-    fn orders(self) -> &'static [usize] {
-        match self {
-            Self::Motion => &ORDER_OF_MOTION,
-            Self::Scheme => &ORDER_OF_SCHEME,
-        }
-    }
-
-    /// Most pieces that are enclosed at last.
-    fn most_pieces(self) -> usize {
-        match self {
-            Self::Motion => 64,
-            Self::Scheme => 16,
-        }
-    }
-}
 
 /// Certified bounds: proven for every parameter of the box.
 #[derive(Clone, Copy, Debug, Default)]

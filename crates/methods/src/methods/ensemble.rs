@@ -6,21 +6,16 @@
 use std::ops::Range as Rows;
 
 use serde::{Deserialize, Serialize};
-use symdiff::Interval;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::certified::Proof;
 use super::followed::FollowedEnds;
+use super::proof::{EnclosedRow, Proof};
 use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
-
-/// Takes the Taylor models of a row's outputs, and within which each output is since the row before; nothing where that
-/// is not known.
-pub type EnclosedRow<'r> = dyn FnMut(&[f64], &[Interval]) + 'r;
 
 /// A method ended at an interruption, and knows nothing.
 #[derive(Clone, Copy, Debug, thiserror::Error)]

@@ -8,6 +8,7 @@ mod ensemble;
 mod expansion;
 mod followed;
 mod kept;
+mod proof;
 mod registry;
 mod request;
 mod result;
@@ -18,14 +19,15 @@ mod chebyshev;
 mod scan;
 mod taylor;
 
-pub use certified::{Certified, Proof};
+pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose, ends_of_combinations};
 pub use ensemble::{
-    Closure, Combination, DenseMotions, Effort, EnclosedRow, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost,
-    Observed, OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
+    Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed,
+    OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
 pub use followed::{Followed, FollowedEnds, Sensitivity};
 pub use kept::KeptSurrogate;
+pub use proof::{EnclosedRow, Proof};
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, MethodResult};

@@ -11,11 +11,10 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
-use crate::methods::EnclosedRow;
-use crate::methods::certified::Proof;
 use crate::methods::ensemble::{
     Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
 };
+use crate::methods::proof::{EnclosedRow, Proof};
 use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, ParameterBox, Range, Sample, largest};
 

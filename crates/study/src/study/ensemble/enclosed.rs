@@ -1,8 +1,10 @@
 //! Enclosures of a mechanism's motions over a piece of the box.
 
 use symdiff::taylor_model::ModelSpace;
+use symdiff::{Expr, Node, Unary};
 
 use super::Motions;
+use crate::assemble::System;
 use crate::methods::{EnclosedRow, Lost, Proof};
 use crate::numerics::ParameterBox;
 use crate::simulate::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces, Simulator};
@@ -26,8 +28,23 @@ pub(super) fn obstacle(simulator: &Simulator, proof: Proof) -> Option<String> {
     if proof == Proof::Motion && !system.sampled.is_empty() {
         return Some("states that change at instants, as of a controller with a period".to_owned());
     }
-    (proof == Proof::Motion && system.jumps_with_the_motion())
+    (proof == Proof::Motion && jumps_with_the_motion(system))
         .then(|| "`floor` of positions or velocities, where the equations jump".to_owned())
+}
+
+/// Whether `floor` of the motion stands in an equation: the equations jump, and no derivative shows it.
+fn jumps_with_the_motion(system: &System) -> bool {
+    let roots: Vec<Expr> =
+        [&system.inertia, &system.force, &system.constraint].into_iter().flatten().copied().collect();
+    let motion: Vec<Expr> = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied().collect();
+    let jumps = |expr: &Expr| match system.graph.node(*expr) {
+        Node::Unary(Unary::Floor, argument) => {
+            let symbols = system.graph.symbols_of(&[argument]);
+            motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok())
+        }
+        _ => false,
+    };
+    system.graph.reachable(&roots).iter().any(jumps)
 }
 
 fn lost(time: f64, why: EnclosureError) -> Lost {

@@ -332,7 +332,7 @@ impl ModelSpace {
     }
 
     /// Within which a model is over the box.
-    pub fn range(&self, a: &[f64]) -> Interval {
+    fn range(&self, a: &[f64]) -> Interval {
         let (polynomial, _) = self.split(a);
         let norms = self.norms(a);
         if norms.tails[1] == 0.0 && norms.radius == 0.0 {

@@ -301,7 +301,7 @@ impl<'s> MotionEnclosure<'s> {
         // The memory has the tube, and all accelerations and multipliers in it.
         self.coarse.run(self.program.observe());
         let outputs = self.program.outputs.iter();
-        let ranges = outputs.map(|&register| coarse.cell.range(self.coarse.model(register))).collect();
+        let ranges = outputs.map(|&register| coarse.range(self.coarse.model(register))).collect();
         let end = approximation.at(fine, 1.0);
         let frame = self.frame.advance(coarse, &proven, &radii(fine, &end))?;
         let errors = frame.error(&coarse.box_of);

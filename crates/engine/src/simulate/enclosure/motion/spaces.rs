@@ -3,12 +3,16 @@
 //! Variable 0 of a cell's polynomials is τ ∈ [−1, 1] with t = middle + half τ, the others are ξ. Half the cell's length
 //! is a power of two and its ends are multiples of it, so that t(τ) has no rounding.
 
+use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::super::matrix::Models;
 
 /// Half a unit in the last place, rounded up.
 const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
+
+/// Parts of half a cell in which ranges are found term by term.
+const PARTS: i32 = 32;
 
 /// Polynomials of (τ, ξ) next to those of ξ, of the same order.
 #[derive(Clone, Debug)]
@@ -27,6 +31,10 @@ pub(super) struct Space {
     raised: Vec<Option<usize>>,
     /// Monomial with one less τ, where it has one.
     lowered: Vec<Option<usize>>,
+    /// Range of each monomial's powers of ξ.
+    of_parameters: Vec<Interval>,
+    /// Range of each power of τ, in each of the parts of [−1, 1].
+    of_time: Vec<Vec<Interval>>,
 }
 
 /// An interval of time: t = middle + half τ.
@@ -62,7 +70,37 @@ impl Space {
         let constant_in_time = (0..own.len()).filter_map(|r| index(&[&[0], own.exponents(r)].concat())).collect();
         let raised = (0..all.len()).map(|r| with_power(r, Some(power[r] + 1))).collect();
         let lowered = (0..all.len()).map(|r| with_power(r, power[r].checked_sub(1))).collect();
-        Self { power, without_time, constant_in_time, raised, lowered, cell, box_of }
+        let of_parameters = (0..all.len()).map(|r| match &all.exponents(r)[1..] {
+            exponents if exponents.iter().all(|e| *e == 0) => Interval::point(1.0),
+            exponents if exponents.iter().all(|e| e % 2 == 0) => Interval::new(0.0, 1.0),
+            _ => Interval::new(-1.0, 1.0),
+        });
+        let of_parameters = of_parameters.collect();
+        let part = |part: i32| {
+            // No part has zero inside: powers are monotone there.
+            let ends = [part, part + 1].map(|end| Interval::point(f64::from(end) / f64::from(PARTS)));
+            let mut powers = [Interval::point(1.0); 2];
+            let mut next = || {
+                let range = powers[0].hull(powers[1]);
+                powers = [powers[0] * ends[0], powers[1] * ends[1]];
+                range
+            };
+            (0..=order).map(|_| next()).collect()
+        };
+        let of_time = (-PARTS..PARTS).map(part).collect();
+        Self { of_parameters, of_time, power, without_time, constant_in_time, raised, lowered, cell, box_of }
+    }
+
+    /// Within which a model of (τ, ξ) is.
+    pub fn range(&self, model: &[f64]) -> Interval {
+        let radius = model[model.len() - 1];
+        let error = Interval::new(-radius, radius);
+        let part = |powers: &Vec<Interval>| {
+            let terms = model.iter().zip(&self.power).zip(&self.of_parameters);
+            let terms = terms.filter(|((c, _), _)| **c != 0.0);
+            terms.fold(error, |sum, ((&c, &power), &xi)| sum + Interval::point(c) * powers[power] * xi)
+        };
+        self.of_time.iter().map(part).reduce(Interval::hull).unwrap_or(Interval::ENTIRE)
     }
 
     /// A polynomial of ξ as one of (τ, ξ).
@@ -166,6 +204,23 @@ mod tests {
         assert!(end[space.box_of.size() - 1] < 1e-14);
         space.rate(&v, 0.25, &mut rate);
         assert_eq!(rate[..size - 1], w[..size - 1]);
+    }
+
+    #[test]
+    fn ranges_over_a_cell_are_tight_in_time() {
+        let space = Space::new(1, 4);
+        let monomials = space.cell.jets().monomials();
+        let index =
+            |exponents: [usize; 2]| (0..monomials.len()).find(|&r| monomials.exponents(r) == exponents).unwrap();
+        let mut model = vec![0.0; space.cell.size()];
+        // 2 + τ − τ² + 0.25 ξ ± 0.125: from 0 − 0.375 to 2.25 + 0.375.
+        for (exponents, c) in [([0, 0], 2.0), ([1, 0], 1.0), ([2, 0], -1.0), ([0, 1], 0.25)] {
+            model[index(exponents)] = c;
+        }
+        *model.last_mut().unwrap() = 0.125;
+        let range = space.range(&model);
+        assert!(range.lower() <= -0.375 && range.lower() > -0.475, "{range:?}");
+        assert!(range.upper() >= 2.625 && range.upper() < 2.7, "{range:?}");
     }
 
     #[test]
