@@ -45,6 +45,7 @@ impl BoundingMethod for Certified {
         let parameters = problem.parameters;
         let most = self.proof.orders().len() - 1;
         if parameters > most {
+            let most = if most == 2 { "two" } else { "three" };
             let message = format!("certified bounds are for at most {most} uncertain parameters, not {parameters}");
             return Err(Refusal(message));
         }
