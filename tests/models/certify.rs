@@ -1,5 +1,5 @@
-//! Certified bounds of the scheme's motion: they hold every sample of the ordinary integration, are hardly wider than what samples reach, and
-//! say where they end.
+//! Certified bounds of the scheme's motion: they hold every sample of the ordinary integration, are hardly wider than
+//! their range, and say where they end.
 //!
 //! The ordinary integration ends Newton's iteration at 1e-11 of a position; its samples are therefore allowed to lie
 //! outside by `NEWTON` times the size of what is observed, and no more.

@@ -117,7 +117,7 @@ bounds: { chebyshev: { order: 1, expand: output }, budget: { solves: 40 } }
     assert!(output.contains("holds") && output.contains("earlier round"), "{output}");
 }
 
-/// A mass on a spring, thrown from rest at v, is at most v/√k away: proven of the true motion, at rows and between them;
+/// A mass on a spring, thrown from rest at v, is at most v/√k away: proven of the true motion, at rows and between;
 /// of the scheme's, where certified bounds see every step, or the row that is asked for.
 #[test]
 fn certified_bounds_prove_what_they_see() {

@@ -15,7 +15,7 @@ use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
 /// Certified bounds: proven for every parameter of the box.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Certified {
-    /// What is proven.
+    /// The proven motion.
     pub proof: Proof,
 }
 

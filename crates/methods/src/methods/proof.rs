@@ -10,7 +10,7 @@ const ORDER_OF_MOTION: [usize; 4] = [14, 12, 12, 8];
 /// piece.)
 const ORDER_OF_SCHEME: [usize; 3] = [0, 12, 6];
 
-/// What is proven.
+/// The proven motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Proof {
     /// The differential equation's motion.

@@ -217,7 +217,7 @@ impl Equations<'_> {
         }
     }
 
-    /// Residuals over what is in the memory.
+    /// Residuals over the models in the memory.
     pub(super) fn residual(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         self.residual.iter().for_each(|tape| memory.run(tape));
         let mut residual = Models::zero(space, self.residuals.len(), 1);
@@ -227,7 +227,7 @@ impl Equations<'_> {
         residual
     }
 
-    /// Derivatives by the unknowns over what is in the memory.
+    /// Derivatives by the unknowns over the models in the memory.
     pub(super) fn matrix(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         memory.run(self.slopes);
         let mut matrix = Models::zero(space, self.residuals.len(), self.unknowns.len());

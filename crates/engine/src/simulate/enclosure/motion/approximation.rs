@@ -50,8 +50,8 @@ impl Approximation {
         }
     }
 
-    /// Iterates. `inverse` approximates that of the matrix by (w, λ) over the cell. `memory` has the cell's time and the
-    /// parameters.
+    /// Iterates. `inverse` approximates that of the matrix by (w, λ) over the cell. `memory` has the cell's time and
+    /// the parameters.
     pub fn iterate(
         &mut self,
         space: &Space,

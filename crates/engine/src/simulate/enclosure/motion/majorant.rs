@@ -15,8 +15,8 @@ const LEAST: f64 = 1e-280;
 
 /// An s with start + time (A s + rate) ≤ s, or `None` where none is found.
 ///
-/// It bounds |e| where |e| ≤ start at first and |e|' ≤ A |e| + rate over that time: start + t (A s + rate) solves x' ≥ A x
-/// + rate as long as it is below s, and A's entries are not negative.
+/// It bounds |e| where |e| ≤ start at first and |e|' ≤ A |e| + rate over that time: start + t (A s + rate) solves
+/// x' ≥ A x + rate as long as it is below s, and A's entries are not negative.
 pub(super) fn bound(matrix: &Bounds, start: &[f64], time: f64, rate: &[f64]) -> Option<Vec<f64>> {
     let image = |s: &[f64]| -> Vec<f64> {
         let rows = matrix.times(s).into_iter().zip(start).zip(rate);

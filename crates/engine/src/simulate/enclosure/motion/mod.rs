@@ -1,10 +1,10 @@
 //! The true motion, enclosed: the differential equation's solution for every parameter of a box.
 //!
-//! The equations of motion with Φ̈ = 0 determine w = f(t, q, v, ξ) wherever [M Φ_qᵀ; Φ_q 0] is regular, and a motion that
-//! starts on the constraints stays on them: one formulation serves open and closed mechanisms. Over a cell of time
+//! The equations of motion with Φ̈ = 0 determine w = f(t, q, v, ξ) wherever [M Φ_qᵀ; Φ_q 0] is regular, and a motion
+//! that starts on the constraints stays on them: one formulation serves open and closed mechanisms. Over a cell of time
 //! ([`spaces::Cell`])
 //!
-//! 1. polynomials ŷ(τ, ξ) of q, v, w and λ come from Picard's iteration ([`approximation`]); nothing of them is trusted;
+//! 1. polynomials ŷ(τ, ξ) of q, v, w and λ come from Picard's iteration ([`approximation`]); none of them is trusted;
 //! 2. their defect in q̇ = v, v̇ = w and in the equations is bounded in Taylor models of (τ, ξ) ([`proof`]);
 //! 3. ∂f/∂y is enclosed over a tube about ŷ, in which |e|' ≤ |A| |e| + defect has to keep e = y − ŷ;
 //! 4. Φ̂(τ, ξ), polynomials of low order, approximates the transition matrix; |Φ − Φ̂| is bounded in the same way;
@@ -53,7 +53,7 @@ const SMALL_GAIN: f64 = 1.01;
 /// r whose growth does not matter: rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than ever shorter cells.
+/// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
 const LARGE_REMAINDER: f64 = 1e-5;
 
 /// Last terms in ξ, relative to the size of the velocities, above which the box is too wide for the order.

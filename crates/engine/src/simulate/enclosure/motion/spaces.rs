@@ -119,7 +119,7 @@ impl Space {
             slope += power as f64 * c.abs();
         }
         let order = self.power.iter().copied().max().unwrap_or(0) as f64;
-        // A power is a product of at most twice `order` roundings, and a sum has at most order + 1 terms; ends are exact.
+        // A power has at most twice `order` roundings, and a sum at most order + 1 terms; ends are exact.
         let powers = if tau.abs() == 1.0 { 0.0 } else { 2.0 * order };
         let late = if tau.abs() == 1.0 { 0.0 } else { 2.0 * f64::EPSILON * slope };
         let radius = model[model.len() - 1] + HALF_UNIT * (order + 3.0 + powers) * size + late;
@@ -135,7 +135,7 @@ impl Space {
             let c = model[r] * half / power as f64;
             into[raised] += c;
             let start = self.constant_in_time[self.without_time[raised]];
-            into[start] -= if power % 2 == 0 { c } else { -c };
+            into[start] -= if power.is_multiple_of(2) { c } else { -c };
         }
     }
 
