@@ -25,7 +25,7 @@ pub mod export {
 }
 
 pub mod methods {
-    pub use crate::methods::{BoundsRequest, Budget, Chebyshev, Degree, Expand, Scan, Taylor};
+    pub use crate::methods::{BoundsRequest, Budget, Certified, Chebyshev, Degree, Expand, Proof, Scan, Taylor};
 }
 
 pub mod model {

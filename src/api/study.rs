@@ -1,7 +1,7 @@
 //! A study: which methods bound a model, and how they run.
 
 use super::{Error, Samples, StudyResult};
-use crate::methods::{BoundsRequest, Certified, Chebyshev, Scan, Taylor};
+use crate::methods::{BoundsRequest, Certified, Chebyshev, Proof, Scan, Taylor};
 use crate::model::{Description, Stepping};
 use crate::results::{Allocation, CostStudy, Criterion, DesignStudy, Fit};
 use crate::study::{
@@ -57,10 +57,17 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Proven bounds of the discretised motion: one or two parameters, a fixed step.
+    /// Proven bounds of the true motion: at most three parameters.
     #[must_use]
     pub fn certified(mut self) -> Self {
-        self.choose().certified = Some(Certified);
+        self.choose().certified = Some(Certified { proof: Proof::Motion });
+        self
+    }
+
+    /// Proven bounds of the discretised motion: one or two parameters, a fixed step.
+    #[must_use]
+    pub fn certified_scheme(mut self) -> Self {
+        self.choose().certified = Some(Certified { proof: Proof::Scheme });
         self
     }
 

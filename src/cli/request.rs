@@ -9,6 +9,7 @@ use super::kept_run::KeptRun;
 use super::load::Given;
 use super::profile::Profile;
 use super::verdicts::Junit;
+use crate::methods::Proof;
 use crate::model::{Description, Witness, shown};
 use crate::results::{Method, ModelFile, RunRequest};
 use crate::store::Missing;
@@ -23,7 +24,8 @@ pub(super) struct Request {
     pub witness: Option<String>,
     /// Empty for all scenes.
     pub scenes: Vec<String>,
-    pub certify: bool,
+    /// What certified bounds are to prove, if they are asked for.
+    pub certify: Option<Proof>,
     pub output: Option<PathBuf>,
     /// Whether no overview is printed.
     pub quiet: bool,
@@ -115,7 +117,8 @@ impl Request {
             set: self.given.overrides.iter().map(|setting| setting.text.clone()).collect(),
             methods: methods.map(|methods| methods.iter().map(|method| method.name().to_owned()).collect()),
             witness: self.witness.clone(),
-            certify: self.certify,
+            certify: self.certify.is_some(),
+            certify_scheme: self.certify == Some(Proof::Scheme),
             certify_time: self.settings.certify_time,
             skip_infeasible: self.settings.skip_infeasible,
         }

@@ -149,8 +149,8 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
         let share = if alone { 1 } else { scenes.len() };
         let beside = path.parent().map(PathBuf::from).unwrap_or_default();
         let mut jobs = scenes.into_iter().map(|(scene, mut model)| {
-            if request.certify {
-                model.bounds.certified = Some(Certified);
+            if let Some(proof) = request.certify {
+                model.bounds.certified = Some(Certified { proof });
             }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
             let (files, texts, beside) = (files.clone(), texts.clone(), beside.clone());

@@ -1,9 +1,10 @@
-//! Certified bounds: they hold every sample of the ordinary integration, are hardly wider than what samples reach, and
-//! say where they end.
+//! Certified bounds of the scheme's motion: they hold every sample of the ordinary integration, are hardly wider than
+//! their range, and say where they end.
 //!
 //! The ordinary integration ends Newton's iteration at 1e-11 of a position; its samples are therefore allowed to lie
 //! outside by `NEWTON` times the size of what is observed, and no more.
 
+use mbint::inner::methods::{Certified, Proof};
 use mbint::inner::model::Description;
 use mbint::inner::results::{Bounds, Method};
 use mbint::inner::study::{self, Options};
@@ -13,9 +14,16 @@ use crate::common::*;
 /// Error of an ordinary sample: Newton's tolerance, gathered over the steps.
 const NEWTON: f64 = 1e-9;
 
+/// The same, whose certified bounds are of the scheme.
+fn of_scheme(mut description: Description) -> Description {
+    description.bounds.certified = Some(Certified { proof: Proof::Scheme });
+    description
+}
+
 fn certify(description: Description) -> (Bounds, Option<String>) {
     let options =
         Options { methods: Some(vec![Method::Scan, Method::Certified]), threads: Some(2), ..Options::default() };
+    let description = of_scheme(description);
     let (bounds, summary) = study::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
     (bounds, summary.failure)
 }
@@ -124,7 +132,7 @@ fn what_is_lost_is_unknown_and_said() {
 fn what_cannot_be_certified_is_refused() {
     let refused = |description: &Description| {
         let options = Options { methods: Some(vec![Method::Certified]), threads: Some(1), ..Options::default() };
-        study::run(description, options).unwrap_err().to_string()
+        study::run(&of_scheme(description.clone()), options).unwrap_err().to_string()
     };
     let many = read(
         "model: many\nparameters: { a: { value: 1, tolerance: 1% }, b: { value: 1, tolerance: 1% }, c: { value: 1, tolerance: 1% } }\n\
@@ -133,7 +141,10 @@ fn what_cannot_be_certified_is_refused() {
     assert_eq!(refused(&many), "certified bounds are for at most two uncertain parameters, not 3");
     let controlled = model("pendulum").tolerance(1e-6);
     let message = refused(&controlled);
-    assert!(message.starts_with("certified bounds enclose HHT-I3 itself with a fixed `step`"), "{message}");
+    assert!(
+        message.starts_with("certified bounds of the scheme enclose HHT-I3 itself with a fixed `step`"),
+        "{message}"
+    );
 }
 
 /// An effect without an enclosure is named; one with friction proportional to its reaction has one, and a stop as long

@@ -11,12 +11,16 @@
 #[allow(dead_code, reason = "shared with the tests of elements")]
 mod common;
 
+#[path = "../falsify/runge_kutta.rs"]
+mod runge_kutta;
+
 mod accelerations;
 mod assembly;
 mod attained;
 mod bounds_laws;
 mod car_axis;
 mod certify;
+mod certify_motion;
 mod closed_forms;
 mod composition;
 mod controllers;

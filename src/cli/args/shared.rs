@@ -7,6 +7,7 @@ use clap::Args;
 use super::{methods, parse_override};
 use crate::cli::Failure;
 use crate::cli::load::Given;
+use crate::methods::Proof;
 use crate::model::{Override, read_overlay};
 use crate::results::Method;
 use crate::syntax::Diagnostics;
@@ -52,9 +53,11 @@ pub(in crate::cli) struct AskedArgs {
     #[arg(value_parser = methods(), hide_possible_values = true)]
     pub method: Vec<Method>,
 
-    /// Add certified bounds: proven for all parameter values within their tolerances, for the time steps taken.
-    #[arg(long)]
-    pub certify: bool,
+    /// Add certified bounds: proven for all parameter values within their tolerances, of the true motion, or of the
+    /// motion as the time steps define it (`--certify=scheme`).
+    #[arg(long, value_name = "PROOF", num_args = 0..=1, require_equals = true, default_missing_value = "motion")]
+    #[arg(value_parser = proof)]
+    pub certify: Option<Proof>,
 
     #[command(flatten)]
     pub set: SetArgs,
@@ -82,6 +85,15 @@ impl AskedArgs {
         self.scene.sort_unstable();
         self.scene.dedup();
         self
+    }
+}
+
+/// A proof, by its name.
+fn proof(name: &str) -> Result<Proof, String> {
+    match name {
+        "motion" => Ok(Proof::Motion),
+        "scheme" => Ok(Proof::Scheme),
+        _ => Err("there are `motion` and `scheme`".to_owned()),
     }
 }
 

@@ -15,7 +15,7 @@ use super::request::{Request, Settings};
 use super::run::run_all;
 use super::sample::target;
 use super::{Failure, Status, load};
-use crate::methods::Method;
+use crate::methods::{Certified, Method, Proof};
 use crate::model::Override;
 use crate::store::{Asked, Missing, PartStore, Plan, Shard, StoreError, StudyFolder};
 use crate::study;
@@ -44,7 +44,8 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
         root: said.root.map(|root| absolute(&root)).transpose()?,
         scenes: scene,
         methods: method.iter().map(|method| method.name().to_owned()).collect(),
-        certify,
+        certify: certify.is_some(),
+        certify_scheme: certify == Some(Proof::Scheme),
         certify_time,
         skip_infeasible,
         at_once: args.at_once,
@@ -117,8 +118,8 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     else {
         return Ok(Status::Failed);
     };
-    if asked.certify {
-        description.bounds.certified = Some(crate::methods::Certified);
+    if let Some(proof) = proof(&asked) {
+        description.bounds.certified = Some(Certified { proof });
     }
     let context = context(&model, &asked.set, shard.scene.as_deref(), asked.skip_infeasible);
     let store = PartStore::open(folder.path(), &context, Missing::Simulate).map_err(|error| failed(&error))?;
@@ -168,7 +169,7 @@ fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Fa
         named: asked.named.clone(),
         given: given(asked)?,
         scenes: asked.scenes.clone(),
-        certify: asked.certify,
+        certify: proof(asked),
         output: None,
         quiet: true,
         report: true,
@@ -186,6 +187,11 @@ fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Fa
         },
         store: Some(kept),
     })
+}
+
+/// What certified bounds are to prove, if they are asked for.
+fn proof(asked: &Asked) -> Option<Proof> {
+    asked.certify.then_some(if asked.certify_scheme { Proof::Scheme } else { Proof::Motion })
 }
 
 fn methods(asked: &Asked) -> Result<Option<Vec<Method>>, Failure> {

@@ -1,9 +1,10 @@
 //! The equations as tapes, without a scheme and without elimination: an enclosure of a solution is verified with them.
 
+use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Lowered, SparseMatrix, Tape, lower};
 
-use super::equations::{constraint_accelerations, constraint_rates, equations_of_motion};
 use super::layout::Layout;
+use super::start_equations::Equations;
 use super::tapes::Tapes;
 use crate::assemble::System;
 
@@ -25,11 +26,22 @@ pub struct EquationsProgram {
     pub motion_by: [Entries; 4],
     /// Φ_q after [`jacobian`](Self::jacobian).
     pub constraint_by_position: Entries,
+    /// Registers of what holds for the start's positions, and for its velocities, after [`closure`](Self::closure).
+    pub closure: [Vec<usize>; 2],
+    /// Derivatives of these by q, and by v, after [`closure_jacobian`](Self::closure_jacobian).
+    pub closure_by: [Entries; 2],
+    /// Derivatives of Φ̈ by q and v after [`rates_jacobian`](Self::rates_jacobian).
+    pub constraint_acceleration_by: [Entries; 2],
     /// Registers of the outputs after [`observe`](Self::observe).
     pub outputs: Vec<usize>,
     /// (coordinate, register) of the positions, and of the velocities, that are given at the start, after
     /// [`given`](Self::given).
     pub kept: [Vec<(usize, usize)>; 2],
+    /// Numbers at which assembly begins to look for positions that are not given; `None` where these depend on
+    /// parameters.
+    pub guess: Vec<Option<f64>>,
+    /// Whether velocities of zero fulfil all that holds for them, and none is given.
+    pub can_rest: bool,
     lowered: Lowered,
 }
 
@@ -38,6 +50,9 @@ const RATES: usize = 1;
 const JACOBIAN: usize = 2;
 const OBSERVE: usize = 3;
 const GIVEN: usize = 4;
+const RATES_JACOBIAN: usize = 5;
+const CLOSURE: usize = 6;
+const CLOSURE_JACOBIAN: usize = 7;
 
 impl Tapes for EquationsProgram {
     fn lowered(&self) -> &Lowered {
@@ -66,6 +81,21 @@ impl EquationsProgram {
         &self.lowered.kernels[OBSERVE]
     }
 
+    /// Derivatives of Φ̈ by positions and velocities.
+    pub fn rates_jacobian(&self) -> &Tape {
+        &self.lowered.kernels[RATES_JACOBIAN]
+    }
+
+    /// Φ and the start's conditions on positions, Φ̇ and those on velocities.
+    pub fn closure(&self) -> &Tape {
+        &self.lowered.kernels[CLOSURE]
+    }
+
+    /// Their derivatives.
+    pub fn closure_jacobian(&self) -> &Tape {
+        &self.lowered.kernels[CLOSURE_JACOBIAN]
+    }
+
     /// Given positions and velocities of the start.
     pub fn given(&self) -> &Tape {
         &self.lowered.kernels[GIVEN]
@@ -76,13 +106,27 @@ impl EquationsProgram {
 pub fn compile_equations(system: &System) -> EquationsProgram {
     let layout = Layout::of(system);
     let mut graph = system.graph.clone();
-    let (motion, jacobian) = equations_of_motion(system, &mut graph);
-    let rate = constraint_rates(system, &mut graph);
-    let rate_of_rate = constraint_accelerations(system, &mut graph, &rate);
+    let Equations {
+        motion,
+        jacobian,
+        closure,
+        closure_jacobian,
+        closure_rate,
+        closure_rate_jacobian,
+        rate,
+        rate_of_rate,
+    } = Equations::new(system, &mut graph);
+    let of_closure = [closure_jacobian, closure_rate_jacobian];
     let by = |graph: &mut Graph, symbols: &[Expr]| graph.jacobian(&motion, symbols);
     let mut matrices: Vec<SparseMatrix> =
         [&system.q, &system.v, &system.w, &system.lambda].map(|symbols| by(&mut graph, symbols)).into();
     matrices.push(jacobian);
+    let of_rates = [&system.q, &system.v].map(|symbols| graph.jacobian(&rate_of_rate, symbols));
+    let at_rest: FxHashMap<Expr, Expr> = system.v.iter().map(|&v| (v, graph.constant(0.0))).collect();
+    let rates_at_rest = graph.substitute(&closure_rate, &at_rest);
+    let can_rest =
+        rates_at_rest.iter().all(|&rate| graph.is_zero(rate)) && system.start.velocity.iter().all(Option::is_none);
+    let guess = system.start.guess.iter().map(|&guess| graph.as_constant(guess)).collect();
     let kept = [&system.start.position, &system.start.velocity];
     let given: Vec<Expr> = kept.iter().flat_map(|values| values.iter().flatten().copied()).collect();
     let free = |values: &[Expr]| values.iter().map(|&value| (value, None)).collect::<Vec<_>>();
@@ -92,18 +136,30 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         matrices.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
         free(&given),
+        of_rates.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
+        free(&[&closure[..], &closure_rate].concat()),
+        of_closure.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
     ];
     let lowered = lower(&graph, &layout.inputs(system), 1, layout.registers() as u32, &kernels);
 
     let (n, m) = (system.q.len(), system.lambda.len());
     let registers = |kernel: usize| lowered.outputs[kernel].iter().map(|&register| register as usize);
-    let mut derivatives = registers(JACOBIAN);
-    let mut entries = |matrix: &SparseMatrix| -> Entries {
-        matrix.entries().zip(derivatives.by_ref()).map(|((row, column, _), register)| (row, column, register)).collect()
+    let entries = |kernel: usize, matrices: &[SparseMatrix]| -> Vec<Entries> {
+        let mut derivatives = registers(kernel);
+        let entries = |matrix: &SparseMatrix| -> Entries {
+            let found = matrix.entries().zip(derivatives.by_ref());
+            found.map(|((row, column, _), register)| (row, column, register)).collect()
+        };
+        matrices.iter().map(entries).collect()
     };
-    let motion_by = std::array::from_fn(|place| entries(&matrices[place]));
-    let constraint_by_position = entries(&matrices[4]);
-    drop(derivatives);
+    let mut of_motion = entries(JACOBIAN, &matrices);
+    let constraint_by_position = of_motion.pop().unwrap_or_default();
+    let mut of_motion = of_motion.into_iter();
+    let motion_by = std::array::from_fn(|_| of_motion.next().unwrap_or_default());
+    let mut of_closure = entries(CLOSURE_JACOBIAN, &of_closure).into_iter();
+    let closure_by = std::array::from_fn(|_| of_closure.next().unwrap_or_default());
+    let mut of_rates = entries(RATES_JACOBIAN, &of_rates).into_iter();
+    let constraint_acceleration_by = std::array::from_fn(|_| of_rates.next().unwrap_or_default());
     let mut given = registers(GIVEN);
     let kept = kept.map(|values| {
         let places = (0..n).filter(|&place| values[place].is_some());
@@ -114,10 +170,15 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         motion: registers(RESIDUAL).take(n).collect(),
         constraint: registers(RESIDUAL).skip(n).collect(),
         constraint_rates: [registers(RATES).take(m).collect(), registers(RATES).skip(m).collect()],
+        closure: [registers(CLOSURE).take(closure.len()).collect(), registers(CLOSURE).skip(closure.len()).collect()],
+        closure_by,
         outputs: registers(OBSERVE).collect(),
         motion_by,
         constraint_by_position,
+        constraint_acceleration_by,
         kept,
+        guess,
+        can_rest,
         layout,
         lowered,
     }

@@ -53,7 +53,7 @@ pub use adjoint::{Functions, Gradient, NoGradient, Under, Wanted, gradients, gra
 pub use closure::{Closure, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
-pub use enclosure::{Certifier, Enclosure, EnclosureError};
+pub use enclosure::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetBox, JetRun, Observed, Stop};
 pub use error::SimulationError;
 pub use events::{Boundary, SegmentRun, WordsEnd, segment_jets, segments_of};

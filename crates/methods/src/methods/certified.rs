@@ -5,30 +5,24 @@ use symdiff::taylor_model::{ModelSpace, up};
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Lost, Simulated};
+use super::proof::Proof;
 use super::registry::{About, BoundingMethod, Refusal, Registered};
 use super::request::Problem;
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
 
-/// Most uncertain parameters: pieces and coefficients grow with powers of their number.
-const MOST_PARAMETERS: usize = 2;
-
-/// Order of the polynomials, by the number of parameters. (Slider crank, ±1 % of one: 8, 12 and 16 reach 0.51, 0.71 and
-/// 0.72 s in one piece.)
-const ORDER: [usize; MOST_PARAMETERS + 1] = [0, 12, 6];
-
-/// Most pieces that are enclosed at last.
-const MOST_PIECES: usize = 16;
-
-/// Certified bounds: proven for every parameter of the box, of the motion as the scheme's steps define it.
+/// Certified bounds: proven for every parameter of the box.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Certified;
+pub struct Certified {
+    /// The proven motion.
+    pub proof: Proof,
+}
 
 impl Registered for Certified {
     const ABOUT: About = About {
         label: "Certified",
-        summary: "proven enclosures of the scheme's motion by Taylor models, for at most two parameters (--certify)",
+        summary: "proven enclosures of the true motion by Taylor models, for at most three parameters (--certify)",
         source: "Makino & Berz, Int. J. Pure Appl. Math. 4 (2003) 379; Krawczyk, Computing 4 (1969) 187",
         color: [0, 120, 60],
         fill: 0.08,
@@ -39,7 +33,7 @@ impl Registered for Certified {
     };
 
     fn default_for(_: &Problem) -> Self {
-        Self
+        Self::default()
     }
 }
 
@@ -49,19 +43,21 @@ impl BoundingMethod for Certified {
             return Err(Refusal::no_equations("certified"));
         }
         let parameters = problem.parameters;
-        if parameters > MOST_PARAMETERS {
-            let message = format!("certified bounds are for at most two uncertain parameters, not {parameters}");
+        let most = self.proof.orders().len() - 1;
+        if parameters > most {
+            let most = if most == 2 { "two" } else { "three" };
+            let message = format!("certified bounds are for at most {most} uncertain parameters, not {parameters}");
             return Err(Refusal(message));
         }
-        if !problem.has_fixed_steps {
-            let message = "certified bounds enclose HHT-I3 itself with a fixed `step`: no `tolerance`, which chooses steps that depend on the samples, and no `extrapolation`";
+        if self.proof == Proof::Scheme && !problem.has_fixed_steps {
+            let message = "certified bounds of the scheme enclose HHT-I3 itself with a fixed `step`: no `tolerance`, which chooses steps that depend on the samples, and no `extrapolation`; `--certify` without `scheme` encloses the true motion";
             return Err(Refusal(message.to_owned()));
         }
         Ok(())
     }
 
     fn bound(&self, ensemble: &dyn Ensemble, _: &Validation, _: &BoundsRequest) -> Result<MethodResult, EnsembleError> {
-        Ok(enclosed(ensemble))
+        Ok(enclosed(ensemble, self.proof))
     }
 }
 
@@ -69,26 +65,28 @@ impl BoundingMethod for Certified {
 struct Enclosed {
     piece: ParameterBox,
     ranges: Vec<Range>,
+    /// The same since the row before; empty where that is not known.
+    between: Vec<Range>,
     lost: Option<Lost>,
 }
 
-/// Ranges that hold for every parameter of the box and all that the scheme does, rounding errors included.
-fn enclosed(ensemble: &dyn Ensemble) -> MethodResult {
+/// Ranges that hold for every parameter of the box, rounding errors included.
+fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
     let domain = ensemble.domain();
-    if let Some(obstacle) = ensemble.obstacle_to_enclosure() {
+    if let Some(obstacle) = ensemble.obstacle_to_enclosure(proof) {
         let note = format!("not supported with --certify: {obstacle}");
-        return MethodResult { note: Some(note), ..hull_of_pieces(ensemble, Vec::new(), 0) };
+        return MethodResult { note: Some(note), ..hull_of_pieces(ensemble, proof, Vec::new(), 0) };
     }
-    let space = ModelSpace::new(domain.dimension(), ORDER[domain.dimension()]);
+    let space = ModelSpace::new(domain.dimension(), proof.orders()[domain.dimension()]);
     let mut open = vec![domain.clone()];
     let mut closed: Vec<Enclosed> = Vec::new();
     let mut simulations = 0;
     while !open.is_empty() {
         simulations += open.len();
         let found: Vec<Enclosed> =
-            std::mem::take(&mut open).into_par_iter().map(|piece| enclose(ensemble, &space, piece)).collect();
+            std::mem::take(&mut open).into_par_iter().map(|piece| enclose(ensemble, proof, &space, piece)).collect();
         let interrupted = ensemble.is_interrupted();
-        let room = if interrupted { 0 } else { MOST_PIECES.saturating_sub(closed.len() + found.len()) };
+        let room = if interrupted { 0 } else { proof.most_pieces().saturating_sub(closed.len() + found.len()) };
         // Those that came least far are cut first; the order of the rest does not matter.
         let mut by_reach: Vec<usize> = (0..found.len()).collect();
         by_reach.sort_by_key(|&index| (found[index].ranges.len(), index));
@@ -102,22 +100,24 @@ fn enclosed(ensemble: &dyn Ensemble) -> MethodResult {
             }
         }
     }
-    hull_of_pieces(ensemble, closed, simulations)
+    hull_of_pieces(ensemble, proof, closed, simulations)
 }
 
 /// One piece, as far as it goes.
-fn enclose(ensemble: &dyn Ensemble, space: &ModelSpace, piece: ParameterBox) -> Enclosed {
+fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, piece: ParameterBox) -> Enclosed {
     let mut ranges = Vec::with_capacity(ensemble.rows() * ensemble.outputs());
     let monomials = space.jets().monomials();
     let mut range = TaylorRange::new(monomials.variables(), monomials.order(), RangeKind::Tight);
-    let lost = ensemble.enclose(space, &piece, &mut |models| {
+    let mut between = Vec::new();
+    let lost = ensemble.enclose(proof, space, &piece, &mut |models, since| {
         ranges.extend(models.chunks_exact(space.size()).map(|model| range_of(&mut range, model)));
+        between.extend(since.iter().map(|since| known(Range { lower: since.lower(), upper: since.upper() })));
     });
-    Enclosed { piece, ranges, lost }
+    Enclosed { piece, ranges, between, lost }
 }
 
 /// The hull of all pieces, unknown from where the first is lost.
-fn hull_of_pieces(ensemble: &dyn Ensemble, pieces: Vec<Enclosed>, simulations: usize) -> MethodResult {
+fn hull_of_pieces(ensemble: &dyn Ensemble, proof: Proof, pieces: Vec<Enclosed>, simulations: usize) -> MethodResult {
     let outputs = ensemble.outputs();
     let rows = pieces.iter().map(|piece| piece.ranges.len() / outputs.max(1)).min().unwrap_or(0);
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
@@ -126,13 +126,28 @@ fn hull_of_pieces(ensemble: &dyn Ensemble, pieces: Vec<Enclosed>, simulations: u
         // There is no surrogate: nothing lies outside, and how much too wide it is is not known.
         bands.set(row, output, pieces.iter().map(of_piece).reduce(hull).unwrap_or(Range::UNKNOWN), 0.0);
     }
+    let sees_all = !pieces.is_empty() && pieces.iter().all(|piece| piece.between.len() == piece.ranges.len());
+    let since = |row: usize, output: usize| {
+        let of_piece = |piece: &Enclosed| piece.between[row * outputs + output];
+        if row < rows { pieces.iter().map(of_piece).reduce(hull).unwrap_or(Range::UNKNOWN) } else { Range::UNKNOWN }
+    };
+    let of_output = |output: usize| (0..ensemble.rows()).map(|row| since(row, output)).collect();
+    let between = if sees_all { (0..outputs).map(of_output).collect() } else { Vec::new() };
     let lost = pieces.iter().filter_map(|piece| piece.lost.as_ref()).min_by(|a, b| a.time.total_cmp(&b.time));
     let note = lost.map(|Lost { time, why, .. }| {
         let pieces = pieces.len();
-        format!("{why} for the step to t = {time} s (in one of {pieces} pieces of the box): certified bounds are unknown from there on")
+        format!(
+            "{why} at t = {time} s (in one of {pieces} pieces of the box): certified bounds are unknown from there on"
+        )
     });
     let simulated = Simulated { missing: ensemble.rows() - rows, ..Simulated::default() };
-    MethodResult { note, ..bands.finish(simulations, simulated) }
+    let mut result = bands.finish(simulations, simulated);
+    if proof == Proof::Motion {
+        // No step is in it.
+        let known = |range: &Range| if range.lower.is_nan() { f64::NAN } else { 0.0 };
+        result.steps = result.bands.iter().map(|ranges| ranges.iter().map(known).collect()).collect();
+    }
+    MethodResult { note, between, ..result }
 }
 
 impl Enclosed {
@@ -163,8 +178,12 @@ fn range_of(range: &mut TaylorRange, model: &[f64]) -> Range {
     let varies = coefficients[1..].iter().any(|&c| c != 0.0);
     let margin = up(if varies { 100.0 * f64::EPSILON * size } else { 0.0 } + radius[0]);
     let wide = Range { lower: (found.lower - margin).next_down(), upper: (found.upper + margin).next_up() };
-    // An infinite radius says nothing.
-    if wide.lower.is_finite() && wide.upper.is_finite() { wide } else { Range::UNKNOWN }
+    known(wide)
+}
+
+/// A range without an end says nothing.
+fn known(range: Range) -> Range {
+    if range.lower.is_finite() && range.upper.is_finite() { range } else { Range::UNKNOWN }
 }
 
 /// What holds both; unknown where either is.

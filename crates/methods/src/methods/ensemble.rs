@@ -10,6 +10,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::followed::FollowedEnds;
+use super::proof::{EnclosedRow, Proof};
 use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
@@ -317,12 +318,12 @@ pub trait Ensemble: Sync {
     /// Where the middle of the box cannot be assembled.
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError>;
 
-    /// What prevents an enclosure, if something does.
-    fn obstacle_to_enclosure(&self) -> Option<String>;
+    /// What prevents this proof, if something does.
+    fn obstacle_to_enclosure(&self, proof: Proof) -> Option<String>;
 
-    /// Encloses the outputs over a piece of the box; `row` gets the Taylor models of one row after the other. Returns
-    /// why it ended early; at an interruption it just ends.
-    fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<Lost>;
+    /// Encloses the outputs over a piece of the box; `row` gets one row after the other. Returns why it ended early; at
+    /// an interruption it just ends.
+    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> Option<Lost>;
 
     /// Scale of every coordinate (n).
     fn scales(&self) -> &[f64];

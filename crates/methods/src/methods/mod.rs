@@ -8,6 +8,7 @@ mod ensemble;
 mod expansion;
 mod followed;
 mod kept;
+mod proof;
 mod registry;
 mod request;
 mod result;
@@ -26,6 +27,7 @@ pub use ensemble::{
 };
 pub use followed::{Followed, FollowedEnds, Sensitivity};
 pub use kept::KeptSurrogate;
+pub use proof::{EnclosedRow, Proof};
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, MethodResult};

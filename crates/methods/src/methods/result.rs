@@ -17,6 +17,8 @@ pub(super) const BETWEEN_KINKS: f64 = 3.0;
 pub struct MethodResult {
     /// By output and row.
     pub bands: Vec<Vec<Range>>,
+    /// By output and row, within which the output is since the row before; empty of methods that do not know it.
+    pub between: Vec<Vec<Range>>,
     /// The surrogate's error, by output and row.
     pub surrogate: Vec<Vec<f64>>,
     /// The time steps' error where the method knows it better than the validation samples' outputs do; else NaN.
@@ -141,6 +143,7 @@ impl BandBuilder {
         self.sensitivities.iter_mut().for_each(|sensitivities| sensitivities[reached..].fill(None));
         MethodResult {
             bands: self.bands,
+            between: Vec::new(),
             surrogate: self.surrogate,
             steps: self.steps,
             sensitivities: self.sensitivities,

@@ -35,6 +35,9 @@ pub struct RunRequest {
     pub witness: Option<String>,
     /// Whether certified bounds were added.
     pub certify: bool,
+    /// Whether these were of the scheme.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub certify_scheme: bool,
     /// Whether every sample was simulated with halved steps too.
     pub certify_time: bool,
     /// Whether infeasible parameter values were excluded.

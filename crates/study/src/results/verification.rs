@@ -227,9 +227,9 @@ impl Convergence {
         is_clean && self.orders.len() >= 2 && self.orders.iter().rev().take(2).all(is_near)
     }
 
-    /// The observed order after errors that rounding does not touch: the last one; where rounding ends the errors' fall,
-    /// the largest of the last three, which it only lowers, and of those below the stated rounding, as far as errors
-    /// fell there. `None` where there are none: steps of any length are exact.
+    /// The observed order after errors that rounding does not touch: the last one; where rounding ends the errors'
+    /// fall, the largest of the last three, which it only lowers, and of those below the stated rounding, as far as
+    /// errors fell there. `None` where there are none: steps of any length are exact.
     fn observed(&self) -> Option<f64> {
         let stated = TOUCHED * self.rounding();
         if !(self.is_flat() || self.is_exact()) {

@@ -45,6 +45,9 @@ pub struct Asked {
     pub methods: Vec<String>,
     /// Whether certified bounds are added.
     pub certify: bool,
+    /// Whether these are of the scheme.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub certify_scheme: bool,
     /// Whether every sample is simulated with halved steps too.
     pub certify_time: bool,
     /// Whether infeasible parameter values are left out.

@@ -89,6 +89,11 @@ impl Interval {
         (self - Self::point(value)).magnitude()
     }
 
+    /// The smallest interval that contains both.
+    pub fn hull(self, other: Self) -> Self {
+        Self::new(self.lower.min(other.lower), self.upper.max(other.upper))
+    }
+
     /// a²: never negative.
     pub fn square(self) -> Self {
         let product = self * self;

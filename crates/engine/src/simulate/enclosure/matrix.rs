@@ -230,10 +230,24 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// A matrix with this number of columns, from its entries row by row.
-    #[cfg(test)]
     pub fn of(rows: usize, columns: usize, values: &[f64]) -> Self {
         assert_eq!(values.len(), rows * columns);
         Self { rows, columns, values: values.to_vec() }
+    }
+
+    /// An entry.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.values[row * self.columns + column]
+    }
+
+    /// A column.
+    pub fn column(&self, column: usize) -> Vec<f64> {
+        (0..self.rows).map(|row| self.at(row, column)).collect()
+    }
+
+    /// Number of rows and of columns.
+    pub fn shape(&self) -> (usize, usize) {
+        (self.rows, self.columns)
     }
 
     /// All entries, row by row.

@@ -26,6 +26,7 @@
 mod frame;
 mod krawczyk;
 mod matrix;
+mod motion;
 mod start;
 mod step;
 
@@ -37,6 +38,7 @@ use super::simulator::Simulator;
 use crate::compile::{Coefficients, EquationsProgram, Tapes, compile_equations};
 use frame::{Frame, Units};
 use matrix::Models;
+pub use motion::{MotionEnclosure, MotionSpaces};
 
 /// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder depends on
 /// it.
@@ -51,6 +53,9 @@ pub enum EnclosureError {
     /// Krawczyk's operator does not contract.
     #[error("no solution could be proven")]
     Unproven,
+    /// Polynomials of the order that is taken do not follow the box.
+    #[error("the box is too wide for polynomials of the parameters")]
+    TooWide,
 }
 
 /// The equations of a mechanism, compiled for enclosures over any box.

@@ -5,7 +5,7 @@ use symdiff::{Interval, ModelMemory, Tape};
 
 use super::EnclosureError;
 use super::krawczyk::{self, Image};
-use super::matrix::Models;
+use super::matrix::{Bounds, Models};
 use crate::assemble::CoordinateId;
 use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
@@ -17,7 +17,7 @@ pub(super) struct Equations<'p> {
     unknowns: Vec<usize>,
     /// Registers of the residuals, after `residual`.
     residuals: Vec<usize>,
-    residual: [&'p Tape; 2],
+    residual: Vec<&'p Tape>,
     slopes: &'p Tape,
     /// (residual, unknown, register) after `slopes`.
     entries: Vec<(usize, usize, usize)>,
@@ -36,26 +36,34 @@ pub(super) fn assemble(
         space.constant(Interval::point(simulator.nominal[register]), memory.model_mut(register));
     }
     set_time(space, memory, layout.time, 0.0);
-    memory.run(program.given());
     let starts = [layout.q.start, layout.v.start];
-    for (kept, start) in program.kept.iter().zip(starts) {
+    for (level, (kept, start)) in program.kept.iter().zip(starts).enumerate() {
+        // Given velocities may be functions of the positions, which are known by then.
+        memory.run(program.given());
         for &(place, given) in kept {
             let value = memory.model(given).to_vec();
             memory.model_mut(start + place).copy_from_slice(&value);
         }
-    }
-    let residuals = [&program.constraint, &program.constraint_rates[0]];
-    for ((kept, start), residuals) in program.kept.iter().zip(starts).zip(residuals) {
         let free: Vec<usize> =
             (0..layout.q.len()).filter(|place| kept.iter().all(|(known, _)| known != place)).collect();
+        let nominal = |place: usize| simulator.nominal[start + place];
+        let is_open = program.closure[level].len() < free.len();
+        // The nominal values, which the memory has, are those of every ξ.
+        let is_known = match level {
+            0 => program.closure[0].is_empty() && free.iter().all(|&q| program.guess[q] == Some(nominal(q))),
+            _ => program.can_rest && free.iter().all(|&v| nominal(v) == 0.0),
+        };
+        if is_open && is_known {
+            continue;
+        }
         let column = |place: usize| free.iter().position(|&known| known == place);
-        let slopes = program.constraint_by_position.iter();
+        let slopes = program.closure_by[level].iter();
         let entries = slopes.filter_map(|&(row, place, register)| Some((row, column(place)?, register))).collect();
         let equations = Equations {
             unknowns: free.iter().map(|place| start + place).collect(),
-            residuals: residuals.clone(),
-            residual: [program.residual(), program.rates()],
-            slopes: program.jacobian(),
+            residuals: program.closure[level].clone(),
+            residual: vec![program.closure()],
+            slopes: program.closure_jacobian(),
             entries,
         };
         equations.solve(space, memory)?;
@@ -149,7 +157,7 @@ pub(super) fn accelerations(program: &EquationsProgram) -> Equations<'_> {
     Equations {
         unknowns: layout.w.clone().chain(layout.lambda.clone()).collect(),
         residuals: program.motion.iter().chain(&program.constraint_rates[1]).copied().collect(),
-        residual: [program.residual(), program.rates()],
+        residual: vec![program.residual(), program.rates()],
         slopes: program.jacobian(),
         entries,
     }
@@ -178,15 +186,29 @@ impl Equations<'_> {
                 memory.model_mut(register).iter_mut().zip(change).for_each(|(x, change)| *x -= change);
             }
         }
+        self.prove(space, memory, &inverse).map(|_| ())
+    }
+
+    /// Gives the unknowns radii within which, about the polynomials in the memory, a solution is for every ξ. `inverse`
+    /// approximates that of the matrix. Returns a bound of |I − C J| over these radii.
+    pub(super) fn prove(
+        &self,
+        space: &ModelSpace,
+        memory: &mut ModelMemory,
+        inverse: &Models,
+    ) -> Result<Bounds, EnclosureError> {
+        self.set_radii(space, memory, None);
         let sizes = inverse.bounds(space);
         let missed = sizes.times(self.residual(space, memory).bounds(space).entries());
+        let mut proven = Bounds::default();
         let spread = krawczyk::enclose(missed.clone(), |y| {
             self.set_radii(space, memory, Some(y));
             let contraction = inverse.times(space, &self.matrix(space, memory)).off_identity(space).bounds(space);
+            proven = contraction.clone();
             Image { missed: missed.clone(), contraction }
         })?;
         self.set_radii(space, memory, Some(&spread));
-        Ok(())
+        Ok(proven)
     }
 
     fn set_radii(&self, space: &ModelSpace, memory: &mut ModelMemory, radii: Option<&[f64]>) {
@@ -195,7 +217,8 @@ impl Equations<'_> {
         }
     }
 
-    fn residual(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
+    /// Residuals over the models in the memory.
+    pub(super) fn residual(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         self.residual.iter().for_each(|tape| memory.run(tape));
         let mut residual = Models::zero(space, self.residuals.len(), 1);
         for (row, &register) in self.residuals.iter().enumerate() {
@@ -204,7 +227,8 @@ impl Equations<'_> {
         residual
     }
 
-    fn matrix(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
+    /// Derivatives by the unknowns over the models in the memory.
+    pub(super) fn matrix(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         memory.run(self.slopes);
         let mut matrix = Models::zero(space, self.residuals.len(), self.unknowns.len());
         for &(row, column, register) in &self.entries {

@@ -14,6 +14,7 @@ use super::range_search::{Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{
     Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
 };
+use crate::methods::proof::{EnclosedRow, Proof};
 use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, ParameterBox, Range, Sample, largest};
 
@@ -264,11 +265,11 @@ impl Ensemble for Combined<'_> {
         Err("a combination of parameters has no Taylor polynomial of its own".into())
     }
 
-    fn obstacle_to_enclosure(&self) -> Option<String> {
+    fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
         Some("a combination of parameters".to_owned())
     }
 
-    fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
         None
     }
 

@@ -7,6 +7,7 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated};
+use crate::methods::proof::{EnclosedRow, Proof};
 use crate::numerics::{ParameterBox, Range, Sample};
 
 /// The outputs of an ensemble, and nothing that they follow from.
@@ -66,12 +67,12 @@ impl Ensemble for OutputsAlone<'_> {
         self.0.jets(space, reduce)
     }
 
-    fn obstacle_to_enclosure(&self) -> Option<String> {
-        self.0.obstacle_to_enclosure()
+    fn obstacle_to_enclosure(&self, proof: Proof) -> Option<String> {
+        self.0.obstacle_to_enclosure(proof)
     }
 
-    fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<Lost> {
-        self.0.enclose(space, piece, row)
+    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> Option<Lost> {
+        self.0.enclose(proof, space, piece, row)
     }
 
     fn scales(&self) -> &[f64] {

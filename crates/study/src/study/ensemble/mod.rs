@@ -5,6 +5,7 @@ pub(in crate::study) mod closure;
 mod combinations;
 mod cut;
 mod dense;
+mod enclosed;
 mod jet;
 mod nominal;
 mod progress;
@@ -26,12 +27,12 @@ use super::price::instructions_of_step;
 use super::reduced::Store;
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
-use crate::methods::{self, Combination, DenseMotions, Ensemble, EnsembleError, FollowedEnds};
-use crate::methods::{Sampling, Simulated, Until};
+use crate::methods::{self, Combination, DenseMotions, EnclosedRow, Ensemble, EnsembleError, FollowedEnds};
+use crate::methods::{Proof, Sampling, Simulated, Until};
 use crate::numerics::{CutMotions, EMPTY, Ledger, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 use crate::simulate::{
-    Certifier, Channel, Controller, Enclosure, EnclosureError, Integrator, Interruption, Schedule, SimulationError,
-    Simulator, Steps, Stop, choose_independent, integrator,
+    Certifier, Channel, Controller, Integrator, Interruption, Schedule, SimulationError, Simulator, Steps, Stop,
+    choose_independent, integrator,
 };
 
 pub(super) use nominal::nominal;
@@ -338,48 +339,21 @@ impl Ensemble for Motions<'_> {
         Ok(jet::jet_about_middle(self, space, reduce)?)
     }
 
-    fn obstacle_to_enclosure(&self) -> Option<String> {
-        if self.simulator.system.analysis.visits() {
-            return Some(format!("`analysis: {}`", self.simulator.system.analysis.name()));
-        }
-        if self.simulator.equilibrium.is_some() {
-            return Some("a start at an equilibrium".to_owned());
-        }
-        let system = &self.simulator.system;
-        if !system.velocity_constraint.is_empty() {
-            return Some(
-                "constraints of velocities, as of joint ".to_owned()
-                    + &system.constraints[system.constraint.len()].joint,
-            );
-        }
-        let effect = system.effects.iter().find(|effect| !effect.enclosed)?;
-        Some(format!("effect {} ({})", effect.name, effect.kind))
+    fn obstacle_to_enclosure(&self, proof: Proof) -> Option<String> {
+        enclosed::obstacle(self.simulator, proof)
     }
 
-    fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<methods::Lost> {
-        let lost = |time: f64, lost: EnclosureError| {
-            Some(methods::Lost { time, why: lost.to_string(), is_too_wide: lost == EnclosureError::Unproven })
-        };
-        let certifier = self.certifier.get_or_init(|| Certifier::new(self.simulator));
-        let first_step = self.schedule.first_step();
-        let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, first_step) {
-            Ok(enclosure) => enclosure,
-            Err(why) => return lost(0.0, why),
-        };
-        let mut models = Vec::new();
-        for next in 0..self.schedule.rows {
-            if self.is_interrupted() {
-                break;
-            }
-            if let Err((time, why)) = enclosure.advance(self.schedule, next) {
-                return lost(time, why);
-            }
-            if let Err(why) = enclosure.observe(&mut models) {
-                return lost(self.schedule.time(next), why);
-            }
-            row(&models);
+    fn enclose(
+        &self,
+        proof: Proof,
+        space: &ModelSpace,
+        piece: &ParameterBox,
+        row: &mut EnclosedRow,
+    ) -> Option<methods::Lost> {
+        match proof {
+            Proof::Motion => enclosed::motion(self, space, piece, row),
+            Proof::Scheme => enclosed::scheme(self, space, piece, row),
         }
-        None
     }
 
     fn scales(&self) -> &[f64] {

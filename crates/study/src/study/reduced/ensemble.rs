@@ -12,7 +12,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::plan::Plan;
 use super::values::Values;
-use crate::methods::{self, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated, Until};
+use crate::methods::{self, EnclosedRow, Ensemble, EnsembleError, Lost, Observed, Proof, Sampling, Simulated, Until};
 use crate::numerics::{Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
 
@@ -198,11 +198,11 @@ impl Ensemble for ReducedEnsemble<'_> {
         Err("a reduced output has no Taylor polynomial: it has kinks".into())
     }
 
-    fn obstacle_to_enclosure(&self) -> Option<String> {
+    fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
         Some("a reduced output".to_owned())
     }
 
-    fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
         None
     }
 

@@ -210,18 +210,23 @@ fn search(
     Ok(())
 }
 
-/// Whether certified bounds of every slack prove the requirement. They are of the steps' ends, which are rows only
-/// where each row is a step.
+/// Whether certified bounds of every slack prove the requirement: in the rows and between them. Bounds of the scheme's
+/// motion are of the steps' ends, which are rows only where each row is a step.
 fn is_certified(own: &Requirement, rows: &Bounded) -> bool {
     let Some((from, to)) = own.times else { return false };
     let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else {
         return false;
     };
-    let schedule = &rows.plan.schedule;
+    let (schedule, result) = (&rows.plan.schedule, &outcome.result);
     let counts: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
-    let seen = schedule.steps_per_row() == Some(1) || (from == to && !counts.is_empty());
-    let holds = |place: &usize| counts.iter().all(|&row| outcome.result.bands[*place][row].lower >= 0.0);
-    seen && !counts.is_empty() && own.places.iter().all(holds)
+    if from == to || result.between.is_empty() {
+        let seen = schedule.steps_per_row() == Some(1) || from == to;
+        let holds = |place: &usize| counts.iter().all(|&row| result.bands[*place][row].lower >= 0.0);
+        return seen && !counts.is_empty() && own.places.iter().all(holds);
+    }
+    let overlaps = |row: &usize| schedule.time(*row) >= from && schedule.time(*row - 1) <= to;
+    let holds = |place: &usize| (1..schedule.rows).filter(overlaps).all(|row| result.between[*place][row].lower >= 0.0);
+    schedule.rows > 1 && own.places.iter().all(holds)
 }
 
 /// Constant limits of outputs and reduced outputs.

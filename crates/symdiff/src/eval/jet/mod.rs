@@ -31,6 +31,10 @@ pub struct JetSpace {
     products: Vec<[u32; 2]>,
     /// Where those of r begin, and after the last, the end.
     starts: Vec<usize>,
+    /// The r with ξ^i ξ^j = ξ^r, for each i in turn and each j up to the order.
+    targets: Vec<u32>,
+    /// Where those of i begin, and after the last, the end.
+    rows: Vec<usize>,
 }
 
 /// Room for intermediate jets, so that no operation allocates.
@@ -65,6 +69,7 @@ impl JetSpace {
         let place: FxHashMap<&[usize], usize> = (0..count).map(|r| (monomials.exponents(r), r)).collect();
         let mut by_result = vec![Vec::new(); count];
         let mut exponents = vec![0; variables];
+        let (mut targets, mut rows) = (Vec::new(), vec![0]);
         for i in 0..count {
             for j in (0..count).take_while(|&j| monomials.degree(i) + monomials.degree(j) <= order) {
                 for (power, (a, b)) in
@@ -72,15 +77,18 @@ impl JetSpace {
                 {
                     *power = a + b;
                 }
-                by_result[place[exponents.as_slice()]].push([i as u32, j as u32]);
+                let r = place[exponents.as_slice()];
+                by_result[r].push([i as u32, j as u32]);
+                targets.push(r as u32);
             }
+            rows.push(targets.len());
         }
         let mut starts = vec![0];
         for pairs in &by_result {
             starts.push(starts[starts.len() - 1] + pairs.len());
         }
         let degrees = (0..count).map(|r| monomials.degree(r) as f64).collect();
-        Self { degrees, products: by_result.concat(), starts, monomials }
+        Self { degrees, products: by_result.concat(), starts, targets, rows, monomials }
     }
 
     /// Number of coefficients.
@@ -133,51 +141,44 @@ impl JetSpace {
 
     /// `out = a b`.
     pub fn mul(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
-        self.mul_with(a, b, |r, product| out[r] = product);
+        if is_constant(a) {
+            return self.scale(a[0], b, out);
+        }
+        if is_constant(b) {
+            return self.scale(b[0], a, out);
+        }
+        // −0 adds nothing to any number, not even a sign.
+        out.fill(-0.0);
+        self.accumulate(a, b, out);
     }
 
     /// `out += a b`.
     pub fn accumulate(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
-        if self.monomials.variables() == 1 {
-            // Powers of one variable: a product is a convolution.
-            for (i, &factor) in a.iter().enumerate() {
-                out[i..].iter_mut().zip(b).for_each(|(h, b)| *h += factor * b);
+        // Row by row of the products' table: one factor's products go to as many sums, so that no addition waits for
+        // the one before. Each sum is in the order of i.
+        for (&factor, row) in a.iter().zip(self.rows.windows(2)) {
+            for (&r, y) in self.targets[row[0]..row[1]].iter().zip(b) {
+                out[r as usize] += factor * y;
             }
-            return;
-        }
-        for (r, h) in out.iter_mut().enumerate() {
-            *h += sum(self.pairs(r), a, b);
         }
     }
 
     /// `out = a b + c`.
     pub fn mul_add(&self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
-        self.mul_with(a, b, |r, product| out[r] = product + c[r]);
+        self.mul(a, b, out);
+        out.iter_mut().zip(c).for_each(|(h, c)| *h += c);
     }
 
     /// `out = a b - c`.
     pub fn mul_sub(&self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
-        self.mul_with(a, b, |r, product| out[r] = product - c[r]);
+        self.mul(a, b, out);
+        out.iter_mut().zip(c).for_each(|(h, c)| *h -= c);
     }
 
     /// `out = c - a b`.
     pub fn sub_mul(&self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
-        self.mul_with(a, b, |r, product| out[r] = c[r] - product);
-    }
-
-    /// Hands each coefficient of `a b` to `put`.
-    #[inline]
-    fn mul_with(&self, a: &[f64], b: &[f64], mut put: impl FnMut(usize, f64)) {
-        if is_constant(a) {
-            return (0..self.len()).for_each(|r| put(r, a[0] * b[r]));
-        }
-        if is_constant(b) {
-            return (0..self.len()).for_each(|r| put(r, a[r] * b[0]));
-        }
-        put(0, a[0] * b[0]);
-        for r in 1..self.len() {
-            put(r, sum(self.pairs(r), a, b));
-        }
+        self.mul(a, b, out);
+        out.iter_mut().zip(c).for_each(|(h, c)| *h = c - *h);
     }
 
     /// `out = a / b`: h b = a.

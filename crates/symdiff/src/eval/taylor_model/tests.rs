@@ -93,3 +93,60 @@ fn what_cannot_be_bounded_is_unknown() {
         assert_eq!(out[4], f64::INFINITY, "{function:?}");
     }
 }
+
+/// Integers are exact rationals: sums and products of whole numbers of 52 bits, in 128 bits.
+mod exactly {
+    use proptest::prelude::*;
+
+    use crate::eval::interval::Interval;
+    use crate::eval::taylor_model::ModelSpace;
+
+    const SMALL: i64 = 1 << 52;
+
+    /// 1, x, y, x², xy, y² at x = i/2, y = j/2, times 4.
+    fn powers(i: i128, j: i128) -> [i128; 6] {
+        [4, 2 * i, 2 * j, i * i, i * j, j * j]
+    }
+
+    /// A polynomial of whole coefficients there, times 4.
+    fn at(coefficients: impl Iterator<Item = i128>, [i, j]: [i128; 2]) -> i128 {
+        coefficients.zip(powers(i, j)).map(|(c, power)| c * power).sum()
+    }
+
+    fn coefficients() -> impl Strategy<Value = [i64; 6]> {
+        proptest::array::uniform6(-SMALL..SMALL)
+    }
+
+    fn inside() -> impl Strategy<Value = [i128; 2]> {
+        proptest::array::uniform2(-2..=2_i128)
+    }
+
+    proptest! {
+        #[test]
+        fn models_enclose_sums_and_products(a in coefficients(), b in coefficients(), point in inside()) {
+            let space = ModelSpace::new(2, 2);
+            let model = |of: [i64; 6]| -> Vec<f64> { of.iter().map(|&c| c as f64).chain([0.0]).collect() };
+            let exact = |of: [i64; 6]| at(of.into_iter().map(i128::from), point);
+            let mut out = vec![0.0; space.size()];
+            let is_enclosed = |out: &[f64], sixteenfold: i128| {
+                // Coefficients are whole numbers below 2^108, and the radius is rounded up.
+                let found = 4 * at(out[..6].iter().map(|&c| c as i128), point);
+                (found - sixteenfold).abs() <= (16.0 * out[6]).ceil() as i128
+            };
+            space.add(&model(a), &model(b), &mut out);
+            prop_assert!(is_enclosed(&out, 4 * (exact(a) + exact(b))));
+            space.sub(&model(a), &model(b), &mut out);
+            prop_assert!(is_enclosed(&out, 4 * (exact(a) - exact(b))));
+            space.mul(&model(a), &model(b), &mut out);
+            prop_assert!(is_enclosed(&out, exact(a) * exact(b)));
+        }
+
+        #[test]
+        fn intervals_enclose_sums_and_products(a in -SMALL..SMALL, b in -SMALL..SMALL, c in -SMALL..SMALL) {
+            let point = |value: i64| Interval::point(value as f64);
+            let found = point(a) * point(b) + point(c);
+            let exact = i128::from(a) * i128::from(b) + i128::from(c);
+            prop_assert!(found.lower().ceil() as i128 <= exact && exact <= found.upper().floor() as i128);
+        }
+    }
+}

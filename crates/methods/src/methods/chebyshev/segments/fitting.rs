@@ -158,6 +158,7 @@ mod tests {
 
     use super::*;
     use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
+    use crate::methods::proof::{EnclosedRow, Proof};
     use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
 
     /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω².
@@ -263,10 +264,10 @@ mod tests {
         fn jets(&self, _: &JetSpace, _: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
             unreachable!()
         }
-        fn obstacle_to_enclosure(&self) -> Option<String> {
+        fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
             unreachable!()
         }
-        fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
             unreachable!()
         }
         fn scales(&self) -> &[f64] {

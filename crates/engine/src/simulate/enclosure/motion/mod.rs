@@ -1,0 +1,355 @@
+//! The true motion, enclosed: the differential equation's solution for every parameter of a box.
+//!
+//! The equations of motion with Φ̈ = 0 determine w = f(t, q, v, ξ) wherever [M Φ_qᵀ; Φ_q 0] is regular, and a motion
+//! that starts on the constraints stays on them: one formulation serves open and closed mechanisms. Over a cell of time
+//! ([`spaces::Cell`])
+//!
+//! 1. polynomials ŷ(τ, ξ) of q, v, w and λ come from Picard's iteration ([`approximation`]); none of them is trusted;
+//! 2. their defect in q̇ = v, v̇ = w and in the equations is bounded in Taylor models of (τ, ξ) ([`proof`]);
+//! 3. ∂f/∂y is enclosed over a tube about ŷ, in which |e|' ≤ |A| |e| + defect has to keep e = y − ŷ;
+//! 4. Φ̂(τ, ξ), polynomials of low order, approximates the transition matrix; |Φ − Φ̂| is bounded in the same way;
+//! 5. e = B(ξ) z goes from cell to cell with B ← Φ̂ B, so that z does not change but by errors ([`frame`]).
+//!
+//! Cells are halved until they can be proven, and doubled again where the defect is at rounding.
+
+mod approximation;
+mod frame;
+mod majorant;
+mod proof;
+mod spaces;
+
+use symdiff::taylor_model::{ModelSpace, up};
+use symdiff::{Interval, JetMemory, ModelMemory};
+
+use super::matrix::{Bounds, Models};
+use super::{Certifier, EnclosureError, start};
+use crate::compile::{EquationsProgram, Tapes};
+use approximation::Approximation;
+use frame::Frame;
+use proof::{Claim, Proven, inverse_about};
+use spaces::{Cell, Space};
+
+/// Half the length of the first cell that is tried, s.
+const FIRST_HALF: f64 = 1.0 / 64.0;
+
+/// Half the length of the longest cell, s.
+const LONGEST_HALF: f64 = 0.25;
+
+/// Half the length below which a cell is not halved, s.
+const SHORTEST_HALF: f64 = 1.0 / 32768.0;
+
+/// Defect of the accelerations, relative to their size, above which a cell is halved.
+const LARGE_DEFECT: f64 = 1e-12;
+
+/// The same below which the next cell is twice as long.
+const SMALL_DEFECT: f64 = 1e-13;
+
+/// Factor by which r grows over a cell, above which the cell is halved.
+const LARGE_GAIN: f64 = 1.05;
+
+/// The same below which the next cell is twice as long.
+const SMALL_GAIN: f64 = 1.01;
+
+/// r whose growth does not matter: rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
+const LARGE_REMAINDER: f64 = 1e-5;
+
+/// Last terms in ξ, relative to the size of the velocities, above which the box is too wide for the order.
+const LARGE_TAIL: f64 = 1e-8;
+
+/// Shapes of the polynomials of a motion's enclosure.
+#[derive(Clone, Debug)]
+pub struct MotionSpaces {
+    fine: Space,
+    coarse: Space,
+}
+
+impl MotionSpaces {
+    /// For so many parameters.
+    pub fn new(parameters: usize, order: usize) -> Self {
+        Self { fine: Space::new(parameters, order), coarse: Space::new(parameters, order.div_ceil(2)) }
+    }
+
+    /// Outputs' models: of the parameters.
+    pub fn outputs(&self) -> &ModelSpace {
+        &self.fine.box_of
+    }
+}
+
+/// A cell that is proven.
+#[derive(Debug)]
+struct Passed {
+    cell: Cell,
+    approximation: Approximation,
+    proven: Proven,
+    /// At the cell's start.
+    frame: Frame,
+    /// Outputs over the cell.
+    ranges: Vec<Interval>,
+}
+
+/// A cell that is proven, and what comes after it.
+struct Next {
+    cell: Cell,
+    approximation: Approximation,
+    proven: Proven,
+    /// The approximation at the cell's end.
+    end: Approximation,
+    /// At the cell's end.
+    frame: Frame,
+    /// Outputs over the cell.
+    ranges: Vec<Interval>,
+    /// Of the accelerations, relative to their size.
+    defect: f64,
+    /// Factor by which r grows.
+    gain: f64,
+}
+
+/// The true motion over a box, cell by cell.
+#[derive(Debug)]
+pub struct MotionEnclosure<'s> {
+    program: &'s EquationsProgram,
+    spaces: &'s MotionSpaces,
+    solves_accelerations: bool,
+    /// Of the coordinates, n.
+    scales: Vec<f64>,
+    fine: ModelMemory<'s>,
+    coarse: ModelMemory<'s>,
+    jets: JetMemory<'s>,
+    /// Over ξ, at rows.
+    rows: ModelMemory<'s>,
+    /// At the start of the next cell.
+    start: Approximation,
+    frame: Frame,
+    /// Of the next cell, s.
+    time: f64,
+    half: f64,
+    last: Option<Passed>,
+    /// Within which each output is since the time before the one that was observed last.
+    since: Vec<Interval>,
+}
+
+impl<'s> MotionEnclosure<'s> {
+    /// Encloses the start over the box from `lower` to `upper`.
+    ///
+    /// # Errors
+    /// Where the start cannot be proven to exist.
+    pub fn start(
+        certifier: &'s Certifier<'s>,
+        spaces: &'s MotionSpaces,
+        lower: &[f64],
+        upper: &[f64],
+    ) -> Result<Self, EnclosureError> {
+        let (simulator, program) = (certifier.simulator, &certifier.program);
+        let memory = |space: &'s ModelSpace, first: usize| {
+            let mut memory = ModelMemory::new(space, program.registers(), program.constants());
+            for (index, register) in program.layout.parameters.clone().enumerate() {
+                space.variable(first + index, lower[index], upper[index], memory.model_mut(register));
+            }
+            memory.run(program.sample());
+            memory
+        };
+        let MotionSpaces { fine, coarse } = spaces;
+        let mut rows = memory(&fine.box_of, 0);
+        let of_cell = memory(&fine.cell, 1);
+        let mut jets = JetMemory::new(fine.cell.jets(), program.registers(), program.constants());
+        for register in program.layout.parameters.clone() {
+            let model = of_cell.model(register);
+            jets.jet_mut(register).copy_from_slice(&model[..model.len() - 1]);
+        }
+        jets.run(program.sample());
+        start::assemble(simulator, program, &fine.box_of, &mut rows, 0.0)?;
+        let block = |registers: &std::ops::Range<usize>| {
+            let mut models = Models::zero(&fine.box_of, registers.len(), 1);
+            registers
+                .clone()
+                .enumerate()
+                .for_each(|(row, register)| models.at_mut(row, 0).copy_from_slice(rows.model(register)));
+            models
+        };
+        let layout = &program.layout;
+        let start = Approximation {
+            q: block(&layout.q),
+            v: block(&layout.v),
+            w: block(&layout.w),
+            lambda: block(&layout.lambda),
+        };
+        let radii =
+            layout.q.clone().chain(layout.v.clone()).map(|register| rows.model(register)[fine.box_of.size() - 1]);
+        let frame = Frame::new(&coarse.box_of, radii.collect());
+        Ok(Self {
+            program,
+            spaces,
+            solves_accelerations: simulator.solves_row_accelerations(),
+            scales: simulator.system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
+            fine: of_cell,
+            coarse: memory(&coarse.cell, 1),
+            jets,
+            rows,
+            start,
+            frame,
+            time: 0.0,
+            half: FIRST_HALF,
+            last: None,
+            since: Vec::new(),
+        })
+    }
+
+    /// Outputs over the box at a time that is not before the last one, a model each.
+    ///
+    /// # Errors
+    /// Where the motion cannot be proven, with the time up to which it is.
+    pub fn observe(&mut self, time: f64, into: &mut Vec<f64>) -> Result<(), (f64, EnclosureError)> {
+        self.since.clear();
+        self.since.extend(self.last.iter().flat_map(|last| &last.ranges));
+        while self.last.as_ref().is_none_or(|last| last.cell.end() < time) {
+            self.pass().map_err(|why| (self.time, why))?;
+            let ranges = self.last.iter().flat_map(|last| &last.ranges);
+            if self.since.is_empty() {
+                self.since.extend(ranges);
+            } else {
+                self.since.iter_mut().zip(ranges).for_each(|(since, &range)| *since = since.hull(range));
+            }
+        }
+        let Some(Passed { cell, approximation, proven, frame, .. }) = &self.last else { return Ok(()) };
+        let Space { box_of, .. } = &self.spaces.fine;
+        let tau = ((time - cell.middle) / cell.half).clamp(-1.0, 1.0);
+        let errors = frame.error_at(&self.spaces.coarse, proven, tau);
+        let rows = &mut self.rows;
+        let at = approximation.at(&self.spaces.fine, tau);
+        at.put(self.program, |register, model| rows.model_mut(register).copy_from_slice(model));
+        let layout = &self.program.layout;
+        for (register, error) in layout.q.clone().chain(layout.v.clone()).zip(errors) {
+            let radius = &mut rows.model_mut(register)[box_of.size() - 1];
+            *radius = up(*radius + error);
+        }
+        box_of.constant(Interval::point(time), rows.model_mut(layout.time));
+        if self.solves_accelerations {
+            start::accelerations(self.program).solve(box_of, rows).map_err(|why| (time, why))?;
+        }
+        rows.run(self.program.observe());
+        into.clear();
+        self.program.outputs.iter().for_each(|&register| into.extend_from_slice(rows.model(register)));
+        Ok(())
+    }
+
+    /// Within which each output is at all times from the one observed before to the last one.
+    pub fn since(&self) -> &[Interval] {
+        &self.since
+    }
+
+    /// Proves the next cell, as long as can be.
+    fn pass(&mut self) -> Result<(), EnclosureError> {
+        loop {
+            let cell = Cell { middle: self.time + self.half, half: self.half };
+            let can_halve = self.half > SHORTEST_HALF;
+            match self.attempt(cell) {
+                Ok(next) if can_halve && (next.defect > LARGE_DEFECT || next.gain > LARGE_GAIN) => self.half *= 0.5,
+                Ok(next) => {
+                    self.accept(next);
+                    return Ok(());
+                }
+                Err(EnclosureError::Unproven) if can_halve => self.half *= 0.5,
+                Err(why) => return Err(why),
+            }
+        }
+    }
+
+    /// An approximation over a cell, and its proof.
+    fn attempt(&mut self, cell: Cell) -> Result<Next, EnclosureError> {
+        let MotionSpaces { fine, coarse } = self.spaces;
+        let time = self.program.layout.time;
+        fine.cell.jets().variable(0, cell.middle, cell.half, self.jets.jet_mut(time));
+        for (space, memory) in [(fine, &mut self.fine), (coarse, &mut self.coarse)] {
+            let model = memory.model_mut(time);
+            model.fill(0.0);
+            let coefficients = space.cell.size() - 1;
+            space.cell.jets().variable(0, cell.middle, cell.half, &mut model[..coefficients]);
+        }
+        let mut approximation = Approximation::first(fine, &self.start, cell);
+        let inverse = inverse_about(self.program, &coarse.cell, &mut self.coarse, &approximation)?;
+        let mut lifted = Models::zero(&fine.cell, inverse.rows, inverse.columns);
+        let kept = coarse.cell.size() - 1;
+        for row in 0..inverse.rows {
+            for column in 0..inverse.columns {
+                lifted.at_mut(row, column)[..kept].copy_from_slice(&inverse.at(row, column)[..kept]);
+            }
+        }
+        approximation.iterate(fine, self.program, &mut self.jets, &lifted, &self.start, cell)?;
+        let size = |models: &Models| (0..models.rows).map(|row| fine.cell.bound(models.at(row, 0))).fold(0.0, f64::max);
+        let n = approximation.q.rows;
+        let tail = (0..n).map(|row| fine.last_in_parameters(approximation.v.at(row, 0))).fold(0.0, f64::max);
+        if tail > LARGE_TAIL * size(&approximation.v) {
+            return Err(EnclosureError::TooWide);
+        }
+        let jump = self.jump(&approximation);
+        let at_start = self.frame.error(&coarse.box_of);
+        let claim = Claim {
+            program: self.program,
+            fine,
+            coarse,
+            cell,
+            approximation: &approximation,
+            inverse: &inverse,
+            at_start: &at_start,
+            jump: &jump,
+        };
+        let slopes: Option<&Bounds> = self.last.as_ref().map(|last| &last.proven.slopes);
+        let proven = claim.prove(&mut self.fine, &mut self.coarse, slopes)?;
+        // The memory has the tube, and all accelerations and multipliers in it.
+        self.coarse.run(self.program.observe());
+        let outputs = self.program.outputs.iter();
+        let ranges = outputs.map(|&register| coarse.range(self.coarse.model(register))).collect();
+        let end = approximation.at(fine, 1.0);
+        let frame = self.frame.advance(coarse, &proven, &radii(fine, &end))?;
+        let errors = frame.error(&coarse.box_of);
+        if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
+            return Err(EnclosureError::TooWide);
+        }
+        let defect =
+            proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
+        let gain = frame.size() / (self.frame.size() + ROUNDING);
+        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, gain })
+    }
+
+    /// Goes on to the end of a cell.
+    fn accept(&mut self, next: Next) {
+        let Next { cell, approximation, proven, end, frame, ranges, defect, gain } = next;
+        let frame = std::mem::replace(&mut self.frame, frame);
+        self.start = end;
+        self.time = cell.end();
+        // Cells begin at multiples of their length.
+        let doubled = 2.0 * self.half;
+        let is_easy = defect < SMALL_DEFECT && gain < SMALL_GAIN;
+        if is_easy && doubled <= LONGEST_HALF && (self.time / (2.0 * doubled)).fract() == 0.0 {
+            self.half = doubled;
+        }
+        self.last = Some(Passed { cell, approximation, proven, frame, ranges });
+    }
+
+    /// Bound of the distance of ŷ(−1) from the polynomials at the cell's start, 2n.
+    fn jump(&self, approximation: &Approximation) -> Vec<f64> {
+        let fine = &self.spaces.fine;
+        let size = fine.box_of.size();
+        let (mut at, mut left, mut exact) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
+        let mut jump = Vec::with_capacity(2 * approximation.q.rows);
+        for (models, start) in [(&approximation.q, &self.start.q), (&approximation.v, &self.start.v)] {
+            for row in 0..models.rows {
+                fine.at(models.at(row, 0), -1.0, &mut at);
+                exact[..size - 1].copy_from_slice(&start.at(row, 0)[..size - 1]);
+                fine.box_of.sub(&at, &exact, &mut left);
+                jump.push(fine.box_of.bound(&left));
+            }
+        }
+        jump
+    }
+}
+
+/// Radii of positions and velocities, 2n.
+fn radii(space: &Space, end: &Approximation) -> Vec<f64> {
+    let last = space.box_of.size() - 1;
+    let rows = [&end.q, &end.v].into_iter().flat_map(|models| (0..models.rows).map(|row| models.at(row, 0)[last]));
+    rows.collect()
+}

@@ -1,0 +1,258 @@
+//! Proof over one cell: how far the true motion is from an approximation at most.
+
+use symdiff::ModelMemory;
+use symdiff::taylor_model::{ModelSpace, up};
+
+use super::super::EnclosureError;
+use super::super::matrix::{Bounds, Models};
+use super::super::start;
+use super::approximation::Approximation;
+use super::majorant::{bound, resolvent};
+use super::spaces::{Cell, Space, matrix_at, truncate};
+use crate::compile::EquationsProgram;
+
+/// Most tubes that are tried.
+const TUBES: usize = 4;
+
+/// Factor from the bound that one tube gave to the next tube.
+const WIDER: f64 = 1.5;
+
+/// What holds over a cell for every ξ, for the distance e = y − ŷ of a motion y from the approximation ŷ, y = (q, v).
+#[derive(Clone, Debug)]
+pub(super) struct Proven {
+    /// Φ̂, 2n × 2n, polynomials of (τ, ξ) of low order.
+    pub transition: Models,
+    /// Bound of |Φ − Φ̂| with e(τ) = Φ(τ) e(−1) + g(τ).
+    pub missed: Bounds,
+    /// Bound of |g|, 2n.
+    pub growth: Vec<f64>,
+    /// Bound of |e'| of what the approximation misses of the equations, 2n.
+    pub defect: Vec<f64>,
+    /// Bound of |∂f/∂y|, 2n × 2n.
+    pub slopes: Bounds,
+}
+
+/// An approximation to be proven.
+pub(super) struct Claim<'c> {
+    pub program: &'c EquationsProgram,
+    /// Polynomials of the approximation.
+    pub fine: &'c Space,
+    /// Those of the transition matrix.
+    pub coarse: &'c Space,
+    pub cell: Cell,
+    pub approximation: &'c Approximation,
+    /// Approximate inverse of the matrix by (w, λ), coarse.
+    pub inverse: &'c Models,
+    /// Bound of |e(−1)|, 2n.
+    pub at_start: &'c [f64],
+    /// Bound of how far ŷ(−1) is from the polynomials it began with, 2n.
+    pub jump: &'c [f64],
+}
+
+impl Claim<'_> {
+    /// Proves it. `fine` and `coarse` have the cell's time and the parameters; `slopes` bounds |∂f/∂y|
+    /// of a neighbouring cell, where the search for a tube begins.
+    ///
+    /// # Errors
+    /// Where a motion may leave every tube that is tried.
+    pub fn prove(
+        &self,
+        fine: &mut ModelMemory,
+        coarse: &mut ModelMemory,
+        slopes: Option<&Bounds>,
+    ) -> Result<Proven, EnclosureError> {
+        let unproven = EnclosureError::Unproven;
+        let duration = 2.0 * self.cell.half;
+        let n = self.approximation.q.rows;
+        let residual = self.residual(fine);
+        let kinematic = self.kinematic_defect();
+        let entry: Vec<f64> = self.at_start.iter().zip(self.jump).map(|(a, b)| up(a + b)).collect();
+        let guess = slopes.and_then(|slopes| bound(slopes, &entry, duration, &kinematic));
+        let mut tube: Vec<f64> = guess.unwrap_or_else(|| entry.clone()).iter().map(|e| WIDER * e + 1e-14).collect();
+        for _ in 0..TUBES {
+            let linear = self.linearise(coarse, &tube, &residual)?;
+            let missed = kinematic.iter().enumerate().map(|(row, &rate)| match row.checked_sub(n) {
+                Some(row) => up(rate + linear.missed[row]),
+                None => rate,
+            });
+            let defect: Vec<f64> = missed.collect();
+            let slopes = of_first_order(&linear.slopes.bounds(&self.coarse.cell));
+            let reached = bound(&slopes, &entry, duration, &defect).ok_or(unproven)?;
+            // Written so that NaN is no proof.
+            if reached.iter().zip(&tube).all(|(reached, tube)| reached < tube) {
+                let growth = bound(&slopes, self.jump, duration, &defect).ok_or(unproven)?;
+                let transition = self.transition(&linear.slopes);
+                let missed = self.missed(&transition, &linear.slopes, &slopes).ok_or(unproven)?;
+                return Ok(Proven { transition, missed, growth, defect, slopes });
+            }
+            tube = reached.iter().map(|e| WIDER * e + 1e-14).collect();
+        }
+        Err(unproven)
+    }
+
+    /// Bounds of the equations' residuals at the approximation, n + m.
+    fn residual(&self, memory: &mut ModelMemory) -> Vec<f64> {
+        self.approximation.put(self.program, |register, model| memory.model_mut(register).copy_from_slice(model));
+        memory.run(self.program.residual());
+        memory.run(self.program.rates());
+        let rows = self.program.motion.iter().chain(&self.program.constraint_rates[1]);
+        rows.map(|&register| self.fine.cell.bound(memory.model(register))).collect()
+    }
+
+    /// Bounds of v̂ − q̂' and of ŵ − v̂', 2n.
+    fn kinematic_defect(&self) -> Vec<f64> {
+        let Approximation { q, v, w, .. } = self.approximation;
+        let space = &self.fine.cell;
+        let (mut rate, mut left) = (vec![0.0; space.size()], vec![0.0; space.size()]);
+        let mut found = Vec::with_capacity(2 * q.rows);
+        for (of, by) in [(q, v), (v, w)] {
+            for row in 0..of.rows {
+                self.fine.rate(of.at(row, 0), self.cell.half, &mut rate);
+                space.sub(by.at(row, 0), &rate, &mut left);
+                found.push(space.bound(&left));
+            }
+        }
+        found
+    }
+
+    /// Derivatives of the accelerations by q and v for every motion in the tube.
+    fn linearise(
+        &self,
+        memory: &mut ModelMemory,
+        tube: &[f64],
+        residual: &[f64],
+    ) -> Result<Linearised, EnclosureError> {
+        let unproven = EnclosureError::Unproven;
+        let space = &self.coarse.cell;
+        let (layout, n) = (&self.program.layout, self.approximation.q.rows);
+        let last = space.size() - 1;
+        self.approximation.put(self.program, |register, model| truncate(model, space, memory.model_mut(register)));
+        let tails: Vec<f64> =
+            layout.w.clone().chain(layout.lambda.clone()).map(|register| memory.model(register)[last]).collect();
+        for (register, tube) in layout.q.clone().chain(layout.v.clone()).zip(tube) {
+            let radius = &mut memory.model_mut(register)[last];
+            *radius = up(*radius + tube);
+        }
+        let equations = start::accelerations(self.program);
+        equations.prove(space, memory, self.inverse)?;
+        // The accelerations of the approximation are to be in the box, too.
+        for (register, tail) in layout.w.clone().chain(layout.lambda.clone()).zip(tails) {
+            let radius = &mut memory.model_mut(register)[last];
+            *radius = radius.max(tail);
+        }
+        let matrix = equations.matrix(space, memory);
+        let contraction = self.inverse.times(space, &matrix).off_identity(space).bounds(space);
+        let sizes = self.inverse.bounds(space).times(residual);
+        let column = Bounds::of(sizes.len(), 1, &sizes);
+        let beyond = resolvent(&contraction, &column).ok_or(unproven)?;
+        let missed = (0..n).map(|row| up(sizes[row] + beyond.at(row, 0))).collect();
+
+        memory.run(self.program.rates_jacobian());
+        let mut by_state = Models::zero(space, matrix.rows, 2 * n);
+        let [by_q, by_v, ..] = &self.program.motion_by;
+        let [rates_by_q, rates_by_v] = &self.program.constraint_acceleration_by;
+        let blocks = [(by_q, 0, 0), (by_v, 0, n), (rates_by_q, n, 0), (rates_by_v, n, n)];
+        for (entries, below, right) in blocks {
+            for &(row, column, register) in entries {
+                by_state.at_mut(below + row, right + column).copy_from_slice(memory.model(register));
+            }
+        }
+        // ∂(w, λ)/∂y = −J⁻¹ F_y, and J⁻¹ = (C J)⁻¹ C.
+        let mut all = self.inverse.times(space, &by_state);
+        all.negate();
+        let beyond = resolvent(&contraction, &all.bounds(space)).ok_or(unproven)?;
+        let mut slopes = all.part(space, 0..n, 0..2 * n);
+        for row in 0..n {
+            for column in 0..2 * n {
+                let radius = &mut slopes.at_mut(row, column)[last];
+                *radius = up(*radius + beyond.at(row, column));
+            }
+        }
+        Ok(Linearised { missed, slopes })
+    }
+
+    /// Φ̂ with Φ̂' ≈ A Φ̂ and Φ̂(−1) = I, by Picard's iteration.
+    fn transition(&self, slopes: &Models) -> Models {
+        let (space, half) = (self.coarse, self.cell.half);
+        let n = slopes.rows;
+        let identity = Models::identity(&space.box_of, 2 * n);
+        let mut transition = Models::identity(&space.cell, 2 * n);
+        let kept = space.box_of.size() - 1;
+        let mut integral = vec![0.0; space.cell.size()];
+        for _ in 0..space.cell.jets().monomials().order() + 2 {
+            let rates = slopes.approximate_times(&space.cell, &transition);
+            for column in 0..2 * n {
+                for row in 0..n {
+                    let start = &identity.at(n + row, column)[..kept];
+                    space.integral(start, half, rates.at(row, column), &mut integral);
+                    transition.at_mut(n + row, column).copy_from_slice(&integral);
+                    let start = &identity.at(row, column)[..kept];
+                    space.integral(start, half, transition.at(n + row, column), &mut integral);
+                    transition.at_mut(row, column).copy_from_slice(&integral);
+                }
+            }
+        }
+        transition
+    }
+
+    /// Bound of |Φ − Φ̂|: |E|' ≤ |A| |E| + |A Φ̂ − Φ̂'|.
+    fn missed(&self, transition: &Models, slopes: &Models, sizes: &Bounds) -> Option<Bounds> {
+        let (space, n) = (&self.coarse.cell, slopes.rows);
+        let rates = slopes.times(space, transition);
+        let start = matrix_at(self.coarse, transition, -1.0).off_identity(&self.coarse.box_of);
+        let start = start.bounds(&self.coarse.box_of);
+        let (mut rate, mut left) = (vec![0.0; space.size()], vec![0.0; space.size()]);
+        let mut values = vec![0.0; 4 * n * n];
+        for column in 0..2 * n {
+            let mut residual = Vec::with_capacity(2 * n);
+            for row in 0..2 * n {
+                self.coarse.rate(transition.at(row, column), self.cell.half, &mut rate);
+                let of_equation =
+                    row.checked_sub(n).map_or_else(|| transition.at(n + row, column), |row| rates.at(row, column));
+                space.sub(of_equation, &rate, &mut left);
+                residual.push(space.bound(&left));
+            }
+            let found = bound(sizes, &start.column(column), 2.0 * self.cell.half, &residual)?;
+            found.into_iter().enumerate().for_each(|(row, value)| values[row * 2 * n + column] = value);
+        }
+        Some(Bounds::of(2 * n, 2 * n, &values))
+    }
+}
+
+/// The equations about an approximation, over a tube.
+struct Linearised {
+    /// Bound of |f(ŷ) − ŵ|, n.
+    missed: Vec<f64>,
+    /// Accelerations by q and v, n × 2n.
+    slopes: Models,
+}
+
+/// [0 I; A] of bounds of A.
+fn of_first_order(accelerations: &Bounds) -> Bounds {
+    let (n, columns) = accelerations.shape();
+    let mut values = vec![0.0; n * columns];
+    (0..n).for_each(|row| values[row * columns + n + row] = 1.0);
+    values.extend_from_slice(accelerations.entries());
+    Bounds::of(columns, columns, &values)
+}
+
+/// Approximate inverse of the matrix by (w, λ) about an approximation.
+///
+/// # Errors
+/// Where it is not regular over the cell.
+pub(super) fn inverse_about(
+    program: &EquationsProgram,
+    space: &ModelSpace,
+    memory: &mut ModelMemory,
+    approximation: &Approximation,
+) -> Result<Models, EnclosureError> {
+    let last = space.size() - 1;
+    approximation.put(program, |register, model| {
+        let to = memory.model_mut(register);
+        truncate(model, space, to);
+        to[last] = 0.0;
+    });
+    let matrix = start::accelerations(program).matrix(space, memory).without_radii();
+    let mut inverse = matrix.inverse_at_centre(space).ok_or(EnclosureError::Unproven)?;
+    if inverse.refine_inverse_of(space, &matrix) { Ok(inverse.without_radii()) } else { Err(EnclosureError::Unproven) }
+}

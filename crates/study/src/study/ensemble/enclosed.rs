@@ -1,0 +1,102 @@
+//! Enclosures of a mechanism's motions over a piece of the box.
+
+use symdiff::taylor_model::ModelSpace;
+use symdiff::{Expr, Node, Unary};
+
+use super::Motions;
+use crate::assemble::System;
+use crate::methods::{EnclosedRow, Lost, Proof};
+use crate::numerics::ParameterBox;
+use crate::simulate::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces, Simulator};
+
+/// What prevents a proof.
+pub(super) fn obstacle(simulator: &Simulator, proof: Proof) -> Option<String> {
+    let system = &simulator.system;
+    if system.analysis.visits() {
+        return Some(format!("`analysis: {}`", system.analysis.name()));
+    }
+    if simulator.equilibrium.is_some() {
+        return Some("a start at an equilibrium".to_owned());
+    }
+    if !system.velocity_constraint.is_empty() {
+        let joint = &system.constraints[system.constraint.len()].joint;
+        return Some(format!("constraints of velocities, as of joint {joint}"));
+    }
+    if let Some(effect) = system.effects.iter().find(|effect| !effect.enclosed) {
+        return Some(format!("effect {} ({})", effect.name, effect.kind));
+    }
+    if proof == Proof::Motion && !system.sampled.is_empty() {
+        return Some("states that change at instants, as of a controller with a period".to_owned());
+    }
+    (proof == Proof::Motion && jumps_with_the_motion(system))
+        .then(|| "`floor` of positions or velocities, where the equations jump".to_owned())
+}
+
+/// Whether `floor` of the motion stands in an equation: the equations jump, and no derivative shows it.
+fn jumps_with_the_motion(system: &System) -> bool {
+    let roots: Vec<Expr> =
+        [&system.inertia, &system.force, &system.constraint].into_iter().flatten().copied().collect();
+    let motion: Vec<Expr> = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied().collect();
+    let jumps = |expr: &Expr| match system.graph.node(*expr) {
+        Node::Unary(Unary::Floor, argument) => {
+            let symbols = system.graph.symbols_of(&[argument]);
+            motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok())
+        }
+        _ => false,
+    };
+    system.graph.reachable(&roots).iter().any(jumps)
+}
+
+fn lost(time: f64, why: EnclosureError) -> Lost {
+    Lost { time, why: why.to_string(), is_too_wide: why != EnclosureError::Undetermined }
+}
+
+/// Rows of the true motion.
+pub(super) fn motion(
+    motions: &Motions,
+    space: &ModelSpace,
+    piece: &ParameterBox,
+    row: &mut EnclosedRow,
+) -> Option<Lost> {
+    let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
+    let monomials = space.jets().monomials();
+    let spaces = MotionSpaces::new(monomials.variables(), monomials.order());
+    let mut enclosure = match MotionEnclosure::start(certifier, &spaces, &piece.lower, &piece.upper) {
+        Ok(enclosure) => enclosure,
+        Err(why) => return Some(lost(0.0, why)),
+    };
+    let mut models = Vec::new();
+    for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
+        if let Err((time, why)) = enclosure.observe(motions.schedule.time(next), &mut models) {
+            return Some(lost(time, why));
+        }
+        row(&models, enclosure.since());
+    }
+    None
+}
+
+/// Rows of the scheme's motion.
+pub(super) fn scheme(
+    motions: &Motions,
+    space: &ModelSpace,
+    piece: &ParameterBox,
+    row: &mut EnclosedRow,
+) -> Option<Lost> {
+    let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
+    let first_step = motions.schedule.first_step();
+    let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, first_step) {
+        Ok(enclosure) => enclosure,
+        Err(why) => return Some(lost(0.0, why)),
+    };
+    let mut models = Vec::new();
+    for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
+        if let Err((time, why)) = enclosure.advance(motions.schedule, next) {
+            return Some(lost(time, why));
+        }
+        if let Err(why) = enclosure.observe(&mut models) {
+            return Some(lost(motions.schedule.time(next), why));
+        }
+        row(&models, &[]);
+    }
+    None
+}

@@ -1,0 +1,208 @@
+//! Certified bounds of the true motion: they hold solutions by DOP853 of equations that were derived by hand, are
+//! hardly wider than what these reach, and say where they end.
+
+use mbint::inner::methods::{BoundsRequest, Certified, Proof};
+use mbint::inner::model::Description;
+use mbint::inner::results::{Bounds, Method};
+use mbint::inner::study::{self, Options};
+
+use crate::common::*;
+use crate::runge_kutta::solve;
+
+/// Error of the reference: DOP853's tolerance, gathered over the steps.
+const REFERENCE: f64 = 1e-11;
+
+fn certify(description: Description) -> (Bounds, Option<String>) {
+    let bounds = BoundsRequest { certified: Some(Certified { proof: Proof::Motion }), ..Default::default() };
+    let description = Description { bounds, ..description };
+    let options = Options { threads: Some(2), ..Options::default() };
+    let (bounds, summary) = study::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
+    (bounds, summary.failure)
+}
+
+/// Asserts that the band of an output holds the values of samples, a row each; returns by how much it is wider at most.
+#[track_caller]
+fn excess(bounds: &Bounds, name: &str, samples: &[Vec<f64>]) -> f64 {
+    let certified = band(output(bounds, name), Method::Certified);
+    let mut worst = 0.0_f64;
+    for row in 0..bounds.times.len() {
+        let (lower, upper) = (certified.lower[row], certified.upper[row]);
+        let values = samples.iter().map(|sample| sample[row]);
+        let least = values.clone().fold(f64::INFINITY, f64::min);
+        let most = values.fold(f64::NEG_INFINITY, f64::max);
+        let held = lower <= least + REFERENCE && most <= upper + REFERENCE;
+        assert!(held, "{name} at {} s: [{least}, {most}] in [{lower}, {upper}]", bounds.times[row]);
+        worst = worst.max((upper - lower) - (most - least));
+    }
+    worst
+}
+
+/// Numbers between −1 and 1, the ends first.
+fn box_of(count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |index| if index == 1 { 1.0 } else { -1.0 + 2.0 * index as f64 / count as f64 })
+}
+
+/// Two point masses on rods of 1 m, released at an uncertain angle; the example of MC++ and CRONOS.
+fn two_bobs(duration: f64, step: &str) -> Description {
+    read(&format!(
+        "
+parameters: {{ p: {{ value: 1, tolerance: 0.5% }}, g: 9.81 }}
+bodies:
+  first: {{ mass: 1, inertia: 0, points: {{ top: [0, 1], bob: [0, 0] }} }}
+  second: {{ mass: 1, inertia: 0, points: {{ top: [0, 1] }} }}
+joints:
+  upper: {{ revolute: [ground, first.top] }}
+  lower: {{ revolute: [first.bob, second.top] }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -g] }} }} }}
+initial:
+  first.angle: 0.75*pi*p
+  first.angular_velocity: 0.43
+  second.angle: -0.55*pi
+  second.angular_velocity: 0.67
+outputs: {{ x: second.x, y: second.y, speed: second.vx, lean: second.ax }}
+simulation: {{ duration: {duration}, {step}, output_step: 0.1 }}
+"
+    ))
+}
+
+/// θ₁, θ₂ from straight down, and their rates (Lagrange's equations for equal masses on rods of 1 m).
+fn two_bobs_by_hand(p: f64, times: &[f64]) -> Vec<Vec<f64>> {
+    let pi = std::f64::consts::PI;
+    let equation = |_: f64, y: &[f64], d: &mut [f64]| d.copy_from_slice(&rates_of_two_bobs(y));
+    solve(equation, &[0.75 * pi * p, -0.55 * pi, 0.43, 0.67], times, 1e-14, 1e-2)
+}
+
+fn rates_of_two_bobs(y: &[f64]) -> [f64; 4] {
+    let [a, b, u, v] = [y[0], y[1], y[2], y[3]];
+    let (s, c) = (a - b).sin_cos();
+    let first = -9.81 * 2.0 * a.sin() - v * v * s;
+    let second = -9.81 * b.sin() + u * u * s;
+    let determinant = 2.0 - c * c;
+    [u, v, (first - c * second) / determinant, (2.0 * second - c * first) / determinant]
+}
+
+#[test]
+fn solutions_of_the_double_pendulum_are_held() {
+    // No step of the program's own matters.
+    for step in ["step: 2e-3", "tolerance: 1e-4"] {
+        let (bounds, failure) = certify(two_bobs(0.6, step));
+        assert_eq!(failure, None);
+        let solutions: Vec<_> = box_of(200).map(|xi| two_bobs_by_hand(1.0 + 5e-3 * xi, &bounds.times)).collect();
+        let observed = |of: fn(&[f64]) -> f64| -> Vec<Vec<f64>> {
+            solutions.iter().map(|rows| rows.iter().map(|y| of(y)).collect()).collect()
+        };
+        // What the samples' spacing leaves out, and what the proof adds.
+        assert!(excess(&bounds, "x", &observed(|y| y[0].sin() + y[1].sin())) < 1e-5);
+        assert!(excess(&bounds, "y", &observed(|y| -y[0].cos() - y[1].cos())) < 1e-5);
+        assert!(excess(&bounds, "speed", &observed(|y| y[2] * y[0].cos() + y[3] * y[1].cos())) < 1e-4);
+        let lean = |y: &[f64]| {
+            let [u, v, a, b] = rates_of_two_bobs(y);
+            a * y[0].cos() - u * u * y[0].sin() + b * y[1].cos() - v * v * y[1].sin()
+        };
+        assert!(excess(&bounds, "lean", &observed(lean)) < 1e-3);
+    }
+}
+
+#[test]
+#[ignore = "thousands of solutions, to 1.5 s"]
+fn thousands_of_solutions_of_the_double_pendulum_are_held() {
+    let (bounds, failure) = certify(two_bobs(1.5, "step: 2e-3"));
+    assert_eq!(failure, None);
+    let values = |p: f64| two_bobs_by_hand(p, &bounds.times).iter().map(|y| y[0].sin() + y[1].sin()).collect();
+    let solutions: Vec<Vec<f64>> = box_of(5000).map(|xi| values(1.0 + 5e-3 * xi)).collect();
+    assert!(excess(&bounds, "x", &solutions) < 1e-5);
+}
+
+/// θ and its rate of the slider crank of Wu, Luo and Zhang in its minimal coordinate.
+fn slider_crank_by_hand(l1: f64, times: &[f64]) -> Vec<Vec<f64>> {
+    let (l2, m1, m2, m3, c, k, torque) = (0.56, 0.37, 0.77, 0.45, 1.0, 5.0, -0.5);
+    let equation = |_: f64, y: &[f64], d: &mut [f64]| {
+        let (s, co) = y[0].sin_cos();
+        let sp = -l1 * s / l2;
+        let cp = (1.0 - sp * sp).sqrt();
+        let fp = -l1 * co / (l2 * cp);
+        let fpp = l1 * s / (l2 * cp) + fp * fp * sp / cp;
+        let (xp, xpp) = (-l1 * s - l2 * sp * fp, -l1 * co - l2 * cp * fp * fp - l2 * sp * fpp);
+        let (cx, cy) = (-l1 * s - 0.5 * l2 * sp * fp, l1 * co + 0.5 * l2 * cp * fp);
+        let cxp = -l1 * co - 0.5 * l2 * (cp * fp * fp + sp * fpp);
+        let cyp = -l1 * s + 0.5 * l2 * (-sp * fp * fp + cp * fpp);
+        let of_rods = m1 * l1 * l1 / 3.0 + m2 * l2 * l2 / 12.0 * fp * fp;
+        let inertia = of_rods + m2 * (cx * cx + cy * cy) + m3 * xp * xp;
+        let change = 2.0 * (m2 * (cx * cxp + cy * cyp) + m2 * l2 * l2 / 12.0 * fp * fpp + m3 * xp * xpp);
+        let stretch = l1 * co + l2 * cp - l1 - l2;
+        d[0] = y[1];
+        d[1] = (torque - k * stretch * xp - c * xp * xp * y[1] - 0.5 * change * y[1] * y[1]) / inertia;
+    };
+    solve(equation, &[0.0, 0.0], times, 1e-14, 1e-2)
+}
+
+#[test]
+fn solutions_of_the_slider_crank_are_held() {
+    let (bounds, failure) = certify(model("slider_crank_one").duration(0.4).rows_every(0.04));
+    assert_eq!(failure, None);
+    let solutions: Vec<_> = box_of(200).map(|xi| (0.15 * (1.0 + 0.01 * xi), xi)).collect();
+    let solutions: Vec<_> =
+        solutions.into_iter().map(|(l1, _)| (l1, slider_crank_by_hand(l1, &bounds.times))).collect();
+    let x3 = |l1: f64, y: &[f64]| l1 * y[0].cos() + (0.56_f64.powi(2) - (l1 * y[0].sin()).powi(2)).sqrt();
+    let positions: Vec<Vec<f64>> =
+        solutions.iter().map(|(l1, rows)| rows.iter().map(|y| x3(*l1, y)).collect()).collect();
+    let angles: Vec<Vec<f64>> = solutions.iter().map(|(_, rows)| rows.iter().map(|y| y[0]).collect()).collect();
+    assert!(excess(&bounds, "x3", &positions) < 1e-6);
+    assert!(excess(&bounds, "crank_angle", &angles) < 1e-5);
+}
+
+/// The pendulum of the library of benchmarks comes back after its period, 4 K(sin² 45°) √(l/g).
+#[test]
+fn the_pendulum_comes_back_after_its_period() {
+    let period = 2.367_841_947_576_237_4;
+    let description = model("pendulum").uncertain("length", 0.0).duration(period).rows_every(period / 4.0);
+    let (bounds, failure) = certify(description);
+    assert_eq!(failure, None);
+    for (name, rows) in [("x", [-1.0, 0.0, 1.0, 0.0, -1.0]), ("y", [0.0, -1.0, 0.0, -1.0, 0.0])] {
+        let certified = band(output(&bounds, name), Method::Certified);
+        for (row, exact) in rows.into_iter().enumerate() {
+            let (lower, upper) = (certified.lower[row], certified.upper[row]);
+            // The rows' times are known to 1e-15 s at a speed of 4.4 m/s.
+            assert!(lower - 1e-14 <= exact && exact <= upper + 1e-14, "{name} {row}: [{lower}, {upper}]");
+            assert!(upper - lower < 1e-8, "{name} {row}: [{lower}, {upper}]");
+        }
+    }
+}
+
+#[test]
+fn where_it_ends_is_unknown_and_said() {
+    // A ball falls into a centre that attracts it with k/x: the equations end there, at √(π/2) s = 1.253 s for k = 1.
+    let (bounds, failure) = certify(read(
+        "
+parameters: { k: { value: 1, tolerance: 1% } }
+bodies: { ball: { mass: 1, coordinates: [x] } }
+effects: { pull: { force: { on: ball, value: [-k/(ball.x/(1 m))*(1 N), 0] } } }
+initial: { ball.x: 1 }
+outputs: { x: ball.x }
+simulation: { duration: 1.4, step: 1e-3, output_step: 0.1 }
+",
+    ));
+    let failure = failure.expect("the motion ends at 1.25 s");
+    assert!(failure.contains("certified bounds are unknown from there on"), "{failure}");
+    let certified = band(output(&bounds, "x"), Method::Certified);
+    assert_eq!(certified.lower.len(), bounds.times.len());
+    assert!(certified.lower[0] <= 1.0 && certified.upper[0] >= 1.0 && certified.upper[12].is_finite());
+    assert!(certified.lower.last().unwrap().is_nan() && certified.upper.last().unwrap().is_nan());
+}
+
+/// The derivative of a jump is zero, and says nothing about the distance of two motions.
+#[test]
+fn jumps_with_the_motion_are_refused() {
+    let (_, failure) = certify(read(
+        "
+parameters: { k: { value: 1, tolerance: 1% } }
+bodies: { ball: { mass: 1, coordinates: [x] } }
+effects: { push: { force: { on: ball, value: [-k*floor(ball.x/(1 m))*(1 N), 0] } } }
+initial: { ball.x: 0.5, ball.vx: 1 }
+outputs: { x: ball.x }
+simulation: { duration: 1, step: 0.01 }
+",
+    ));
+    let failure = failure.expect("a jump has no proof");
+    assert!(failure.contains("`floor` of positions or velocities"), "{failure}");
+}
