@@ -13,7 +13,7 @@ use super::cuts::{cuts_of_several_axes, other_cuts};
 use super::inputs::MechanismInput;
 use super::links::links_of;
 use super::mechanism::Mechanism;
-use super::power_balance::PowerBalance;
+use super::powers::PowerBalance;
 use super::questions::Questions;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, Overlap, System};

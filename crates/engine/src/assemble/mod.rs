@@ -43,6 +43,7 @@ mod number_formulas;
 mod placement;
 mod pose;
 mod power_balance;
+mod powers;
 mod questions;
 mod reaction;
 mod recursion;
@@ -70,7 +71,7 @@ pub use cuts::{cuts_of_several_axes, other_cuts};
 pub use inputs::{InputInfo, RandomInput};
 pub use inventory::Inventory;
 pub use number_formulas::NumberFormulas;
-pub use power_balance::{EffectPower, PowerBalance};
+pub use powers::{EffectPower, PowerBalance};
 pub use questions::Questions;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, Overlap, ResidualUnit,

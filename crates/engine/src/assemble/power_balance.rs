@@ -7,35 +7,14 @@
 //! The left side has the rows of the equations of motion; T is summed body by body, and Pₑ wrench by wrench, before
 //! anything is projected on generalised coordinates. States are no coordinates of the motion.
 
-use symdiff::{Expr, Scalar};
+use symdiff::Scalar;
 
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
+use super::powers::EffectPower;
 use crate::model::Description;
 use crate::multibody::{BuildError, Vector};
-
-/// What an effect does to a mechanism's energy.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EffectPower {
-    /// Name in the model; `teeth` for the forces between teeth of joints.
-    pub name: String,
-    /// E.g. `spring_damper`.
-    pub kind: &'static str,
-    /// Pₑ, W.
-    pub power: Expr,
-    /// Its potential energy, J.
-    pub stored: Expr,
-}
-
-/// The energies and powers of a mechanism.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PowerBalance {
-    /// T, J.
-    pub kinetic: Expr,
-    /// By effect, in file order.
-    pub effects: Vec<EffectPower>,
-}
 
 impl<'g> Mechanism<'g, '_> {
     /// The powers of all effects, each by itself.

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::inputs::{InputInfo, RandomInput};
-use super::power_balance::PowerBalance;
+use super::powers::PowerBalance;
 use symdiff::{Expr, Formula, Graph};
 
 use crate::grammar::quantity::Dimension;
