@@ -9,12 +9,12 @@ use crate::common::registry::{Mechanism, OF_EFFECTS, OF_JOINTS, effects, joints}
 
 const HEAD: &str = "# Verification of the elements
 
-Every effect and joint stands with the example of its reference in a small mechanism, in the plane, in space or in both, \
-and is verified as [`mbint verify`](../guides/verify.md) does it: a motion that is exact because its loads are added, with \
-steps of half the length until orders settle. The orders are the lowest of positions, velocities, accelerations, states and \
-reactions, in absolute and in joint coordinates; theory tells 2, 4 and 8 (explicit: at least 4, where rounding comes \
-first). Power is the largest defect of its balance, as a share of the powers; energy is what the effect does beside its \
-potential energy. `MBINT_UPDATE_DOCS=1 cargo test --test elements verified -- --ignored` writes this page; the same test fails where an \
+Every effect and joint stands with the example of its reference in a small mechanism, in the plane, in space or in both,
+and is verified as [`mbint verify`](../guides/verify.md) does it: a motion that is exact because its loads are added, with
+steps of half the length until orders settle. The orders are the lowest of positions, velocities, accelerations, states and
+reactions, in absolute and in joint coordinates; theory tells 2, 4 and 8 (explicit: at least 4, where rounding comes
+first). Power is the largest defect of its balance, as a share of the powers; energy is what the effect does beside its
+potential energy. `MBINT_UPDATE_DOCS=1 cargo test --test elements verified -- --ignored` writes this page; the same test fails where an
 element is not verified.
 
 | element | space | HHT-I3 | extrapolated | explicit | power | energy |

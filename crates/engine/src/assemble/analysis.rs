@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use symdiff::Expr;
 
 use super::System;
-use super::system::Start;
+use super::system::{OutputInfo, Start};
 
 impl System {
     /// The equations for a configuration at rest, in which states rest, too: each is the position of its coordinate in
@@ -32,6 +32,19 @@ impl System {
         system.outputs.iter_mut().zip(outputs).for_each(|(output, expr)| output.expr = expr);
         system.active_condition = condition.first().copied();
         Cow::Owned(system)
+    }
+
+    /// The equations with these values as outputs, without names or units, instead of the model's.
+    #[must_use]
+    pub fn observing(&self, values: impl IntoIterator<Item = Expr>) -> Self {
+        let output = |(index, expr): (usize, Expr)| OutputInfo {
+            name: format!("value {index}"),
+            unit: String::new(),
+            dimension: None,
+            expr,
+            of_results: None,
+        };
+        Self { outputs: values.into_iter().enumerate().map(output).collect(), ..self.clone() }
     }
 
     /// Whether it has states.

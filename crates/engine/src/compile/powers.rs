@@ -1,9 +1,9 @@
 //! The balance of power as outputs of a system.
 
-use symdiff::{Expr, Graph, Unary};
+use symdiff::{Expr, Unary};
 
 use super::equations::{equations_of_motion, time_derivative};
-use crate::assemble::{OutputInfo, System};
+use crate::assemble::System;
 
 /// Number of outputs before those of the effects.
 pub const OF_WHOLE: usize = 2;
@@ -38,24 +38,12 @@ pub fn observing_powers(system: &System) -> Option<System> {
         sizes.push(effect.power);
         gained.push(effect.power);
     }
-    let (gained, given) = (sum(&mut graph, &gained), sum(&mut graph, &given));
+    let (gained, given) = (graph.sum(gained), graph.sum(given));
     let defect = graph.sub(gained, given);
     let sizes: Vec<Expr> = sizes.into_iter().map(|term| graph.unary(Unary::Abs, term)).collect();
-    let size = sum(&mut graph, &sizes);
+    let size = graph.sum(sizes);
     let of_effects = powers.effects.iter().zip(&rates[1..]).flat_map(|(effect, &rate)| [effect.power, rate]);
-    let output = |(index, expr): (usize, Expr)| OutputInfo {
-        name: format!("power {index}"),
-        unit: "W".to_owned(),
-        dimension: None,
-        expr,
-        of_results: None,
-    };
-    system.outputs = [defect, size].into_iter().chain(of_effects).enumerate().map(output).collect();
+    let outputs: Vec<Expr> = [defect, size].into_iter().chain(of_effects).collect();
     system.graph = graph;
-    Some(system)
-}
-
-fn sum(graph: &mut Graph, terms: &[Expr]) -> Expr {
-    let zero = graph.constant(0.0);
-    terms.iter().fold(zero, |sum, &term| graph.add(sum, term))
+    Some(system.observing(outputs))
 }

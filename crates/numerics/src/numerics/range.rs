@@ -75,6 +75,11 @@ impl Enclosed {
     }
 }
 
+/// The larger of two; NaN if either is.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
 /// Of no part yet.
 pub const EMPTY: Range = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
 

@@ -3,6 +3,8 @@
 use serde::Serialize;
 use symdiff::math;
 
+use crate::numerics::larger;
+
 /// A quantity whose error is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -97,10 +99,9 @@ const ROUNDING: f64 = 1e-9;
 impl EffectBalance {
     /// With the power at one more instant, and the rate at which energy is stored.
     pub fn add(&mut self, power: f64, stored: f64) {
-        let more = |most: f64, own: f64| if own > most || own.is_nan() { own } else { most };
-        self.power = more(self.power, power.abs());
-        self.put_in = more(self.put_in, power + stored);
-        self.taken = more(self.taken, -(power + stored));
+        self.power = larger(self.power, power.abs());
+        self.put_in = larger(self.put_in, power + stored);
+        self.taken = larger(self.taken, -(power + stored));
     }
 
     /// The exchange of energy that it shows.

@@ -3,7 +3,8 @@
 use symdiff::taylor_model::up;
 
 use super::EnclosureError;
-use super::matrix::{Bounds, larger};
+use super::matrix::Bounds;
+use crate::numerics::larger;
 
 /// Most attempts to find a box that is mapped into itself.
 const ATTEMPTS: usize = 12;

@@ -5,6 +5,8 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 use symdiff::taylor_model::{ModelSpace, Norms};
 
+use crate::numerics::larger;
+
 /// Largest ‖I − C J‖ that is left when an inverse is refined: its square is below rounding.
 const REFINED: f64 = 1e-9;
 
@@ -212,11 +214,6 @@ impl Models {
         }
         last < 1.0 || last.is_infinite()
     }
-}
-
-/// The larger of two; NaN if either is.
-pub(super) fn larger(a: f64, b: f64) -> f64 {
-    if a >= b || a.is_nan() { a } else { b }
 }
 
 /// Bounds of the absolute values of a matrix's entries. A matrix without columns has rows: a mechanism without degrees

@@ -5,7 +5,7 @@ use symdiff::{Interval, ModelMemory, Tape};
 
 use super::EnclosureError;
 use super::krawczyk::{self, Image};
-use super::matrix::{Bounds, Models};
+use super::matrix::Models;
 use crate::assemble::CoordinateId;
 use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
@@ -186,29 +186,27 @@ impl Equations<'_> {
                 memory.model_mut(register).iter_mut().zip(change).for_each(|(x, change)| *x -= change);
             }
         }
-        self.prove(space, memory, &inverse).map(|_| ())
+        self.prove(space, memory, &inverse)
     }
 
     /// Gives the unknowns radii within which, about the polynomials in the memory, a solution is for every ξ. `inverse`
-    /// approximates that of the matrix. Returns a bound of |I − C J| over these radii.
+    /// approximates that of the matrix.
     pub(super) fn prove(
         &self,
         space: &ModelSpace,
         memory: &mut ModelMemory,
         inverse: &Models,
-    ) -> Result<Bounds, EnclosureError> {
+    ) -> Result<(), EnclosureError> {
         self.set_radii(space, memory, None);
         let sizes = inverse.bounds(space);
         let missed = sizes.times(self.residual(space, memory).bounds(space).entries());
-        let mut proven = Bounds::default();
         let spread = krawczyk::enclose(missed.clone(), |y| {
             self.set_radii(space, memory, Some(y));
             let contraction = inverse.times(space, &self.matrix(space, memory)).off_identity(space).bounds(space);
-            proven = contraction.clone();
             Image { missed: missed.clone(), contraction }
         })?;
         self.set_radii(space, memory, Some(&spread));
-        Ok(proven)
+        Ok(())
     }
 
     fn set_radii(&self, space: &ModelSpace, memory: &mut ModelMemory, radii: Option<&[f64]>) {

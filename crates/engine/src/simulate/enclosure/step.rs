@@ -4,8 +4,9 @@ use symdiff::taylor_model::up;
 use symdiff::{Interval, ModelMemory};
 
 use super::krawczyk::{self, Image};
-use super::matrix::{Bounds, Models, larger};
+use super::matrix::{Bounds, Models};
 use super::{Enclosure, EnclosureError, Gains, NextGains};
+use crate::numerics::larger;
 
 /// Most corrections of X; the residual that is left is bounded in any case.
 const MAX_CORRECTIONS: usize = 4;

@@ -3,7 +3,7 @@
 use super::motion::{Equations, Manufactured};
 use crate::assemble::System;
 use crate::compile::{OF_EFFECT, OF_WHOLE, compile_equations, observing_powers};
-use crate::numerics::ChebyshevSeries;
+use crate::numerics::{ChebyshevSeries, larger};
 use crate::results::{EffectBalance, PowerBalance};
 
 /// Instants at which powers are taken.
@@ -37,9 +37,4 @@ pub fn balance(
     found.size = size;
     found.defect = if defect == 0.0 { 0.0 } else { defect / size };
     Some(found)
-}
-
-/// The larger of two; not a number, if one is not.
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b || a.is_nan() { a } else { b }
 }

@@ -3,7 +3,7 @@
 use symdiff::{Expr, Graph};
 
 use super::motion::Manufactured;
-use crate::assemble::{OutputInfo, Start, System};
+use crate::assemble::{Start, System};
 use crate::numerics::ChebyshevSeries;
 
 /// The system with loads beside its forces and slips in its velocity constraints; its outputs are its coordinates,
@@ -44,15 +44,7 @@ pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> 
 
 /// The system with its coordinates, velocities, accelerations and multipliers as outputs.
 pub fn observed(system: &System) -> System {
-    let symbols = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten();
-    let output = |(index, &expr): (usize, &Expr)| OutputInfo {
-        name: format!("value {index}"),
-        unit: String::new(),
-        dimension: None,
-        expr,
-        of_results: None,
-    };
-    System { outputs: symbols.enumerate().map(output).collect(), ..system.clone() }
+    system.observing([&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied())
 }
 
 /// τ = 2 t/T − 1

@@ -2,7 +2,7 @@
 
 use super::motion::Manufactured;
 use crate::assemble::System;
-use crate::numerics::{ChebyshevSeries, Sample};
+use crate::numerics::{ChebyshevSeries, Sample, larger};
 use crate::results::{Convergence, Quantity};
 use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulator, Steps, integrator};
 
@@ -34,8 +34,7 @@ fn error(group: &Group, rows: &[Vec<f64>], schedule: &Schedule) -> f64 {
     for (row, values) in rows.iter().enumerate().skip(1) {
         let time = schedule.time(row);
         for ((exact, &of), scale) in group.exact.iter().zip(&group.of).zip(&group.scales) {
-            let own = (values[group.first + of] - exact.at(time)).abs() / scale;
-            most = if own > most || own.is_nan() { own } else { most };
+            most = larger(most, (values[group.first + of] - exact.at(time)).abs() / scale);
         }
     }
     most

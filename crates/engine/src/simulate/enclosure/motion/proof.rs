@@ -10,6 +10,7 @@ use super::approximation::Approximation;
 use super::majorant::{bound, resolvent};
 use super::spaces::{Cell, Space, matrix_at, truncate};
 use crate::compile::EquationsProgram;
+use crate::numerics::larger;
 
 /// Most tubes that are tried.
 const TUBES: usize = 4;
@@ -138,7 +139,7 @@ impl Claim<'_> {
         // The accelerations of the approximation are to be in the box, too.
         for (register, tail) in layout.w.clone().chain(layout.lambda.clone()).zip(tails) {
             let radius = &mut memory.model_mut(register)[last];
-            *radius = radius.max(tail);
+            *radius = larger(*radius, tail);
         }
         let matrix = equations.matrix(space, memory);
         let contraction = self.inverse.times(space, &matrix).off_identity(space).bounds(space);
