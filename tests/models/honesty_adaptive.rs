@@ -238,3 +238,44 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 4 } }
         }
     }
 }
+
+/// A light mass on a stiff spring, at rest by the nominal start and shaken at the box's ends, is too fast for the steps.
+/// Outputs that hardly feel it are resolved all the same.
+#[test]
+fn a_fast_mode_spoils_no_other_output() {
+    let bounds = run(&read(
+        "
+parameters: { k: { value: 100 N/m, tolerance: 10 % }, off: { value: 0 mm, tolerance: 0.1 mm } }
+bodies: { one: { mass: 1 kg, coordinates: [x] }, two: { mass: 0.001 kg, coordinates: [x] } }
+effects:
+  slow: { spring_damper: { between: [ground, one], along: x, stiffness: k } }
+  fast: { spring_damper: { between: [one, two], along: x, stiffness: 4000 N/m } }
+initial: { one.x: 0.1, one.vx: 0, two.x: 0.1 + off, two.vx: 0 }
+outputs: { x: one.x, stretch: two.x - one.x }
+simulation: { duration: 2, output_step: 0.25 }
+bounds: { tolerance: 1e-3 }
+",
+    ));
+    let stretch = band(output(&bounds, "stretch"), Method::Chebyshev);
+    assert!(stretch.error.unresolved.iter().skip(1).all(|&unresolved| unresolved));
+    // Both masses by their modes: ω² of [k + s, −s; −s/m, s/m].
+    let x = |k: f64, off: f64, t: f64| {
+        let (s, m) = (4000.0, 0.001);
+        let (half, product) = ((k + s + s / m) / 2.0, k * s / m);
+        let fast = half + (half * half - product).sqrt();
+        let squares = [product / fast, fast];
+        // Shapes (1, 1 − …) are (s/m − ω²)/(s/m) of `one` for 1 of `two`; the start is a sum of both.
+        let shapes = squares.map(|square| 1.0 - square * m / s);
+        let second = (0.1 - shapes[0] * (0.1 + off)) / (shapes[1] - shapes[0]);
+        let amplitudes = [0.1 + off - second, second];
+        (0..2).map(|mode| amplitudes[mode] * shapes[mode] * (squares[mode].sqrt() * t).cos()).sum::<f64>()
+    };
+    let range = |t: f64| {
+        let values = (0..=2000).flat_map(|i| [-1e-4, 1e-4].map(|off| x(90.0 + 0.01 * f64::from(i), off, t)));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+    };
+    let counted = assert_honest(&bounds, "x", Method::Chebyshev, range);
+    assert_eq!(counted, 9);
+    let error = band(output(&bounds, "x"), Method::Chebyshev).error.largest();
+    assert!(error < 1e-3 * 0.2, "{error:e}");
+}

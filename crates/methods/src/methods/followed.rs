@@ -1,7 +1,7 @@
 //! Ends of outputs that were followed along gradients of the simulations themselves: bounds of many parameters, for
 //! which a polynomial over the whole box would take too many samples.
 
-use crate::numerics::{Range, SAFETY_OF_SURROGATE};
+use crate::numerics::Range;
 
 /// How an output's spread in one row comes about.
 #[derive(Clone, Debug)]
@@ -39,11 +39,9 @@ impl FollowedEnds {
         Self { outputs, ends }
     }
 
-    /// Whether the errors of the first `rows` rows, with their safety, are at most those `allowed` of each output. NaN
-    /// is not.
-    pub(super) fn meet(&self, allowed: &[f64], rows: usize) -> bool {
-        let ends = self.ends.iter().zip(allowed.iter().cycle());
-        ends.take(rows * self.outputs).all(|(found, allowed)| SAFETY_OF_SURROGATE * found.error <= *allowed)
+    /// Of each row the ends of all outputs.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &[Followed]> {
+        self.ends.chunks_exact(self.outputs.max(1))
     }
 
     /// By row and output.

@@ -20,14 +20,15 @@ mod total_degree;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
+use super::followed::Followed;
 use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, Sample, Surrogate, largest};
-use adaptive::Goal;
+use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use adaptive::{Goal, OutputGoal};
 pub use combined::ends_of_combinations;
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, Row};
@@ -315,23 +316,25 @@ fn adapted(
 ) -> Result<MethodResult, EnsembleError> {
     let tolerance = request.tolerance.unwrap_or(BoundsRequest::TOLERANCE);
     let spent = validation.simulations;
-    let mut goal = Goal { allowed: Vec::new(), rows: ensemble.rows(), budget: request.budget, spent };
-    for output in 0..ensemble.outputs() {
+    let of_output = |output: usize| {
         let (span, time) = (validation.spans[output], validation.time_error(output, ensemble.rows()));
         let allowed = tolerance * span;
         // Where the steps miss the tolerance nothing is to be gained.
         let missed = |time: &f64| time.is_nan() || *time > allowed;
-        let resolved = time.iter().position(missed).unwrap_or(ensemble.rows());
-        goal.rows = goal.rows.min(if span > 0.0 { resolved } else { goal.rows });
-        let time = largest(time[..resolved].iter().copied());
-        goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
-    }
+        let rows = if span > 0.0 { time.iter().position(missed).unwrap_or(ensemble.rows()) } else { 0 };
+        let time = largest(time[..rows].iter().copied());
+        OutputGoal { allowed: (allowed - time).max(LEAST_SHARE * allowed), rows }
+    };
+    let goal = Goal { outputs: (0..ensemble.outputs()).map(of_output).collect(), budget: request.budget, spent };
     if let Some(found) = segments::adapted(ensemble, &goal, validation)? {
         return Ok(found);
     }
+    let is_within = |(row, ends): (usize, &[Followed])| {
+        goal.share(row, ends.iter().map(|found| SAFETY_OF_SURROGATE * found.error)) <= 1.0
+    };
     // A surrogate that is to be kept is one of the whole box.
     if let Some(followed) = ensemble.followed().filter(|_| !request.keep)
-        && (ensemble.domain().dimension() > MOST_ON_GRIDS || followed.meet(&goal.allowed, goal.rows))
+        && (ensemble.domain().dimension() > MOST_ON_GRIDS || followed.rows().enumerate().all(is_within))
     {
         return Ok(along_gradients::bounds(followed, ensemble.outputs(), ensemble.rows()));
     }

@@ -31,21 +31,19 @@ impl Adaptation<'_> {
         own: &[f64],
     ) -> Result<Vec<f64>, EnsembleError> {
         let own_stride = self.lines() * nodes.len();
-        let reached = self.goal.rows.min(sub_box.rows()).min(own.len() / own_stride.max(1));
+        let reached = self.goal.rows().min(sub_box.rows()).min(own.len() / own_stride.max(1));
         let step = self.every.max(reached.div_ceil(AT_NODES));
         let rows: Vec<usize> = (0..reached).rev().step_by(step).collect();
-        let allowed = &self.goal.allowed;
+        let goal = &self.goal;
         let look = |place: usize, composed: &Row, _: &mut Previous| {
             let own = &own[rows[place] * own_stride..];
             let (expected, found) = (composed.evaluate_motion(nodes, own), composed.predict(nodes));
-            let mut errors = vec![0.0_f64; nodes.len()];
-            for (line, &allowed) in allowed.iter().enumerate() {
-                for (node, error) in errors.iter_mut().enumerate() {
-                    let place = line * nodes.len() + node;
-                    *error = largest([*error, (expected[place] - found[place]) / allowed]);
-                }
-            }
-            errors
+            let of_node = |node: usize| {
+                let of_output = |(expected, found): (&[f64], &[f64])| expected[node] - found[node];
+                let outputs = expected.chunks_exact(nodes.len()).zip(found.chunks_exact(nodes.len()));
+                goal.share(rows[place], outputs.map(of_output))
+            };
+            (0..nodes.len()).map(of_node).collect::<Vec<f64>>()
         };
         let by_row = rows_of(&mut self.composer, self.ensemble, (sub_box, surrogate), &rows, (false, BLOCK), look)?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
@@ -53,7 +51,7 @@ impl Adaptation<'_> {
 
     /// The rows of a sub-box that are looked at, the last ones first.
     pub(super) fn looked_at(&self, sub_box: &SubBox) -> Vec<usize> {
-        (0..self.goal.rows.min(sub_box.rows())).rev().step_by(self.every).collect()
+        (0..self.goal.rows().min(sub_box.rows())).rev().step_by(self.every).collect()
     }
 
     /// Estimates a sub-box's error. A glance at some rows tells where it may be too large; those are looked at closely,
@@ -71,32 +69,29 @@ impl Adaptation<'_> {
         while !suspects.is_empty() && !is_missed(sub_box.error) {
             let (worst, others) = suspects.split_at(together.min(suspects.len()));
             let found = self.estimates(sub_box, worst, Detail::Errors)?.0;
-            sub_box.error = largest([sub_box.error, self.worst(&found)]);
+            sub_box.error = largest([sub_box.error, self.worst(worst, &found)]);
             (suspects, together) = (others, 2 * together);
         }
         Ok(())
     }
 
-    /// Largest error of some rows' estimates, as far as samples make it smaller, over the one that is allowed, with its
+    /// Largest error of estimates in some rows, as far as samples make it smaller, over the one that is allowed, with its
     /// safety.
-    fn worst(&self, found: &[Estimate]) -> f64 {
-        let allowed = self.goal.allowed.iter().cycle();
-        largest(
-            found
-                .iter()
-                .zip(allowed)
-                .map(|(found, allowed)| SAFETY_OF_SURROGATE * (found.error - found.of_search) / allowed),
-        )
+    fn worst(&self, rows: &[usize], found: &[Estimate]) -> f64 {
+        let of_row = |(&row, found): (&usize, &[Estimate])| {
+            self.goal.share(row, found.iter().map(|found| SAFETY_OF_SURROGATE * (found.error - found.of_search)))
+        };
+        largest(rows.iter().zip(found.chunks_exact(self.goal.outputs.len())).map(of_row))
     }
 
     /// For each of some rows the largest error at the samples with the least and the largest values, over the one that
     /// is allowed.
     fn glance(&mut self, sub_box: &SubBox, rows: &[usize]) -> Result<Vec<f64>, EnsembleError> {
         let surrogate = Surrogate::sparse(&sub_box.grid);
-        let allowed = &self.goal.allowed;
+        let goal = &self.goal;
         let look = |place: usize, row: &Row, _: &mut Previous| {
             let errors = row.errors_at_samples((&sub_box.points, &sub_box.direct), rows[place]);
-            largest(errors.iter().zip(allowed).map(|(error, allowed)| SAFETY_OF_SURROGATE * error / allowed))
+            goal.share(rows[place], errors.iter().map(|error| SAFETY_OF_SURROGATE * error))
         };
         rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, (false, BLOCK), look)
     }
@@ -136,8 +131,7 @@ impl Adaptation<'_> {
         if sub_box.estimates.is_none() {
             let rows: Vec<usize> = (0..sub_box.rows()).collect();
             let found = self.estimates(sub_box, &rows, detail)?;
-            let goal = self.goal.rows.min(rows.len()) * self.goal.allowed.len();
-            sub_box.error = self.worst(&found.0[..goal]);
+            sub_box.error = self.worst(&rows, &found.0);
             sub_box.estimates = Some(found);
         }
         Ok(())

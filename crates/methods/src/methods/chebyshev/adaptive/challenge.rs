@@ -55,11 +55,12 @@ impl Adaptation<'_> {
     fn ends(&mut self, sub_box: &SubBox) -> Result<Vec<Vec<f64>>, EnsembleError> {
         let rows = self.looked_at(sub_box);
         let surrogate = Surrogate::sparse(&sub_box.grid);
-        let (search, allowed) = (&self.search, &self.goal.allowed);
+        let (search, goal) = (&self.search, &self.goal);
         // Of each output how often its range is what is allowed, and where its ends are.
-        let look = |_: usize, row: &Row, previous: &mut Previous| {
-            let found = row.range(search, previous).extents.into_iter().zip(allowed);
-            found.map(|(found, allowed)| (found.range.width() / allowed, found.places)).collect::<Vec<_>>()
+        let look = |place: usize, row: &Row, previous: &mut Previous| {
+            let found = row.range(search, previous).extents.into_iter().zip(&goal.outputs);
+            let counting = found.filter(|(_, goal)| rows[place] < goal.rows);
+            counting.map(|(found, goal)| (found.range.width() / goal.allowed, found.places)).collect::<Vec<_>>()
         };
         // The rows are no neighbours.
         let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, 1), look)?;

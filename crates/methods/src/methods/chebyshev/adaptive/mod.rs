@@ -26,7 +26,7 @@ use crate::methods::kept::KeptSurrogate;
 use crate::methods::request::Budget;
 use crate::methods::result::Estimate;
 use crate::methods::validation::{Validation, ValidationTable};
-use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, union};
+use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest, union};
 
 /// Indices are added whose expected surplus is at least this share of the largest.
 const ADDED: f64 = 0.3;
@@ -47,13 +47,30 @@ const CHECKED: usize = 48;
 
 /// What a surrogate has to meet.
 pub(super) struct Goal {
-    /// Error allowed of each output.
-    pub allowed: Vec<f64>,
-    /// Rows that count: in the others the steps miss the tolerance.
-    pub rows: usize,
+    pub outputs: Vec<OutputGoal>,
     pub budget: Budget,
     /// Simulations before the first of these.
     pub spent: usize,
+}
+
+/// What the surrogate of an output has to meet.
+pub(super) struct OutputGoal {
+    pub allowed: f64,
+    /// Rows that count: from the next one on the steps miss the tolerance.
+    pub rows: usize,
+}
+
+impl Goal {
+    /// Rows that count for one output at least.
+    pub fn rows(&self) -> usize {
+        self.outputs.iter().map(|output| output.rows).max().unwrap_or(0)
+    }
+
+    /// Largest error of the outputs for which a row counts, over the one that is allowed; NaN where one is.
+    pub fn share(&self, row: usize, errors: impl IntoIterator<Item = f64>) -> f64 {
+        let counting = self.outputs.iter().zip(errors).filter(|(output, _)| row < output.rows);
+        largest(counting.map(|(output, error)| error / output.allowed))
+    }
 }
 
 /// What an adaptive search finds.
@@ -114,7 +131,7 @@ pub(super) fn search(
 impl<'r> Adaptation<'r> {
     /// Before the first simulation.
     pub fn new(ensemble: &'r dyn Ensemble, goal: Goal, validation: &'r Validation, keep: bool) -> Self {
-        let every = goal.rows.div_ceil(CHECKED).max(1);
+        let every = goal.rows().div_ceil(CHECKED).max(1);
         Self {
             ensemble,
             goal,
@@ -207,12 +224,13 @@ impl<'r> Adaptation<'r> {
             let known = sub_box.estimates.as_ref().and_then(|(known, _)| known.get(place));
             known.map_or(Range::UNKNOWN, |known| known.range)
         };
-        (0..self.goal.rows * outputs).any(|place| {
+        let beyond = |place: usize| {
             let ranges = boxes.iter().map(|sub_box| (of(sub_box, place), 0.0));
             let (range, _) = ranges.fold((EMPTY, 0.0), union);
-            let beyond = range.misses(self.ensemble.seen(place / outputs, place % outputs));
-            SAFETY_OF_SURROGATE * beyond > self.goal.allowed[place % outputs]
-        })
+            SAFETY_OF_SURROGATE * range.misses(self.ensemble.seen(place / outputs, place % outputs))
+        };
+        (0..self.goal.rows())
+            .any(|row| self.goal.share(row, (0..outputs).map(|output| beyond(row * outputs + output))) > 1.0)
     }
 
     fn is_spent(&self) -> bool {

@@ -27,7 +27,7 @@ mod surrogate;
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
-use super::adaptive::Goal;
+use super::adaptive::{Goal, OutputGoal};
 use super::composition::can_compose;
 use super::sensitivity::SensitivityAnalysis;
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError, Simulated};
@@ -136,10 +136,10 @@ fn grown(ensemble: &dyn Ensemble, goal: &Goal, validation: &Validation) -> Resul
 
 /// Largest error of a surrogate over the one that is allowed; NaN where one is unknown.
 fn excess(result: &MethodResult, goal: &Goal) -> f64 {
-    let of_output = |(errors, allowed): (&Vec<f64>, &f64)| {
-        largest(errors.iter().take(goal.rows).map(|error| SAFETY_OF_SURROGATE * error)) / allowed
+    let of_output = |(errors, goal): (&Vec<f64>, &OutputGoal)| {
+        largest(errors.iter().take(goal.rows).map(|error| SAFETY_OF_SURROGATE * error)) / goal.allowed
     };
-    largest(result.surrogate.iter().zip(&goal.allowed).map(of_output))
+    largest(result.surrogate.iter().zip(&goal.outputs).map(of_output))
 }
 
 /// By jets in segments between events, where the ensemble's motions are cut there.
