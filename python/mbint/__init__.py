@@ -16,6 +16,7 @@ from .questions import Allocation, allocate, check, cost, snapshot, sweep
 from .result import Result
 from .samples import sample
 from .study import Study, run
+from .verifying import Verification, verify
 
 __all__ = [
     "Allocation",
@@ -24,6 +25,7 @@ __all__ = [
     "MbintError",
     "Result",
     "Study",
+    "Verification",
     "allocate",
     "bounds",
     "check",
@@ -36,5 +38,6 @@ __all__ = [
     "sample",
     "snapshot",
     "sweep",
+    "verify",
     "version",
 ]

@@ -123,3 +123,27 @@ def test_costs_are_measured() -> None:
     }
     table = mbint.cost(oscillator, budget=5)
     assert {"method", "seconds", "error"} <= set(table)
+
+
+def test_a_pendulum_is_verified() -> None:
+    pendulum = {
+        "model": "pendulum",
+        "bodies": {"bob": {"mass": "2 kg", "coordinates": ["x", "y"]}},
+        "joints": {"rod": {"distance": {"between": ["ground", "bob"], "length": "1 m"}}},
+        "effects": {"weight": {"gravity": {"acceleration": [0, -9.81]}}},
+        "initial": {"bob.y": 0, "bob.vy": 0},
+        "guess": {"bob.x": -1},
+        "outputs": {"x": "bob.x"},
+        "simulation": {"duration": 1, "step": 0.01},
+    }
+    found = mbint.verify(pendulum)
+    assert found.verified
+    assert not found.failures
+    schemes = found.orders[found.orders["quantity"] == "positions"].set_index("scheme")["order"]
+    assert schemes["HHT-I3"] == pytest.approx(2, rel=0.05)
+    assert list(found.powers["effect"]) == ["weight"]
+    # Gravity keeps energy: its power is that of its potential.
+    assert found.powers["put_in"].max() == pytest.approx(0, abs=1e-9)
+    # A force that jumps has no orders.
+    struck = pendulum | {"effects": {"jump": {"force": {"on": "bob", "value": ["1 N*sign(bob.vx/(1 m/s))", 0]}}}}
+    assert not mbint.verify(struck).verified

@@ -24,10 +24,9 @@ impl Junit {
 
     /// Takes in a model's requirements, or why there are no verdicts.
     pub fn add(&self, model: &str, outcome: Result<&Summary, &str>) {
-        let suite = Suite {
-            model: model.to_owned(),
-            requirements: outcome.map_or_else(|_| Vec::new(), |summary| summary.requirements.clone()),
-            failure: outcome.err().map(str::to_owned),
+        let suite = match outcome {
+            Ok(summary) => Suite::of_requirements(model, &summary.requirements),
+            Err(why) => Suite::failed(model, why),
         };
         self.suites.lock().unwrap_or_else(PoisonError::into_inner).push(suite);
     }

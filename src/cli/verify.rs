@@ -6,9 +6,8 @@ use super::question::{answer, ask};
 use super::table::{Align, Table};
 use super::verdicts::short;
 use super::{Failure, Status, load};
-use crate::results::{
-    Convergence, EffectBalance, Exchange, FormulationVerification, PowerBalance, Quantity, Verification,
-};
+use crate::export::{Suite, write_junit};
+use crate::results::{Convergence, EffectBalance, Exchange, FormulationVerification, PowerBalance, Verification};
 use crate::study::{self, RunError, VerifyError};
 
 /// Orders that exceed that of theory by more than this factor tell only that they do.
@@ -31,6 +30,10 @@ pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status,
         })?,
     };
     answer(&found, args.format, args.run.quiet, console, || overview(&found))?;
+    if let Some(path) = &args.junit {
+        let written = write_junit(path, &[Suite::of_verification(&found)]);
+        written.map_err(|error| Failure::Failed(error.to_string()))?;
+    }
     Ok(if found.is_verified() { Status::Done } else { Status::NotMet })
 }
 
@@ -118,13 +121,6 @@ fn of_effect(own: &EffectBalance) -> [String; 6] {
 }
 
 fn row(scheme: String, own: &Convergence) -> [String; 7] {
-    let quantity = match own.quantity {
-        Quantity::Positions => "positions",
-        Quantity::Velocities => "velocities",
-        Quantity::Accelerations => "accelerations",
-        Quantity::States => "states",
-        Quantity::Reactions => "reactions",
-    };
     let (step, error) = own.errors.last().copied().unwrap_or((f64::NAN, f64::NAN));
     let order = match own.order {
         None => "exact".to_owned(),
@@ -133,5 +129,5 @@ fn row(scheme: String, own: &Convergence) -> [String; 7] {
         Some(order) => format!("{order:.2}"),
     };
     let verdict = if own.is_verified { String::new() } else { "not as in theory".to_owned() };
-    [scheme, quantity.to_owned(), order, format!("{:.0}", own.theory), short(error), short(step), verdict]
+    [scheme, own.quantity.name().to_owned(), order, format!("{:.0}", own.theory), short(error), short(step), verdict]
 }

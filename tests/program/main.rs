@@ -46,3 +46,4 @@ mod structure;
 mod submit;
 mod tables;
 mod tolerance_forms;
+mod verify;

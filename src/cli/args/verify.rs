@@ -22,6 +22,10 @@ pub(in crate::cli) struct VerifyArgs {
     /// Text for people, or JSON with all errors.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+
+    /// Also write each order and balance into this file, as JUnit XML for CI.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
 }
 
 const VERIFY_HELP: &str = "\

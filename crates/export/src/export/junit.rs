@@ -1,4 +1,4 @@
-//! Verdicts as JUnit XML, which CI systems show as tests.
+//! Verdicts as JUnit XML, which CI systems show as tests: of requirements, and of a verification.
 
 use std::io::Write;
 use std::path::Path;
@@ -8,19 +8,112 @@ use quick_xml::events::BytesText;
 
 use super::error::ExportError;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{RequirementSummary, Verdict};
+use crate::results::{FormulationVerification, RequirementSummary, Verdict, Verification};
 
-/// A model's requirements.
+/// The tests of a model.
 pub struct Suite {
     /// Name of the model, and of the scene after a slash.
-    pub model: String,
-    /// With their verdicts.
-    pub requirements: Vec<RequirementSummary>,
-    /// Why there are none, where the run failed.
-    pub failure: Option<String>,
+    model: String,
+    cases: Vec<Case>,
 }
 
-/// Writes all of them: a violated requirement is a failure, an undecided one and a failed run are errors.
+/// A test.
+struct Case {
+    name: String,
+    /// `None` where it passed.
+    fault: Option<Fault>,
+}
+
+/// How a test did not pass.
+struct Fault {
+    /// `failure`, or `error` where nothing is decided.
+    element: &'static str,
+    message: String,
+    text: String,
+}
+
+impl Suite {
+    /// Of a model's requirements: a violated one is a failure, an undecided one an error.
+    pub fn of_requirements(model: &str, requirements: &[RequirementSummary]) -> Self {
+        Self { model: model.to_owned(), cases: requirements.iter().map(of_requirement).collect() }
+    }
+
+    /// Of a run that failed.
+    pub fn failed(model: &str, why: &str) -> Self {
+        let fault = Fault { element: "error", message: "the run failed".to_owned(), text: why.to_owned() };
+        Self { model: model.to_owned(), cases: vec![Case { name: "run".to_owned(), fault: Some(fault) }] }
+    }
+
+    /// Of a verification: a test for each quantity, scheme and formulation, and one for each balance of power.
+    pub fn of_verification(found: &Verification) -> Self {
+        Self { model: found.model.clone(), cases: found.formulations.iter().flat_map(of_formulation).collect() }
+    }
+
+    fn count(&self, element: &str) -> String {
+        self.cases
+            .iter()
+            .filter_map(|case| case.fault.as_ref())
+            .filter(|own| own.element == element)
+            .count()
+            .to_string()
+    }
+}
+
+fn of_requirement(own: &RequirementSummary) -> Case {
+    let unit = ShownUnit::of(&own.display, &own.unit);
+    let [margin, error] = [own.margin, own.error].map(|value| unit.of_si(value));
+    let text = format!("{}\nmargin: {margin:e} {}, error: {error:e}", own.text, unit.text);
+    let fault = |element, message: &str, last: &str| {
+        Some(Fault { element, message: message.to_owned(), text: format!("{text}\n{last}") })
+    };
+    let fault = match own.verdict {
+        Verdict::Holds => None,
+        Verdict::Violated => {
+            fault("failure", "violated", own.nearest.as_ref().map_or("", |nearest| nearest.command.as_str()))
+        }
+        Verdict::Undecided => {
+            fault("error", "undecided", &format!("it takes {}", own.decides.as_deref().unwrap_or_default()))
+        }
+    };
+    Case { name: own.name.clone(), fault }
+}
+
+fn of_formulation(own: &FormulationVerification) -> Vec<Case> {
+    let formulation = &own.formulation;
+    let error = |why: &String| Fault { element: "error", message: "not verified".to_owned(), text: why.clone() };
+    if let Some(why) = &own.failure {
+        return vec![Case { name: formulation.clone(), fault: Some(error(why)) }];
+    }
+    let mut cases = Vec::new();
+    for scheme in &own.schemes {
+        let name = format!("{formulation}, {}", scheme.scheme);
+        if let Some(why) = &scheme.failure {
+            cases.push(Case { name, fault: Some(error(why)) });
+            continue;
+        }
+        cases.extend(scheme.convergence.iter().map(|found| {
+            let fault = (!found.is_verified).then(|| Fault {
+                element: "failure",
+                message: "not as in theory".to_owned(),
+                text: found.errors.iter().fold(format!("order {} of theory", found.theory), |text, (step, error)| {
+                    format!("{text}\nstep {step:e} s, error {error:e}")
+                }),
+            });
+            Case { name: format!("{name}: {}", found.quantity.name()), fault }
+        }));
+    }
+    cases.extend(own.balance.as_ref().map(|balance| {
+        let fault = (!balance.is_verified()).then(|| Fault {
+            element: "failure",
+            message: "not balanced".to_owned(),
+            text: format!("powers are off by {:e} of {:e} W", balance.defect, balance.size),
+        });
+        Case { name: format!("{formulation}: power"), fault }
+    }));
+    cases
+}
+
+/// Writes all of them.
 ///
 /// # Errors
 /// Where the file cannot be written.
@@ -42,54 +135,32 @@ fn junit(suites: &[Suite]) -> std::io::Result<Vec<u8>> {
 }
 
 fn write_suite(writer: &mut Writer<Vec<u8>>, suite: &Suite) -> std::io::Result<()> {
-    let count = |verdict: Verdict| suite.requirements.iter().filter(|own| own.verdict == verdict).count();
-    let failed = usize::from(suite.failure.is_some());
-    let tests = (suite.requirements.len() + failed).to_string();
-    let failures = count(Verdict::Violated).to_string();
-    let errors = (count(Verdict::Undecided) + failed).to_string();
+    let [failures, errors] = ["failure", "error"].map(|element| suite.count(element));
+    let tests = suite.cases.len().to_string();
     let attributes = [
         ("name", suite.model.as_str()),
         ("tests", tests.as_str()),
         ("failures", failures.as_str()),
         ("errors", errors.as_str()),
     ];
-    writer.create_element("testsuite").with_attributes(attributes).write_inner_content(|writer| {
-        if let Some(failure) = &suite.failure {
-            case(writer, (&suite.model, "run"), Some(("error", "the run failed", failure)))?;
-        }
-        for own in &suite.requirements {
-            let unit = ShownUnit::of(&own.display, &own.unit);
-            let [margin, error] = [own.margin, own.error].map(|value| unit.of_si(value));
-            let text = format!("{}\nmargin: {margin:e} {}, error: {error:e}", own.text, unit.text);
-            let command = own.nearest.as_ref().map_or("", |nearest| nearest.command.as_str());
-            let with_command = format!("{text}\n{command}");
-            let decides = format!("{text}\nit takes {}", own.decides.as_deref().unwrap_or_default());
-            let outcome = match own.verdict {
-                Verdict::Holds => None,
-                Verdict::Violated => Some(("failure", "violated", with_command.as_str())),
-                Verdict::Undecided => Some(("error", "undecided", decides.as_str())),
-            };
-            case(writer, (&suite.model, &own.name), outcome)?;
-        }
-        Ok(())
-    })?;
+    writer
+        .create_element("testsuite")
+        .with_attributes(attributes)
+        .write_inner_content(|writer| suite.cases.iter().try_for_each(|own| write_case(writer, &suite.model, own)))?;
     Ok(())
 }
 
-/// A test, with what went wrong: the element's name, its message and its text.
-fn case(
-    writer: &mut Writer<Vec<u8>>,
-    (class, name): (&str, &str),
-    outcome: Option<(&str, &str, &str)>,
-) -> std::io::Result<()> {
-    let element = writer.create_element("testcase").with_attributes([("classname", class), ("name", name)]);
-    match outcome {
+/// A test, with what went wrong.
+fn write_case(writer: &mut Writer<Vec<u8>>, class: &str, own: &Case) -> std::io::Result<()> {
+    let element =
+        writer.create_element("testcase").with_attributes([("classname", class), ("name", own.name.as_str())]);
+    match &own.fault {
         None => element.write_empty()?,
-        Some((kind, message, text)) => element.write_inner_content(|writer| {
+        Some(fault) => element.write_inner_content(|writer| {
             writer
-                .create_element(kind)
-                .with_attribute(("message", message))
-                .write_text_content(BytesText::new(text))?;
+                .create_element(fault.element)
+                .with_attribute(("message", fault.message.as_str()))
+                .write_text_content(BytesText::new(&fault.text))?;
             Ok(())
         })?,
     };
@@ -120,8 +191,8 @@ mod tests {
             limits: vec![],
         };
         let requirements = vec![own("a", "x >= 1 m", Verdict::Holds), own("b", "x < 1 m", Verdict::Undecided)];
-        let suite = Suite { model: "crank".to_owned(), requirements, failure: None };
-        let failed = Suite { model: "rod".to_owned(), requirements: vec![], failure: Some("a & b".to_owned()) };
+        let suite = Suite::of_requirements("crank", &requirements);
+        let failed = Suite::failed("rod", "a & b");
         let text = String::from_utf8(junit(&[suite, failed]).unwrap()).unwrap();
         let document = roxmltree::Document::parse(&text).unwrap();
         let of = |name: &'static str| document.descendants().filter(move |node| node.has_tag_name(name));

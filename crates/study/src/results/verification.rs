@@ -22,6 +22,19 @@ pub enum Quantity {
     Reactions,
 }
 
+impl Quantity {
+    /// Its name, in the plural.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Positions => "positions",
+            Self::Velocities => "velocities",
+            Self::Accelerations => "accelerations",
+            Self::States => "states",
+            Self::Reactions => "reactions",
+        }
+    }
+}
+
 /// Errors of a quantity against an exact motion, with shorter and shorter steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Convergence {
