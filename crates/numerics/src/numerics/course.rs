@@ -144,7 +144,16 @@ impl Phase<'_> {
     pub fn at(&self, time: f64) -> (f64, f64) {
         let Course { sign, times, pieces, .. } = self.course;
         let within = time.clamp(times[self.begin], times[self.end]);
-        let row = times[self.begin + 1..self.end].partition_point(|&row| row <= within) + self.begin;
+        // Rows are about equally far apart: the last one before a time is within a step or two of where it then is.
+        let share = (within - times[self.begin]) / (times[self.end] - times[self.begin]);
+        let last = self.end - 1;
+        let mut row = (self.begin + (share * (self.end - self.begin) as f64) as usize).min(last);
+        while row < last && times[row + 1] <= within {
+            row += 1;
+        }
+        while row > self.begin && times[row] > within {
+            row -= 1;
+        }
         let (value, rate) = pieces[row].at(within);
         (sign * (value + rate * (time - within)), sign * rate)
     }
