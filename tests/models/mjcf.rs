@@ -10,12 +10,16 @@ use mbint::inner::model::{self, Description, Reading};
 use crate::common::{Findings, curve, distance, largest, load, nominal, row, rows};
 
 /// Files of the tests with commands to their actuators.
-const ROBOTS: [(&str, &str); 14] = [
+const ROBOTS: [(&str, &str); 15] = [
     ("actuators", "controls: { hold: 0.5*sin(3*t), turn: 0.8, push: 0.15*cos(5*t), spring: 0.3 }"),
     ("attached", "controls: { push: 2*sin(3*t), kick: cos(2*t), right_lift: 0.5*sin(2*t), left_lift: -0.1 }"),
     ("ball_and_free", ""),
     ("cart_pole", ""),
     ("coupled", "controls: { drive: 1.5*sin(4*t) }"),
+    (
+        "damping_ratios",
+        "controls: { hold_a: 0.4*sin(3*t), hold_b: 0.5, hold_c: 0.1*cos(4*t), pushed_c: 0.2, hold_both: 0.3*t, hold_arm: 0.2*sin(5*t) }",
+    ),
     ("double_pendulum", ""),
     ("floating_base", "controls: { hold_left: 0.4*sin(3*t), kick: -2*cos(6*t), push_right: 0.5*sin(5*t) }"),
     ("frames", ""),
@@ -187,4 +191,15 @@ fn a_crane_moves_as_mujoco_says() {
             assert!((found - value).abs() < 1e-5, "{name} at {time}: {found}, not {value}");
         }
     }
+}
+
+/// MuJoCo takes one of both.
+#[test]
+fn a_drive_has_one_damping() {
+    let drive = "<actuator><position joint='hinge' kp='3' kv='1' dampratio='1'/></actuator></mujoco>";
+    let files = Files::new(&PENDULUM.replace("</mujoco>", drive));
+    let reading = files.with("");
+    assert!(reading.description.is_none());
+    let message = reading.diagnostics.to_string();
+    assert!(message.contains("an actuator has `kv` or `dampratio`"), "{message}");
 }

@@ -33,6 +33,7 @@ impl Reader<'_, '_, '_> {
         let offset = on.terms.iter().map(|&(joint, by)| by * self.robot.joints[joint].reference).sum();
         let memory = self.memory(item, &get)?;
         let law = self.law(item, &get, &name)?;
+        let damping_ratio = self.damping_ratio(item, &get, &law);
         let gear = get(self.values, "gear");
         let first = gear.as_ref().and_then(|found| self.values.parsed(found, 6)).map_or(1.0, |gear| gear[0]);
         let gear = self.values.number(item, gear.as_ref(), format!("actuator.{name}.gear"), first, "");
@@ -47,6 +48,7 @@ impl Reader<'_, '_, '_> {
             offset,
             gear,
             law,
+            damping_ratio,
             memory,
             control,
             force,
@@ -85,6 +87,33 @@ impl Reader<'_, '_, '_> {
                 Law::Affine { gain, bias: [at(0), at(1), at(2)] }
             }
         })
+    }
+
+    /// The damping ratio of a law that holds a position: `dampratio`, or the third bias of a general law where it is
+    /// positive.
+    fn damping_ratio(
+        &mut self,
+        item: &Item,
+        get: &dyn Fn(&Values, &str) -> Option<Attribute>,
+        law: &Law,
+    ) -> Option<f64> {
+        match law {
+            Law::Position { kv, .. } => {
+                let found = get(self.values, "dampratio")?;
+                let [ratio] = self.values.exact::<1>(&found)?;
+                if ratio < 0.0 {
+                    self.values.error(found.span, "the damping ratio of this actuator is negative", None);
+                } else if ratio > 0.0 && kv.value != 0.0 {
+                    let help = "both say how large the damping is: give one".to_owned();
+                    self.values.error(item.span.clone(), "an actuator has `kv` or `dampratio`", help);
+                }
+                Some(ratio).filter(|ratio| *ratio > 0.0)
+            }
+            Law::Affine { gain, bias: [_, by_length, by_rate] } => {
+                Some(*by_rate).filter(|by_rate| *by_rate > 0.0 && *gain == -by_length)
+            }
+            Law::Velocity { .. } | Law::Damper { .. } => None,
+        }
     }
 
     /// What keeps the actuator's activation from its command at once: nothing, an integrator or a lag.

@@ -259,13 +259,12 @@ pub const COUPLINGS: &[Rule] = &[
     },
     Rule {
         supported: "name class joint jointinparent tendon gear ctrlrange ctrllimited forcerange forcelimited kp kv \
-                    timeconst inheritrange",
+                    dampratio timeconst inheritrange",
         ignored: ACTUATOR_IGNORED,
         refused: &[
             ("site refsite cranksite slidersite cranklength", "", TRANSMISSION),
             ("delay nsample interp", "0", DELAY),
             ("armature damping", "0", "give them to the joint"),
-            ("dampratio", "0", "give `kv`"),
         ],
         ..rule("position", "actuator default")
     },

@@ -57,6 +57,7 @@ pub fn robot<'i>(root: &'i Item, values: &mut Values<'i, '_>) -> Option<Robot> {
     }
     springs::set(&mut robot, values.settings.flags);
     couplings::read(root, values, &mut robot, &names, None);
+    springs::damp_actuators(&mut robot);
     (values.diagnostics.errors() == before).then_some(robot)
 }
 

@@ -170,6 +170,8 @@ pub struct Actuator {
     pub offset: f64,
     pub gear: Number,
     pub law: Law,
+    /// Damping ratio from which the damping of the law follows.
+    pub damping_ratio: Option<f64>,
     pub memory: Option<Memory>,
     pub control: Option<[f64; 2]>,
     pub force: Option<[f64; 2]>,

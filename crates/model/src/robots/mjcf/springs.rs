@@ -5,12 +5,18 @@
 //! ```
 //!
 //! where M is the mass matrix of the joints in the file's configuration, with armatures: m is what a force in the joint
-//! feels while all others are free.
+//! feels while all others are free. And `dampratio`: the damping of an actuator that holds a position with the gain kₚ,
+//!
+//! ```text
+//! kᵥ = 2 ζ √(kₚ m),   1/m = g M⁻¹ gᵀ
+//! ```
+//!
+//! where g is the gradient of its length: m is what it feels while all else is free.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::flags::{Flags, on};
-use super::robot::{Joint, Kind, Robot};
+use super::robot::{Joint, Kind, Law, Robot};
 use crate::robots::algebra::{self, Pose, Value, Vector};
 
 /// A velocity of one joint, in the world.
@@ -37,6 +43,31 @@ pub fn set(robot: &mut Robot, flags: Flags) {
         let moved = 1.0 / inverse[(place, place)];
         joint.stiffness.value = on(flags.springs) * moved / (time * time * ratio * ratio);
         joint.damping.value = on(flags.dampers) * 2.0 * moved / time;
+    }
+}
+
+/// Sets the damping of all actuators that have a damping ratio.
+pub fn damp_actuators(robot: &mut Robot) {
+    if robot.actuators.iter().all(|actuator| actuator.damping_ratio.is_none()) {
+        return;
+    }
+    let poses = poses(robot);
+    let degrees = degrees(robot, &poses);
+    let Some(inverse) = mass_matrix(robot, &poses, &degrees).try_inverse() else { return };
+    for actuator in &mut robot.actuators {
+        let Some(ratio) = actuator.damping_ratio else { continue };
+        let mut gradient = DVector::zeros(degrees.len());
+        for &(joint, by) in &actuator.on.terms {
+            if let Some(place) = degrees.iter().position(|degree| degree.joint == joint) {
+                gradient[place] += actuator.gear.value * by;
+            }
+        }
+        let mass = 1.0 / gradient.dot(&(&inverse * &gradient));
+        match &mut actuator.law {
+            Law::Position { kp, kv } => kv.value = 2.0 * ratio * (kp.value * mass).sqrt(),
+            Law::Affine { gain, bias } => bias[2] = -2.0 * ratio * (*gain * mass).sqrt(),
+            Law::Velocity { .. } | Law::Damper { .. } => {}
+        }
     }
 }
 
@@ -78,7 +109,7 @@ fn degrees(robot: &Robot, poses: &[Pose]) -> Vec<Degree> {
 
 fn mass_matrix(robot: &Robot, poses: &[Pose], degrees: &[Degree]) -> DMatrix<f64> {
     let armatures = degrees.iter().map(|degree| robot.joints[degree.joint].armature.value);
-    let mut matrix = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(degrees.len(), armatures));
+    let mut matrix = DMatrix::from_diagonal(&DVector::from_iterator(degrees.len(), armatures));
     for (index, body) in robot.bodies.iter().enumerate() {
         let Some(mass) = &body.mass else { continue };
         let center = mass.center.each_ref().map(|number| Value::Number(number.value));
