@@ -7,6 +7,7 @@
 // Rooms of the crates below keep their names here.
 use mbint_language::{grammar, multibody, syntax};
 use mbint_model::{elements, model};
+use mbint_certificate::certificate;
 use mbint_numerics::numerics;
 
 pub mod assemble;

@@ -1,16 +1,29 @@
 //! Certified bounds: the box is cut into pieces until each one's enclosure reaches the end, or there are too many.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::BoundsRequest;
-use super::ensemble::{Ensemble, EnsembleError, Lost, Simulated};
+use super::ensemble::{EnclosureEnd, Ensemble, EnsembleError, Lost, Simulated};
 use super::proof::Proof;
 use super::registry::{About, BoundingMethod, Refusal, Registered};
 use super::request::Problem;
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
+use crate::certificate::{self, Piece};
 use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};
+
+/// What bands are wider than their proof, relative to their width, to the size of the output, and to the radius.
+struct Room {
+    width: f64,
+    size: f64,
+    radius: f64,
+}
+
+/// So that a second checker of a certificate, in other arithmetic, finds the same bands.
+const ROOM: Room = Room { width: 1e-6, size: 1e-12, radius: 1.0 };
 
 /// Certified bounds: proven for every parameter of the box.
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,6 +81,8 @@ struct Enclosed {
     /// The same since the row before; empty where that is not known.
     between: Vec<Range>,
     lost: Option<Lost>,
+    /// For the certificate.
+    proof: Option<Piece>,
 }
 
 /// Ranges that hold for every parameter of the box, rounding errors included.
@@ -109,11 +124,11 @@ fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, piece: Par
     let monomials = space.jets().monomials();
     let mut range = TaylorRange::new(monomials.variables(), monomials.order(), RangeKind::Tight);
     let mut between = Vec::new();
-    let lost = ensemble.enclose(proof, space, &piece, &mut |models, since| {
+    let EnclosureEnd { lost, piece: proof } = ensemble.enclose(proof, space, &piece, &mut |models, since| {
         ranges.extend(models.chunks_exact(space.size()).map(|model| range_of(&mut range, model)));
         between.extend(since.iter().map(|since| known(Range { lower: since.lower(), upper: since.upper() })));
     });
-    Enclosed { piece, ranges, between, lost }
+    Enclosed { piece, ranges, between, lost, proof }
 }
 
 /// The hull of all pieces, unknown from where the first is lost.
@@ -147,7 +162,31 @@ fn hull_of_pieces(ensemble: &dyn Ensemble, proof: Proof, pieces: Vec<Enclosed>, 
         let known = |range: &Range| if range.lower.is_nan() { f64::NAN } else { 0.0 };
         result.steps = result.bands.iter().map(|ranges| ranges.iter().map(known).collect()).collect();
     }
-    MethodResult { note, between, ..result }
+    let order = proof.orders()[ensemble.domain().dimension()];
+    let certified = certified(ensemble, order, &result.bands, pieces).map(Arc::new);
+    MethodResult { note, between, certified, ..result }
+}
+
+/// The certificate of the bands, where every piece has a proof.
+fn certified(
+    ensemble: &dyn Ensemble,
+    order: usize,
+    bands: &[Vec<Range>],
+    pieces: Vec<Enclosed>,
+) -> Option<certificate::Certified> {
+    let pieces = pieces.into_iter().map(|piece| piece.proof).collect::<Option<Vec<Piece>>>()?;
+    if pieces.is_empty() {
+        return None;
+    }
+    let ends = |range: &Range| (!range.lower.is_nan()).then_some([range.lower, range.upper]);
+    let rows = 0..ensemble.rows();
+    Some(certificate::Certified {
+        order,
+        times: rows.clone().map(|row| ensemble.time(row)).collect(),
+        bounds: rows.map(|row| bands.iter().map(|own| ends(&own[row])).collect()).collect(),
+        pieces,
+        ..ensemble.certified()?
+    })
 }
 
 impl Enclosed {
@@ -176,7 +215,10 @@ fn range_of(range: &mut TaylorRange, model: &[f64]) -> Range {
     // coefficient.
     let size: f64 = coefficients.iter().map(|c| c.abs()).sum();
     let varies = coefficients[1..].iter().any(|&c| c != 0.0);
-    let margin = up(if varies { 100.0 * f64::EPSILON * size } else { 0.0 } + radius[0]);
+    let rounding = if varies { 100.0 * f64::EPSILON * size } else { 0.0 };
+    // Another checker's last digits differ.
+    let room = ROOM.width * (found.upper - found.lower) + ROOM.size * size + ROOM.radius * radius[0];
+    let margin = up(rounding + radius[0] + room);
     let wide = Range { lower: (found.lower - margin).next_down(), upper: (found.upper + margin).next_up() };
     known(wide)
 }

@@ -11,6 +11,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::followed::FollowedEnds;
 use super::proof::{EnclosedRow, Proof};
+use crate::certificate::{Certified, Piece};
 use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
@@ -189,6 +190,21 @@ pub struct Lost {
     pub is_too_wide: bool,
 }
 
+/// How the enclosure of a piece of the box ended.
+#[derive(Clone, Debug, Default)]
+pub struct EnclosureEnd {
+    /// Why before the last row; at an interruption it just ends.
+    pub lost: Option<Lost>,
+    /// What was proven, for a certificate, where there is one.
+    pub piece: Option<Piece>,
+}
+
+impl From<Lost> for EnclosureEnd {
+    fn from(lost: Lost) -> Self {
+        Self { lost: Some(lost), piece: None }
+    }
+}
+
 /// Times, and motions at them.
 pub type DenseMotions = (Vec<f64>, Vec<f64>);
 
@@ -321,9 +337,13 @@ pub trait Ensemble: Sync {
     /// What prevents this proof, if something does.
     fn obstacle_to_enclosure(&self, proof: Proof) -> Option<String>;
 
-    /// Encloses the outputs over a piece of the box; `row` gets one row after the other. Returns why it ended early; at
-    /// an interruption it just ends.
-    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> Option<Lost>;
+    /// Encloses the outputs over a piece of the box; `row` gets one row after the other.
+    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> EnclosureEnd;
+
+    /// A certificate of nothing yet, with the equations; `None` where there are none.
+    fn certified(&self) -> Option<Certified> {
+        None
+    }
 
     /// Scale of every coordinate (n).
     fn scales(&self) -> &[f64];

@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
-use super::matrix::Models;
+use crate::certificate::matrix::Models;
 use super::{EnclosureError, Gains};
 use crate::assemble::CoordinateId;
 use crate::numerics::larger;

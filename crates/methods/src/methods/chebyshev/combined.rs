@@ -12,7 +12,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{
-    Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
+    Closure, Combination, DenseMotions, Ensemble, EnsembleError, EnclosureEnd, Sampling, Simulated,
 };
 use crate::methods::proof::{EnclosedRow, Proof};
 use crate::methods::validation::Validation;
@@ -269,8 +269,8 @@ impl Ensemble for Combined<'_> {
         Some("a combination of parameters".to_owned())
     }
 
-    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
-        None
+    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> EnclosureEnd {
+        EnclosureEnd::default()
     }
 
     fn scales(&self) -> &[f64] {

@@ -5,7 +5,7 @@ use symdiff::{Expr, Node, Unary};
 
 use super::Motions;
 use crate::assemble::System;
-use crate::methods::{EnclosedRow, Lost, Proof};
+use crate::methods::{EnclosedRow, EnclosureEnd, Lost, Proof};
 use crate::numerics::ParameterBox;
 use crate::simulate::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces, Simulator};
 
@@ -57,22 +57,23 @@ pub(super) fn motion(
     space: &ModelSpace,
     piece: &ParameterBox,
     row: &mut EnclosedRow,
-) -> Option<Lost> {
+) -> EnclosureEnd {
     let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
     let monomials = space.jets().monomials();
     let spaces = MotionSpaces::new(monomials.variables(), monomials.order());
     let mut enclosure = match MotionEnclosure::start(certifier, &spaces, &piece.lower, &piece.upper) {
         Ok(enclosure) => enclosure,
-        Err(why) => return Some(lost(0.0, why)),
+        Err(why) => return lost(0.0, why).into(),
     };
-    let mut models = Vec::new();
+    let (mut models, mut ended) = (Vec::new(), None);
     for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
         if let Err((time, why)) = enclosure.observe(motions.schedule.time(next), &mut models) {
-            return Some(lost(time, why));
+            ended = Some(lost(time, why));
+            break;
         }
         row(&models, enclosure.since());
     }
-    None
+    EnclosureEnd { lost: ended, piece: Some(enclosure.into_piece()) }
 }
 
 /// Rows of the scheme's motion.
@@ -81,22 +82,22 @@ pub(super) fn scheme(
     space: &ModelSpace,
     piece: &ParameterBox,
     row: &mut EnclosedRow,
-) -> Option<Lost> {
+) -> EnclosureEnd {
     let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
     let first_step = motions.schedule.first_step();
     let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, first_step) {
         Ok(enclosure) => enclosure,
-        Err(why) => return Some(lost(0.0, why)),
+        Err(why) => return lost(0.0, why).into(),
     };
     let mut models = Vec::new();
     for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
         if let Err((time, why)) = enclosure.advance(motions.schedule, next) {
-            return Some(lost(time, why));
+            return lost(time, why).into();
         }
         if let Err(why) = enclosure.observe(&mut models) {
-            return Some(lost(motions.schedule.time(next), why));
+            return lost(motions.schedule.time(next), why).into();
         }
         row(&models, &[]);
     }
-    None
+    EnclosureEnd::default()
 }

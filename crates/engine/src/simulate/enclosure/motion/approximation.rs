@@ -5,8 +5,8 @@
 use symdiff::JetMemory;
 
 use super::super::EnclosureError;
-use super::super::matrix::Models;
-use super::spaces::{Cell, Space, matrix_at};
+use crate::certificate::matrix::Models;
+use crate::certificate::spaces::{Cell, Space, matrix_at};
 use crate::compile::EquationsProgram;
 
 /// Most iterations; each makes one more power of τ right.

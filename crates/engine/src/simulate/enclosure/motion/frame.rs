@@ -3,10 +3,10 @@
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::super::EnclosureError;
-use super::super::matrix::{Bounds, Models};
-use super::majorant::resolvent;
+use crate::certificate::matrix::{Bounds, Models};
+use crate::certificate::majorant::resolvent;
 use super::proof::Proven;
-use super::spaces::{Space, matrix_at};
+use crate::certificate::spaces::{Space, matrix_at};
 
 /// B, an approximation of its inverse, and r.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 //!
 //! The equations of motion with Φ̈ = 0 determine w = f(t, q, v, ξ) wherever [M Φ_qᵀ; Φ_q 0] is regular, and a motion
 //! that starts on the constraints stays on them: one formulation serves open and closed mechanisms. Over a cell of time
-//! ([`spaces::Cell`])
+//! ([`Cell`])
 //!
 //! 1. polynomials ŷ(τ, ξ) of q, v, w and λ come from Picard's iteration ([`approximation`]); none of them is trusted;
 //! 2. their defect in q̇ = v, v̇ = w and in the equations is bounded in Taylor models of (τ, ξ) ([`proof`]);
@@ -14,20 +14,19 @@
 
 mod approximation;
 mod frame;
-mod majorant;
 mod proof;
-mod spaces;
 
 use symdiff::taylor_model::{ModelSpace, up};
 use symdiff::{Interval, JetMemory, ModelMemory};
 
-use super::matrix::{Bounds, Models};
+use crate::certificate::matrix::{Bounds, Models};
 use super::{Certifier, EnclosureError, start};
+use crate::certificate::{Piece, ProvenCell};
 use crate::compile::{EquationsProgram, Tapes};
 use approximation::Approximation;
 use frame::Frame;
 use proof::{Claim, Proven, inverse_about};
-use spaces::{Cell, Space};
+use crate::certificate::spaces::{Cell, Space};
 
 /// Half the length of the first cell that is tried, s.
 const FIRST_HALF: f64 = 1.0 / 64.0;
@@ -129,6 +128,8 @@ pub struct MotionEnclosure<'s> {
     last: Option<Passed>,
     /// Within which each output is since the time before the one that was observed last.
     since: Vec<Interval>,
+    /// What is proven so far.
+    piece: Piece,
 }
 
 impl<'s> MotionEnclosure<'s> {
@@ -179,6 +180,13 @@ impl<'s> MotionEnclosure<'s> {
         let radii =
             layout.q.clone().chain(layout.v.clone()).map(|register| rows.model(register)[fine.box_of.size() - 1]);
         let frame = Frame::new(&coarse.box_of, radii.collect());
+        let piece = Piece {
+            lower: lower.to_vec(),
+            upper: upper.to_vec(),
+            q: polynomials(&start.q),
+            v: polynomials(&start.v),
+            cells: Vec::new(),
+        };
         Ok(Self {
             program,
             spaces,
@@ -194,6 +202,7 @@ impl<'s> MotionEnclosure<'s> {
             half: FIRST_HALF,
             last: None,
             since: Vec::new(),
+            piece,
         })
     }
 
@@ -233,6 +242,11 @@ impl<'s> MotionEnclosure<'s> {
         into.clear();
         self.program.outputs.iter().for_each(|&register| into.extend_from_slice(rows.model(register)));
         Ok(())
+    }
+
+    /// What is proven so far, for a certificate.
+    pub fn into_piece(self) -> Piece {
+        self.piece
     }
 
     /// Within which each output is at all times from the one observed before to the last one.
@@ -326,6 +340,13 @@ impl<'s> MotionEnclosure<'s> {
         if is_easy && doubled <= LONGEST_HALF && (self.time / (2.0 * doubled)).fract() == 0.0 {
             self.half = doubled;
         }
+        self.piece.cells.push(ProvenCell {
+            middle: cell.middle,
+            half: cell.half,
+            w: polynomials(&approximation.w),
+            lambda: polynomials(&approximation.lambda),
+            tube: proven.tube.clone(),
+        });
         self.last = Some(Passed { cell, approximation, proven, frame, ranges });
     }
 
@@ -345,6 +366,12 @@ impl<'s> MotionEnclosure<'s> {
         }
         jump
     }
+}
+
+/// The polynomials of a column.
+fn polynomials(of: &Models) -> Vec<Vec<f64>> {
+    let polynomial = |row: usize| of.at(row, 0).split_last().map_or_else(Vec::new, |(_, own)| own.to_vec());
+    (0..of.rows).map(polynomial).collect()
 }
 
 /// Radii of positions and velocities, 2n.

@@ -4,11 +4,11 @@ use symdiff::ModelMemory;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::super::EnclosureError;
-use super::super::matrix::{Bounds, Models};
+use crate::certificate::matrix::{Bounds, Models};
 use super::super::start;
 use super::approximation::Approximation;
-use super::majorant::{bound, resolvent};
-use super::spaces::{Cell, Space, matrix_at, truncate};
+use crate::certificate::majorant::{bound, resolvent};
+use crate::certificate::spaces::{Cell, Space, matrix_at, truncate};
 use crate::compile::EquationsProgram;
 use crate::numerics::larger;
 
@@ -31,6 +31,8 @@ pub(super) struct Proven {
     pub defect: Vec<f64>,
     /// Bound of |∂f/∂y|, 2n × 2n.
     pub slopes: Bounds,
+    /// Bound of |e| over the cell, 2n.
+    pub tube: Vec<f64>,
 }
 
 /// An approximation to be proven.
@@ -84,7 +86,7 @@ impl Claim<'_> {
                 let growth = bound(&slopes, self.jump, duration, &defect).ok_or(unproven)?;
                 let transition = self.transition(&linear.slopes);
                 let missed = self.missed(&transition, &linear.slopes, &slopes).ok_or(unproven)?;
-                return Ok(Proven { transition, missed, growth, defect, slopes });
+                return Ok(Proven { transition, missed, growth, defect, slopes, tube });
             }
             tube = reached.iter().map(|e| WIDER * e + 1e-14).collect();
         }

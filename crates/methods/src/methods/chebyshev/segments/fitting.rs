@@ -157,7 +157,7 @@ mod tests {
     use symdiff::taylor_model::ModelSpace;
 
     use super::*;
-    use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
+    use crate::methods::ensemble::{Closure, EnclosureEnd, Sampling, Simulated};
     use crate::methods::proof::{EnclosedRow, Proof};
     use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
 
@@ -267,7 +267,7 @@ mod tests {
         fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
             unreachable!()
         }
-        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
+        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> EnclosureEnd {
             unreachable!()
         }
         fn scales(&self) -> &[f64] {

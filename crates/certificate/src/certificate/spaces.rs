@@ -6,7 +6,7 @@
 use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
-use super::super::matrix::Models;
+use super::matrix::Models;
 
 /// Half a unit in the last place, rounded up.
 const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
@@ -16,7 +16,7 @@ const PARTS: i32 = 32;
 
 /// Polynomials of (τ, ξ) next to those of ξ, of the same order.
 #[derive(Clone, Debug)]
-pub(super) struct Space {
+pub struct Space {
     /// Of (τ, ξ).
     pub cell: ModelSpace,
     /// Of ξ.
@@ -39,7 +39,7 @@ pub(super) struct Space {
 
 /// An interval of time: t = middle + half τ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cell {
+pub struct Cell {
     /// s
     pub middle: f64,
     /// s, a power of two.
@@ -162,7 +162,7 @@ impl Space {
 }
 
 /// Copies a model into one of lower order; the cut-off terms become radius.
-pub(super) fn truncate(model: &[f64], to: &ModelSpace, into: &mut [f64]) {
+pub fn truncate(model: &[f64], to: &ModelSpace, into: &mut [f64]) {
     // Monomials ascend in degree: those of the lower order come first.
     let kept = to.size() - 1;
     into[..kept].copy_from_slice(&model[..kept]);
@@ -170,7 +170,7 @@ pub(super) fn truncate(model: &[f64], to: &ModelSpace, into: &mut [f64]) {
 }
 
 /// A matrix at an instant.
-pub(super) fn matrix_at(space: &Space, matrix: &Models, tau: f64) -> Models {
+pub fn matrix_at(space: &Space, matrix: &Models, tau: f64) -> Models {
     let mut at = Models::zero(&space.box_of, matrix.rows, matrix.columns);
     for row in 0..matrix.rows {
         for column in 0..matrix.columns {
