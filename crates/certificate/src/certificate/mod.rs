@@ -8,6 +8,8 @@
 
 mod check;
 mod equations;
+pub mod flow;
+pub mod frame;
 mod hexadecimal;
 pub mod krawczyk;
 pub mod majorant;

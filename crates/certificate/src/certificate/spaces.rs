@@ -153,6 +153,13 @@ impl Space {
         into[self.cell.size() - 1] = up(HALF_UNIT * size);
     }
 
+    /// Σ|c| over the monomials of the order's last degree with τ, where each power of τ is multiplied by a factor.
+    pub fn last_in_time(&self, model: &[f64], of_power: f64) -> f64 {
+        let monomials = self.cell.jets().monomials();
+        let last = |r: &usize| monomials.degree(*r) == monomials.order() && self.power[*r] > 0;
+        (0..monomials.len()).filter(last).map(|r| model[r].abs() * of_power.powi(self.power[r] as i32)).sum()
+    }
+
     /// Σ|c| over the monomials of the order's last degree without τ: the polynomial's end in ξ.
     pub fn last_in_parameters(&self, model: &[f64]) -> f64 {
         let (monomials, order) = (self.box_of.jets().monomials(), self.cell.jets().monomials().order());

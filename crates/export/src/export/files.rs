@@ -56,7 +56,8 @@ pub fn write_results(
         files.add("reduced.csv", &reduced_csv(&summary.reduced)?)?;
     }
     if !bounds.certified.is_empty() {
-        let of_file = |file: &ModelFile| certificate::ModelFile { name: file.name.clone(), sha256: file.sha256.clone() };
+        let of_file =
+            |file: &ModelFile| certificate::ModelFile { name: file.name.clone(), sha256: file.sha256.clone() };
         let certificate = Certificate {
             model: summary.model.clone(),
             files: provenance.model_files.iter().map(of_file).collect(),

@@ -101,17 +101,24 @@ fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
         let found: Vec<Enclosed> =
             std::mem::take(&mut open).into_par_iter().map(|piece| enclose(ensemble, proof, &space, piece)).collect();
         let interrupted = ensemble.is_interrupted();
-        let room = if interrupted { 0 } else { proof.most_pieces().saturating_sub(closed.len() + found.len()) };
+        let mut room = if interrupted { 0 } else { proof.most_pieces().saturating_sub(closed.len() + found.len()) };
         // Those that came least far are cut first; the order of the rest does not matter.
         let mut by_reach: Vec<usize> = (0..found.len()).collect();
         by_reach.sort_by_key(|&index| (found[index].ranges.len(), index));
         let can_help = |&index: &usize| found[index].piece_can_help(domain.dimension());
-        let cut: Vec<usize> = by_reach.into_iter().filter(can_help).take(room).collect();
-        for (index, enclosed) in found.into_iter().enumerate() {
-            if cut.contains(&index) {
-                open.extend(enclosed.piece.halves(longest_axis(&enclosed.piece, domain)));
-            } else {
-                closed.push(enclosed);
+        let mut parts = vec![1; found.len()];
+        for index in by_reach.into_iter().filter(can_help) {
+            // Halves would hardly come to the end where the piece has not come half as far.
+            let wanted = if 2 * found[index].ranges.len() < ensemble.rows() * ensemble.outputs() { 4 } else { 2 };
+            parts[index] = [wanted, 2, 1].into_iter().find(|parts| parts - 1 <= room).unwrap_or(1);
+            room -= parts[index] - 1;
+        }
+        for (enclosed, parts) in found.into_iter().zip(parts) {
+            let halved = |piece: &ParameterBox| piece.halves(longest_axis(piece, domain));
+            match parts {
+                1 => closed.push(enclosed),
+                2 => open.extend(halved(&enclosed.piece)),
+                _ => open.extend(halved(&enclosed.piece).iter().flat_map(halved)),
             }
         }
     }

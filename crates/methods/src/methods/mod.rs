@@ -22,8 +22,8 @@ mod taylor;
 pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose, ends_of_combinations};
 pub use ensemble::{
-    Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, EnclosureEnd, Lost, Observed,
-    OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
+    Closure, Combination, DenseMotions, Effort, EnclosureEnd, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost,
+    Observed, OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
 pub use followed::{Followed, FollowedEnds, Sensitivity};
 pub use kept::KeptSurrogate;

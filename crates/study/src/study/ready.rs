@@ -141,6 +141,7 @@ pub fn built(description: &Description) -> Result<(), RunError> {
 /// As for [`ready`].
 pub fn equations(description: &Description) -> Result<Vec<Certified>, RunError> {
     let model = reduced::expanded(description);
-    let list = |found: &Studied| found.studies.iter().map(|study| Certifier::new(&study.simulator).certified()).collect();
+    let list =
+        |found: &Studied| found.studies.iter().map(|study| Certifier::new(&study.simulator).certified()).collect();
     studied(&model, &Options::default(), false, |found| Ok(list(found)))
 }

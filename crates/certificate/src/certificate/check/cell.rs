@@ -2,6 +2,8 @@
 
 use symdiff::taylor_model::{ModelSpace, up};
 
+use super::super::flow::{Flow, of_first_order};
+use super::super::frame::Frame;
 use super::super::krawczyk::{self, Image};
 use super::super::majorant::{bound, resolvent};
 use super::super::matrix::{Bounds, Models};
@@ -40,7 +42,10 @@ impl Unknowns<'_> {
     /// Bounds of the rows over a state, without derivatives.
     pub fn bounds(&self, given: &Given, state: &State) -> Vec<f64> {
         let found = evaluate(self.equations, self.needed, given, state, false);
-        self.rows.iter().map(|&node| found[node].as_ref().map_or(f64::NAN, |own| given.space.bound(&own.value))).collect()
+        self.rows
+            .iter()
+            .map(|&node| found[node].as_ref().map_or(f64::NAN, |own| given.space.bound(&own.value)))
+            .collect()
     }
 
     /// Approximate inverse of the derivatives by the unknowns about a state without radii.
@@ -58,7 +63,10 @@ impl Unknowns<'_> {
         let spread = krawczyk::enclose(missed.clone(), |y| {
             self.set_radii(space, state, Some(y));
             let slopes = self.linearised(given, state, &self.places).1;
-            Image { missed: missed.clone(), contraction: inverse.times(space, &slopes).off_identity(space).bounds(space) }
+            Image {
+                missed: missed.clone(),
+                contraction: inverse.times(space, &slopes).off_identity(space).bounds(space),
+            }
         })?;
         self.set_radii(space, state, Some(&spread));
         Some(())
@@ -75,25 +83,6 @@ impl Unknowns<'_> {
             };
             models.at_mut(row, 0)[space.size() - 1] = radii.map_or(0.0, |radii| radii[index]);
         }
-    }
-}
-
-/// The distance of the motion from the polynomials at the start of a cell: e = B(ξ) z, |zᵢ| ≤ rᵢ.
-#[derive(Clone)]
-pub(super) struct Frame {
-    directions: Models,
-    inverse: Models,
-    radii: Vec<f64>,
-}
-
-impl Frame {
-    pub fn new(space: &ModelSpace, radii: Vec<f64>) -> Self {
-        let identity = Models::identity(space, radii.len());
-        Self { directions: identity.clone(), inverse: identity, radii }
-    }
-
-    fn error(&self, space: &ModelSpace) -> Vec<f64> {
-        self.directions.bounds(space).times(&self.radii)
     }
 }
 
@@ -121,9 +110,7 @@ pub(super) struct Passed {
     pub state: State,
     /// At the cell's start.
     frame: Frame,
-    transition: Models,
-    missed: Bounds,
-    growth: Vec<f64>,
+    flow: Flow,
     /// Polynomials at the cell's end, and the frame there.
     pub end: (Models, Models),
     pub next: Frame,
@@ -146,7 +133,7 @@ impl Passed {
         proven: &ProvenCell,
     ) -> Result<Self, Open> {
         let (fine, coarse) = (&shapes.fine, &shapes.coarse);
-        let (n, m) = (motion.equations.coordinates, motion.equations.multipliers);
+        let n = motion.equations.coordinates;
         let cell = Cell { middle: proven.middle, half: proven.half };
         let state = integrated(fine, cell, (q, v), proven);
         // How far ŷ(−1) is from the polynomials that it begins with.
@@ -162,26 +149,24 @@ impl Passed {
         let time = Shapes::time(&coarse.cell, cell);
         let given = Given { space: &coarse.cell, time: &time, parameters: &shapes.parameters[1] };
         let linear = Linear::over_tube(motion, &given, &state, &proven.tube, &residual).ok_or(Open::Irregular)?;
-        let defect: Vec<f64> = (0..2 * n)
-            .map(|row| up(kinematic[row] + if row < n { 0.0 } else { linear.missed[row - n] }))
-            .collect();
+        let defect: Vec<f64> =
+            (0..2 * n).map(|row| up(kinematic[row] + if row < n { 0.0 } else { linear.missed[row - n] })).collect();
         let sizes = of_first_order(&linear.slopes.bounds(&coarse.cell));
         let duration = 2.0 * cell.half;
         let reached = bound(&sizes, &entry, duration, &defect).unwrap_or_else(|| vec![f64::INFINITY; 2 * n]);
         // Written so that NaN is no proof.
-        if let Some(place) = (0..2 * n).find(|&row| reached[row].partial_cmp(&proven.tube[row]) != Some(std::cmp::Ordering::Less)) {
+        if let Some(place) =
+            (0..2 * n).find(|&row| reached[row].partial_cmp(&proven.tube[row]) != Some(std::cmp::Ordering::Less))
+        {
             return Err(Open::Leaves { place, reached: reached[place], tube: proven.tube[place] });
         }
-        let growth = bound(&sizes, &jump, duration, &defect).ok_or(Open::Transition)?;
-        let transition = transition(coarse, cell, &linear.slopes);
-        let missed = missed(coarse, cell, &transition, &linear.slopes, &sizes).ok_or(Open::Transition)?;
+        let flow = Flow::new(coarse, cell, &linear.slopes, &sizes, (&jump, &defect)).ok_or(Open::Transition)?;
         let end = (matrix_at(fine, &state.q, 1.0), matrix_at(fine, &state.v, 1.0));
         let rounded = |models: &Models| (0..n).map(|row| models.at(row, 0)[fine.box_of.size() - 1]).collect::<Vec<_>>();
         let added = [rounded(&end.0), rounded(&end.1)].concat();
-        let next = advanced(coarse, &frame, (&transition, &missed, &growth), &added).ok_or(Open::Transition)?;
-        debug_assert_eq!(state.lambda.rows, m);
+        let next = frame.advance(coarse, &flow, &added).ok_or(Open::Transition)?;
         let end = (end.0.without_radii(), end.1.without_radii());
-        Ok(Self { cell, state, frame, transition, missed, growth, end, next })
+        Ok(Self { cell, state, frame, flow, end, next })
     }
 
     /// The motion at an instant, with radii of q and v.
@@ -190,13 +175,11 @@ impl Passed {
         let at = |models: &Models| matrix_at(fine, models, tau);
         let State { q, v, w, lambda } = &self.state;
         let mut state = State { q: at(q), v: at(v), w: at(w), lambda: at(lambda) };
-        let moved = matrix_at(coarse, &self.transition, tau).times(&coarse.box_of, &self.frame.directions);
-        let moved = moved.bounds(&coarse.box_of).times(&self.frame.radii);
-        let missed = self.missed.times(&self.frame.error(&coarse.box_of));
+        let errors = self.frame.error_at(coarse, &self.flow, tau);
         let (n, last) = (state.q.rows, fine.box_of.size() - 1);
         for row in 0..2 * n {
             let model = if row < n { state.q.at_mut(row, 0) } else { state.v.at_mut(row - n, 0) };
-            model[last] = up(model[last] + moved[row] + missed[row] + self.growth[row]);
+            model[last] = up(model[last] + errors[row]);
         }
         state
     }
@@ -242,7 +225,10 @@ fn kinematic_defect(space: &Space, cell: Cell, State { q, v, w, .. }: &State) ->
         space.cell.sub(by.at(row, 0), &rate, &mut left);
         space.cell.bound(&left)
     };
-    [(q, v), (v, w)].iter().flat_map(|&(of, by)| (0..q.rows).map(|row| defect(of, by, row)).collect::<Vec<_>>()).collect()
+    [(q, v), (v, w)]
+        .iter()
+        .flat_map(|&(of, by)| (0..q.rows).map(|row| defect(of, by, row)).collect::<Vec<_>>())
+        .collect()
 }
 
 /// The equations over a tube.
@@ -299,84 +285,4 @@ impl Linear {
         }
         Some(Self { missed, slopes })
     }
-}
-
-/// [0 I; A] of bounds of A.
-fn of_first_order(accelerations: &Bounds) -> Bounds {
-    let (n, columns) = accelerations.shape();
-    let mut values = vec![0.0; n * columns];
-    (0..n).for_each(|row| values[row * columns + n + row] = 1.0);
-    values.extend_from_slice(accelerations.entries());
-    Bounds::of(columns, columns, &values)
-}
-
-/// Some Φ̂ with Φ̂' ≈ [0 I; A] Φ̂ and Φ̂(−1) = I.
-fn transition(space: &Space, cell: Cell, slopes: &Models) -> Models {
-    let (n, kept) = (slopes.rows, space.box_of.size() - 1);
-    let identity = Models::identity(&space.box_of, 2 * n);
-    let mut found = Models::identity(&space.cell, 2 * n);
-    let mut integral = vec![0.0; space.cell.size()];
-    for _ in 0..space.cell.jets().monomials().order() + 2 {
-        let rates = slopes.approximate_times(&space.cell, &found);
-        for (row, column) in (0..n).flat_map(|row| (0..2 * n).map(move |column| (row, column))) {
-            space.integral(&identity.at(n + row, column)[..kept], cell.half, rates.at(row, column), &mut integral);
-            found.at_mut(n + row, column).copy_from_slice(&integral);
-            space.integral(&identity.at(row, column)[..kept], cell.half, found.at(n + row, column), &mut integral);
-            found.at_mut(row, column).copy_from_slice(&integral);
-        }
-    }
-    found
-}
-
-/// Bound of |Φ − Φ̂|: |E|' ≤ |[0 I; A]| |E| + |[0 I; A] Φ̂ − Φ̂'|.
-fn missed(space: &Space, cell: Cell, transition: &Models, slopes: &Models, sizes: &Bounds) -> Option<Bounds> {
-    let n = slopes.rows;
-    let rates = slopes.times(&space.cell, transition);
-    let start = matrix_at(space, transition, -1.0).off_identity(&space.box_of).bounds(&space.box_of);
-    let (mut rate, mut left) = (vec![0.0; space.cell.size()], vec![0.0; space.cell.size()]);
-    let mut values = vec![0.0; 4 * n * n];
-    for column in 0..2 * n {
-        let mut residual = vec![0.0; 2 * n];
-        for (row, residual) in residual.iter_mut().enumerate() {
-            space.rate(transition.at(row, column), cell.half, &mut rate);
-            let of_equation = if row < n { transition.at(n + row, column) } else { rates.at(row - n, column) };
-            space.cell.sub(of_equation, &rate, &mut left);
-            *residual = space.cell.bound(&left);
-        }
-        let found = bound(sizes, &start.column(column), 2.0 * cell.half, &residual)?;
-        found.into_iter().enumerate().for_each(|(row, value)| values[row * 2 * n + column] = value);
-    }
-    Some(Bounds::of(2 * n, 2 * n, &values))
-}
-
-/// The frame at the end of a cell; `added` is what the next polynomials miss there.
-fn advanced(
-    space: &Space,
-    frame: &Frame,
-    (transition, missed, growth): (&Models, &Bounds, &[f64]),
-    added: &[f64],
-) -> Option<Frame> {
-    let of_box = &space.box_of;
-    let end = matrix_at(space, transition, 1.0);
-    let moved = end.times(of_box, &frame.directions);
-    let radius = |place: usize| moved.at(place / moved.columns, place % moved.columns)[of_box.size() - 1];
-    let radii: Vec<f64> = (0..moved.rows * moved.columns).map(radius).collect();
-    let rounding = Bounds::of(moved.rows, moved.columns, &radii);
-    let directions = moved.without_radii();
-    // Any matrix near B⁻¹: Φ̂⁻¹ before the inverse so far, and corrections.
-    let end = end.without_radii();
-    let mut back = end.inverse_at_centre(of_box)?;
-    back.refine_inverse_of(of_box, &end).then_some(())?;
-    let mut inverse = frame.inverse.approximate_times(of_box, &back);
-    inverse.refine_inverse_of(of_box, &directions).then_some(())?;
-    let inverse = inverse.without_radii();
-    // |B⁻¹ x| ≤ (1 + (I − K)⁻¹ K) |G| |x| with |I − G B| ≤ K.
-    let contraction = inverse.times(of_box, &directions).off_identity(of_box).bounds(of_box);
-    let lost = rounding.times(&frame.radii);
-    let missed = missed.times(&frame.error(of_box));
-    let all: Vec<f64> = (0..lost.len()).map(|row| up(lost[row] + missed[row] + growth[row] + added[row])).collect();
-    let seen = inverse.bounds(of_box).times(&all);
-    let beyond = resolvent(&contraction, &Bounds::of(seen.len(), 1, &seen))?;
-    let radii = (0..seen.len()).map(|row| up(frame.radii[row] + seen[row] + beyond.at(row, 0))).collect();
-    Some(Frame { directions, inverse, radii })
 }

@@ -13,10 +13,11 @@ use rayon::prelude::*;
 use symdiff::Interval;
 use symdiff::taylor_model::{MAX_ORDER, ModelSpace};
 
+use super::frame::Frame;
 use super::matrix::Models;
 use super::spaces::{Cell, Space};
 use super::{Certificate, Certified, Piece, ProvenCell};
-use cell::{Frame, Open, Passed, Shapes, Unknowns};
+use cell::{Open, Passed, Shapes, Unknowns};
 use evaluation::{Given, State, evaluate};
 use range::Ranges;
 
@@ -106,7 +107,10 @@ fn is_sound(own: &Certified) -> Result<(), String> {
     if own.outputs.len() != equations.outputs.len() || own.bounds.iter().any(|row| row.len() != own.outputs.len()) {
         return wrong("a row does not have a bound of each output");
     }
-    if own.times.len() != own.bounds.len() || own.times.first().is_some_and(|first| *first < 0.0) || !own.times.is_sorted() {
+    if own.times.len() != own.bounds.len()
+        || own.times.first().is_some_and(|first| *first < 0.0)
+        || !own.times.is_sorted()
+    {
         return wrong("instants do not ascend from 0 s");
     }
     Ok(())
@@ -219,7 +223,8 @@ fn started(own: &Certified, piece: &Piece, shapes: &Shapes) -> Result<((Models, 
         let needed = equations.needed(rows);
         let places = (level * n..(level + 1) * n).collect();
         let unknowns = Unknowns { equations, rows, needed: &needed, places };
-        let proven = unknowns.inverse(&given, &state).and_then(|inverse| unknowns.enclose(&given, &mut state, &inverse));
+        let proven =
+            unknowns.inverse(&given, &state).and_then(|inverse| unknowns.enclose(&given, &mut state, &inverse));
         let what = ["positions", "velocities"][level];
         proven.ok_or_else(|| format!("no {what} of the start are proven near their polynomials"))?;
     }

@@ -89,7 +89,8 @@ mod tests {
         let space = ModelSpace::new(2, 3);
         let ranges = Ranges::new(&space);
         let monomials = space.jets().monomials();
-        let index = |exponents: [usize; 2]| (0..monomials.len()).find(|&r| monomials.exponents(r) == exponents).unwrap();
+        let index =
+            |exponents: [usize; 2]| (0..monomials.len()).find(|&r| monomials.exponents(r) == exponents).unwrap();
         let mut model = vec![0.0; space.size()];
         // x³ − x + y² has its ends at x = ∓1/√3: from −2/(3√3) to 1 + 2/(3√3).
         for (exponents, c) in [([3, 0], 1.0), ([1, 0], -1.0), ([0, 2], 1.0)] {

@@ -33,9 +33,9 @@ use symdiff::{Interval, ModelMemory};
 
 use super::control::Schedule;
 use super::simulator::Simulator;
-use crate::compile::{AtStart, Coefficients, EquationsProgram, Tapes, compile_equations, list_equations};
 use crate::certificate::matrix::Models;
 use crate::certificate::{Certified, Equations};
+use crate::compile::{AtStart, Coefficients, EquationsProgram, Tapes, compile_equations, list_equations};
 use frame::{Frame, Units};
 pub use motion::{MotionEnclosure, MotionSpaces};
 
@@ -77,7 +77,8 @@ impl<'s> Certifier<'s> {
         let starts = [(&system.start.position, layout.q.start), (&system.start.velocity, layout.v.start)];
         let mut level = 0..;
         let at_start = starts.map(|(given, first)| {
-            let is_at_nominal = level.next().is_some_and(|level| start::is_at_nominal(self.simulator, &self.program, level));
+            let is_at_nominal =
+                level.next().is_some_and(|level| start::is_at_nominal(self.simulator, &self.program, level));
             let of = |(place, given): (usize, &Option<symdiff::Expr>)| match given {
                 Some(value) => AtStart::Given(*value),
                 None if is_at_nominal => AtStart::Number(self.simulator.nominal[first + place]),

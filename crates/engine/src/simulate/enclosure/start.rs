@@ -4,9 +4,9 @@ use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory, Tape};
 
 use super::EnclosureError;
+use crate::assemble::CoordinateId;
 use crate::certificate::krawczyk::{self, Image};
 use crate::certificate::matrix::Models;
-use crate::assemble::CoordinateId;
 use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
 use crate::simulate::simulator::Simulator;

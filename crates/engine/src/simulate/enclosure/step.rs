@@ -3,9 +3,9 @@
 use symdiff::taylor_model::up;
 use symdiff::{Interval, ModelMemory};
 
+use super::{Enclosure, EnclosureError, Gains, NextGains};
 use crate::certificate::krawczyk::{self, Image};
 use crate::certificate::matrix::{Bounds, Models};
-use super::{Enclosure, EnclosureError, Gains, NextGains};
 use crate::numerics::larger;
 
 /// Most corrections of X; the residual that is left is bounded in any case.

@@ -12,7 +12,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{
-    Closure, Combination, DenseMotions, Ensemble, EnsembleError, EnclosureEnd, Sampling, Simulated,
+    Closure, Combination, DenseMotions, EnclosureEnd, Ensemble, EnsembleError, Sampling, Simulated,
 };
 use crate::methods::proof::{EnclosedRow, Proof};
 use crate::methods::validation::Validation;

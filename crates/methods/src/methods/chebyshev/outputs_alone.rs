@@ -6,7 +6,9 @@ use std::ops::Range as Rows;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, EnclosureEnd, Observed, Sampling, Simulated};
+use crate::methods::ensemble::{
+    Closure, Combination, EnclosureEnd, Ensemble, EnsembleError, Observed, Sampling, Simulated,
+};
 use crate::methods::proof::{EnclosedRow, Proof};
 use crate::numerics::{ParameterBox, Range, Sample};
 

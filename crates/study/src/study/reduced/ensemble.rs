@@ -12,7 +12,9 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::plan::Plan;
 use super::values::Values;
-use crate::methods::{self, EnclosedRow, Ensemble, EnsembleError, EnclosureEnd, Observed, Proof, Sampling, Simulated, Until};
+use crate::methods::{
+    self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, Observed, Proof, Sampling, Simulated, Until,
+};
 use crate::numerics::{Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
 

@@ -8,25 +8,24 @@
 //! 2. their defect in q̇ = v, v̇ = w and in the equations is bounded in Taylor models of (τ, ξ) ([`proof`]);
 //! 3. ∂f/∂y is enclosed over a tube about ŷ, in which |e|' ≤ |A| |e| + defect has to keep e = y − ŷ;
 //! 4. Φ̂(τ, ξ), polynomials of low order, approximates the transition matrix; |Φ − Φ̂| is bounded in the same way;
-//! 5. e = B(ξ) z goes from cell to cell with B ← Φ̂ B, so that z does not change but by errors ([`frame`]).
+//! 5. e = B(ξ) z goes from cell to cell with B ← Φ̂ B, so that z does not change but by errors ([`Frame`]).
 //!
 //! Cells are halved until they can be proven, and doubled again where the defect is at rounding.
 
 mod approximation;
-mod frame;
 mod proof;
 
 use symdiff::taylor_model::{ModelSpace, up};
 use symdiff::{Interval, JetMemory, ModelMemory};
 
-use crate::certificate::matrix::{Bounds, Models};
 use super::{Certifier, EnclosureError, start};
+use crate::certificate::frame::Frame;
+use crate::certificate::matrix::{Bounds, Models};
+use crate::certificate::spaces::{Cell, Space};
 use crate::certificate::{Piece, ProvenCell};
 use crate::compile::{EquationsProgram, Tapes};
 use approximation::Approximation;
-use frame::Frame;
 use proof::{Claim, Proven, inverse_about};
-use crate::certificate::spaces::{Cell, Space};
 
 /// Half the length of the first cell that is tried, s.
 const FIRST_HALF: f64 = 1.0 / 64.0;
@@ -40,17 +39,18 @@ const SHORTEST_HALF: f64 = 1.0 / 32768.0;
 /// Defect of the accelerations, relative to their size, above which a cell is halved.
 const LARGE_DEFECT: f64 = 1e-12;
 
-/// The same below which the next cell is twice as long.
+/// Last terms in τ, relative to the accelerations, below which they do not matter.
 const SMALL_DEFECT: f64 = 1e-13;
 
-/// Factor by which r grows over a cell, above which the cell is halved.
+/// Factor by which errors make the distance larger over a cell, above which the cell is halved.
 const LARGE_GAIN: f64 = 1.05;
 
 /// The same below which the next cell is twice as long.
 const SMALL_GAIN: f64 = 1.01;
 
-/// r whose growth does not matter: rounding.
-const ROUNDING: f64 = 1e-13;
+/// A cell of half the length is worth its proof where its gain is smaller by this factor: one of two such cells has at
+/// most half.
+const HELPFUL: f64 = 0.3;
 
 /// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
 const LARGE_REMAINDER: f64 = 1e-5;
@@ -102,8 +102,30 @@ struct Next {
     ranges: Vec<Interval>,
     /// Of the accelerations, relative to their size.
     defect: f64,
-    /// Factor by which r grows.
+    /// Last terms of the accelerations with a power of τ, relative to their size: over this cell, over half of it, and over twice
+    /// its length.
+    tails: [f64; 3],
+    /// Factor by which errors make the distance larger.
     gain: f64,
+}
+
+impl Next {
+    /// Whether a shorter cell has a smaller defect, and needs it.
+    fn is_coarse(&self) -> bool {
+        self.defect > LARGE_DEFECT && self.tails[0] > SMALL_DEFECT && self.tails[1] < 0.1 * self.tails[0]
+    }
+
+    /// Whether two cells of half the length are better than one.
+    fn is_better_than(&self, larger: &Self) -> bool {
+        let by_defect = larger.is_coarse() && self.defect < 0.5 * larger.defect;
+        by_defect || (larger.gain > LARGE_GAIN && self.gain - 1.0 < HELPFUL * (larger.gain - 1.0))
+    }
+
+    /// Whether a cell of twice the length is not coarse, by the polynomials.
+    fn may_be_doubled(&self) -> bool {
+        let is_fine = self.tails[2] < SMALL_DEFECT || self.tails[2] < 10.0 * self.tails[0];
+        is_fine && self.gain < SMALL_GAIN
+    }
 }
 
 /// The true motion over a box, cell by cell.
@@ -225,7 +247,7 @@ impl<'s> MotionEnclosure<'s> {
         let Some(Passed { cell, approximation, proven, frame, .. }) = &self.last else { return Ok(()) };
         let Space { box_of, .. } = &self.spaces.fine;
         let tau = ((time - cell.middle) / cell.half).clamp(-1.0, 1.0);
-        let errors = frame.error_at(&self.spaces.coarse, proven, tau);
+        let errors = frame.error_at(&self.spaces.coarse, &proven.flow, tau);
         let rows = &mut self.rows;
         let at = approximation.at(&self.spaces.fine, tau);
         at.put(self.program, |register, model| rows.model_mut(register).copy_from_slice(model));
@@ -256,12 +278,22 @@ impl<'s> MotionEnclosure<'s> {
 
     /// Proves the next cell, as long as can be.
     fn pass(&mut self) -> Result<(), EnclosureError> {
+        let mut larger: Option<Next> = None;
         loop {
             let cell = Cell { middle: self.time + self.half, half: self.half };
             let can_halve = self.half > SHORTEST_HALF;
             match self.attempt(cell) {
-                Ok(next) if can_halve && (next.defect > LARGE_DEFECT || next.gain > LARGE_GAIN) => self.half *= 0.5,
                 Ok(next) => {
+                    // What halving does not make better is of the parameters, not of the time.
+                    if let Some(before) = larger.take().filter(|before| !next.is_better_than(before)) {
+                        self.accept(before);
+                        return Ok(());
+                    }
+                    if can_halve && (next.is_coarse() || next.gain > LARGE_GAIN) {
+                        larger = Some(next);
+                        self.half *= 0.5;
+                        continue;
+                    }
                     self.accept(next);
                     return Ok(());
                 }
@@ -317,26 +349,32 @@ impl<'s> MotionEnclosure<'s> {
         let outputs = self.program.outputs.iter();
         let ranges = outputs.map(|&register| coarse.range(self.coarse.model(register))).collect();
         let end = approximation.at(fine, 1.0);
-        let frame = self.frame.advance(coarse, &proven, &radii(fine, &end))?;
+        let frame = self.frame.advance(coarse, &proven.flow, &radii(fine, &end)).ok_or(EnclosureError::Unproven)?;
         let errors = frame.error(&coarse.box_of);
         if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
             return Err(EnclosureError::TooWide);
         }
         let defect =
             proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
-        let gain = frame.size() / (self.frame.size() + ROUNDING);
-        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, gain })
+        let tail = |of_power: f64| {
+            let rows = (0..n).map(|row| fine.last_in_time(approximation.w.at(row, 0), of_power));
+            rows.fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE)
+        };
+        let tails = [1.0, 0.5, 2.0].map(tail);
+        let gain = frame.gain();
+        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, tails, gain })
     }
 
     /// Goes on to the end of a cell.
     fn accept(&mut self, next: Next) {
-        let Next { cell, approximation, proven, end, frame, ranges, defect, gain } = next;
+        let is_easy = next.may_be_doubled();
+        let Next { cell, approximation, proven, end, frame, ranges, .. } = next;
         let frame = std::mem::replace(&mut self.frame, frame);
         self.start = end;
         self.time = cell.end();
         // Cells begin at multiples of their length.
+        self.half = cell.half;
         let doubled = 2.0 * self.half;
-        let is_easy = defect < SMALL_DEFECT && gain < SMALL_GAIN;
         if is_easy && doubled <= LONGEST_HALF && (self.time / (2.0 * doubled)).fract() == 0.0 {
             self.half = doubled;
         }
