@@ -306,9 +306,7 @@ def _scaled(by: dict[tuple[str, int], Model], factor: Model) -> dict[tuple[str, 
     return {place: own * factor for place, own in by.items()}
 
 
-def _joined(
-    a: dict[tuple[str, int], Model], b: dict[tuple[str, int], Model]
-) -> dict[tuple[str, int], Model]:
+def _joined(a: dict[tuple[str, int], Model], b: dict[tuple[str, int], Model]) -> dict[tuple[str, int], Model]:
     joined = dict(a)
     for place, own in b.items():
         joined[place] = joined[place] + own if place in joined else own
@@ -699,9 +697,7 @@ class _Cell:
         # A = -J^-1 F_y, and J^-1 = (C J)^-1 C.
         slopes = [[-own for own in row] for row in _times(inverse, by_state)]
         beyond = _resolvent(contraction, _sizes(slopes))
-        slopes = [
-            [own.with_radius(own.radius + more) for own, more in zip(*both)] for both in zip(slopes[:n], beyond)
-        ]
+        slopes = [[own.with_radius(own.radius + more) for own, more in zip(*both)] for both in zip(slopes[:n], beyond)]
         identity = [[ONE if column == n + row else 0 for column in range(2 * n)] for row in range(n)]
         first_order = [*identity, *_sizes(slopes)]
         duration = fixed(2 * self.half)[0]
@@ -709,7 +705,9 @@ class _Cell:
         for place, (found, radius) in enumerate(zip(reached, tube)):
             if not found < radius:
                 kind = f"position {place}" if place < n else f"velocity {place - n}"
-                raise Refused(f"{kind} may be {found / ONE:.3e} from its polynomials, and the radius is {radius / ONE:.3e}")
+                raise Refused(
+                    f"{kind} may be {found / ONE:.3e} from its polynomials, and the radius is {radius / ONE:.3e}"
+                )
         self.growth = _majorant(first_order, jump, duration, defect)
         self._flow(slopes, first_order, duration)
 
@@ -728,9 +726,7 @@ class _Cell:
         rates = [*flow[n:], *_times(slopes, flow)]
         begun = _sizes(_off_identity([[self._at(own, -ONE, box) for own in row] for row in flow]))
         residual = [[(rate - self._rate(own)).size() for rate, own in zip(*both)] for both in zip(rates, flow)]
-        columns = [
-            _majorant(first_order, start, duration, rate) for start, rate in zip(zip(*begun), zip(*residual))
-        ]
+        columns = [_majorant(first_order, start, duration, rate) for start, rate in zip(zip(*begun), zip(*residual))]
         self.flow, self.missed = flow, [list(row) for row in zip(*columns)]
 
     def at(self, time: float) -> State:

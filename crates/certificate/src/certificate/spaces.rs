@@ -160,6 +160,13 @@ impl Space {
         (0..monomials.len()).filter(last).map(|r| model[r].abs() * of_power.powi(self.power[r] as i32)).sum()
     }
 
+    /// Σ|c| over the monomials of high degree without τ, by the power that a parameter has in each.
+    pub fn last_of_parameter(&self, model: &[f64], axis: usize) -> f64 {
+        let monomials = self.box_of.jets().monomials();
+        let high = (0..monomials.len()).filter(|own| 2 * monomials.degree(*own) > monomials.order());
+        high.map(|own| model[self.constant_in_time[own]].abs() * monomials.exponents(own)[axis] as f64).sum()
+    }
+
     /// Σ|c| over the monomials of the order's last degree without τ: the polynomial's end in ξ.
     pub fn last_in_parameters(&self, model: &[f64]) -> f64 {
         let (monomials, order) = (self.box_of.jets().monomials(), self.cell.jets().monomials().order());

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::BoundsRequest;
-use super::ensemble::{EnclosureEnd, Ensemble, EnsembleError, Lost, Simulated};
-use super::proof::Proof;
+use super::ensemble::{Ensemble, EnsembleError, Simulated};
+use super::proof::{EnclosureEnd, Lost, Proof};
 use super::registry::{About, BoundingMethod, Refusal, Registered};
 use super::request::Problem;
 use super::result::{BandBuilder, MethodResult};
@@ -83,6 +83,8 @@ struct Enclosed {
     lost: Option<Lost>,
     /// For the certificate.
     proof: Option<Piece>,
+    /// Number of ranges of the larger piece that it was cut from.
+    before: Option<usize>,
 }
 
 /// Ranges that hold for every parameter of the box, rounding errors included.
@@ -93,13 +95,14 @@ fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
         return MethodResult { note: Some(note), ..hull_of_pieces(ensemble, proof, Vec::new(), 0) };
     }
     let space = ModelSpace::new(domain.dimension(), proof.orders()[domain.dimension()]);
-    let mut open = vec![domain.clone()];
+    // With the rows that the piece had before it was cut.
+    let mut open = vec![(domain.clone(), None)];
     let mut closed: Vec<Enclosed> = Vec::new();
     let mut simulations = 0;
     while !open.is_empty() {
         simulations += open.len();
         let found: Vec<Enclosed> =
-            std::mem::take(&mut open).into_par_iter().map(|piece| enclose(ensemble, proof, &space, piece)).collect();
+            std::mem::take(&mut open).into_par_iter().map(|own| enclose(ensemble, proof, &space, own)).collect();
         let interrupted = ensemble.is_interrupted();
         let mut room = if interrupted { 0 } else { proof.most_pieces().saturating_sub(closed.len() + found.len()) };
         // Those that came least far are cut first; the order of the rest does not matter.
@@ -114,19 +117,29 @@ fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
             room -= parts[index] - 1;
         }
         for (enclosed, parts) in found.into_iter().zip(parts) {
-            let halved = |piece: &ParameterBox| piece.halves(longest_axis(piece, domain));
-            match parts {
-                1 => closed.push(enclosed),
-                2 => open.extend(halved(&enclosed.piece)),
-                _ => open.extend(halved(&enclosed.piece).iter().flat_map(halved)),
-            }
+            let axis = enclosed.lost.as_ref().and_then(|lost| lost.axis);
+            let halved = |piece: &ParameterBox| piece.halves(axis_of_cut(piece, domain, axis));
+            let pieces: Vec<ParameterBox> = match parts {
+                1 => {
+                    closed.push(enclosed);
+                    continue;
+                }
+                2 => halved(&enclosed.piece).into(),
+                _ => halved(&enclosed.piece).iter().flat_map(halved).collect(),
+            };
+            open.extend(pieces.into_iter().map(|piece| (piece, Some(enclosed.ranges.len()))));
         }
     }
     hull_of_pieces(ensemble, proof, closed, simulations)
 }
 
 /// One piece, as far as it goes.
-fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, piece: ParameterBox) -> Enclosed {
+fn enclose(
+    ensemble: &dyn Ensemble,
+    proof: Proof,
+    space: &ModelSpace,
+    (piece, before): (ParameterBox, Option<usize>),
+) -> Enclosed {
     let mut ranges = Vec::with_capacity(ensemble.rows() * ensemble.outputs());
     let monomials = space.jets().monomials();
     let mut range = TaylorRange::new(monomials.variables(), monomials.order(), RangeKind::Tight);
@@ -135,7 +148,7 @@ fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, piece: Par
         ranges.extend(models.chunks_exact(space.size()).map(|model| range_of(&mut range, model)));
         between.extend(since.iter().map(|since| known(Range { lower: since.lower(), upper: since.upper() })));
     });
-    Enclosed { piece, ranges, between, lost, proof }
+    Enclosed { piece, ranges, between, lost, proof, before }
 }
 
 /// The hull of all pieces, unknown from where the first is lost.
@@ -155,12 +168,13 @@ fn hull_of_pieces(ensemble: &dyn Ensemble, proof: Proof, pieces: Vec<Enclosed>, 
     };
     let of_output = |output: usize| (0..ensemble.rows()).map(|row| since(row, output)).collect();
     let between = if sees_all { (0..outputs).map(of_output).collect() } else { Vec::new() };
-    let lost = pieces.iter().filter_map(|piece| piece.lost.as_ref()).min_by(|a, b| a.time.total_cmp(&b.time));
-    let note = lost.map(|Lost { time, why, .. }| {
-        let pieces = pieces.len();
-        format!(
-            "{why} at t = {time} s (in one of {pieces} pieces of the box): certified bounds are unknown from there on"
-        )
+    let lost = pieces.iter().filter_map(|piece| piece.lost.as_ref().map(|lost| (lost, piece)));
+    let lost = lost.min_by(|a, b| a.0.time.total_cmp(&b.0.time));
+    let note = lost.map(|(Lost { time, why, help, .. }, piece)| {
+        let count = pieces.len();
+        let is_no_further = piece.before.is_some_and(|before| piece.ranges.len() <= before);
+        let help = if is_no_further { "smaller pieces come no further, as where equations are singular or switch" } else { help };
+        format!("{why} at t = {time} s (in one of {count} pieces of the box): certified bounds are unknown from there on; {help}")
     });
     let simulated = Simulated { missing: ensemble.rows() - rows, ..Simulated::default() };
     let mut result = bands.finish(simulations, simulated);
@@ -205,11 +219,15 @@ impl Enclosed {
     }
 }
 
-/// The axis along which a piece has the largest share of the whole box.
-fn longest_axis(piece: &ParameterBox, whole: &ParameterBox) -> usize {
+/// The axis of which a piece is too wide, or along which it has the largest share of the whole box.
+fn axis_of_cut(piece: &ParameterBox, whole: &ParameterBox, too_wide: Option<usize>) -> usize {
+    let width = |axis: usize| piece.upper[axis] - piece.lower[axis];
+    if let Some(axis) = too_wide.filter(|&axis| width(axis) > 0.0) {
+        return axis;
+    }
     let share = |axis: usize| {
-        let width = whole.upper[axis] - whole.lower[axis];
-        if width > 0.0 { (piece.upper[axis] - piece.lower[axis]) / width } else { 0.0 }
+        let whole = whole.upper[axis] - whole.lower[axis];
+        if whole > 0.0 { width(axis) / whole } else { 0.0 }
     };
     (0..whole.dimension()).reduce(|a, b| if share(b) > 1.5 * share(a) { b } else { a }).unwrap_or(0)
 }

@@ -10,8 +10,8 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::followed::FollowedEnds;
-use super::proof::{EnclosedRow, Proof};
-use crate::certificate::{Certified, Piece};
+use super::proof::{EnclosedRow, EnclosureEnd, Proof};
+use crate::certificate::Certified;
 use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
@@ -176,32 +176,6 @@ impl Simulated {
         self.too_deep = TooDeep::first(self.too_deep.iter().chain(&shard.too_deep));
         let ratios = self.worst_ratio.take().into_iter().chain(shard.worst_ratio);
         self.worst_ratio = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a });
-    }
-}
-
-/// Why an enclosure ends before the last row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lost {
-    /// End of the step that could not be enclosed, s.
-    pub time: f64,
-    /// Why.
-    pub why: String,
-    /// Whether a smaller piece of the box may get further.
-    pub is_too_wide: bool,
-}
-
-/// How the enclosure of a piece of the box ended.
-#[derive(Clone, Debug, Default)]
-pub struct EnclosureEnd {
-    /// Why before the last row; at an interruption it just ends.
-    pub lost: Option<Lost>,
-    /// What was proven, for a certificate, where there is one.
-    pub piece: Option<Piece>,
-}
-
-impl From<Lost> for EnclosureEnd {
-    fn from(lost: Lost) -> Self {
-        Self { lost: Some(lost), piece: None }
     }
 }
 

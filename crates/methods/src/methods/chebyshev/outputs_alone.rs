@@ -6,10 +6,8 @@ use std::ops::Range as Rows;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::methods::ensemble::{
-    Closure, Combination, EnclosureEnd, Ensemble, EnsembleError, Observed, Sampling, Simulated,
-};
-use crate::methods::proof::{EnclosedRow, Proof};
+use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, Observed, Sampling, Simulated};
+use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
 use crate::numerics::{ParameterBox, Range, Sample};
 
 /// The outputs of an ensemble, and nothing that they follow from.

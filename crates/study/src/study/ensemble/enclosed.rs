@@ -47,8 +47,18 @@ fn jumps_with_the_motion(system: &System) -> bool {
     system.graph.reachable(&roots).iter().any(jumps)
 }
 
-fn lost(time: f64, why: EnclosureError) -> Lost {
-    Lost { time, why: why.to_string(), is_too_wide: why != EnclosureError::Undetermined }
+/// Why an enclosure ended, with the parameter of which the piece is too wide, where that can be told.
+fn lost(simulator: &Simulator, time: f64, why: EnclosureError, axis: Option<usize>) -> Lost {
+    let parameters = &simulator.system.parameters;
+    let help = match (why, axis.and_then(|axis| parameters.get(axis))) {
+        (EnclosureError::Undetermined, _) => {
+            "let `initial:` give as many values as there are degrees of freedom, each once".to_owned()
+        }
+        (_, Some(parameter)) => format!("a smaller interval of `{}` would help most", parameter.name),
+        (_, None) if parameters.is_empty() => "the equations are singular there, or switch".to_owned(),
+        _ => "smaller intervals of the parameters would help, unless the equations are singular there".to_owned(),
+    };
+    Lost { time, why: why.to_string(), is_too_wide: why != EnclosureError::Undetermined, axis, help }
 }
 
 /// Rows of the true motion.
@@ -63,12 +73,12 @@ pub(super) fn motion(
     let spaces = MotionSpaces::new(monomials.variables(), monomials.order());
     let mut enclosure = match MotionEnclosure::start(certifier, &spaces, &piece.lower, &piece.upper) {
         Ok(enclosure) => enclosure,
-        Err(why) => return lost(0.0, why).into(),
+        Err(why) => return lost(motions.simulator, 0.0, why, None).into(),
     };
     let (mut models, mut ended) = (Vec::new(), None);
     for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
         if let Err((time, why)) = enclosure.observe(motions.schedule.time(next), &mut models) {
-            ended = Some(lost(time, why));
+            ended = Some(lost(motions.simulator, time, why, enclosure.widest()));
             break;
         }
         row(&models, enclosure.since());
@@ -87,15 +97,15 @@ pub(super) fn scheme(
     let first_step = motions.schedule.first_step();
     let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, first_step) {
         Ok(enclosure) => enclosure,
-        Err(why) => return lost(0.0, why).into(),
+        Err(why) => return lost(motions.simulator, 0.0, why, None).into(),
     };
     let mut models = Vec::new();
     for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
         if let Err((time, why)) = enclosure.advance(motions.schedule, next) {
-            return lost(time, why).into();
+            return lost(motions.simulator, time, why, None).into();
         }
         if let Err(why) = enclosure.observe(&mut models) {
-            return lost(motions.schedule.time(next), why).into();
+            return lost(motions.simulator, motions.schedule.time(next), why, None).into();
         }
         row(&models, &[]);
     }

@@ -13,6 +13,7 @@
 //! Cells are halved until they can be proven, and doubled again where the defect is at rounding.
 
 mod approximation;
+mod cells;
 mod proof;
 
 use symdiff::taylor_model::{ModelSpace, up};
@@ -25,7 +26,8 @@ use crate::certificate::spaces::{Cell, Space};
 use crate::certificate::{Piece, ProvenCell};
 use crate::compile::{EquationsProgram, Tapes};
 use approximation::Approximation;
-use proof::{Claim, Proven, inverse_about};
+use cells::{Next, Passed};
+use proof::{Claim, inverse_about};
 
 /// Half the length of the first cell that is tried, s.
 const FIRST_HALF: f64 = 1.0 / 64.0;
@@ -35,22 +37,6 @@ const LONGEST_HALF: f64 = 0.25;
 
 /// Half the length below which a cell is not halved, s.
 const SHORTEST_HALF: f64 = 1.0 / 32768.0;
-
-/// Defect of the accelerations, relative to their size, above which a cell is halved.
-const LARGE_DEFECT: f64 = 1e-12;
-
-/// Last terms in τ, relative to the accelerations, below which they do not matter.
-const SMALL_DEFECT: f64 = 1e-13;
-
-/// Factor by which errors make the distance larger over a cell, above which the cell is halved.
-const LARGE_GAIN: f64 = 1.05;
-
-/// The same below which the next cell is twice as long.
-const SMALL_GAIN: f64 = 1.01;
-
-/// A cell of half the length is worth its proof where its gain is smaller by this factor: one of two such cells has at
-/// most half.
-const HELPFUL: f64 = 0.3;
 
 /// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
 const LARGE_REMAINDER: f64 = 1e-5;
@@ -74,57 +60,6 @@ impl MotionSpaces {
     /// Outputs' models: of the parameters.
     pub fn outputs(&self) -> &ModelSpace {
         &self.fine.box_of
-    }
-}
-
-/// A cell that is proven.
-#[derive(Debug)]
-struct Passed {
-    cell: Cell,
-    approximation: Approximation,
-    proven: Proven,
-    /// At the cell's start.
-    frame: Frame,
-    /// Outputs over the cell.
-    ranges: Vec<Interval>,
-}
-
-/// A cell that is proven, and what comes after it.
-struct Next {
-    cell: Cell,
-    approximation: Approximation,
-    proven: Proven,
-    /// The approximation at the cell's end.
-    end: Approximation,
-    /// At the cell's end.
-    frame: Frame,
-    /// Outputs over the cell.
-    ranges: Vec<Interval>,
-    /// Of the accelerations, relative to their size.
-    defect: f64,
-    /// Last terms of the accelerations with a power of τ, relative to their size: over this cell, over half of it, and over twice
-    /// its length.
-    tails: [f64; 3],
-    /// Factor by which errors make the distance larger.
-    gain: f64,
-}
-
-impl Next {
-    /// Whether a shorter cell has a smaller defect, and needs it.
-    fn is_coarse(&self) -> bool {
-        self.defect > LARGE_DEFECT && self.tails[0] > SMALL_DEFECT && self.tails[1] < 0.1 * self.tails[0]
-    }
-
-    /// Whether two cells of half the length are better than one.
-    fn is_better_than(&self, larger: &Self) -> bool {
-        let by_defect = larger.is_coarse() && self.defect < 0.5 * larger.defect;
-        by_defect || (larger.gain > LARGE_GAIN && self.gain - 1.0 < HELPFUL * (larger.gain - 1.0))
-    }
-
-    /// Whether a cell of twice the length is not coarse, by the polynomials.
-    fn may_be_doubled(&self) -> bool {
-        let is_fine = self.tails[2] < SMALL_DEFECT || self.tails[2] < 10.0 * self.tails[0];
-        is_fine && self.gain < SMALL_GAIN
     }
 }
 
@@ -266,6 +201,15 @@ impl<'s> MotionEnclosure<'s> {
         Ok(())
     }
 
+    /// The parameter to which the last terms of the velocities belong most, after the last cell; `None` without any.
+    pub fn widest(&self) -> Option<usize> {
+        let v = &self.last.as_ref()?.approximation.v;
+        let fine = &self.spaces.fine;
+        let share = |axis: usize| -> f64 { (0..v.rows).map(|row| fine.last_of_parameter(v.at(row, 0), axis)).sum() };
+        let axes = (0..fine.box_of.jets().monomials().variables()).map(|axis| (axis, share(axis)));
+        axes.filter(|(_, share)| *share > 0.0).max_by(|a, b| a.1.total_cmp(&b.1)).map(|(axis, _)| axis)
+    }
+
     /// What is proven so far, for a certificate.
     pub fn into_piece(self) -> Piece {
         self.piece
@@ -289,7 +233,7 @@ impl<'s> MotionEnclosure<'s> {
                         self.accept(before);
                         return Ok(());
                     }
-                    if can_halve && (next.is_coarse() || next.gain > LARGE_GAIN) {
+                    if can_halve && next.is_long() {
                         larger = Some(next);
                         self.half *= 0.5;
                         continue;
