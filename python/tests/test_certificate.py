@@ -97,6 +97,16 @@ def test_a_certificate_of_the_command_is_accepted(proven: Path) -> None:
     assert (found.pieces, found.bounds) == (1, 14)
 
 
+def test_a_certificate_of_a_closed_mechanism_is_accepted(tmp_path: Path) -> None:
+    model = Path(__file__).parents[2] / "models/slider_crank_one.yaml"
+    text = model.read_text(encoding="utf-8").replace("duration: 2,", "duration: 0.05,")
+    (tmp_path / "crank.yaml").write_text(text, encoding="utf-8")
+    paths = [str(tmp_path / "crank.yaml"), "-o", str(tmp_path / "out")]
+    invoke(["run", *paths, "--certify", "--method", "certified", "--set", "l1=0.15±0.1%", "--no-report", "-q"])
+    found = certificate.check(tmp_path / "out/certificate.jsonl", model=tmp_path / "crank.yaml")
+    assert (found.pieces, found.bounds) == (1, 12)
+
+
 def changed(proven: Path, kind: str, change: dict[str, object]) -> Path:
     """The certificate with the first line of a kind changed."""
     lines = (proven / "out/certificate.jsonl").read_text(encoding="utf-8").splitlines()

@@ -139,6 +139,21 @@ impl Space {
         }
     }
 
+    /// Polynomial with `shift` + `scale` τ in place of τ.
+    pub fn substituted(&self, model: &[f64], (shift, scale): (f64, f64), into: &mut [f64]) {
+        into.fill(0.0);
+        for (r, &power) in self.power.iter().enumerate().filter(|(r, _)| model[*r] != 0.0) {
+            // C(power, j) shift^(power − j) scale^j, from j = power down.
+            let (mut to, mut factor) = (Some(r), scale.powi(power as i32));
+            for j in (0..=power).rev() {
+                let Some(place) = to else { break };
+                into[place] += model[r] * factor;
+                factor *= shift / scale * j as f64 / (power - j + 1) as f64;
+                to = self.lowered[place];
+            }
+        }
+    }
+
     /// d/dt of a polynomial, with its rounding as radius.
     pub fn rate(&self, model: &[f64], half: f64, into: &mut [f64]) {
         into.fill(0.0);
@@ -218,6 +233,11 @@ mod tests {
         assert!(end[space.box_of.size() - 1] < 1e-14);
         space.rate(&v, 0.25, &mut rate);
         assert_eq!(rate[..size - 1], w[..size - 1]);
+        // (2 + τ/2)² = 4 + 2 τ + τ²/4.
+        let (mut square, mut moved) = (vec![0.0; size], vec![0.0; size]);
+        square[index([2, 0])] = 1.0;
+        space.substituted(&square, (2.0, 0.5), &mut moved);
+        assert_eq!([[0, 0], [1, 0], [2, 0]].map(|exponents| moved[index(exponents)]), [4.0, 2.0, 0.25]);
     }
 
     #[test]

@@ -258,7 +258,8 @@ impl<'s> MotionEnclosure<'s> {
             let coefficients = space.cell.size() - 1;
             space.cell.jets().variable(0, cell.middle, cell.half, &mut model[..coefficients]);
         }
-        let mut approximation = Approximation::first(fine, &self.start, cell);
+        let before = self.last.as_ref().map(|last| (last.cell, &last.approximation));
+        let mut approximation = Approximation::first(fine, &self.start, cell, before);
         let inverse = inverse_about(self.program, &coarse.cell, &mut self.coarse, &approximation)?;
         let mut lifted = Models::zero(&fine.cell, inverse.rows, inverse.columns);
         let kept = coarse.cell.size() - 1;
