@@ -408,7 +408,7 @@ class _Checker:
     def __init__(self, system: _System, piece: _Piece) -> None:
         self.system, self.piece = system, piece
         k, order = len(system.parameters), system.order
-        coarse = -(-order // 2)
+        coarse = -(-order // 2) + 1
         self.fine, self.coarse = Space(k + 1, order), Space(k + 1, coarse)
         self.box, self.coarse_box = Space(k, order), Space(k, coarse)
 

@@ -28,7 +28,7 @@ fn certified(text: &str) -> (Place, Vec<String>) {
     (place, lines)
 }
 
-/// What is said of a certificate of these lines.
+/// The verdict on a certificate of these lines.
 #[track_caller]
 fn verified(place: &Place, lines: &[String], arguments: &str, status: i32) -> String {
     fs::write(place.path().join("changed.jsonl"), lines.join("\n")).unwrap();

@@ -64,7 +64,7 @@ fn finish(place: &Place, study: &str, status: i32) -> usize {
     panic!("the study never ends");
 }
 
-/// Shards have samples only: what merges them proves, and writes the same certificate. The tension is unknown at the start.
+/// Shards have samples only: merging them proves, and writes the same certificate. The tension is unknown at first.
 #[test]
 fn merged_shards_have_the_certificate_of_a_run() {
     let place = Place::new();

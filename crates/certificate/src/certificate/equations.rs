@@ -27,7 +27,7 @@ pub enum Node {
     Unknown,
 }
 
-/// All that holds for a motion, and what is observed of it.
+/// All that holds for a motion, and its outputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Equations {
     /// Every node names earlier ones only.
@@ -36,9 +36,9 @@ pub struct Equations {
     pub coordinates: usize,
     /// Number of multipliers m.
     pub multipliers: usize,
-    /// What is zero at all times: the equations of motion and Φ̈, n + m nodes.
+    /// Zero at all times: the equations of motion and Φ̈, n + m nodes.
     pub motion: Vec<usize>,
-    /// What is zero at t = 0: n nodes that determine the positions, and n that determine the velocities then.
+    /// Zero at t = 0: n nodes that determine the positions, and n that determine the velocities then.
     pub start: [Vec<usize>; 2],
     /// Nodes of the outputs.
     pub outputs: Vec<usize>,
@@ -132,7 +132,7 @@ impl Node {
 }
 
 impl Equations {
-    /// Whether all indices name what is there, and rows are as many as unknowns.
+    /// Whether all indices are of something, and rows are as many as unknowns.
     pub fn is_sound(&self, parameters: usize) -> bool {
         let (n, m) = (self.coordinates, self.multipliers);
         let is_sound = |(place, node): (usize, &Node)| match *node {

@@ -4,7 +4,7 @@ use super::majorant::bound;
 use super::matrix::{Bounds, Models};
 use super::spaces::{Cell, Space, matrix_at};
 
-/// The transition matrix, approximately, and what it misses.
+/// The transition matrix, approximately, with its error.
 #[derive(Clone, Debug)]
 pub struct Flow {
     /// Φ̂, 2n × 2n, polynomials of (τ, ξ) of low order.
@@ -23,7 +23,8 @@ impl Flow {
         cell: Cell,
         slopes: &Models,
         sizes: &Bounds,
-        (jump, defect): (&[f64], &[f64]),
+        jump: &[f64],
+        defect: &[f64],
     ) -> Option<Self> {
         let growth = bound(sizes, jump, 2.0 * cell.half, defect)?;
         let transition = transition(space, cell, slopes);

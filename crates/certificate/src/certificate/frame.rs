@@ -1,7 +1,7 @@
 //! The distance of the true motion from the approximation, e = B(ξ) z with |zᵢ| ≤ rᵢ: B follows the transition matrix.
 //!
-//! Where B's columns become nearly parallel, B⁻¹ makes every error large. Then B R⁻¹ is the next B, and R z the next z, with
-//! the triangular factor R of B at the box's centre (Lohner): the columns that matter most come first.
+//! Where B's columns become nearly parallel, B⁻¹ makes every error large. Then B R⁻¹ is the next B, and R z the next z,
+//! with the triangular factor R of B at the box's centre (Lohner): the columns that matter most come first.
 
 use nalgebra::DMatrix;
 use symdiff::taylor_model::{ModelSpace, up};
@@ -106,7 +106,7 @@ struct Turned {
     lost: Vec<f64>,
 }
 
-/// B' = B P R⁻¹ of B P = Q R at the centre, where P sorts columns by what they contribute; z' = R Pᵀ z.
+/// B' = B P R⁻¹ of B P = Q R at the centre, where P sorts columns by their shares; z' = R Pᵀ z.
 fn turn(space: &ModelSpace, directions: &Models, radii: &[f64]) -> Option<Turned> {
     let size = directions.rows;
     let centre = DMatrix::from_fn(size, size, |row, column| directions.at(row, column)[0]);

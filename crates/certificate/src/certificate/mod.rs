@@ -32,7 +32,7 @@ pub struct ModelFile {
     pub sha256: String,
 }
 
-/// What is proven of a model.
+/// All that is proven of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// Name of the model.
@@ -43,7 +43,7 @@ pub struct Certificate {
     pub systems: Vec<Arc<Certified>>,
 }
 
-/// What is proven of one system of equations.
+/// All that is proven of one system of equations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certified {
     /// Names of the uncertain parameters, k.

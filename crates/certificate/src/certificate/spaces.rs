@@ -140,7 +140,7 @@ impl Space {
     }
 
     /// Polynomial with `shift` + `scale` τ in place of τ.
-    pub fn substituted(&self, model: &[f64], (shift, scale): (f64, f64), into: &mut [f64]) {
+    pub fn substituted(&self, model: &[f64], shift: f64, scale: f64, into: &mut [f64]) {
         into.fill(0.0);
         for (r, &power) in self.power.iter().enumerate().filter(|(r, _)| model[*r] != 0.0) {
             // C(power, j) shift^(power − j) scale^j, from j = power down.
@@ -236,7 +236,7 @@ mod tests {
         // (2 + τ/2)² = 4 + 2 τ + τ²/4.
         let (mut square, mut moved) = (vec![0.0; size], vec![0.0; size]);
         square[index([2, 0])] = 1.0;
-        space.substituted(&square, (2.0, 0.5), &mut moved);
+        space.substituted(&square, 2.0, 0.5, &mut moved);
         assert_eq!([[0, 0], [1, 0], [2, 0]].map(|exponents| moved[index(exponents)]), [4.0, 2.0, 0.25]);
     }
 

@@ -17,11 +17,11 @@ const VERSION: u32 = 1;
 pub struct FormatError {
     /// From 1.
     pub line: usize,
-    /// What is wrong.
+    /// The fault.
     pub why: String,
 }
 
-/// A line of the file: an object with one key, which says what it is.
+/// A line of the file: an object with one key, which names its kind.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 enum Line {
@@ -127,7 +127,7 @@ pub fn read(text: &str) -> Result<Certificate, FormatError> {
     found.ok_or_else(|| FormatError { line: 1, why: "the file is empty".to_owned() })
 }
 
-/// Adds a line to what is read so far.
+/// Adds a line to those read so far.
 fn add(found: &mut Option<Certificate>, line: Line) -> Result<(), String> {
     if let Line::Certificate { version, model, files } = line {
         if version != VERSION {

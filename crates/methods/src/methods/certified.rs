@@ -22,8 +22,8 @@ struct Room {
     radius: f64,
 }
 
-/// So that a second checker of a certificate, in other arithmetic, finds the same bands.
-const ROOM: Room = Room { width: 1e-6, size: 1e-12, radius: 1.0 };
+/// So that a second checker of a certificate, whose radii may be larger, finds the same bands.
+const ROOM: Room = Room { width: 1e-6, size: 1e-12, radius: 3.0 };
 
 /// Certified bounds: proven for every parameter of the box.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,6 +74,12 @@ impl BoundingMethod for Certified {
     }
 }
 
+/// A piece that is to be enclosed, and the number of ranges of the larger piece that it was cut from.
+struct Open {
+    piece: ParameterBox,
+    before: Option<usize>,
+}
+
 /// Ranges of a piece, row by row, output by output, as far as they go.
 struct Enclosed {
     piece: ParameterBox,
@@ -95,8 +101,7 @@ fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
         return MethodResult { note: Some(note), ..hull_of_pieces(ensemble, proof, Vec::new(), 0) };
     }
     let space = ModelSpace::new(domain.dimension(), proof.orders()[domain.dimension()]);
-    // With the rows that the piece had before it was cut.
-    let mut open = vec![(domain.clone(), None)];
+    let mut open = vec![Open { piece: domain.clone(), before: None }];
     let mut closed: Vec<Enclosed> = Vec::new();
     let mut simulations = 0;
     while !open.is_empty() {
@@ -127,19 +132,16 @@ fn enclosed(ensemble: &dyn Ensemble, proof: Proof) -> MethodResult {
                 2 => halved(&enclosed.piece).into(),
                 _ => halved(&enclosed.piece).iter().flat_map(halved).collect(),
             };
-            open.extend(pieces.into_iter().map(|piece| (piece, Some(enclosed.ranges.len()))));
+            let before = Some(enclosed.ranges.len());
+            open.extend(pieces.into_iter().map(|piece| Open { piece, before }));
         }
     }
     hull_of_pieces(ensemble, proof, closed, simulations)
 }
 
 /// One piece, as far as it goes.
-fn enclose(
-    ensemble: &dyn Ensemble,
-    proof: Proof,
-    space: &ModelSpace,
-    (piece, before): (ParameterBox, Option<usize>),
-) -> Enclosed {
+fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, open: Open) -> Enclosed {
+    let Open { piece, before } = open;
     let mut ranges = Vec::with_capacity(ensemble.rows() * ensemble.outputs());
     let monomials = space.jets().monomials();
     let mut range = TaylorRange::new(monomials.variables(), monomials.order(), RangeKind::Tight);

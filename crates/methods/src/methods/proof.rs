@@ -64,7 +64,7 @@ pub struct Lost {
 pub struct EnclosureEnd {
     /// Why before the last row; at an interruption it just ends.
     pub lost: Option<Lost>,
-    /// What was proven, for a certificate, where there is one.
+    /// The proof, for a certificate, where there is one.
     pub piece: Option<Piece>,
 }
 

@@ -43,7 +43,7 @@ pub struct MethodResult {
     pub simulated: Simulated,
     /// The surrogate, where it is to be kept.
     pub kept: Option<KeptSurrogate>,
-    /// What was proven, where something was.
+    /// The proof, where there is one.
     pub certified: Option<Arc<Certified>>,
 }
 

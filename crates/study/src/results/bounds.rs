@@ -28,7 +28,7 @@ pub struct Bounds {
     pub witnesses: Vec<Witness>,
     /// Functions of excitations under which outputs go the furthest, where something is excited.
     pub functions: Vec<FunctionWitness>,
-    /// What is proven of each subsystem of which something is.
+    /// Proofs of subsystems, for a certificate.
     pub certified: Vec<Arc<Certified>>,
 }
 

@@ -103,7 +103,7 @@ impl Shapes {
     }
 }
 
-/// What is proven over a cell.
+/// A cell that is proven.
 pub(super) struct Passed {
     pub cell: Cell,
     /// Polynomials of the motion over the cell.
@@ -135,7 +135,7 @@ impl Passed {
         let (fine, coarse) = (&shapes.fine, &shapes.coarse);
         let n = motion.equations.coordinates;
         let cell = Cell { middle: proven.middle, half: proven.half };
-        let state = integrated(fine, cell, (q, v), proven);
+        let state = integrated(fine, cell, q, v, proven);
         // How far ŷ(−1) is from the polynomials that it begins with.
         let begun = [matrix_at(fine, &state.q, -1.0), matrix_at(fine, &state.v, -1.0)];
         let jump: Vec<f64> = begun.iter().zip([q, v]).flat_map(|(at, start)| distances(fine, at, start)).collect();
@@ -160,7 +160,7 @@ impl Passed {
         {
             return Err(Open::Leaves { place, reached: reached[place], tube: proven.tube[place] });
         }
-        let flow = Flow::new(coarse, cell, &linear.slopes, &sizes, (&jump, &defect)).ok_or(Open::Transition)?;
+        let flow = Flow::new(coarse, cell, &linear.slopes, &sizes, &jump, &defect).ok_or(Open::Transition)?;
         let end = (matrix_at(fine, &state.q, 1.0), matrix_at(fine, &state.v, 1.0));
         let rounded = |models: &Models| (0..n).map(|row| models.at(row, 0)[fine.box_of.size() - 1]).collect::<Vec<_>>();
         let added = [rounded(&end.0), rounded(&end.1)].concat();
@@ -186,7 +186,7 @@ impl Passed {
 }
 
 /// q̂ and v̂ as integrals of ŵ from the start of a cell.
-fn integrated(space: &Space, cell: Cell, (q, v): (&Models, &Models), proven: &ProvenCell) -> State {
+fn integrated(space: &Space, cell: Cell, q: &Models, v: &Models, proven: &ProvenCell) -> State {
     let fill = |polynomials: &[Vec<f64>]| {
         let mut models = Models::zero(&space.cell, polynomials.len(), 1);
         for (row, own) in polynomials.iter().enumerate() {

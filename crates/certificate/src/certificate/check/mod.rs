@@ -2,8 +2,8 @@
 //!
 //! Nothing but the equations and the arithmetic of Taylor models is trusted. For each piece of the box a start near the
 //! given polynomials is proven; positions and velocities are the integrals of the accelerations that are given; over
-//! each cell a motion cannot leave the tube about them ([`cell`]); at the rows its outputs are within the bounds. Pieces
-//! have to cover the box, cells the time without a gap.
+//! each cell a motion cannot leave the tube about them ([`cell`]); at the rows its outputs are within the bounds.
+//! Pieces have to cover the box, cells the time without a gap.
 
 mod cell;
 mod evaluation;
@@ -24,7 +24,7 @@ use range::Ranges;
 /// Most cells of a grid through all ends of pieces.
 const MOST_PARTS: usize = 10_000_000;
 
-/// What was checked.
+/// How much was checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Checked {
     /// Pieces of boxes.
@@ -43,7 +43,7 @@ pub enum Refusal {
     Malformed {
         /// From 1.
         system: usize,
-        /// What does not fit.
+        /// Which.
         what: String,
     },
     /// Some parameters are in no piece.
@@ -59,7 +59,7 @@ pub enum Refusal {
         system: usize,
         /// From 1.
         piece: usize,
-        /// What does not follow.
+        /// Which statement, and why it does not follow.
         why: String,
     },
 }
@@ -150,7 +150,8 @@ fn is_covered(own: &Certified) -> bool {
 fn check_piece(own: &Certified, piece: &Piece) -> Result<(), String> {
     let (equations, k) = (&own.equations, own.parameters.len());
     let (n, m) = (equations.coordinates, equations.multipliers);
-    let (fine, coarse) = (Space::new(k, own.order), Space::new(k, own.order.div_ceil(2)));
+    // Derivatives by differentiation lose more than symbolic ones: one order more than the search has.
+    let (fine, coarse) = (Space::new(k, own.order), Space::new(k, own.order.div_ceil(2) + 1));
     let parameters = |space: &ModelSpace, first: usize| -> Vec<Vec<f64>> {
         let variable = |index: usize| {
             let mut model = vec![0.0; space.size()];
@@ -172,11 +173,11 @@ fn check_piece(own: &Certified, piece: &Piece) -> Result<(), String> {
     let is_stated = |row: usize| own.bounds[row].iter().any(Option::is_some);
     for (index, proven) in piece.cells.iter().enumerate() {
         let why = |why: String| format!("cell {} from {time} s: {why}", index + 1);
-        let cell = shaped(proven, time, &shapes, (n, m)).map_err(why)?;
+        let cell = shaped(proven, time, &shapes, &motion).map_err(why)?;
         let passed = Passed::new(&motion, &shapes, &at, frame, proven).map_err(|open| why(said(&open, n)))?;
         while row < own.times.len() && own.times[row] <= cell.end() {
             if is_stated(row) {
-                observed(own, row, &passed, (&motion, &of_outputs), &shapes, &ranges)?;
+                observed(own, row, &passed, &motion, &of_outputs, &shapes, &ranges)?;
             }
             row += 1;
         }
@@ -235,7 +236,8 @@ fn started(own: &Certified, piece: &Piece, shapes: &Shapes) -> Result<((Models, 
 }
 
 /// The cell's time: a power of two long, at a multiple of it, from where the one before ends.
-fn shaped(proven: &ProvenCell, time: f64, shapes: &Shapes, (n, m): (usize, usize)) -> Result<Cell, String> {
+fn shaped(proven: &ProvenCell, time: f64, shapes: &Shapes, motion: &Unknowns) -> Result<Cell, String> {
+    let (n, m) = (motion.equations.coordinates, motion.equations.multipliers);
     let ProvenCell { middle, half, w, lambda, tube } = proven;
     let is_power_of_two = *half > 0.0 && half.is_normal() && half.to_bits().trailing_zeros() >= 52;
     // Then ends are exact.
@@ -260,7 +262,8 @@ fn observed(
     own: &Certified,
     row: usize,
     passed: &Passed,
-    (motion, of_outputs): (&Unknowns, &[usize]),
+    motion: &Unknowns,
+    of_outputs: &[usize],
     shapes: &Shapes,
     ranges: &Ranges,
 ) -> Result<(), String> {

@@ -96,7 +96,7 @@ pub(super) fn free(program: &EquationsProgram, level: usize) -> Vec<usize> {
     (0..program.layout.q.len()).filter(is_free).collect()
 }
 
-/// Whether what is not given is open, and stays at the nominal values for every ξ.
+/// Whether all else is open, and stays at the nominal values for every ξ.
 pub(super) fn is_at_nominal(simulator: &Simulator, program: &EquationsProgram, level: usize) -> bool {
     let free = free(program, level);
     let start = [program.layout.q.start, program.layout.v.start][level];

@@ -31,9 +31,9 @@ impl Approximation {
     /// The first guess: accelerations and multipliers of the cell before, extrapolated; without one as at the start.
     pub fn first(space: &Space, start: &Self, cell: Cell, before: Option<(Cell, &Self)>) -> Self {
         let extrapolate = |before: Cell, of_cell: &Models| {
-            let map = ((cell.middle - before.middle) / before.half, cell.half / before.half);
+            let (shift, scale) = ((cell.middle - before.middle) / before.half, cell.half / before.half);
             let mut found = Models::zero(&space.cell, of_cell.rows, 1);
-            (0..of_cell.rows).for_each(|row| space.substituted(of_cell.at(row, 0), map, found.at_mut(row, 0)));
+            (0..of_cell.rows).for_each(|row| space.substituted(of_cell.at(row, 0), shift, scale, found.at_mut(row, 0)));
             found
         };
         let lift = |of_box: &Models| {

@@ -48,8 +48,8 @@ pub(super) struct Next {
     pub ranges: Vec<Interval>,
     /// Of the accelerations, relative to their size.
     pub defect: f64,
-    /// Last terms of the accelerations with a power of τ, relative to their size: over this cell, over half of it, and over twice
-    /// its length.
+    /// Last terms of the accelerations with a power of τ, relative to their size: over this cell, over half of it, and
+    /// over twice its length.
     pub tails: [f64; 3],
     /// Factor by which errors make the distance larger.
     pub gain: f64,

@@ -85,7 +85,7 @@ pub struct MotionEnclosure<'s> {
     last: Option<Passed>,
     /// Within which each output is since the time before the one that was observed last.
     since: Vec<Interval>,
-    /// What is proven so far.
+    /// The proof so far.
     piece: Piece,
 }
 
@@ -210,7 +210,7 @@ impl<'s> MotionEnclosure<'s> {
         axes.filter(|(_, share)| *share > 0.0).max_by(|a, b| a.1.total_cmp(&b.1)).map(|(axis, _)| axis)
     }
 
-    /// What is proven so far, for a certificate.
+    /// The proof so far, for a certificate.
     pub fn into_piece(self) -> Piece {
         self.piece
     }

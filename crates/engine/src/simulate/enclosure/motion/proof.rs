@@ -16,8 +16,9 @@ use crate::numerics::larger;
 /// Most tubes that are tried.
 const TUBES: usize = 4;
 
-/// Factor from the bound that one tube gave to the next tube.
-const WIDER: f64 = 1.5;
+/// Factor from the bound that one tube gave to the next tube. Much more than is needed here, for a checker whose bounds
+/// are larger; distances are far too small for it to matter to the derivatives.
+const WIDER: f64 = 4.0;
 
 /// What holds over a cell for every ξ, for the distance e = y − ŷ of a motion y from the approximation ŷ, y = (q, v).
 #[derive(Clone, Debug)]
@@ -80,7 +81,7 @@ impl Claim<'_> {
             let reached = bound(&slopes, &entry, duration, &defect).ok_or(EnclosureError::Unproven)?;
             // Written so that NaN is no proof.
             if reached.iter().zip(&tube).all(|(reached, tube)| reached < tube) {
-                let flow = Flow::new(self.coarse, self.cell, &linear.slopes, &slopes, (self.jump, &defect));
+                let flow = Flow::new(self.coarse, self.cell, &linear.slopes, &slopes, self.jump, &defect);
                 let flow = flow.ok_or(EnclosureError::Unproven)?;
                 return Ok(Proven { flow, defect, slopes, tube });
             }
