@@ -326,8 +326,8 @@ impl<'s> MotionEnclosure<'s> {
         self.piece.cells.push(ProvenCell {
             middle: cell.middle,
             half: cell.half,
-            w: polynomials(&approximation.w),
-            lambda: polynomials(&approximation.lambda),
+            w: rounded(polynomials(&approximation.w)),
+            lambda: rounded(polynomials(&approximation.lambda)),
             tube: proven.tube.clone(),
         });
         self.last = Some(Passed { cell, approximation, proven, frame, ranges });
@@ -355,6 +355,18 @@ impl<'s> MotionEnclosure<'s> {
 fn polynomials(of: &Models) -> Vec<Vec<f64>> {
     let polynomial = |row: usize| of.at(row, 0).split_last().map_or_else(Vec::new, |(_, own)| own.to_vec());
     (0..of.rows).map(polynomial).collect()
+}
+
+/// The same to a share of 2⁻⁵⁸ of their sizes: small coefficients need few digits, and no proof trusts them.
+fn rounded(mut polynomials: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for own in &mut polynomials {
+        let size: f64 = own.iter().map(|c| c.abs()).sum();
+        let unit = 2.0_f64.powi(symdiff::math::log2(size).ceil() as i32 - 58);
+        if unit.is_normal() {
+            own.iter_mut().for_each(|c| *c = (*c / unit).round() * unit);
+        }
+    }
+    polynomials
 }
 
 /// Radii of positions and velocities, 2n.
