@@ -59,15 +59,13 @@ fn symbols(system: &System) -> FxHashMap<Expr, Node> {
     let mut symbols = FxHashMap::from_iter([(system.time, Node::Time)]);
     let parameters = system.parameters.iter().enumerate();
     symbols.extend(parameters.map(|(index, parameter)| (parameter.symbol, Node::Parameter(index))));
-    let blocks: [(&[Expr], fn(usize) -> Node); 4] = [
-        (&system.q, Node::Position),
-        (&system.v, Node::Velocity),
-        (&system.w, Node::Acceleration),
-        (&system.lambda, Node::Multiplier),
-    ];
-    for (block, node) in blocks {
+    let mut add = |block: &[Expr], node: fn(usize) -> Node| {
         symbols.extend(block.iter().enumerate().map(|(index, &symbol)| (symbol, node(index))));
-    }
+    };
+    add(&system.q, Node::Position);
+    add(&system.v, Node::Velocity);
+    add(&system.w, Node::Acceleration);
+    add(&system.lambda, Node::Multiplier);
     symbols
 }
 

@@ -177,9 +177,9 @@ impl Passed {
         let mut state = State { q: at(q), v: at(v), w: at(w), lambda: at(lambda) };
         let errors = self.frame.error_at(coarse, &self.flow, tau);
         let (n, last) = (state.q.rows, fine.box_of.size() - 1);
-        for row in 0..2 * n {
+        for (row, error) in errors.iter().enumerate() {
             let model = if row < n { state.q.at_mut(row, 0) } else { state.v.at_mut(row - n, 0) };
-            model[last] = up(model[last] + errors[row]);
+            model[last] = up(model[last] + error);
         }
         state
     }
