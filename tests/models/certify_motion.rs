@@ -261,6 +261,7 @@ simulation: { duration: 1.4, step: 1e-3, output_step: 0.1 }
     ));
     let failure = failure.expect("the motion ends at 1.25 s");
     assert!(failure.contains("certified bounds are unknown from there on"), "{failure}");
+    assert!(failure.contains("smaller pieces come no further, as where equations are singular"), "{failure}");
     let certified = band(output(&bounds, "x"), Method::Certified);
     assert_eq!(certified.lower.len(), bounds.times.len());
     assert!(certified.lower[0] <= 1.0 && certified.upper[0] >= 1.0 && certified.upper[12].is_finite());
