@@ -5,6 +5,10 @@ pub mod assemble {
     pub use crate::assemble::{Questions, build, in_absolute_coordinates, in_joint_coordinates};
 }
 
+pub mod certificate {
+    pub use crate::certificate::{Certificate, check};
+}
+
 pub mod cli {
     pub use crate::cli::main;
 }

@@ -19,6 +19,7 @@ pub use results::{
 pub use syntax::Diagnostics;
 
 // Rooms of the crates below keep their names here.
+use mbint_certificate::certificate;
 use mbint_engine::{assemble, c_code, compile, reduce, simulate};
 use mbint_export::export;
 use mbint_language::{grammar, syntax};

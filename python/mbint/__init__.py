@@ -7,6 +7,7 @@
 The command ``mbint`` does the work; this package writes its input and reads its results.
 """
 
+from . import certificate
 from ._command import MbintError, command, version
 from .designing import Design, design
 from .fitting import Fit, fit
@@ -28,6 +29,7 @@ __all__ = [
     "Verification",
     "allocate",
     "bounds",
+    "certificate",
     "check",
     "command",
     "cost",

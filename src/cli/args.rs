@@ -31,7 +31,7 @@ pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 pub(super) use shared::{AskedArgs, OneRunArgs, RootArgs, SetArgs, Threads, overlaid};
 pub(super) use sweep::SweepArgs;
-pub(super) use verify::VerifyArgs;
+pub(super) use verify::{VerifyArgs, VerifyCertificateArgs};
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.
 #[derive(Debug, Parser)]
@@ -61,6 +61,8 @@ pub(super) enum Command {
     Fit(FitArgs),
     /// Verify that a model integrates as theory tells, against manufactured motions of its own.
     Verify(VerifyArgs),
+    /// Check again what `mbint run --certify` has proven, from its file.
+    VerifyCertificate(VerifyCertificateArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Make report.html again from a folder of results.

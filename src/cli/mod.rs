@@ -6,6 +6,7 @@ mod answer_fmu;
 mod args;
 mod assemblies;
 mod black_box;
+mod certificate;
 mod check;
 mod console;
 mod cost;
@@ -156,6 +157,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Design(args) => design::design(args, console),
         Command::Fit(args) => fit::fit(args, console),
         Command::Verify(args) => verify::verify(&args, console),
+        Command::VerifyCertificate(args) => certificate::verify(&args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),

@@ -49,7 +49,7 @@ impl Status {
             ),
             Self::NotMet => (
                 4,
-                "what was to hold does not: a requirement is violated; with `mbint fit`, no parameters agree with all rows; with `mbint design`, no values meet the requirements; with `mbint verify`, errors do not fall as theory tells; with `mbint snapshot --check`, a bound is not as it was recorded, or nothing is recorded",
+                "what was to hold does not: a requirement is violated; with `mbint fit`, no parameters agree with all rows; with `mbint design`, no values meet the requirements; with `mbint verify`, errors do not fall as theory tells; with `mbint verify-certificate`, a bound does not follow; with `mbint snapshot --check`, a bound is not as it was recorded, or nothing is recorded",
                 "all results; `mbint snapshot --check` writes nothing",
             ),
             // EX_TEMPFAIL of sysexits.h.

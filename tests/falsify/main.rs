@@ -16,6 +16,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
+mod certified;
 mod draw;
 mod excited;
 mod families;
@@ -271,4 +272,18 @@ fn ends_over_functions_are_honest() {
 #[test]
 fn root_mean_squares_are_honest() {
     excited(60, excited::squares);
+}
+
+/// Certified bands hold every motion; of some draws there are some.
+fn proven(draws: u64) {
+    let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
+    let tally = certified::compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
+    println!("{tally}");
+    assert!(tally.proven > 0 && tally.missed == 0, "{tally}");
+}
+
+#[test]
+#[ignore = "a minute"]
+fn certified_bands_hold_the_truth() {
+    proven(60);
 }

@@ -8,6 +8,7 @@ mod analyses;
 mod bad_models;
 mod black_box;
 mod book;
+mod certificate;
 mod check_and_run;
 mod cli;
 mod cost;

@@ -64,6 +64,19 @@ fn finish(place: &Place, study: &str, status: i32) -> usize {
     panic!("the study never ends");
 }
 
+/// Shards have samples only: merging them proves, and writes the same certificate. The tension is unknown at first.
+#[test]
+fn merged_shards_have_the_certificate_of_a_run() {
+    let place = Place::new();
+    fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
+    place.run("run pendulum.yaml -o direct -q --certify", 3);
+    place.run("plan pendulum.yaml -o study --at-once 0 --certify", 0);
+    finish(&place, "study", 3);
+    let direct = tree(&place.path().join("direct"));
+    assert!(direct.iter().any(|(name, _)| name.ends_with("certificate.jsonl")));
+    assert_eq!(direct, tree(&place.path().join("study-results")));
+}
+
 #[test]
 fn merged_shards_are_the_run() {
     let place = Place::new();

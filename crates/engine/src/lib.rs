@@ -5,6 +5,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
 // Rooms of the crates below keep their names here.
+use mbint_certificate::certificate;
 use mbint_language::{grammar, multibody, syntax};
 use mbint_model::{elements, model};
 use mbint_numerics::numerics;

@@ -4,6 +4,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
 // Rooms of the crates below keep their names here.
+use mbint_certificate::certificate;
 use mbint_engine::compile;
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;

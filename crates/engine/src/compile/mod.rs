@@ -8,7 +8,7 @@
 //! - `step` → `program`: the tapes of a step, `first_correction` what a factorisation spares the correction after it;
 //!   `start`: the tapes of a consistent start (`start_equations`, `start_program`, `start_factors`), `at_sample` the
 //!   numbers that it is planned by, `nearest` what decides where it is open; `rounding`: how exactly constraints can
-//!   be computed; `equation_tapes`: the equations alone;
+//!   be computed; `equation_tapes`: the equations alone, `equation_list` the same for certificates;
 //! - `powers`: the balance of power as outputs;
 //! - `switches`: where the equations switch, as at contacts; `combinations`: numbers through which several parameters
 //!   act alone;
@@ -17,6 +17,7 @@
 mod at_sample;
 mod combinations;
 mod elimination;
+mod equation_list;
 mod equation_tapes;
 mod equations;
 mod first_correction;
@@ -40,6 +41,7 @@ mod tapes;
 pub mod tuning;
 
 pub use combinations::{Combination, combinations};
+pub use equation_list::{AtStart, list_equations};
 pub use equation_tapes::{EquationsProgram, compile_equations};
 pub use equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 pub use layout::Layout;

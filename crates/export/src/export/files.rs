@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::certificate::{self, Certificate};
 use crate::export::analysis::{configuration_csv, response_contributions_csv, response_csv, response_svgs};
 use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
 use crate::export::function_witness::function_witness_csv;
-use crate::export::owned::{PAGE, SCHEMA, SUMMARY};
+use crate::export::owned::{CERTIFICATE, PAGE, SCHEMA, SUMMARY};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
 use crate::export::stack;
 use crate::export::statistics::{reduced_statistics_csv, statistics_csv};
@@ -20,7 +21,7 @@ use crate::export::{
     reduced_csv,
 };
 use crate::grammar::display_unit::DisplayUnit;
-use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};
+use crate::results::{Bounds, ModelFile, OutputBounds, PeakSummary, Provenance, Summary};
 
 /// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known,
 /// what a report needs where there is to be one, and `summary.json` into `dir`, which is created if it does not exist.
@@ -53,6 +54,16 @@ pub fn write_results(
     }
     if !summary.reduced.is_empty() {
         files.add("reduced.csv", &reduced_csv(&summary.reduced)?)?;
+    }
+    if !bounds.certified.is_empty() {
+        let of_file =
+            |file: &ModelFile| certificate::ModelFile { name: file.name.clone(), sha256: file.sha256.clone() };
+        let certificate = Certificate {
+            model: summary.model.clone(),
+            files: provenance.model_files.iter().map(of_file).collect(),
+            systems: bounds.certified.clone(),
+        };
+        files.add(CERTIFICATE, certificate::write(&certificate).as_bytes())?;
     }
     if !bounds.witnesses.is_empty() {
         files.add("witnesses.csv", &witnesses_csv(bounds, &summary.parameters)?)?;

@@ -13,6 +13,9 @@ use crate::syntax::text_file::regular;
 /// The summary's file.
 pub const SUMMARY: &str = "summary.json";
 
+/// The file of the proof of certified bounds.
+pub(super) const CERTIFICATE: &str = "certificate.jsonl";
+
 /// The report's file: of whatever run, it is made of the other files.
 pub(super) const PAGE: &str = "report.html";
 

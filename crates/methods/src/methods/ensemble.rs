@@ -10,7 +10,8 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::followed::FollowedEnds;
-use super::proof::{EnclosedRow, Proof};
+use super::proof::{EnclosedRow, EnclosureEnd, Proof};
+use crate::certificate::Certified;
 use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{CutMotions, EMPTY, ParameterBox, Range, Sample, ScanBounds, ScanGrid, SegmentMotions};
 
@@ -178,17 +179,6 @@ impl Simulated {
     }
 }
 
-/// Why an enclosure ends before the last row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lost {
-    /// End of the step that could not be enclosed, s.
-    pub time: f64,
-    /// Why.
-    pub why: String,
-    /// Whether a smaller piece of the box may get further.
-    pub is_too_wide: bool,
-}
-
 /// Times, and motions at them.
 pub type DenseMotions = (Vec<f64>, Vec<f64>);
 
@@ -321,9 +311,13 @@ pub trait Ensemble: Sync {
     /// What prevents this proof, if something does.
     fn obstacle_to_enclosure(&self, proof: Proof) -> Option<String>;
 
-    /// Encloses the outputs over a piece of the box; `row` gets one row after the other. Returns why it ended early; at
-    /// an interruption it just ends.
-    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> Option<Lost>;
+    /// Encloses the outputs over a piece of the box; `row` gets one row after the other.
+    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> EnclosureEnd;
+
+    /// A certificate of nothing yet, with the equations; `None` where there are none.
+    fn certified(&self) -> Option<Certified> {
+        None
+    }
 
     /// Scale of every coordinate (n).
     fn scales(&self) -> &[f64];

@@ -22,12 +22,12 @@ mod taylor;
 pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose, ends_of_combinations};
 pub use ensemble::{
-    Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Lost, Observed,
-    OfParameters, Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
+    Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Observed, OfParameters,
+    Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
 pub use followed::{Followed, FollowedEnds, Sensitivity};
 pub use kept::KeptSurrogate;
-pub use proof::{EnclosedRow, Proof};
+pub use proof::{EnclosedRow, EnclosureEnd, Lost, Proof};
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, MethodResult};

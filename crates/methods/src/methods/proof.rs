@@ -2,6 +2,8 @@
 
 use symdiff::Interval;
 
+use crate::certificate::Piece;
+
 /// Order of the polynomials by the number of parameters, of a proof of the motion: pieces and coefficients grow with
 /// powers of that number.
 const ORDER_OF_MOTION: [usize; 4] = [14, 12, 12, 8];
@@ -41,3 +43,33 @@ impl Proof {
 /// Takes the Taylor models of a row's outputs, and within which each output is since the row before; nothing where that
 /// is not known.
 pub type EnclosedRow<'r> = dyn FnMut(&[f64], &[Interval]) + 'r;
+
+/// Why an enclosure ends before the last row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lost {
+    /// End of the step that could not be enclosed, s.
+    pub time: f64,
+    /// Why.
+    pub why: String,
+    /// Whether a smaller piece of the box may get further.
+    pub is_too_wide: bool,
+    /// The parameter of which the piece is too wide, where that can be told.
+    pub axis: Option<usize>,
+    /// What would help, for people.
+    pub help: String,
+}
+
+/// How the enclosure of a piece of the box ended.
+#[derive(Clone, Debug, Default)]
+pub struct EnclosureEnd {
+    /// Why before the last row; at an interruption it just ends.
+    pub lost: Option<Lost>,
+    /// The proof, for a certificate, where there is one.
+    pub piece: Option<Piece>,
+}
+
+impl From<Lost> for EnclosureEnd {
+    fn from(lost: Lost) -> Self {
+        Self { lost: Some(lost), piece: None }
+    }
+}

@@ -1,11 +1,13 @@
 //! What a method finds.
 
 use std::ops::Range as Rows;
+use std::sync::Arc;
 
 use super::ensemble::Simulated;
 use super::followed::Sensitivity;
 use super::kept::KeptSurrogate;
 use super::validation::Validation;
+use crate::certificate::Certified;
 use crate::numerics::{Range, largest, surrogate_error};
 
 /// How much further a polynomial may be from a function with a kink than it is at validation samples: it is worst at
@@ -41,6 +43,8 @@ pub struct MethodResult {
     pub simulated: Simulated,
     /// The surrogate, where it is to be kept.
     pub kept: Option<KeptSurrogate>,
+    /// The proof, where there is one.
+    pub certified: Option<Arc<Certified>>,
 }
 
 /// Estimates of one output in one row.
@@ -155,6 +159,7 @@ impl BandBuilder {
             expanded: (0..self.expanded.len()).filter(|&output| self.expanded[output]).collect(),
             simulated,
             kept: None,
+            certified: None,
         }
     }
 }

@@ -1,6 +1,9 @@
 //! What a run yields: bounds of every output over time.
 
+use std::sync::Arc;
+
 use super::FunctionWitness;
+use crate::certificate::Certified;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::Method;
 use crate::model::Analysis;
@@ -25,6 +28,8 @@ pub struct Bounds {
     pub witnesses: Vec<Witness>,
     /// Functions of excitations under which outputs go the furthest, where something is excited.
     pub functions: Vec<FunctionWitness>,
+    /// Proofs of subsystems, for a certificate.
+    pub certified: Vec<Arc<Certified>>,
 }
 
 /// A simulated sample at which an output is the least or the largest in a row of all that were simulated in the search

@@ -110,6 +110,8 @@ pub fn bounds_of_pieces(pieces: &[Piece]) -> Bounds {
         // Those of a piece are ends of the piece.
         witnesses: Vec::new(),
         functions: Vec::new(),
+        // Proofs of a piece are of the piece.
+        certified: Vec::new(),
     }
 }
 

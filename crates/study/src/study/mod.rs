@@ -77,7 +77,7 @@ pub use gradient::{GradientError, gradient};
 pub use internal::{InternalError, caught, record_panics};
 pub use motion::{MotionOptions, motion};
 pub use price::{Allowance, Memory, Price};
-pub use ready::{COMPILING, Ready, built, ready};
+pub use ready::{COMPILING, Ready, built, equations, ready};
 pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
 pub use structure::structure;
@@ -170,7 +170,7 @@ pub enum RunError {
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    let pool = pool(options.threads)?;
     let model = reduced::expanded(description);
     let allowance = Allowance::begin();
     // Nothing tells how long a program takes.
@@ -200,12 +200,20 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
 /// # Errors
 /// As for [`run`].
 pub fn run_keeping(description: &Description, options: Options) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    let pool = pool(options.threads)?;
     let model = reduced::expanded(description);
     let (bounds, summary, kept) = pool.install(|| reduced::run(&model, &options, true))?;
     let (mut bounds, mut summary) = reduced::shown(description, &model, (bounds, summary));
     zones::joined(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))
+}
+
+/// The threads of a run: so many, or one per core.
+///
+/// # Errors
+/// Where they cannot be started.
+pub fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
+    rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()
 }
 
 /// A compiled model: of what `run` simulates, all in one.

@@ -7,8 +7,10 @@ use super::price::{Memory, Price};
 use super::problem::Study;
 use super::{Options, RunError, reduced};
 use crate::assemble;
+use crate::certificate::Certified;
 use crate::model::Description;
 use crate::reduce::{Reduction, Subsystem};
+use crate::simulate::Certifier;
 
 /// The stage up to the start: a run that ends in it was not begun.
 pub const COMPILING: &str = "compiling";
@@ -131,4 +133,15 @@ pub fn ready(description: &Description) -> Result<Ready, RunError> {
 pub fn built(description: &Description) -> Result<(), RunError> {
     assemble::build(&assemble::Questions::of(description))?;
     Ok(())
+}
+
+/// The equations of a model's subsystems, as certificates have them, without any proof.
+///
+/// # Errors
+/// As for [`ready`].
+pub fn equations(description: &Description) -> Result<Vec<Certified>, RunError> {
+    let model = reduced::expanded(description);
+    let list =
+        |found: &Studied| found.studies.iter().map(|study| Certifier::new(&study.simulator).certified()).collect();
+    studied(&model, &Options::default(), false, |found| Ok(list(found)))
 }

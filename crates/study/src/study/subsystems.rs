@@ -169,6 +169,7 @@ impl<'a> Whole<'a> {
             responses: Vec::new(),
             witnesses: ran.iter().flat_map(|done| self.witnesses(done)).collect(),
             functions: ran.iter().flat_map(|done| self.functions(done)).collect(),
+            certified: ran.iter().flat_map(|done| done.bounds.certified.clone()).collect(),
         };
         let summary = self.summary(ran, &bounds);
         (bounds, summary)

@@ -23,9 +23,9 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
-use super::matrix::Models;
 use super::{EnclosureError, Gains};
 use crate::assemble::CoordinateId;
+use crate::certificate::matrix::Models;
 use crate::numerics::larger;
 
 /// Independent coordinates are chosen anew when another moves this many times as much.

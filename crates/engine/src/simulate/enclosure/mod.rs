@@ -24,8 +24,6 @@
 //! into the next frame, and y.
 
 mod frame;
-mod krawczyk;
-mod matrix;
 mod motion;
 mod start;
 mod step;
@@ -35,9 +33,10 @@ use symdiff::{Interval, ModelMemory};
 
 use super::control::Schedule;
 use super::simulator::Simulator;
-use crate::compile::{Coefficients, EquationsProgram, Tapes, compile_equations};
+use crate::certificate::matrix::Models;
+use crate::certificate::{Certified, Equations};
+use crate::compile::{AtStart, Coefficients, EquationsProgram, Tapes, compile_equations, list_equations};
 use frame::{Frame, Units};
-use matrix::Models;
 pub use motion::{MotionEnclosure, MotionSpaces};
 
 /// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder depends on
@@ -69,6 +68,42 @@ impl<'s> Certifier<'s> {
     /// Compiles the equations of a mechanism.
     pub fn new(simulator: &'s Simulator) -> Self {
         Self { simulator, program: compile_equations(&simulator.system) }
+    }
+
+    /// The equations, for a certificate.
+    fn equations(&self) -> Equations {
+        let system = &self.simulator.system;
+        let layout = &self.program.layout;
+        let starts = [(&system.start.position, layout.q.start), (&system.start.velocity, layout.v.start)];
+        let mut level = 0..;
+        let at_start = starts.map(|(given, first)| {
+            let is_at_nominal =
+                level.next().is_some_and(|level| start::is_at_nominal(self.simulator, &self.program, level));
+            let of = |(place, given): (usize, &Option<symdiff::Expr>)| match given {
+                Some(value) => AtStart::Given(*value),
+                None if is_at_nominal => AtStart::Number(self.simulator.nominal[first + place]),
+                None => AtStart::Closure,
+            };
+            given.iter().enumerate().map(of).collect()
+        });
+        list_equations(system, &at_start)
+    }
+
+    /// A certificate of nothing yet: names, the box and the equations.
+    pub fn certified(&self) -> Certified {
+        let system = &self.simulator.system;
+        let parameters = &system.parameters;
+        Certified {
+            parameters: parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
+            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+            outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
+            equations: self.equations(),
+            order: 0,
+            times: Vec::new(),
+            bounds: Vec::new(),
+            pieces: Vec::new(),
+        }
     }
 }
 

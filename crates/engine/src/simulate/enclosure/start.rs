@@ -4,9 +4,9 @@ use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory, Tape};
 
 use super::EnclosureError;
-use super::krawczyk::{self, Image};
-use super::matrix::Models;
 use crate::assemble::CoordinateId;
+use crate::certificate::krawczyk::{self, Image};
+use crate::certificate::matrix::Models;
 use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
 use crate::simulate::simulator::Simulator;
@@ -44,16 +44,9 @@ pub(super) fn assemble(
             let value = memory.model(given).to_vec();
             memory.model_mut(start + place).copy_from_slice(&value);
         }
-        let free: Vec<usize> =
-            (0..layout.q.len()).filter(|place| kept.iter().all(|(known, _)| known != place)).collect();
-        let nominal = |place: usize| simulator.nominal[start + place];
-        let is_open = program.closure[level].len() < free.len();
-        // The nominal values, which the memory has, are those of every ξ.
-        let is_known = match level {
-            0 => program.closure[0].is_empty() && free.iter().all(|&q| program.guess[q] == Some(nominal(q))),
-            _ => program.can_rest && free.iter().all(|&v| nominal(v) == 0.0),
-        };
-        if is_open && is_known {
+        let free = free(program, level);
+        if is_at_nominal(simulator, program, level) {
+            // The memory has these values.
             continue;
         }
         let column = |place: usize| free.iter().position(|&known| known == place);
@@ -95,6 +88,24 @@ pub(super) fn assemble(
     }
     set_time(space, memory, layout.time, 0.0);
     Ok(())
+}
+
+/// Coordinates whose position (level 0), or velocity (1), is not given.
+pub(super) fn free(program: &EquationsProgram, level: usize) -> Vec<usize> {
+    let is_free = |place: &usize| program.kept[level].iter().all(|(known, _)| known != place);
+    (0..program.layout.q.len()).filter(is_free).collect()
+}
+
+/// Whether all else is open, and stays at the nominal values for every ξ.
+pub(super) fn is_at_nominal(simulator: &Simulator, program: &EquationsProgram, level: usize) -> bool {
+    let free = free(program, level);
+    let start = [program.layout.q.start, program.layout.v.start][level];
+    let nominal = |place: usize| simulator.nominal[start + place];
+    let is_known = match level {
+        0 => program.closure[0].is_empty() && free.iter().all(|&q| program.guess[q] == Some(nominal(q))),
+        _ => program.can_rest && free.iter().all(|&v| nominal(v) == 0.0),
+    };
+    program.closure[level].len() < free.len() && is_known
 }
 
 /// ∂q/∂(independent coordinates), n × f, and P (see [`super::frame`]), n × m, at the start, and which coordinates
@@ -204,7 +215,8 @@ impl Equations<'_> {
             self.set_radii(space, memory, Some(y));
             let contraction = inverse.times(space, &self.matrix(space, memory)).off_identity(space).bounds(space);
             Image { missed: missed.clone(), contraction }
-        })?;
+        });
+        let spread = spread.ok_or(EnclosureError::Unproven)?;
         self.set_radii(space, memory, Some(&spread));
         Ok(())
     }

@@ -3,9 +3,9 @@
 use symdiff::taylor_model::up;
 use symdiff::{Interval, ModelMemory};
 
-use super::krawczyk::{self, Image};
-use super::matrix::{Bounds, Models};
 use super::{Enclosure, EnclosureError, Gains, NextGains};
+use crate::certificate::krawczyk::{self, Image};
+use crate::certificate::matrix::{Bounds, Models};
 use crate::numerics::larger;
 
 /// Most corrections of X; the residual that is left is bounded in any case.
@@ -152,7 +152,8 @@ impl<'s> Enclosure<'s> {
             let missed = sizes.times(&total);
             (forcing, rest) = (total, contraction.clone());
             Image { missed, contraction }
-        })?;
+        });
+        let found = found.ok_or(EnclosureError::Unproven)?;
         self.place_in(&mut memory, &solution, Some(&spread_of(&found)));
         self.memory = memory;
 

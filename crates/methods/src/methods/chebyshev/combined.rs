@@ -11,10 +11,8 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
-use crate::methods::ensemble::{
-    Closure, Combination, DenseMotions, Ensemble, EnsembleError, Lost, Sampling, Simulated,
-};
-use crate::methods::proof::{EnclosedRow, Proof};
+use crate::methods::ensemble::{Closure, Combination, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated};
+use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
 use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, ParameterBox, Range, Sample, largest};
 
@@ -269,8 +267,8 @@ impl Ensemble for Combined<'_> {
         Some("a combination of parameters".to_owned())
     }
 
-    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
-        None
+    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> EnclosureEnd {
+        EnclosureEnd::default()
     }
 
     fn scales(&self) -> &[f64] {

@@ -6,8 +6,8 @@ use std::ops::Range as Rows;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated};
-use crate::methods::proof::{EnclosedRow, Proof};
+use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, Observed, Sampling, Simulated};
+use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
 use crate::numerics::{ParameterBox, Range, Sample};
 
 /// The outputs of an ensemble, and nothing that they follow from.
@@ -71,7 +71,7 @@ impl Ensemble for OutputsAlone<'_> {
         self.0.obstacle_to_enclosure(proof)
     }
 
-    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> Option<Lost> {
+    fn enclose(&self, proof: Proof, space: &ModelSpace, piece: &ParameterBox, row: &mut EnclosedRow) -> EnclosureEnd {
         self.0.enclose(proof, space, piece, row)
     }
 

@@ -55,6 +55,7 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ra
         responses: Vec::new(),
         witnesses: witnesses(&results, rows),
         functions: function_witnesses(study, &results.bounded),
+        certified: results.bounded.outcomes().filter_map(|outcome| outcome.result.certified.clone()).collect(),
     };
     let notes = || results.bounded.outcomes().find_map(|outcome| outcome.result.note.clone());
     let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());

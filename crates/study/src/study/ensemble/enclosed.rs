@@ -5,7 +5,7 @@ use symdiff::{Expr, Node, Unary};
 
 use super::Motions;
 use crate::assemble::System;
-use crate::methods::{EnclosedRow, Lost, Proof};
+use crate::methods::{EnclosedRow, EnclosureEnd, Lost, Proof};
 use crate::numerics::ParameterBox;
 use crate::simulate::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces, Simulator};
 
@@ -47,8 +47,18 @@ fn jumps_with_the_motion(system: &System) -> bool {
     system.graph.reachable(&roots).iter().any(jumps)
 }
 
-fn lost(time: f64, why: EnclosureError) -> Lost {
-    Lost { time, why: why.to_string(), is_too_wide: why != EnclosureError::Undetermined }
+/// Why an enclosure ended, with the parameter of which the piece is too wide, where that can be told.
+fn lost(simulator: &Simulator, time: f64, why: EnclosureError, axis: Option<usize>) -> Lost {
+    let parameters = &simulator.system.parameters;
+    let help = match (why, axis.and_then(|axis| parameters.get(axis))) {
+        (EnclosureError::Undetermined, _) => {
+            "let `initial:` give as many values as there are degrees of freedom, each once".to_owned()
+        }
+        (_, Some(parameter)) => format!("a smaller interval of `{}` would help most", parameter.name),
+        (_, None) if parameters.is_empty() => "the equations are singular there, or switch".to_owned(),
+        _ => "smaller intervals of the parameters would help, unless the equations are singular there".to_owned(),
+    };
+    Lost { time, why: why.to_string(), is_too_wide: why != EnclosureError::Undetermined, axis, help }
 }
 
 /// Rows of the true motion.
@@ -57,22 +67,23 @@ pub(super) fn motion(
     space: &ModelSpace,
     piece: &ParameterBox,
     row: &mut EnclosedRow,
-) -> Option<Lost> {
+) -> EnclosureEnd {
     let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
     let monomials = space.jets().monomials();
     let spaces = MotionSpaces::new(monomials.variables(), monomials.order());
     let mut enclosure = match MotionEnclosure::start(certifier, &spaces, &piece.lower, &piece.upper) {
         Ok(enclosure) => enclosure,
-        Err(why) => return Some(lost(0.0, why)),
+        Err(why) => return lost(motions.simulator, 0.0, why, None).into(),
     };
-    let mut models = Vec::new();
+    let (mut models, mut ended) = (Vec::new(), None);
     for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
         if let Err((time, why)) = enclosure.observe(motions.schedule.time(next), &mut models) {
-            return Some(lost(time, why));
+            ended = Some(lost(motions.simulator, time, why, enclosure.widest()));
+            break;
         }
         row(&models, enclosure.since());
     }
-    None
+    EnclosureEnd { lost: ended, piece: Some(enclosure.into_piece()) }
 }
 
 /// Rows of the scheme's motion.
@@ -81,22 +92,22 @@ pub(super) fn scheme(
     space: &ModelSpace,
     piece: &ParameterBox,
     row: &mut EnclosedRow,
-) -> Option<Lost> {
+) -> EnclosureEnd {
     let certifier = motions.certifier.get_or_init(|| Certifier::new(motions.simulator));
     let first_step = motions.schedule.first_step();
     let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, first_step) {
         Ok(enclosure) => enclosure,
-        Err(why) => return Some(lost(0.0, why)),
+        Err(why) => return lost(motions.simulator, 0.0, why, None).into(),
     };
     let mut models = Vec::new();
     for next in (0..motions.schedule.rows).take_while(|_| !motions.interruption.is_asked()) {
         if let Err((time, why)) = enclosure.advance(motions.schedule, next) {
-            return Some(lost(time, why));
+            return lost(motions.simulator, time, why, None).into();
         }
         if let Err(why) = enclosure.observe(&mut models) {
-            return Some(lost(motions.schedule.time(next), why));
+            return lost(motions.simulator, motions.schedule.time(next), why, None).into();
         }
         row(&models, &[]);
     }
-    None
+    EnclosureEnd::default()
 }

@@ -25,6 +25,7 @@ use self::reducing::keep_reduced;
 use super::black_box::source::Source;
 use super::price::instructions_of_step;
 use super::reduced::Store;
+use crate::certificate::Certified;
 use crate::compile::{has_kink, jumps};
 use crate::grammar::quantity::Dimension;
 use crate::methods::{self, Combination, DenseMotions, EnclosedRow, Ensemble, EnsembleError, FollowedEnds};
@@ -349,11 +350,15 @@ impl Ensemble for Motions<'_> {
         space: &ModelSpace,
         piece: &ParameterBox,
         row: &mut EnclosedRow,
-    ) -> Option<methods::Lost> {
+    ) -> methods::EnclosureEnd {
         match proof {
             Proof::Motion => enclosed::motion(self, space, piece, row),
             Proof::Scheme => enclosed::scheme(self, space, piece, row),
         }
+    }
+
+    fn certified(&self) -> Option<Certified> {
+        Some(self.certifier.get_or_init(|| Certifier::new(self.simulator)).certified())
     }
 
     fn scales(&self) -> &[f64] {

@@ -12,7 +12,9 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::plan::Plan;
 use super::values::Values;
-use crate::methods::{self, EnclosedRow, Ensemble, EnsembleError, Lost, Observed, Proof, Sampling, Simulated, Until};
+use crate::methods::{
+    self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, Observed, Proof, Sampling, Simulated, Until,
+};
 use crate::numerics::{Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
 
@@ -202,8 +204,8 @@ impl Ensemble for ReducedEnsemble<'_> {
         Some("a reduced output".to_owned())
     }
 
-    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
-        None
+    fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> EnclosureEnd {
+        EnclosureEnd::default()
     }
 
     fn scales(&self) -> &[f64] {

@@ -5,8 +5,8 @@
 use symdiff::JetMemory;
 
 use super::super::EnclosureError;
-use super::super::matrix::Models;
-use super::spaces::{Cell, Space, matrix_at};
+use crate::certificate::matrix::Models;
+use crate::certificate::spaces::{Cell, Space, matrix_at};
 use crate::compile::EquationsProgram;
 
 /// Most iterations; each makes one more power of τ right.
@@ -28,14 +28,24 @@ pub(super) struct Approximation {
 }
 
 impl Approximation {
-    /// The first guess: accelerations and multipliers as at the start.
-    pub fn first(space: &Space, start: &Self, cell: Cell) -> Self {
+    /// The first guess: accelerations and multipliers of the cell before, extrapolated; without one as at the start.
+    pub fn first(space: &Space, start: &Self, cell: Cell, before: Option<(Cell, &Self)>) -> Self {
+        let extrapolate = |before: Cell, of_cell: &Models| {
+            let (shift, scale) = ((cell.middle - before.middle) / before.half, cell.half / before.half);
+            let mut found = Models::zero(&space.cell, of_cell.rows, 1);
+            (0..of_cell.rows).for_each(|row| space.substituted(of_cell.at(row, 0), shift, scale, found.at_mut(row, 0)));
+            found
+        };
         let lift = |of_box: &Models| {
             let mut lifted = Models::zero(&space.cell, of_box.rows, 1);
             (0..of_box.rows).for_each(|row| space.lift(of_box.at(row, 0), lifted.at_mut(row, 0)));
             lifted
         };
-        let mut first = Self { q: lift(&start.q), v: lift(&start.v), w: lift(&start.w), lambda: lift(&start.lambda) };
+        let (w, lambda) = match before {
+            Some((of, before)) => (extrapolate(of, &before.w), extrapolate(of, &before.lambda)),
+            None => (lift(&start.w), lift(&start.lambda)),
+        };
+        let mut first = Self { q: lift(&start.q), v: lift(&start.v), w, lambda };
         first.integrate(space, start, cell);
         first
     }

@@ -2,32 +2,32 @@
 //!
 //! The equations of motion with Φ̈ = 0 determine w = f(t, q, v, ξ) wherever [M Φ_qᵀ; Φ_q 0] is regular, and a motion
 //! that starts on the constraints stays on them: one formulation serves open and closed mechanisms. Over a cell of time
-//! ([`spaces::Cell`])
+//! ([`Cell`])
 //!
 //! 1. polynomials ŷ(τ, ξ) of q, v, w and λ come from Picard's iteration ([`approximation`]); none of them is trusted;
 //! 2. their defect in q̇ = v, v̇ = w and in the equations is bounded in Taylor models of (τ, ξ) ([`proof`]);
 //! 3. ∂f/∂y is enclosed over a tube about ŷ, in which |e|' ≤ |A| |e| + defect has to keep e = y − ŷ;
 //! 4. Φ̂(τ, ξ), polynomials of low order, approximates the transition matrix; |Φ − Φ̂| is bounded in the same way;
-//! 5. e = B(ξ) z goes from cell to cell with B ← Φ̂ B, so that z does not change but by errors ([`frame`]).
+//! 5. e = B(ξ) z goes from cell to cell with B ← Φ̂ B, so that z does not change but by errors ([`Frame`]).
 //!
 //! Cells are halved until they can be proven, and doubled again where the defect is at rounding.
 
 mod approximation;
-mod frame;
-mod majorant;
+mod cells;
 mod proof;
-mod spaces;
 
 use symdiff::taylor_model::{ModelSpace, up};
 use symdiff::{Interval, JetMemory, ModelMemory};
 
-use super::matrix::{Bounds, Models};
 use super::{Certifier, EnclosureError, start};
+use crate::certificate::frame::Frame;
+use crate::certificate::matrix::{Bounds, Models};
+use crate::certificate::spaces::{Cell, Space};
+use crate::certificate::{Piece, ProvenCell};
 use crate::compile::{EquationsProgram, Tapes};
 use approximation::Approximation;
-use frame::Frame;
-use proof::{Claim, Proven, inverse_about};
-use spaces::{Cell, Space};
+use cells::{Next, Passed};
+use proof::{Claim, inverse_about};
 
 /// Half the length of the first cell that is tried, s.
 const FIRST_HALF: f64 = 1.0 / 64.0;
@@ -37,21 +37,6 @@ const LONGEST_HALF: f64 = 0.25;
 
 /// Half the length below which a cell is not halved, s.
 const SHORTEST_HALF: f64 = 1.0 / 32768.0;
-
-/// Defect of the accelerations, relative to their size, above which a cell is halved.
-const LARGE_DEFECT: f64 = 1e-12;
-
-/// The same below which the next cell is twice as long.
-const SMALL_DEFECT: f64 = 1e-13;
-
-/// Factor by which r grows over a cell, above which the cell is halved.
-const LARGE_GAIN: f64 = 1.05;
-
-/// The same below which the next cell is twice as long.
-const SMALL_GAIN: f64 = 1.01;
-
-/// r whose growth does not matter: rounding.
-const ROUNDING: f64 = 1e-13;
 
 /// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
 const LARGE_REMAINDER: f64 = 1e-5;
@@ -78,35 +63,6 @@ impl MotionSpaces {
     }
 }
 
-/// A cell that is proven.
-#[derive(Debug)]
-struct Passed {
-    cell: Cell,
-    approximation: Approximation,
-    proven: Proven,
-    /// At the cell's start.
-    frame: Frame,
-    /// Outputs over the cell.
-    ranges: Vec<Interval>,
-}
-
-/// A cell that is proven, and what comes after it.
-struct Next {
-    cell: Cell,
-    approximation: Approximation,
-    proven: Proven,
-    /// The approximation at the cell's end.
-    end: Approximation,
-    /// At the cell's end.
-    frame: Frame,
-    /// Outputs over the cell.
-    ranges: Vec<Interval>,
-    /// Of the accelerations, relative to their size.
-    defect: f64,
-    /// Factor by which r grows.
-    gain: f64,
-}
-
 /// The true motion over a box, cell by cell.
 #[derive(Debug)]
 pub struct MotionEnclosure<'s> {
@@ -129,6 +85,8 @@ pub struct MotionEnclosure<'s> {
     last: Option<Passed>,
     /// Within which each output is since the time before the one that was observed last.
     since: Vec<Interval>,
+    /// The proof so far.
+    piece: Piece,
 }
 
 impl<'s> MotionEnclosure<'s> {
@@ -179,6 +137,13 @@ impl<'s> MotionEnclosure<'s> {
         let radii =
             layout.q.clone().chain(layout.v.clone()).map(|register| rows.model(register)[fine.box_of.size() - 1]);
         let frame = Frame::new(&coarse.box_of, radii.collect());
+        let piece = Piece {
+            lower: lower.to_vec(),
+            upper: upper.to_vec(),
+            q: polynomials(&start.q),
+            v: polynomials(&start.v),
+            cells: Vec::new(),
+        };
         Ok(Self {
             program,
             spaces,
@@ -194,6 +159,7 @@ impl<'s> MotionEnclosure<'s> {
             half: FIRST_HALF,
             last: None,
             since: Vec::new(),
+            piece,
         })
     }
 
@@ -216,7 +182,7 @@ impl<'s> MotionEnclosure<'s> {
         let Some(Passed { cell, approximation, proven, frame, .. }) = &self.last else { return Ok(()) };
         let Space { box_of, .. } = &self.spaces.fine;
         let tau = ((time - cell.middle) / cell.half).clamp(-1.0, 1.0);
-        let errors = frame.error_at(&self.spaces.coarse, proven, tau);
+        let errors = frame.error_at(&self.spaces.coarse, &proven.flow, tau);
         let rows = &mut self.rows;
         let at = approximation.at(&self.spaces.fine, tau);
         at.put(self.program, |register, model| rows.model_mut(register).copy_from_slice(model));
@@ -235,6 +201,20 @@ impl<'s> MotionEnclosure<'s> {
         Ok(())
     }
 
+    /// The parameter to which the last terms of the velocities belong most, after the last cell; `None` without any.
+    pub fn widest(&self) -> Option<usize> {
+        let v = &self.last.as_ref()?.approximation.v;
+        let fine = &self.spaces.fine;
+        let share = |axis: usize| -> f64 { (0..v.rows).map(|row| fine.last_of_parameter(v.at(row, 0), axis)).sum() };
+        let axes = (0..fine.box_of.jets().monomials().variables()).map(|axis| (axis, share(axis)));
+        axes.filter(|(_, share)| *share > 0.0).max_by(|a, b| a.1.total_cmp(&b.1)).map(|(axis, _)| axis)
+    }
+
+    /// The proof so far, for a certificate.
+    pub fn into_piece(self) -> Piece {
+        self.piece
+    }
+
     /// Within which each output is at all times from the one observed before to the last one.
     pub fn since(&self) -> &[Interval] {
         &self.since
@@ -242,12 +222,22 @@ impl<'s> MotionEnclosure<'s> {
 
     /// Proves the next cell, as long as can be.
     fn pass(&mut self) -> Result<(), EnclosureError> {
+        let mut larger: Option<Next> = None;
         loop {
             let cell = Cell { middle: self.time + self.half, half: self.half };
             let can_halve = self.half > SHORTEST_HALF;
             match self.attempt(cell) {
-                Ok(next) if can_halve && (next.defect > LARGE_DEFECT || next.gain > LARGE_GAIN) => self.half *= 0.5,
                 Ok(next) => {
+                    // What halving does not make better is of the parameters, not of the time.
+                    if let Some(before) = larger.take().filter(|before| !next.is_better_than(before)) {
+                        self.accept(before);
+                        return Ok(());
+                    }
+                    if can_halve && next.is_long() {
+                        larger = Some(next);
+                        self.half *= 0.5;
+                        continue;
+                    }
                     self.accept(next);
                     return Ok(());
                 }
@@ -268,7 +258,8 @@ impl<'s> MotionEnclosure<'s> {
             let coefficients = space.cell.size() - 1;
             space.cell.jets().variable(0, cell.middle, cell.half, &mut model[..coefficients]);
         }
-        let mut approximation = Approximation::first(fine, &self.start, cell);
+        let before = self.last.as_ref().map(|last| (last.cell, &last.approximation));
+        let mut approximation = Approximation::first(fine, &self.start, cell, before);
         let inverse = inverse_about(self.program, &coarse.cell, &mut self.coarse, &approximation)?;
         let mut lifted = Models::zero(&fine.cell, inverse.rows, inverse.columns);
         let kept = coarse.cell.size() - 1;
@@ -303,29 +294,42 @@ impl<'s> MotionEnclosure<'s> {
         let outputs = self.program.outputs.iter();
         let ranges = outputs.map(|&register| coarse.range(self.coarse.model(register))).collect();
         let end = approximation.at(fine, 1.0);
-        let frame = self.frame.advance(coarse, &proven, &radii(fine, &end))?;
+        let frame = self.frame.advance(coarse, &proven.flow, &radii(fine, &end)).ok_or(EnclosureError::Unproven)?;
         let errors = frame.error(&coarse.box_of);
         if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
             return Err(EnclosureError::TooWide);
         }
         let defect =
             proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
-        let gain = frame.size() / (self.frame.size() + ROUNDING);
-        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, gain })
+        let tail = |of_power: f64| {
+            let rows = (0..n).map(|row| fine.last_in_time(approximation.w.at(row, 0), of_power));
+            rows.fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE)
+        };
+        let tails = [1.0, 0.5, 2.0].map(tail);
+        let gain = frame.gain();
+        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, tails, gain })
     }
 
     /// Goes on to the end of a cell.
     fn accept(&mut self, next: Next) {
-        let Next { cell, approximation, proven, end, frame, ranges, defect, gain } = next;
+        let is_easy = next.may_be_doubled();
+        let Next { cell, approximation, proven, end, frame, ranges, .. } = next;
         let frame = std::mem::replace(&mut self.frame, frame);
         self.start = end;
         self.time = cell.end();
         // Cells begin at multiples of their length.
+        self.half = cell.half;
         let doubled = 2.0 * self.half;
-        let is_easy = defect < SMALL_DEFECT && gain < SMALL_GAIN;
         if is_easy && doubled <= LONGEST_HALF && (self.time / (2.0 * doubled)).fract() == 0.0 {
             self.half = doubled;
         }
+        self.piece.cells.push(ProvenCell {
+            middle: cell.middle,
+            half: cell.half,
+            w: rounded(polynomials(&approximation.w)),
+            lambda: rounded(polynomials(&approximation.lambda)),
+            tube: proven.tube.clone(),
+        });
         self.last = Some(Passed { cell, approximation, proven, frame, ranges });
     }
 
@@ -345,6 +349,24 @@ impl<'s> MotionEnclosure<'s> {
         }
         jump
     }
+}
+
+/// The polynomials of a column.
+fn polynomials(of: &Models) -> Vec<Vec<f64>> {
+    let polynomial = |row: usize| of.at(row, 0).split_last().map_or_else(Vec::new, |(_, own)| own.to_vec());
+    (0..of.rows).map(polynomial).collect()
+}
+
+/// The same to a share of 2⁻⁵⁸ of their sizes: small coefficients need few digits, and no proof trusts them.
+fn rounded(mut polynomials: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for own in &mut polynomials {
+        let size: f64 = own.iter().map(|c| c.abs()).sum();
+        let unit = 2.0_f64.powi(symdiff::math::log2(size).ceil() as i32 - 58);
+        if unit.is_normal() {
+            own.iter_mut().for_each(|c| *c = (*c / unit).round() * unit);
+        }
+    }
+    polynomials
 }
 
 /// Radii of positions and velocities, 2n.

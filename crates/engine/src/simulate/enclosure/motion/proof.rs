@@ -4,33 +4,33 @@ use symdiff::ModelMemory;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::super::EnclosureError;
-use super::super::matrix::{Bounds, Models};
 use super::super::start;
 use super::approximation::Approximation;
-use super::majorant::{bound, resolvent};
-use super::spaces::{Cell, Space, matrix_at, truncate};
+use crate::certificate::flow::{Flow, of_first_order};
+use crate::certificate::majorant::{bound, resolvent};
+use crate::certificate::matrix::{Bounds, Models};
+use crate::certificate::spaces::{Cell, Space, truncate};
 use crate::compile::EquationsProgram;
 use crate::numerics::larger;
 
 /// Most tubes that are tried.
 const TUBES: usize = 4;
 
-/// Factor from the bound that one tube gave to the next tube.
-const WIDER: f64 = 1.5;
+/// Factor from the bound that one tube gave to the next tube. Much more than is needed here, for a checker whose bounds
+/// are larger; distances are far too small for it to matter to the derivatives.
+const WIDER: f64 = 4.0;
 
 /// What holds over a cell for every ξ, for the distance e = y − ŷ of a motion y from the approximation ŷ, y = (q, v).
 #[derive(Clone, Debug)]
 pub(super) struct Proven {
-    /// Φ̂, 2n × 2n, polynomials of (τ, ξ) of low order.
-    pub transition: Models,
-    /// Bound of |Φ − Φ̂| with e(τ) = Φ(τ) e(−1) + g(τ).
-    pub missed: Bounds,
-    /// Bound of |g|, 2n.
-    pub growth: Vec<f64>,
+    /// How e grows.
+    pub flow: Flow,
     /// Bound of |e'| of what the approximation misses of the equations, 2n.
     pub defect: Vec<f64>,
     /// Bound of |∂f/∂y|, 2n × 2n.
     pub slopes: Bounds,
+    /// Bound of |e| over the cell, 2n.
+    pub tube: Vec<f64>,
 }
 
 /// An approximation to be proven.
@@ -78,13 +78,12 @@ impl Claim<'_> {
             });
             let defect: Vec<f64> = missed.collect();
             let slopes = of_first_order(&linear.slopes.bounds(&self.coarse.cell));
-            let reached = bound(&slopes, &entry, duration, &defect).ok_or(unproven)?;
+            let reached = bound(&slopes, &entry, duration, &defect).ok_or(EnclosureError::Unproven)?;
             // Written so that NaN is no proof.
             if reached.iter().zip(&tube).all(|(reached, tube)| reached < tube) {
-                let growth = bound(&slopes, self.jump, duration, &defect).ok_or(unproven)?;
-                let transition = self.transition(&linear.slopes);
-                let missed = self.missed(&transition, &linear.slopes, &slopes).ok_or(unproven)?;
-                return Ok(Proven { transition, missed, growth, defect, slopes });
+                let flow = Flow::new(self.coarse, self.cell, &linear.slopes, &slopes, self.jump, &defect);
+                let flow = flow.ok_or(EnclosureError::Unproven)?;
+                return Ok(Proven { flow, defect, slopes, tube });
             }
             tube = reached.iter().map(|e| WIDER * e + 1e-14).collect();
         }
@@ -123,7 +122,6 @@ impl Claim<'_> {
         tube: &[f64],
         residual: &[f64],
     ) -> Result<Linearised, EnclosureError> {
-        let unproven = EnclosureError::Unproven;
         let space = &self.coarse.cell;
         let (layout, n) = (&self.program.layout, self.approximation.q.rows);
         let last = space.size() - 1;
@@ -145,7 +143,7 @@ impl Claim<'_> {
         let contraction = self.inverse.times(space, &matrix).off_identity(space).bounds(space);
         let sizes = self.inverse.bounds(space).times(residual);
         let column = Bounds::of(sizes.len(), 1, &sizes);
-        let beyond = resolvent(&contraction, &column).ok_or(unproven)?;
+        let beyond = resolvent(&contraction, &column).ok_or(EnclosureError::Unproven)?;
         let missed = (0..n).map(|row| up(sizes[row] + beyond.at(row, 0))).collect();
 
         memory.run(self.program.rates_jacobian());
@@ -161,7 +159,7 @@ impl Claim<'_> {
         // ∂(w, λ)/∂y = −J⁻¹ F_y, and J⁻¹ = (C J)⁻¹ C.
         let mut all = self.inverse.times(space, &by_state);
         all.negate();
-        let beyond = resolvent(&contraction, &all.bounds(space)).ok_or(unproven)?;
+        let beyond = resolvent(&contraction, &all.bounds(space)).ok_or(EnclosureError::Unproven)?;
         let mut slopes = all.part(space, 0..n, 0..2 * n);
         for row in 0..n {
             for column in 0..2 * n {
@@ -171,53 +169,6 @@ impl Claim<'_> {
         }
         Ok(Linearised { missed, slopes })
     }
-
-    /// Φ̂ with Φ̂' ≈ A Φ̂ and Φ̂(−1) = I, by Picard's iteration.
-    fn transition(&self, slopes: &Models) -> Models {
-        let (space, half) = (self.coarse, self.cell.half);
-        let n = slopes.rows;
-        let identity = Models::identity(&space.box_of, 2 * n);
-        let mut transition = Models::identity(&space.cell, 2 * n);
-        let kept = space.box_of.size() - 1;
-        let mut integral = vec![0.0; space.cell.size()];
-        for _ in 0..space.cell.jets().monomials().order() + 2 {
-            let rates = slopes.approximate_times(&space.cell, &transition);
-            for column in 0..2 * n {
-                for row in 0..n {
-                    let start = &identity.at(n + row, column)[..kept];
-                    space.integral(start, half, rates.at(row, column), &mut integral);
-                    transition.at_mut(n + row, column).copy_from_slice(&integral);
-                    let start = &identity.at(row, column)[..kept];
-                    space.integral(start, half, transition.at(n + row, column), &mut integral);
-                    transition.at_mut(row, column).copy_from_slice(&integral);
-                }
-            }
-        }
-        transition
-    }
-
-    /// Bound of |Φ − Φ̂|: |E|' ≤ |A| |E| + |A Φ̂ − Φ̂'|.
-    fn missed(&self, transition: &Models, slopes: &Models, sizes: &Bounds) -> Option<Bounds> {
-        let (space, n) = (&self.coarse.cell, slopes.rows);
-        let rates = slopes.times(space, transition);
-        let start = matrix_at(self.coarse, transition, -1.0).off_identity(&self.coarse.box_of);
-        let start = start.bounds(&self.coarse.box_of);
-        let (mut rate, mut left) = (vec![0.0; space.size()], vec![0.0; space.size()]);
-        let mut values = vec![0.0; 4 * n * n];
-        for column in 0..2 * n {
-            let mut residual = Vec::with_capacity(2 * n);
-            for row in 0..2 * n {
-                self.coarse.rate(transition.at(row, column), self.cell.half, &mut rate);
-                let of_equation =
-                    row.checked_sub(n).map_or_else(|| transition.at(n + row, column), |row| rates.at(row, column));
-                space.sub(of_equation, &rate, &mut left);
-                residual.push(space.bound(&left));
-            }
-            let found = bound(sizes, &start.column(column), 2.0 * self.cell.half, &residual)?;
-            found.into_iter().enumerate().for_each(|(row, value)| values[row * 2 * n + column] = value);
-        }
-        Some(Bounds::of(2 * n, 2 * n, &values))
-    }
 }
 
 /// The equations about an approximation, over a tube.
@@ -226,15 +177,6 @@ struct Linearised {
     missed: Vec<f64>,
     /// Accelerations by q and v, n × 2n.
     slopes: Models,
-}
-
-/// [0 I; A] of bounds of A.
-fn of_first_order(accelerations: &Bounds) -> Bounds {
-    let (n, columns) = accelerations.shape();
-    let mut values = vec![0.0; n * columns];
-    (0..n).for_each(|row| values[row * columns + n + row] = 1.0);
-    values.extend_from_slice(accelerations.entries());
-    Bounds::of(columns, columns, &values)
 }
 
 /// Approximate inverse of the matrix by (w, λ) about an approximation.

@@ -157,8 +157,8 @@ mod tests {
     use symdiff::taylor_model::ModelSpace;
 
     use super::*;
-    use crate::methods::ensemble::{Closure, Lost, Sampling, Simulated};
-    use crate::methods::proof::{EnclosedRow, Proof};
+    use crate::methods::ensemble::{Closure, Sampling, Simulated};
+    use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
     use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
 
     /// Balls thrown up at speeds from 4.5 to 5.5 m/s, under a ceiling at a height of 1.3 m on a spring of ω².
@@ -267,7 +267,7 @@ mod tests {
         fn obstacle_to_enclosure(&self, _: Proof) -> Option<String> {
             unreachable!()
         }
-        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> Option<Lost> {
+        fn enclose(&self, _: Proof, _: &ModelSpace, _: &ParameterBox, _: &mut EnclosedRow) -> EnclosureEnd {
             unreachable!()
         }
         fn scales(&self) -> &[f64] {

@@ -2,7 +2,7 @@
 
 use symdiff::taylor_model::up;
 
-use super::super::matrix::Bounds;
+use super::matrix::Bounds;
 
 /// Most attempts.
 const ATTEMPTS: usize = 100;
@@ -17,7 +17,7 @@ const LEAST: f64 = 1e-280;
 ///
 /// It bounds |e| where |e| ≤ start at first and |e|' ≤ A |e| + rate over that time: start + t (A s + rate) solves
 /// x' ≥ A x + rate as long as it is below s, and A's entries are not negative.
-pub(super) fn bound(matrix: &Bounds, start: &[f64], time: f64, rate: &[f64]) -> Option<Vec<f64>> {
+pub fn bound(matrix: &Bounds, start: &[f64], time: f64, rate: &[f64]) -> Option<Vec<f64>> {
     let image = |s: &[f64]| -> Vec<f64> {
         let rows = matrix.times(s).into_iter().zip(start).zip(rate);
         rows.map(|((moved, start), rate)| up(start + up(time * up(moved + rate)))).collect()
@@ -38,7 +38,7 @@ pub(super) fn bound(matrix: &Bounds, start: &[f64], time: f64, rate: &[f64]) -> 
 }
 
 /// X with X ≥ K (S + X), column by column: a bound of |(I − K')⁻¹ K' S'| for all |K'| ≤ K, |S'| ≤ S.
-pub(super) fn resolvent(contraction: &Bounds, of: &Bounds) -> Option<Bounds> {
+pub fn resolvent(contraction: &Bounds, of: &Bounds) -> Option<Bounds> {
     let (rows, columns) = of.shape();
     let mut values = vec![0.0; rows * columns];
     for column in 0..columns {

@@ -15,19 +15,23 @@ const MAX_REFINEMENTS: usize = 8;
 
 /// A matrix whose entries are functions of ξ, enclosed.
 #[derive(Clone, Debug)]
-pub(super) struct Models {
+pub struct Models {
+    /// Number of rows.
     pub rows: usize,
+    /// Number of columns.
     pub columns: usize,
     size: usize,
     values: Vec<f64>,
 }
 
 impl Models {
+    /// Zeros.
     pub fn zero(space: &ModelSpace, rows: usize, columns: usize) -> Self {
         let size = space.size();
         Self { rows, columns, size, values: vec![0.0; rows * columns * size] }
     }
 
+    /// I.
     pub fn identity(space: &ModelSpace, dimension: usize) -> Self {
         let mut identity = Self::zero(space, dimension, dimension);
         (0..dimension).for_each(|i| identity.at_mut(i, i)[0] = 1.0);
@@ -43,10 +47,12 @@ impl Models {
         models
     }
 
+    /// An entry's model.
     pub fn at(&self, row: usize, column: usize) -> &[f64] {
         &self.values[(row * self.columns + column) * self.size..][..self.size]
     }
 
+    /// An entry's model.
     pub fn at_mut(&mut self, row: usize, column: usize) -> &mut [f64] {
         &mut self.values[(row * self.columns + column) * self.size..][..self.size]
     }
@@ -219,7 +225,7 @@ impl Models {
 /// Bounds of the absolute values of a matrix's entries. A matrix without columns has rows: a mechanism without degrees
 /// of freedom has such matrices.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Bounds {
+pub struct Bounds {
     rows: usize,
     columns: usize,
     values: Vec<f64>,
@@ -227,6 +233,9 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// A matrix with this number of columns, from its entries row by row.
+    ///
+    /// # Panics
+    /// If these are not as many as the matrix has.
     pub fn of(rows: usize, columns: usize, values: &[f64]) -> Self {
         assert_eq!(values.len(), rows * columns);
         Self { rows, columns, values: values.to_vec() }

@@ -6,7 +6,7 @@
 use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
-use super::super::matrix::Models;
+use super::matrix::Models;
 
 /// Half a unit in the last place, rounded up.
 const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
@@ -16,7 +16,7 @@ const PARTS: i32 = 32;
 
 /// Polynomials of (τ, ξ) next to those of ξ, of the same order.
 #[derive(Clone, Debug)]
-pub(super) struct Space {
+pub struct Space {
     /// Of (τ, ξ).
     pub cell: ModelSpace,
     /// Of ξ.
@@ -39,7 +39,7 @@ pub(super) struct Space {
 
 /// An interval of time: t = middle + half τ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cell {
+pub struct Cell {
     /// s
     pub middle: f64,
     /// s, a power of two.
@@ -139,6 +139,21 @@ impl Space {
         }
     }
 
+    /// Polynomial with `shift` + `scale` τ in place of τ.
+    pub fn substituted(&self, model: &[f64], shift: f64, scale: f64, into: &mut [f64]) {
+        into.fill(0.0);
+        for (r, &power) in self.power.iter().enumerate().filter(|(r, _)| model[*r] != 0.0) {
+            // C(power, j) shift^(power − j) scale^j, from j = power down.
+            let (mut to, mut factor) = (Some(r), scale.powi(power as i32));
+            for j in (0..=power).rev() {
+                let Some(place) = to else { break };
+                into[place] += model[r] * factor;
+                factor *= shift / scale * j as f64 / (power - j + 1) as f64;
+                to = self.lowered[place];
+            }
+        }
+    }
+
     /// d/dt of a polynomial, with its rounding as radius.
     pub fn rate(&self, model: &[f64], half: f64, into: &mut [f64]) {
         into.fill(0.0);
@@ -153,6 +168,20 @@ impl Space {
         into[self.cell.size() - 1] = up(HALF_UNIT * size);
     }
 
+    /// Σ|c| over the monomials of the order's last degree with τ, where each power of τ is multiplied by a factor.
+    pub fn last_in_time(&self, model: &[f64], of_power: f64) -> f64 {
+        let monomials = self.cell.jets().monomials();
+        let last = |r: &usize| monomials.degree(*r) == monomials.order() && self.power[*r] > 0;
+        (0..monomials.len()).filter(last).map(|r| model[r].abs() * of_power.powi(self.power[r] as i32)).sum()
+    }
+
+    /// Σ|c| over the monomials of high degree without τ, by the power that a parameter has in each.
+    pub fn last_of_parameter(&self, model: &[f64], axis: usize) -> f64 {
+        let monomials = self.box_of.jets().monomials();
+        let high = (0..monomials.len()).filter(|own| 2 * monomials.degree(*own) > monomials.order());
+        high.map(|own| model[self.constant_in_time[own]].abs() * monomials.exponents(own)[axis] as f64).sum()
+    }
+
     /// Σ|c| over the monomials of the order's last degree without τ: the polynomial's end in ξ.
     pub fn last_in_parameters(&self, model: &[f64]) -> f64 {
         let (monomials, order) = (self.box_of.jets().monomials(), self.cell.jets().monomials().order());
@@ -162,7 +191,7 @@ impl Space {
 }
 
 /// Copies a model into one of lower order; the cut-off terms become radius.
-pub(super) fn truncate(model: &[f64], to: &ModelSpace, into: &mut [f64]) {
+pub fn truncate(model: &[f64], to: &ModelSpace, into: &mut [f64]) {
     // Monomials ascend in degree: those of the lower order come first.
     let kept = to.size() - 1;
     into[..kept].copy_from_slice(&model[..kept]);
@@ -170,7 +199,7 @@ pub(super) fn truncate(model: &[f64], to: &ModelSpace, into: &mut [f64]) {
 }
 
 /// A matrix at an instant.
-pub(super) fn matrix_at(space: &Space, matrix: &Models, tau: f64) -> Models {
+pub fn matrix_at(space: &Space, matrix: &Models, tau: f64) -> Models {
     let mut at = Models::zero(&space.box_of, matrix.rows, matrix.columns);
     for row in 0..matrix.rows {
         for column in 0..matrix.columns {
@@ -204,6 +233,11 @@ mod tests {
         assert!(end[space.box_of.size() - 1] < 1e-14);
         space.rate(&v, 0.25, &mut rate);
         assert_eq!(rate[..size - 1], w[..size - 1]);
+        // (2 + τ/2)² = 4 + 2 τ + τ²/4.
+        let (mut square, mut moved) = (vec![0.0; size], vec![0.0; size]);
+        square[index([2, 0])] = 1.0;
+        space.substituted(&square, 2.0, 0.5, &mut moved);
+        assert_eq!([[0, 0], [1, 0], [2, 0]].map(|exponents| moved[index(exponents)]), [4.0, 2.0, 0.25]);
     }
 
     #[test]

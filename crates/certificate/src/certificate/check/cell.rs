@@ -1,0 +1,288 @@
+//! The proof over one cell, computed again. Symbols are those of the theory page.
+
+use symdiff::taylor_model::{ModelSpace, up};
+
+use super::super::flow::{Flow, of_first_order};
+use super::super::frame::Frame;
+use super::super::krawczyk::{self, Image};
+use super::super::majorant::{bound, resolvent};
+use super::super::matrix::{Bounds, Models};
+use super::super::spaces::{Cell, Space, matrix_at, truncate};
+use super::super::{Equations, ProvenCell};
+use super::evaluation::{Given, State, evaluate};
+use crate::numerics::larger;
+
+/// Equations among some unknowns: rows of the list, and derivatives' places of the unknowns.
+pub(super) struct Unknowns<'u> {
+    pub equations: &'u Equations,
+    pub rows: &'u [usize],
+    pub needed: &'u [usize],
+    pub places: Vec<usize>,
+}
+
+impl Unknowns<'_> {
+    /// Values of the rows over a state, and their derivatives by these places.
+    fn linearised(&self, given: &Given, state: &State, places: &[usize]) -> (Models, Models) {
+        let space = given.space;
+        let found = evaluate(self.equations, self.needed, given, state, true);
+        let (mut values, mut slopes) =
+            (Models::zero(space, self.rows.len(), 1), Models::zero(space, self.rows.len(), places.len()));
+        for (row, &node) in self.rows.iter().enumerate() {
+            let Some(own) = &found[node] else { continue };
+            values.at_mut(row, 0).copy_from_slice(&own.value);
+            for (column, place) in places.iter().enumerate() {
+                if let Some(slope) = own.by.get(place) {
+                    slopes.at_mut(row, column).copy_from_slice(slope);
+                }
+            }
+        }
+        (values, slopes)
+    }
+
+    /// Bounds of the rows over a state, without derivatives.
+    pub fn bounds(&self, given: &Given, state: &State) -> Vec<f64> {
+        let found = evaluate(self.equations, self.needed, given, state, false);
+        self.rows
+            .iter()
+            .map(|&node| found[node].as_ref().map_or(f64::NAN, |own| given.space.bound(&own.value)))
+            .collect()
+    }
+
+    /// Approximate inverse of the derivatives by the unknowns about a state without radii.
+    pub fn inverse(&self, given: &Given, about: &State) -> Option<Models> {
+        let matrix = self.linearised(given, about, &self.places).1.without_radii();
+        let mut inverse = matrix.inverse_at_centre(given.space)?;
+        inverse.refine_inverse_of(given.space, &matrix).then(|| inverse.without_radii())
+    }
+
+    /// Gives the unknowns of a state radii within which a solution is for every ξ. `inverse` may be anything.
+    pub fn enclose(&self, given: &Given, state: &mut State, inverse: &Models) -> Option<()> {
+        let space = given.space;
+        self.set_radii(space, state, None);
+        let missed = inverse.bounds(space).times(self.linearised(given, state, &[]).0.bounds(space).entries());
+        let spread = krawczyk::enclose(missed.clone(), |y| {
+            self.set_radii(space, state, Some(y));
+            let slopes = self.linearised(given, state, &self.places).1;
+            Image {
+                missed: missed.clone(),
+                contraction: inverse.times(space, &slopes).off_identity(space).bounds(space),
+            }
+        })?;
+        self.set_radii(space, state, Some(&spread));
+        Some(())
+    }
+
+    fn set_radii(&self, space: &ModelSpace, state: &mut State, radii: Option<&[f64]>) {
+        let n = self.equations.coordinates;
+        for (index, &place) in self.places.iter().enumerate() {
+            let (models, row) = match place / n.max(1) {
+                0 => (&mut state.q, place),
+                1 => (&mut state.v, place - n),
+                2 => (&mut state.w, place - 2 * n),
+                _ => (&mut state.lambda, place - 3 * n),
+            };
+            models.at_mut(row, 0)[space.size() - 1] = radii.map_or(0.0, |radii| radii[index]);
+        }
+    }
+}
+
+/// Shapes of polynomials, and time and parameters in them.
+pub(super) struct Shapes {
+    pub fine: Space,
+    pub coarse: Space,
+    /// Of (τ, ξ), of each order, and of ξ alone.
+    pub parameters: [Vec<Vec<f64>>; 3],
+}
+
+impl Shapes {
+    pub fn time(space: &ModelSpace, cell: Cell) -> Vec<f64> {
+        let mut time = vec![0.0; space.size()];
+        let coefficients = space.size() - 1;
+        space.jets().variable(0, cell.middle, cell.half, &mut time[..coefficients]);
+        time
+    }
+}
+
+/// A cell that is proven.
+pub(super) struct Passed {
+    pub cell: Cell,
+    /// Polynomials of the motion over the cell.
+    pub state: State,
+    /// At the cell's start.
+    frame: Frame,
+    flow: Flow,
+    /// Polynomials at the cell's end, and the frame there.
+    pub end: (Models, Models),
+    pub next: Frame,
+}
+
+/// Why a cell is not proven.
+pub(super) enum Open {
+    Irregular,
+    Leaves { place: usize, reached: f64, tube: f64 },
+    Transition,
+}
+
+impl Passed {
+    /// Proves that the motion stays in the cell's tube.
+    pub fn new(
+        motion: &Unknowns,
+        shapes: &Shapes,
+        (q, v): &(Models, Models),
+        frame: Frame,
+        proven: &ProvenCell,
+    ) -> Result<Self, Open> {
+        let (fine, coarse) = (&shapes.fine, &shapes.coarse);
+        let n = motion.equations.coordinates;
+        let cell = Cell { middle: proven.middle, half: proven.half };
+        let state = integrated(fine, cell, q, v, proven);
+        // How far ŷ(−1) is from the polynomials that it begins with.
+        let begun = [matrix_at(fine, &state.q, -1.0), matrix_at(fine, &state.v, -1.0)];
+        let jump: Vec<f64> = begun.iter().zip([q, v]).flat_map(|(at, start)| distances(fine, at, start)).collect();
+        let entry: Vec<f64> = frame.error(&coarse.box_of).iter().zip(&jump).map(|(a, b)| up(a + b)).collect();
+
+        let time = Shapes::time(&fine.cell, cell);
+        let given = Given { space: &fine.cell, time: &time, parameters: &shapes.parameters[0] };
+        let residual = motion.bounds(&given, &state);
+        let kinematic = kinematic_defect(fine, cell, &state);
+
+        let time = Shapes::time(&coarse.cell, cell);
+        let given = Given { space: &coarse.cell, time: &time, parameters: &shapes.parameters[1] };
+        let linear = Linear::over_tube(motion, &given, &state, &proven.tube, &residual).ok_or(Open::Irregular)?;
+        let defect: Vec<f64> =
+            (0..2 * n).map(|row| up(kinematic[row] + if row < n { 0.0 } else { linear.missed[row - n] })).collect();
+        let sizes = of_first_order(&linear.slopes.bounds(&coarse.cell));
+        let duration = 2.0 * cell.half;
+        let reached = bound(&sizes, &entry, duration, &defect).unwrap_or_else(|| vec![f64::INFINITY; 2 * n]);
+        // Written so that NaN is no proof.
+        if let Some(place) =
+            (0..2 * n).find(|&row| reached[row].partial_cmp(&proven.tube[row]) != Some(std::cmp::Ordering::Less))
+        {
+            return Err(Open::Leaves { place, reached: reached[place], tube: proven.tube[place] });
+        }
+        let flow = Flow::new(coarse, cell, &linear.slopes, &sizes, &jump, &defect).ok_or(Open::Transition)?;
+        let end = (matrix_at(fine, &state.q, 1.0), matrix_at(fine, &state.v, 1.0));
+        let rounded = |models: &Models| (0..n).map(|row| models.at(row, 0)[fine.box_of.size() - 1]).collect::<Vec<_>>();
+        let added = [rounded(&end.0), rounded(&end.1)].concat();
+        let next = frame.advance(coarse, &flow, &added).ok_or(Open::Transition)?;
+        let end = (end.0.without_radii(), end.1.without_radii());
+        Ok(Self { cell, state, frame, flow, end, next })
+    }
+
+    /// The motion at an instant, with radii of q and v.
+    pub fn at(&self, shapes: &Shapes, tau: f64) -> State {
+        let (fine, coarse) = (&shapes.fine, &shapes.coarse);
+        let at = |models: &Models| matrix_at(fine, models, tau);
+        let State { q, v, w, lambda } = &self.state;
+        let mut state = State { q: at(q), v: at(v), w: at(w), lambda: at(lambda) };
+        let errors = self.frame.error_at(coarse, &self.flow, tau);
+        let (n, last) = (state.q.rows, fine.box_of.size() - 1);
+        for (row, error) in errors.iter().enumerate() {
+            let model = if row < n { state.q.at_mut(row, 0) } else { state.v.at_mut(row - n, 0) };
+            model[last] = up(model[last] + error);
+        }
+        state
+    }
+}
+
+/// q̂ and v̂ as integrals of ŵ from the start of a cell.
+fn integrated(space: &Space, cell: Cell, q: &Models, v: &Models, proven: &ProvenCell) -> State {
+    let fill = |polynomials: &[Vec<f64>]| {
+        let mut models = Models::zero(&space.cell, polynomials.len(), 1);
+        for (row, own) in polynomials.iter().enumerate() {
+            models.at_mut(row, 0)[..own.len()].copy_from_slice(own);
+        }
+        models
+    };
+    let kept = space.box_of.size() - 1;
+    let integral = |start: &Models, of: &Models| {
+        let mut models = Models::zero(&space.cell, start.rows, 1);
+        (0..start.rows).for_each(|row| {
+            space.integral(&start.at(row, 0)[..kept], cell.half, of.at(row, 0), models.at_mut(row, 0));
+        });
+        models
+    };
+    let (w, lambda) = (fill(&proven.w), fill(&proven.lambda));
+    let v = integral(v, &w);
+    State { q: integral(q, &v), v, w, lambda }
+}
+
+/// Bounds of the distances of models from polynomials, row by row.
+fn distances(space: &Space, models: &Models, from: &Models) -> Vec<f64> {
+    let mut left = vec![0.0; space.box_of.size()];
+    let mut distance = |row: usize| {
+        space.box_of.sub(models.at(row, 0), from.at(row, 0), &mut left);
+        space.box_of.bound(&left)
+    };
+    (0..models.rows).map(&mut distance).collect()
+}
+
+/// Bounds of v̂ − q̂' and of ŵ − v̂', 2n.
+fn kinematic_defect(space: &Space, cell: Cell, State { q, v, w, .. }: &State) -> Vec<f64> {
+    let (mut rate, mut left) = (vec![0.0; space.cell.size()], vec![0.0; space.cell.size()]);
+    let mut defect = |of: &Models, by: &Models, row: usize| {
+        space.rate(of.at(row, 0), cell.half, &mut rate);
+        space.cell.sub(by.at(row, 0), &rate, &mut left);
+        space.cell.bound(&left)
+    };
+    [(q, v), (v, w)]
+        .iter()
+        .flat_map(|&(of, by)| (0..q.rows).map(|row| defect(of, by, row)).collect::<Vec<_>>())
+        .collect()
+}
+
+/// The equations over a tube.
+struct Linear {
+    /// Bound of |f(ŷ) − ŵ|, n.
+    missed: Vec<f64>,
+    /// A: accelerations by q and v, n × 2n.
+    slopes: Models,
+}
+
+impl Linear {
+    fn over_tube(motion: &Unknowns, given: &Given, fine: &State, tube: &[f64], residual: &[f64]) -> Option<Self> {
+        let (space, n) = (given.space, motion.equations.coordinates);
+        let last = space.size() - 1;
+        let cut = |models: &Models| {
+            let mut cut = Models::zero(space, models.rows, 1);
+            (0..models.rows).for_each(|row| truncate(models.at(row, 0), space, cut.at_mut(row, 0)));
+            cut
+        };
+        let mut state = State { q: cut(&fine.q), v: cut(&fine.v), w: cut(&fine.w), lambda: cut(&fine.lambda) };
+        let bare = |models: &Models| models.clone().without_radii();
+        let about = State { q: bare(&state.q), v: bare(&state.v), w: bare(&state.w), lambda: bare(&state.lambda) };
+        let inverse = motion.inverse(given, &about)?;
+        for (row, tube) in tube.iter().enumerate() {
+            let model = if row < n { state.q.at_mut(row, 0) } else { state.v.at_mut(row - n, 0) };
+            model[last] = up(model[last] + tube);
+        }
+        let tails = [state.w.clone(), state.lambda.clone()];
+        motion.enclose(given, &mut state, &inverse)?;
+        // ŵ and λ̂ themselves are to be in the enclosure, too.
+        for (models, tails) in [&mut state.w, &mut state.lambda].into_iter().zip(&tails) {
+            for row in 0..models.rows {
+                let radius = &mut models.at_mut(row, 0)[last];
+                *radius = larger(*radius, tails.at(row, 0)[last]);
+            }
+        }
+        let places: Vec<usize> = motion.places.iter().copied().chain(0..2 * n).collect();
+        let (_, all) = motion.linearised(given, &state, &places);
+        let unknowns = motion.places.len();
+        let by_unknown = all.part(space, 0..unknowns, 0..unknowns);
+        let by_state = all.part(space, 0..unknowns, unknowns..unknowns + 2 * n);
+        let contraction = inverse.times(space, &by_unknown).off_identity(space).bounds(space);
+        let sizes = inverse.bounds(space).times(residual);
+        let beyond = resolvent(&contraction, &Bounds::of(sizes.len(), 1, &sizes))?;
+        let missed = (0..n).map(|row| up(sizes[row] + beyond.at(row, 0))).collect();
+        // A = −J⁻¹ F_y, and J⁻¹ = (C J)⁻¹ C.
+        let mut all = inverse.times(space, &by_state);
+        all.negate();
+        let beyond = resolvent(&contraction, &all.bounds(space))?;
+        let mut slopes = all.part(space, 0..n, 0..2 * n);
+        for (row, column) in (0..n).flat_map(|row| (0..2 * n).map(move |column| (row, column))) {
+            let radius = &mut slopes.at_mut(row, column)[last];
+            *radius = up(*radius + beyond.at(row, column));
+        }
+        Some(Self { missed, slopes })
+    }
+}

@@ -1,0 +1,83 @@
+//! How distances of motions grow over a cell: e(τ) = Φ(τ) e(−1) + g(τ).
+
+use super::majorant::bound;
+use super::matrix::{Bounds, Models};
+use super::spaces::{Cell, Space, matrix_at};
+
+/// The transition matrix, approximately, with its error.
+#[derive(Clone, Debug)]
+pub struct Flow {
+    /// Φ̂, 2n × 2n, polynomials of (τ, ξ) of low order.
+    pub transition: Models,
+    /// Bound of |Φ − Φ̂|.
+    pub missed: Bounds,
+    /// Bound of |g|, 2n.
+    pub growth: Vec<f64>,
+}
+
+impl Flow {
+    /// Of the accelerations' derivatives by positions and velocities, n × 2n; `sizes` bounds [0 I; A], `jump` is where
+    /// g begins, and `defect` how fast it grows by itself. `None` where no bound is found.
+    pub fn new(
+        space: &Space,
+        cell: Cell,
+        slopes: &Models,
+        sizes: &Bounds,
+        jump: &[f64],
+        defect: &[f64],
+    ) -> Option<Self> {
+        let growth = bound(sizes, jump, 2.0 * cell.half, defect)?;
+        let transition = transition(space, cell, slopes);
+        let missed = missed(space, cell, &transition, slopes, sizes)?;
+        Some(Self { transition, missed, growth })
+    }
+}
+
+/// [0 I; A] of bounds of A.
+#[must_use]
+pub fn of_first_order(accelerations: &Bounds) -> Bounds {
+    let (n, columns) = accelerations.shape();
+    let mut values = vec![0.0; n * columns];
+    (0..n).for_each(|row| values[row * columns + n + row] = 1.0);
+    values.extend_from_slice(accelerations.entries());
+    Bounds::of(columns, columns, &values)
+}
+
+/// Some Φ̂ with Φ̂' ≈ [0 I; A] Φ̂ and Φ̂(−1) = I.
+fn transition(space: &Space, cell: Cell, slopes: &Models) -> Models {
+    let (n, kept) = (slopes.rows, space.box_of.size() - 1);
+    let identity = Models::identity(&space.box_of, 2 * n);
+    let mut found = Models::identity(&space.cell, 2 * n);
+    let mut integral = vec![0.0; space.cell.size()];
+    for _ in 0..space.cell.jets().monomials().order() + 2 {
+        let rates = slopes.approximate_times(&space.cell, &found);
+        for (row, column) in (0..n).flat_map(|row| (0..2 * n).map(move |column| (row, column))) {
+            space.integral(&identity.at(n + row, column)[..kept], cell.half, rates.at(row, column), &mut integral);
+            found.at_mut(n + row, column).copy_from_slice(&integral);
+            space.integral(&identity.at(row, column)[..kept], cell.half, found.at(n + row, column), &mut integral);
+            found.at_mut(row, column).copy_from_slice(&integral);
+        }
+    }
+    found
+}
+
+/// Bound of |Φ − Φ̂|: |E|' ≤ |[0 I; A]| |E| + |[0 I; A] Φ̂ − Φ̂'|.
+fn missed(space: &Space, cell: Cell, transition: &Models, slopes: &Models, sizes: &Bounds) -> Option<Bounds> {
+    let n = slopes.rows;
+    let rates = slopes.times(&space.cell, transition);
+    let start = matrix_at(space, transition, -1.0).off_identity(&space.box_of).bounds(&space.box_of);
+    let (mut rate, mut left) = (vec![0.0; space.cell.size()], vec![0.0; space.cell.size()]);
+    let mut values = vec![0.0; 4 * n * n];
+    for column in 0..2 * n {
+        let mut residual = vec![0.0; 2 * n];
+        for (row, residual) in residual.iter_mut().enumerate() {
+            space.rate(transition.at(row, column), cell.half, &mut rate);
+            let of_equation = if row < n { transition.at(n + row, column) } else { rates.at(row - n, column) };
+            space.cell.sub(of_equation, &rate, &mut left);
+            *residual = space.cell.bound(&left);
+        }
+        let found = bound(sizes, &start.column(column), 2.0 * cell.half, &residual)?;
+        found.into_iter().enumerate().for_each(|(row, value)| values[row * 2 * n + column] = value);
+    }
+    Some(Bounds::of(2 * n, 2 * n, &values))
+}

@@ -1,0 +1,80 @@
+//! Cells that are proven, and whether others would be better.
+
+use symdiff::Interval;
+
+use super::approximation::Approximation;
+use super::proof::Proven;
+use crate::certificate::frame::Frame;
+use crate::certificate::spaces::Cell;
+
+/// Defect of the accelerations, relative to their size, above which a cell is halved.
+const LARGE_DEFECT: f64 = 1e-12;
+
+/// Last terms in τ, relative to the accelerations, below which they do not matter.
+const SMALL_DEFECT: f64 = 1e-13;
+
+/// Factor by which errors make the distance larger over a cell, above which the cell is halved.
+const LARGE_GAIN: f64 = 1.05;
+
+/// The same below which the next cell is twice as long.
+const SMALL_GAIN: f64 = 1.01;
+
+/// A cell of half the length is worth its proof where its gain is smaller by this factor: one of two such cells has at
+/// most half.
+const HELPFUL: f64 = 0.3;
+
+/// A cell that is proven.
+#[derive(Debug)]
+pub(super) struct Passed {
+    pub cell: Cell,
+    pub approximation: Approximation,
+    pub proven: Proven,
+    /// At the cell's start.
+    pub frame: Frame,
+    /// Outputs over the cell.
+    pub ranges: Vec<Interval>,
+}
+
+/// A cell that is proven, and what comes after it.
+pub(super) struct Next {
+    pub cell: Cell,
+    pub approximation: Approximation,
+    pub proven: Proven,
+    /// The approximation at the cell's end.
+    pub end: Approximation,
+    /// At the cell's end.
+    pub frame: Frame,
+    /// Outputs over the cell.
+    pub ranges: Vec<Interval>,
+    /// Of the accelerations, relative to their size.
+    pub defect: f64,
+    /// Last terms of the accelerations with a power of τ, relative to their size: over this cell, over half of it, and
+    /// over twice its length.
+    pub tails: [f64; 3],
+    /// Factor by which errors make the distance larger.
+    pub gain: f64,
+}
+
+impl Next {
+    /// Whether shorter cells may be better.
+    pub fn is_long(&self) -> bool {
+        self.is_coarse() || self.gain > LARGE_GAIN
+    }
+
+    /// Whether a shorter cell has a smaller defect, and needs it.
+    fn is_coarse(&self) -> bool {
+        self.defect > LARGE_DEFECT && self.tails[0] > SMALL_DEFECT && self.tails[1] < 0.1 * self.tails[0]
+    }
+
+    /// Whether two cells of half the length are better than one.
+    pub fn is_better_than(&self, larger: &Self) -> bool {
+        let by_defect = larger.is_coarse() && self.defect < 0.5 * larger.defect;
+        by_defect || (larger.gain > LARGE_GAIN && self.gain - 1.0 < HELPFUL * (larger.gain - 1.0))
+    }
+
+    /// Whether a cell of twice the length is not coarse, by the polynomials.
+    pub fn may_be_doubled(&self) -> bool {
+        let is_fine = self.tails[2] < SMALL_DEFECT || self.tails[2] < 10.0 * self.tails[0];
+        is_fine && self.gain < SMALL_GAIN
+    }
+}

@@ -1,0 +1,132 @@
+//! Certificates of `mbint run --certify`, and what `mbint verify-certificate` refuses.
+
+use std::fs;
+
+use crate::place::Place;
+
+/// The pendulum of the library of benchmarks over a short time, with its length and a second output that is never
+/// known at the start.
+const PENDULUM: &str = "
+model: pendulum
+parameters: { length: 1 m ± 5 mm, g: 9.81 }
+bodies: { bob: { mass: 1, coordinates: [x, y] } }
+joints: { rod: { distance: { between: [ground, bob], length: length } } }
+effects: { weight: { gravity: { acceleration: [0, -g] } } }
+initial: { bob.y: 0, bob.vy: 0 }
+guess: { bob.x: -1 }
+outputs: { x: bob.x, y: bob.y, tension: rod.force }
+simulation: { duration: 0.4, step: 0.01, output_step: 0.1 }
+";
+
+/// A place with the pendulum's certificate.
+fn certified(text: &str) -> (Place, Vec<String>) {
+    let place = Place::new();
+    fs::write(place.path().join("pendulum.yaml"), text).unwrap();
+    place.run("run pendulum.yaml --certify --method certified -o out --no-report -q", 3);
+    let text = fs::read_to_string(place.path().join("out/certificate.jsonl")).unwrap();
+    let lines = text.lines().map(str::to_owned).collect();
+    (place, lines)
+}
+
+/// The verdict on a certificate of these lines.
+#[track_caller]
+fn verified(place: &Place, lines: &[String], arguments: &str, status: i32) -> String {
+    fs::write(place.path().join("changed.jsonl"), lines.join("\n")).unwrap();
+    let (found, errors) = place.run(&format!("verify-certificate changed.jsonl {arguments}"), status);
+    found + &errors
+}
+
+/// The number of the first line of a kind.
+fn first(lines: &[String], kind: &str) -> usize {
+    lines.iter().position(|line| line.starts_with(&format!("{{\"{kind}\""))).unwrap()
+}
+
+#[test]
+fn certificates_are_proven_again_and_changed_ones_are_refused() {
+    let (place, lines) = certified(PENDULUM);
+    let found = verified(&place, &lines, "pendulum.yaml", 0);
+    // Four rows of three outputs, and two at the start, where the tension is the size of a vanishing force.
+    assert!(found.contains("pendulum: proven") && found.contains("14 bounds of outputs"), "{found}");
+    let json = verified(&place, &lines, "--format json", 0);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((json["valid"].as_bool(), json["bounds"].as_u64()), (Some(true), Some(14)));
+
+    let change = |at: usize, from: &str, to: &str| {
+        let mut changed = lines.clone();
+        assert!(changed[at].contains(from), "{} has no {from}", changed[at]);
+        changed[at] = changed[at].replacen(from, to, 1);
+        changed
+    };
+    let cell = first(&lines, "cell");
+    let parsed: serde_json::Value = serde_json::from_str(&lines[cell]).unwrap();
+    let own = &parsed["cell"];
+
+    // A coefficient: the first of the first acceleration, by a millionth.
+    let coefficient = own["w"][1].as_str().unwrap().split(' ').next().unwrap();
+    let (mantissa, exponent) = coefficient.split_once('p').unwrap();
+    let nearby = format!("{}000p{exponent}", &mantissa[..8]);
+    let found = verified(&place, &change(cell, coefficient, &nearby), "", 4);
+    assert!(
+        found.contains("pendulum: refused") && found.contains("from its polynomials, and the radius is"),
+        "{found}"
+    );
+
+    // A radius that is too small.
+    let tube = own["tube"].as_str().unwrap().to_owned();
+    let small = vec!["0x1p-80"; 4].join(" ");
+    let found = verified(&place, &change(cell, &tube, &small), "", 4);
+    assert!(found.contains("cell 1 from 0 s: position 0 may be"), "{found}");
+
+    // A cell that is missing, between others and at the end.
+    let mut changed = lines.clone();
+    changed.remove(cell + 1);
+    let found = verified(&place, &changed, "", 4);
+    assert!(found.contains("cell 2 from") && found.contains("it begins at"), "{found}");
+    let found = verified(&place, &lines[..lines.len() - 1], "", 4);
+    assert!(found.contains("its cells end at") && found.contains("bounds are stated at 0.4 s"), "{found}");
+
+    // A bound that is too narrow.
+    let row = first(&lines, "row") + 2;
+    let parsed: serde_json::Value = serde_json::from_str(&lines[row]).unwrap();
+    let bound = parsed["row"]["bounds"][0].as_str().unwrap().to_owned();
+    let upper = bound.split(' ').nth(1).unwrap();
+    let found = verified(&place, &change(row, &bound, &format!("{upper} {upper}")), "", 4);
+    assert!(found.contains("output x at 0.2 s is not proven to be between"), "{found}");
+
+    // Parameters in no piece, and a start at another place.
+    let piece = first(&lines, "piece");
+    let parsed: serde_json::Value = serde_json::from_str(&lines[piece]).unwrap();
+    let lower = parsed["piece"]["lower"].as_str().unwrap().to_owned();
+    let found = verified(&place, &change(piece, &lower, "0x1p0"), "", 4);
+    assert!(found.contains("do not cover the box"), "{found}");
+    let start = parsed["piece"]["q"][0].as_str().unwrap().split(' ').next().unwrap().to_owned();
+    let found = verified(&place, &change(piece, &start, "0x1p-4"), "", 4);
+    assert!(found.contains("positions of the start"), "{found}");
+
+    // Other equations prove something else: no model has them.
+    let system = first(&lines, "system");
+    let found = verified(&place, &change(system, "\"0x1.39eb851eb851fp3\"", "\"0x1.3p3\""), "", 4);
+    assert!(found.contains("may be"), "{found}");
+    let found = verified(&place, &change(system, "\"0x1p1\"", "\"0x1p2\""), "pendulum.yaml", 4);
+    assert!(found.contains("the equations are not those of the model"), "{found}");
+
+    // No certificate at all.
+    let found = verified(&place, &change(cell, "0x1", "1"), "", 2);
+    assert!(found.contains(&format!("line {}: `1", cell + 1)), "{found}");
+    let found = verified(&place, &change(0, "\"version\":1", "\"version\":2"), "", 2);
+    assert!(found.contains("line 1: version 2 is not known, 1 is"), "{found}");
+}
+
+#[test]
+fn certificates_are_of_one_model() {
+    let (place, lines) = certified(PENDULUM);
+    let other = PENDULUM.replace("g: 9.81", "g: 9.80");
+    fs::write(place.path().join("pendulum.yaml"), &other).unwrap();
+    let found = verified(&place, &lines, "pendulum.yaml", 4);
+    assert!(found.contains("pendulum.yaml is not the one that was certified"), "{found}");
+    fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
+    let found = verified(&place, &lines, "pendulum.yaml --set length=[0.99,1.01]", 4);
+    assert!(found.contains("the box of the parameters is not that of the model"), "{found}");
+    let found = verified(&place, &lines, "pendulum.yaml --set g=9.8", 4);
+    assert!(found.contains("the equations are not those of the model"), "{found}");
+}
