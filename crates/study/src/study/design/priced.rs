@@ -34,7 +34,8 @@ pub fn allocated(
     options: &Options,
 ) -> Result<Option<Allocation>, DesignError> {
     let asked = AllocateOptions { share: question.share, widest: WIDEST };
-    let model = with_margin(&question.shown, question.goal.margin());
+    let mut model = with_margin(&question.shown, question.goal.margin());
+    model.requirements.truncate(question.required());
     match allocate(&axes.at(&model, &axes.with_present(point)), asked, options) {
         Ok(allocation) => Ok(Some(allocation)),
         Err(AllocateError::Unsuitable(_)) => Ok(None),
