@@ -215,6 +215,9 @@ fn many_truths_are_not_excluded() {
     let (first, last) = asked.split_once("..").unwrap();
     let (excluded, apart) = draws(first.parse().unwrap()..last.parse().unwrap());
     let (median, most) = (apart[apart.len() / 2], apart[apart.len() - 1]);
-    println!("{} sets: {excluded} truths excluded, pavings {median:.4} apart in the median, {most:.4} at most", apart.len());
+    println!(
+        "{} sets: {excluded} truths excluded, pavings {median:.4} apart in the median, {most:.4} at most",
+        apart.len()
+    );
     assert!(excluded == 0 && most <= 0.05, "{excluded} {most}");
 }

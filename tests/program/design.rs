@@ -51,7 +51,8 @@ fn the_best_values_are_an_overlay() {
 
 #[test]
 fn tolerances_are_chosen_by_cost() {
-    let place = place(&PLATE.replace("objective: { least: edge }", "objective: cost").replace("min: 1 m^2", "max: 1 m^2"));
+    let place =
+        place(&PLATE.replace("objective: { least: edge }", "objective: cost").replace("min: 1 m^2", "max: 1 m^2"));
     let (printed, _) = place.run("design plate.yaml -o out", 0);
     assert!(printed.contains("cost, in every case") && printed.contains("cost against"), "{printed}");
     let files = place.files("out");
@@ -70,10 +71,32 @@ fn tolerances_are_chosen_by_cost() {
         (PLATE.replace(", cost: { reciprocal: 2 }", ""), "no parameter has a `cost`"),
         (PLATE.replace("requirements: { large: { output: area, min: 1 m^2 } }", ""), "and the model has none"),
     ] {
-        fs::write(place.path().join("plate.yaml"), model.replace("objective: { least: edge }", "objective: cost")).unwrap();
+        fs::write(place.path().join("plate.yaml"), model.replace("objective: { least: edge }", "objective: cost"))
+            .unwrap();
         let (_, error) = place.run("design plate.yaml -o out", 2);
         assert!(error.contains(message) && error.contains("plate.yaml:"), "{error}");
     }
+}
+
+#[test]
+fn a_law_goes_with_its_nominal_value() {
+    let place = place(
+        "
+model: plate
+parameters: { a: { value: 1.5 m, tolerance: 0.3 m, distribution: { normal: { mean: 1.55 m, sigma: 0.1 m } } } }
+outputs: { size: a }
+requirements: { big: { output: size, min: 1 m } }
+design: { a: 0.5 to 3 m }
+objective: { least: size }
+",
+    );
+    place.run("design plate.yaml -o out --yield 99% --quiet", 0);
+    place.run("run plate.yaml --with out/design.yaml -o after --no-report --quiet", 4);
+    let summary = fs::read_to_string(place.path().join("after/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    // One per cent is below 1 m: 2.3263 σ below the mean.
+    let mean = summary["statistics"]["outputs"][0]["mean"]["value"].as_f64().unwrap();
+    assert!((mean - 1.23263).abs() < 1e-3, "{mean}");
 }
 
 #[test]

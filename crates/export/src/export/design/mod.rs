@@ -103,9 +103,8 @@ fn overlay(design: &DesignStudy) -> String {
         text += &format!("  {}: {}\n", own.name, piece(design, best, index));
     }
     let chosen = design.allocation.iter().filter(|_| design.is_priced()).flat_map(|own| &own.tolerances);
-    let is_other = |own: &&AllocatedTolerance| {
-        own.is_free && design.parameters.iter().all(|free| free.name != own.parameter)
-    };
+    let is_other =
+        |own: &&AllocatedTolerance| own.is_free && design.parameters.iter().all(|free| free.name != own.parameter);
     for own in chosen.filter(is_other) {
         text += &format!("  {}: {}\n", own.parameter, allocation::piece(own));
     }

@@ -299,14 +299,18 @@ fn move_law(law: &mut Law, from: f64, to: f64, scales: [f64; 2]) {
         return;
     }
     let moved = |value: f64| to + scales[usize::from(value < from)] * (value - from);
-    let width = 0.5 * (scales[0] + scales[1]);
+    // A standard deviation that is given stays, and with it the mean's distance, as in a model whose value is set.
+    let is_given = !law.by_tolerance
+        && matches!(law.distribution, Distribution::Normal { .. } | Distribution::TruncatedNormal { .. });
+    let mean = |value: f64| if is_given { to + (value - from) } else { moved(value) };
+    let width = if is_given { 1.0 } else { 0.5 * (scales[0] + scales[1]) };
     match &mut law.distribution {
         Distribution::Uniform { lower, upper } | Distribution::Beta { lower, upper, .. } => {
             (*lower, *upper) = (moved(*lower), moved(*upper));
         }
-        Distribution::Normal { mean, sigma } => (*mean, *sigma) = (moved(*mean), width * *sigma),
-        Distribution::TruncatedNormal { mean, sigma, lower, upper } => {
-            (*mean, *sigma, *lower, *upper) = (moved(*mean), width * *sigma, moved(*lower), moved(*upper));
+        Distribution::Normal { mean: own, sigma } => (*own, *sigma) = (mean(*own), width * *sigma),
+        Distribution::TruncatedNormal { mean: own, sigma, lower, upper } => {
+            (*own, *sigma, *lower, *upper) = (mean(*own), width * *sigma, moved(*lower), moved(*upper));
         }
         Distribution::Triangular { lower, upper, mode } => {
             (*lower, *upper, *mode) = (moved(*lower), moved(*upper), moved(*mode));

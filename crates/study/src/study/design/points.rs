@@ -5,7 +5,9 @@ use super::goal::{Goal, Merit};
 use super::surface::{self, Surface, about, scale};
 use super::{DesignError, Question};
 use crate::model::{Description, Requirement};
-use crate::results::{Allocation, Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost};
+use crate::results::{
+    Allocation, Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost,
+};
 use crate::study::allocate::run_simulations;
 use crate::study::{Kept, Options, RunError, reduced, statistics, subsystems};
 
@@ -62,7 +64,8 @@ pub fn studied(
     requirements.truncate(question.required());
     // Of the verdicts, which are sharper than the bounds in the rows.
     let known = requirements.iter().zip(&question.model.requirements);
-    let known: Vec<[f64; 2]> = known.map(|(found, own)| [found.margin, found.error].map(|part| part / scale(own))).collect();
+    let known: Vec<[f64; 2]> =
+        known.map(|(found, own)| [found.margin, found.error].map(|part| part / scale(own))).collect();
     let least = known.iter().map(|[margin, _]| *margin).fold(f64::INFINITY, f64::min);
     let leaves_enough = known.iter().all(|[margin, error]| margin - error >= question.goal.margin() - ROUNDING);
     let mut studied = Studied {
@@ -86,8 +89,8 @@ pub fn studied(
             at_limits: at_limits.map(|(own, _)| own.name.clone()).collect(),
         },
     };
-    studied.found.is_feasible =
-        requirements.iter().all(|own| own.verdict == Verdict::Holds) && (leaves_enough || question.goal.margin() == 0.0);
+    studied.found.is_feasible = requirements.iter().all(|own| own.verdict == Verdict::Holds)
+        && (leaves_enough || question.goal.margin() == 0.0);
     studied.found.requirements = requirements;
     if let Some(share) = question.share
         && !by_share(question, axes, share, &mut studied, &options)?

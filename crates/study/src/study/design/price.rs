@@ -156,7 +156,9 @@ impl Assessed for Priced<'_> {
             if below.is_empty() {
                 break;
             }
-            limits.extend(below.into_iter().map(|index| above_tangent(index, point[first + index] + step[first + index])));
+            limits.extend(
+                below.into_iter().map(|index| above_tangent(index, point[first + index] + step[first + index])),
+            );
         }
         step.truncate(k);
         step
@@ -171,15 +173,14 @@ impl Assessed for Priced<'_> {
             point[..first].iter().copied().chain(widths).collect()
         };
         let margin = self.goal.margin();
-        let mut left = |point: &[f64]| {
-            self.requirements.slacks(point).into_iter().fold(f64::INFINITY, f64::min) - margin
-        };
+        let mut left =
+            |point: &[f64]| self.requirements.slacks(point).into_iter().fold(f64::INFINITY, f64::min) - margin;
         let without = left(&with(0.0));
         let mut factor = 1.0;
         for _ in 0..TIGHTENED {
             let own = left(&with(factor));
-            // Written so that NaN ends it, and nominal values that miss the margin do.
-            if own >= 0.0 || !(without > 0.0) {
+            // Nominal values that miss the margin are no matter of tolerances.
+            if own >= 0.0 || without.is_nan() || without <= 0.0 {
                 break;
             }
             factor *= without / (without - own);

@@ -105,14 +105,12 @@ fn beyond(
     let mut front: Vec<DesignTrade> = trade(first).into_iter().collect();
     let mut start = first.point.clone();
     for share in TRADED {
-        // Written so that an unknown margin ends it.
-        if (options.interrupted)() || !(largest > 0.0) {
+        if (options.interrupted)() || largest.is_nan() || largest <= 0.0 {
             break;
         }
         (options.stage)("cost against margin");
         let question = Question { goal: Goal::Cost(share * largest), ..question.clone() };
-        let rough =
-            local(&all.surface, &mut *question.assessed(&all.surface)?, question.goal, &start, ROUGH);
+        let rough = local(&all.surface, &mut *question.assessed(&all.surface)?, question.goal, &start, ROUGH);
         let Some(found) = refined(&question, axes, &rough, all, options)? else { break };
         let Some(own) = Some(&found).filter(|found| found.found.is_feasible).and_then(trade) else { break };
         front.push(own);
