@@ -73,7 +73,7 @@ design: { a: 0.5 to 5 m, b: 0.2 to 2 m }
 objective: cost
 ",
     );
-    // b tₐ + a t_b ≤ 0.01 with a b = 1: the cost is (√(16/a) + √a)² 0.005/0.01, least for a = 4, and 0.08/tₐ + 0.005/t_b.
+    // The cost is 0.08/tₐ + 0.005/t_b, and b tₐ + a t_b ≤ 0.01 with a b = 1: (√(16/a) + √a)²/2, least for a = 4.
     let best = found.best().unwrap();
     assert!(best.is_feasible, "{best:?}");
     assert_near(best.values[0], 4.0, 0.15);

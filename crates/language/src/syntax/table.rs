@@ -1,9 +1,8 @@
-//! Tables of numbers: lines of cells between commas, semicolons or tabs. One reader for all of a model's tables, measured
-//! rows and points.
+//! Tables of numbers: lines of cells between commas, semicolons or tabs; measured rows, points, and tables of models.
 //!
 //! The separator is that of the first line: tabs where it has some, else semicolons, else commas. Beside tabs and
-//! semicolons numbers may have decimal commas, all of a table or none. Lines that are empty or begin with `#` are none of
-//! the table; a cell may stand between double quotes.
+//! semicolons numbers may have decimal commas, all of a table or none. Empty lines, and those that begin with `#`, do
+//! not count; a cell may stand between double quotes.
 
 use std::ops::Range;
 

@@ -96,7 +96,7 @@ impl Expansion<'_> {
     pub fn close<P: AsRef<[f64]>>(&self, points: &[P], motion: Vec<f64>) -> Vec<f64> {
         let at = |parameter: usize, point: &P| {
             let xi = point.as_ref()[parameter];
-            // Beyond the box the coordinates go on, and so do the parameters: with those of its end, outputs had a kink.
+            // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs had a kink.
             match xi.abs() <= 1.0 + ROUNDING {
                 true => self.domain.value(parameter, xi),
                 false => self.domain.midpoint(parameter) + self.domain.half_width(parameter) * xi,

@@ -179,9 +179,12 @@ impl KeptBox {
     fn points<'s>(&self, samples: impl Iterator<Item = &'s [f64]>) -> Vec<Vec<f64>> {
         let of = |axis: usize| (self.domain.midpoint(axis), self.domain.half_width(axis));
         let axes: Vec<(f64, f64)> = (0..self.domain.dimension()).map(of).collect();
-        let along =
-            |(value, &(middle, half)): (&f64, &(f64, f64))| if half > 0.0 { (value - middle) / half } else { 0.0 };
-        samples.map(|sample| sample.iter().zip(&axes).map(along).collect()).collect()
+        let along = |value: f64, axis: usize| match axes[axis] {
+            (middle, half) if half > 0.0 => (value - middle) / half,
+            _ => 0.0,
+        };
+        let of_sample = |sample: &[f64]| (0..axes.len()).map(|axis| along(sample[axis], axis)).collect();
+        samples.map(of_sample).collect()
     }
 
     fn values<'c>(

@@ -1,4 +1,4 @@
-//! Tolerances that are chosen with the nominal values, by what they cost.
+//! Tolerances that are chosen with the nominal values, by their cost.
 
 use super::axes::Axes;
 use super::goal::Goal;
