@@ -66,6 +66,12 @@ fn tolerances_are_chosen_by_cost() {
     let page = fs::read_to_string(place.path().join("out/design.html")).unwrap();
     assert!(page.contains("Cost against margin"), "{page}");
     place.run("run plate.yaml --with out/design.yaml -o after --no-report", 0);
+    // Where no tolerances will do, there is no cost to be proud of.
+    let model = fs::read_to_string(place.path().join("plate.yaml")).unwrap().replace("max: 1 m^2", "max: 0.1 m^2");
+    fs::write(place.path().join("small.yaml"), model).unwrap();
+    let (printed, error) = place.run("design small.yaml -o small", 4);
+    assert!(error.contains("the nearest miss it by") && !printed.contains("cost against"), "{printed}");
+    assert!(!printed.contains("than at the optimum without tolerances"), "{printed}");
     // Without costs, or requirements, there is nothing to choose by.
     for (model, message) in [
         (PLATE.replace(", cost: { reciprocal: 2 }", ""), "no parameter has a `cost`"),

@@ -154,6 +154,10 @@ impl DesignStudy {
     /// By how much the worst case is better than that of the nominal optimum, as a share of that.
     pub fn gain(&self) -> Option<f64> {
         let (best, nominal) = (self.best()?, self.nominal_point.as_ref()?);
+        // Tolerances that miss the requirements have a cost, too.
+        if self.is_priced() && !(best.is_feasible && nominal.is_feasible) {
+            return None;
+        }
         let gain = if self.objective.is_least { nominal.worst - best.worst } else { best.worst - nominal.worst };
         // Of a value that is nothing but its error there is no share.
         (nominal.worst.abs() > nominal.error + best.error).then(|| gain / nominal.worst.abs())

@@ -58,8 +58,10 @@ pub fn at_cost(
     if let Some(own) = &allocation {
         found.of_surrogate += own.simulations;
         found.simulations += own.confirming;
+        // Its requirements are those with the margin.
+        found.found.is_feasible &= own.is_confirmed;
     }
-    found.allocation = allocation;
+    found.allocation = allocation.filter(|own| own.not_met.is_empty());
     Ok(Some(found))
 }
 
