@@ -1,6 +1,6 @@
 //! Parameters that are free or uncertain, and the models and samples with chosen nominal values.
 
-use super::price::Width;
+use super::width::Width;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::Chebyshev;
 use crate::model::{Description, Free, Law, ParameterValue};

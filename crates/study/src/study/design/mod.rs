@@ -4,19 +4,22 @@
 //! of all margins (`surface`); on it, `worst` finds what the worst case of a candidate leaves, and `search` the local
 //! optima, in the order of `goal`. About each of these a surrogate over a narrower region makes the optimum sharper
 //! (`refine`), and a study of its own tells its figures (`points`). The same without tolerances finds the optimum that
-//! one would have chosen otherwise.
+//! one would have chosen otherwise. Where the cost is the objective, tolerances belong to the point (`width`, `price`); they
+//! are those that allocation finds (`allocated`), and `front` has cost against margin.
 
+mod allocated;
 mod axes;
+mod front;
 mod goal;
 mod instants;
 mod points;
 mod price;
-mod priced;
 mod profiles;
 mod refine;
 mod search;
 mod share;
 mod surface;
+mod width;
 mod worst;
 
 use std::ops::Range;
@@ -24,12 +27,13 @@ use std::ops::Range;
 use super::{Options, RunError, reduced, statistics};
 use crate::model::{Description, Objective};
 use crate::results::{Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
+use allocated::at_cost;
 use axes::{Axes, without_tolerances};
+use front::{front, front_beside};
 use goal::Goal;
 use instants::{at_instants, required};
 use points::{Studied, not_met, studied};
 use price::Priced;
-use priced::{at_cost, front, front_beside};
 use profiles::profiles;
 use refine::refined;
 use search::{are_alike, optima};
@@ -211,7 +215,7 @@ fn designed(
     let best = &mut found.optima[0];
     let allocation = match best.allocation.take() {
         None if best.found.is_feasible && question.shown.statistics.is_priced() => {
-            priced::allocated(question, axes, &best.point, options)?
+            allocated::allocated(question, axes, &best.point, options)?
         }
         own => own,
     };
