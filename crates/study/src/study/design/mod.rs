@@ -4,8 +4,8 @@
 //! of all margins (`surface`); on it, `worst` finds what the worst case of a candidate leaves, and `search` the local
 //! optima, in the order of `goal`. About each of these a surrogate over a narrower region makes the optimum sharper
 //! (`refine`), and a study of its own tells its figures (`points`). The same without tolerances finds the optimum that
-//! one would have chosen otherwise. Where the cost is the objective, tolerances belong to the point (`width`, `price`); they
-//! are those that allocation finds (`allocated`), and `front` has cost against margin.
+//! one would have chosen otherwise. Where the cost is the objective, tolerances belong to the point (`width`, `price`);
+//! they are those that allocation finds (`allocated`), and `front` has cost against margin.
 
 mod allocated;
 mod axes;
