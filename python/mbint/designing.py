@@ -25,13 +25,15 @@ class Design:
     Attributes:
         points: a row for each point (``model``, ``without tolerances``, ``optimum``, …): the values of free parameters, ``nominal``, ``worst``, ``error``, ``feasible``, in SI.
         feasible: whether all requirements hold at the optimum; if not, it is the nearest point.
-        overlay: the best values with their tolerances, for the argument ``set`` of other functions.
+        front: cost against margin, a row for each margin: ``margin``, ``error``, ``cost``, the values of free parameters, ``NAME.above`` and ``NAME.below`` of each tolerance, in SI; empty where tolerances have no cost.
+        overlay: the best values with their tolerances, for the argument ``set`` of other functions; where the cost is the objective, the other tolerances too.
         result: ``design.json``: verdicts, profiles, tolerances by their cost.
     """
 
     points: pd.DataFrame
     feasible: bool
     overlay: dict[str, tuple[float, float] | float]
+    front: pd.DataFrame
     result: dict[str, Any]
 
 
@@ -66,8 +68,16 @@ def design(
         invoke([*arguments, "--color", "never", *study.options], accepted=frozenset({0, UNRESOLVED, NOT_MET}))
         found = json.loads((out / "design.json").read_text(encoding="utf-8"))
         points = pd.read_csv(out / "design.csv").set_index("point")
+        path = out / "front.csv"
+        front = pd.read_csv(path) if path.exists() else pd.DataFrame()
     best = found["optima"][0]
     overlay: dict[str, tuple[float, float] | float] = {}
     for own, value, (above, below) in zip(found["parameters"], best["values"], best["deviations"], strict=True):
         overlay[own["name"]] = (value - below, value + above) if above + below > 0 else value
-    return Design(points, feasible=best["is_feasible"], overlay=overlay, result=found)
+    chosen = found.get("allocation", {}).get("tolerances", []) if found["objective"]["text"] == "cost" else []
+    for own in chosen:
+        nominal, after = own["nominal"], own["after"]
+        # A deviation about another parameter has no value of its own.
+        if own["is_free"] and own["parameter"] not in overlay and nominal is not None:
+            overlay[own["parameter"]] = (nominal - after["below"], nominal + after["above"])
+    return Design(points, feasible=best["is_feasible"], overlay=overlay, front=front, result=found)

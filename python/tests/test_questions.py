@@ -104,6 +104,26 @@ def test_nominal_values_are_designed() -> None:
     assert not mbint.design(plate | {"requirements": {"large": {"output": "area", "min": 4}}}).feasible
 
 
+def test_tolerances_are_chosen_with_nominal_values() -> None:
+    stack = {
+        "parameters": {
+            "a": {"value": "30 mm", "tolerance": "0.1 mm", "cost": {"reciprocal": 1}},
+            "b": {"value": "20.5 mm", "tolerance": "0.1 mm", "cost": {"reciprocal": 4}},
+        },
+        "outputs": {"gap": "a - b"},
+        "requirements": {"fits": {"output": "gap", "min": "9.7 mm", "max": "10.3 mm"}},
+        "design": {"b": "19 to 21 mm"},
+        "objective": "cost",
+    }
+    # 0.3 mm in parts as 1 to 2: (1 + 2)^2 0.1/0.3.
+    found = mbint.design(stack)
+    assert found.feasible
+    assert found.points.loc["optimum", "worst"] == pytest.approx(3, rel=1e-3)
+    assert found.front["a.above"][0] == pytest.approx(1e-4, rel=1e-2)
+    assert found.front["cost"].is_monotonic_increasing
+    assert mbint.run(stack, set=found.overlay).result.verdicts["verdict"][0] == "holds"
+
+
 def test_bounds_are_recorded_and_compared(tmp_path: Path) -> None:
     assert not mbint.snapshot(STACK, tmp_path, check=True)
     assert mbint.snapshot(STACK, tmp_path)

@@ -7,9 +7,9 @@ use super::run::with_folder;
 use super::table::{Align, Table};
 use super::verdicts::{requirements, short};
 use super::{Failure, Status, interrupt, load};
-use crate::export::{DESIGN_OVERLAY, rounded, write_design};
+use crate::export::{DESIGN_OVERLAY, rounded, shown_unit, write_design};
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy};
+use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy, DesignTrade, ToleranceZone};
 use crate::study::{self, DesignError, DesignOptions, RunError};
 
 /// A smaller gain is not printed.
@@ -93,10 +93,14 @@ fn overview(found: &DesignStudy) -> String {
     );
     text += &points(found);
     if let Some(gain) = found.gain().filter(|gain| gain.abs() >= SHOWN) {
+        let (value, words) = match found.is_priced() {
+            true => ("cost", ["less", "more"]),
+            false => ("worst case", ["better", "worse"]),
+        };
         text += &format!(
-            "  worst case {:.1} % {} than at the optimum without tolerances\n",
+            "  {value} {:.1} % {} than at the optimum without tolerances\n",
             100.0 * gain.abs(),
-            if gain < 0.0 { "worse" } else { "better" }
+            words[usize::from(gain < 0.0)]
         );
     }
     let narrow = found.parameters.iter().filter(|own| own.searched != own.range);
@@ -112,6 +116,10 @@ fn overview(found: &DesignStudy) -> String {
     text += "\n";
     if let Some(best) = found.best().filter(|best| !best.requirements.is_empty()) {
         text += &format!("{}\n", requirements(&best.requirements));
+    }
+    if !found.front.is_empty() {
+        text += &front(found);
+        return text;
     }
     if let Some([Some(before), Some(after)]) = found.allocation.as_ref().map(Allocation::costs) {
         text += &format!(
@@ -147,6 +155,11 @@ fn points(found: &DesignStudy) -> String {
         let unit = ShownUnit::of(&own.display, &own.unit);
         row(&own.name, unit.text, &|point| short(unit.of_si(point.values[index])));
     }
+    if found.is_priced() {
+        row("cost", "", &|point| short(point.worst));
+        row("requirements", "", &|point| if point.is_feasible { "hold" } else { "not met" }.to_owned());
+        return table.render(2);
+    }
     let unit = ShownUnit::of(&found.objective.display, &found.objective.unit);
     let is_margin = found.objective.text == "margin";
     let unit = if is_margin { ShownUnit { text: "%", si: 0.01 } } else { unit };
@@ -159,6 +172,42 @@ fn points(found: &DesignStudy) -> String {
     row("± error", unit.text, &|point| format!("{:.1e}", unit.of_si(point.error)));
     if columns.iter().any(|(_, point)| !point.requirements.is_empty()) {
         row("requirements", "", &|point| if point.is_feasible { "hold" } else { "not met" }.to_owned());
+    }
+    table.render(2)
+}
+
+/// A column for each margin: the cheapest nominal values and tolerances that leave it.
+fn front(found: &DesignStudy) -> String {
+    let heading = |index: usize| if index < found.front.len() { "margin" } else { "" };
+    let mut table = Table::new([
+        ("cost against", Align::Left),
+        ("unit", Align::Left),
+        (heading(0), Align::Right),
+        (heading(1), Align::Right),
+        (heading(2), Align::Right),
+        (heading(3), Align::Right),
+        (heading(4), Align::Right),
+    ]);
+    let mut row = |name: &str, unit: &str, cell: &dyn Fn(&DesignTrade) -> String| {
+        let cell = |index: usize| found.front.get(index).map_or_else(String::new, cell);
+        table.row([name.to_owned(), unit.to_owned(), cell(0), cell(1), cell(2), cell(3), cell(4)]);
+    };
+    row("margin", "%", &|own| short(100.0 * own.margin));
+    row("cost", "", &|own| short(own.cost));
+    for (index, own) in found.parameters.iter().enumerate() {
+        let unit = ShownUnit::of(&own.display, &own.unit);
+        row(&own.name, unit.text, &|own| short(unit.of_si(own.values[index])));
+    }
+    let changed = found.front.first().map_or(&[][..], |own| &own.tolerances).iter().enumerate();
+    for (index, own) in changed.filter(|(_, own)| own.is_free) {
+        let (scale, unit) = shown_unit(own);
+        row(&format!("{} ±", own.parameter), unit, &|own| {
+            let ToleranceZone { above, below } = own.tolerances[index].after;
+            match above == below {
+                true => short(scale * above),
+                false => format!("+{} -{}", short(scale * above), short(scale * below)),
+            }
+        });
     }
     table.render(2)
 }

@@ -164,12 +164,12 @@ fn slider(values: [f64; 3]) -> Vec<f64> {
 }
 
 /// Draws parameters of the slider crank and noise of up to 1 mm; returns how many truths lie outside of the sets, and
-/// the largest difference of both pavings.
-fn draws(numbers: std::ops::Range<u64>) -> (usize, f64) {
+/// the differences of both pavings, ascending.
+fn draws(numbers: impl Iterator<Item = u64>) -> (usize, Vec<f64>) {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/examples/crank_to_fit.yaml")).unwrap();
     let model = Model::from_yaml_str("crank.yaml", &text).unwrap();
-    let (mut excluded, mut apart) = (0, 0.0_f64);
+    let (mut excluded, mut apart) = (0, Vec::new());
     for number in numbers {
         let mut random = Random(2007 + 7919 * number);
         let xi = [(); 3].map(|()| between(&mut random, -1.0, 1.0));
@@ -193,24 +193,31 @@ fn draws(numbers: std::ops::Range<u64>) -> (usize, f64) {
             if own > 0.05 {
                 println!("draw {number}: pavings {:.1} % apart, {:?} boxes", 100.0 * own, set.boxes);
             }
-            apart = apart.max(own);
+            apart.push(own);
         }
     }
+    apart.sort_by(f64::total_cmp);
     (excluded, apart)
 }
 
 #[test]
 fn the_truth_of_a_slider_crank_is_not_excluded() {
-    let (excluded, apart) = draws(0..3);
-    assert!(excluded == 0 && apart <= 0.05, "{excluded} {apart}");
+    // Of 127 the set reaches an end of the model's box, and the polynomials go on beyond it.
+    let (excluded, apart) = draws([0, 1, 127].into_iter());
+    assert!(excluded == 0 && apart.len() == 3 && apart[2] <= 0.05, "{excluded} {apart:?}");
 }
 
-/// `MBINT_DRAWS=1000 cargo test --release --test models fit::many -- --ignored --nocapture`: some 4 s a draw.
+/// `MBINT_DRAWS=0..1000 cargo test --release --test models fit::many -- --ignored --nocapture`: some 4 s a draw.
 #[test]
 #[ignore = "a minute: as many draws as the gate tries; prints its figures"]
 fn many_truths_are_not_excluded() {
-    let count = std::env::var("MBINT_DRAWS").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
-    let (excluded, apart) = draws(74..74 + count);
-    println!("{count} draws: {excluded} excluded, pavings at most {:.1} % apart", 100.0 * apart);
-    assert!(excluded == 0 && apart <= 0.05, "{excluded} {apart}");
+    let asked = std::env::var("MBINT_DRAWS").unwrap_or_else(|_| "74..86".to_owned());
+    let (first, last) = asked.split_once("..").unwrap();
+    let (excluded, apart) = draws(first.parse().unwrap()..last.parse().unwrap());
+    let (median, most) = (apart[apart.len() / 2], apart[apart.len() - 1]);
+    println!(
+        "{} sets: {excluded} truths excluded, pavings {median:.4} apart in the median, {most:.4} at most",
+        apart.len()
+    );
+    assert!(excluded == 0 && most <= 0.05, "{excluded} {most}");
 }

@@ -27,6 +27,7 @@ mod controllers;
 mod convergence;
 mod deep_trees;
 mod design;
+mod design_cost;
 mod drawing_linkages;
 mod excitations;
 mod explicit;

@@ -50,6 +50,62 @@ fn the_best_values_are_an_overlay() {
 }
 
 #[test]
+fn tolerances_are_chosen_by_cost() {
+    let place =
+        place(&PLATE.replace("objective: { least: edge }", "objective: cost").replace("min: 1 m^2", "max: 1 m^2"));
+    let (printed, _) = place.run("design plate.yaml -o out", 0);
+    assert!(printed.contains("cost, in every case") && printed.contains("cost against"), "{printed}");
+    let files = place.files("out");
+    assert_eq!(files, ["cost.design.svg", "design.csv", "design.html", "design.json", "design.yaml", "front.csv"]);
+    let (json, _) = place.run("design plate.yaml -o out --format json --quiet", 0);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let front = json["front"].as_array().unwrap();
+    let costs: Vec<f64> = front.iter().map(|own| own["cost"].as_f64().unwrap()).collect();
+    assert!(costs.len() > 1 && costs.is_sorted() && front[1]["tolerances"][0]["parameter"] == "a", "{front:?}");
+    assert_eq!(fs::read_to_string(place.path().join("out/front.csv")).unwrap().lines().count(), 1 + front.len());
+    let page = fs::read_to_string(place.path().join("out/design.html")).unwrap();
+    assert!(page.contains("Cost against margin"), "{page}");
+    place.run("run plate.yaml --with out/design.yaml -o after --no-report", 0);
+    // Where no tolerances will do, there is no cost to be proud of.
+    let model = fs::read_to_string(place.path().join("plate.yaml")).unwrap().replace("max: 1 m^2", "max: 0.1 m^2");
+    fs::write(place.path().join("small.yaml"), model).unwrap();
+    let (printed, error) = place.run("design small.yaml -o small", 4);
+    assert!(error.contains("the nearest miss it by") && !printed.contains("cost against"), "{printed}");
+    assert!(!printed.contains("than at the optimum without tolerances"), "{printed}");
+    // Without costs, or requirements, there is nothing to choose by.
+    for (model, message) in [
+        (PLATE.replace(", cost: { reciprocal: 2 }", ""), "no parameter has a `cost`"),
+        (PLATE.replace("requirements: { large: { output: area, min: 1 m^2 } }", ""), "and the model has none"),
+    ] {
+        fs::write(place.path().join("plate.yaml"), model.replace("objective: { least: edge }", "objective: cost"))
+            .unwrap();
+        let (_, error) = place.run("design plate.yaml -o out", 2);
+        assert!(error.contains(message) && error.contains("plate.yaml:"), "{error}");
+    }
+}
+
+#[test]
+fn a_law_goes_with_its_nominal_value() {
+    let place = place(
+        "
+model: plate
+parameters: { a: { value: 1.5 m, tolerance: 0.3 m, distribution: { normal: { mean: 1.55 m, sigma: 0.1 m } } } }
+outputs: { size: a }
+requirements: { big: { output: size, min: 1 m } }
+design: { a: 0.5 to 3 m }
+objective: { least: size }
+",
+    );
+    place.run("design plate.yaml -o out --yield 99% --quiet", 0);
+    place.run("run plate.yaml --with out/design.yaml -o after --no-report --quiet", 4);
+    let summary = fs::read_to_string(place.path().join("after/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    // One per cent is below 1 m: 2.3263 σ below the mean.
+    let mean = summary["statistics"]["outputs"][0]["mean"]["value"].as_f64().unwrap();
+    assert!((mean - 1.23263).abs() < 1e-3, "{mean}");
+}
+
+#[test]
 fn the_nearest_values_are_told_where_none_will_do() {
     let place = place(&PLATE.replace("min: 1 m^2", "min: 4 m^2"));
     let (printed, error) = place.run("design plate.yaml -o out", 4);

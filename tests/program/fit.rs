@@ -59,6 +59,21 @@ fn a_table_narrows_the_intervals() {
 }
 
 #[test]
+fn tables_of_spreadsheets_are_the_same() {
+    let fitted = |table: &str| {
+        let place = place(table);
+        let (json, _) = place.run("fit line.yaml data.csv -o out --format json --quiet", 0);
+        serde_json::from_str::<serde_json::Value>(&json).unwrap()
+    };
+    let plain = fitted(TABLE);
+    for separator in [";", "\t"] {
+        let other = TABLE.replace(',', separator);
+        assert_eq!(fitted(&other), plain, "{separator:?}");
+        assert_eq!(fitted(&other.replace("-100.5", "-100,5").replace("0.002", "0,002")), plain, "{separator:?}");
+    }
+}
+
+#[test]
 fn rows_that_nothing_explains_are_named() {
     let place = place(&TABLE.replace("500, 101", "500, 2000"));
     let (_, error) = place.run("fit line.yaml data.csv -o out", 4);
@@ -84,9 +99,15 @@ fn tables_that_cannot_be_used_say_where_and_why() {
         ("height, height_noise\n1, 1\n", "data.csv: line 1, column 1: there is no column `time`"),
         ("t\n1\n", "no column is an output of the model; there is only `height`"),
         ("t, height, height\n0, 1, 1\n", "line 1, column 12: there are two columns `height`"),
-        ("t, height, height_noise\n0, 1x, 1\n", "data.csv: line 2, column 4: `1x` is no number"),
+        ("t, height, height_noise\n0, 1x, 1\n", "data.csv: line 2, column 4: `1x` is not a number"),
         ("t, height, height_noise\n0, 1, 0\n", "line 2, column 7: a noise bound is greater than zero"),
-        ("t, height, height_noise\n0, 1\n", "line 2, column 1: 2 cells, but the heading has 3"),
+        ("t, height, height_noise\n0, 1\n", "line 2, column 1: 2 cells, but the first line has 3"),
+        ("t; height; height_noise\n0; 1,5; 0.1\n", "line 2, column 4: `1,5` has a decimal comma, but other numbers"),
+        (
+            "t, height, height_noise\n0, 1,5, 0,1, 0\n",
+            "line 2, column 1: 6 cells, but the first line has 3: with decimal commas, separate columns by semicolons",
+        ),
+        ("t; height\n0 1; 2\n", "line 2, column 1: `0 1` is several numbers: separate columns by commas"),
         (", height, height_noise\n0, 1, 1\n", "line 1, column 1: `` is no output of the model"),
     ];
     for (table, message) in cases {

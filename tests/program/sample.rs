@@ -89,11 +89,16 @@ fn samples_of_a_table_are_those_of_its_rows() {
     assert_eq!(found["k"], [2.0; 10]);
     assert!((found["near"][4] + 4.9).abs() < 1e-11 && (found["speed"][9] + 20.0).abs() < 1e-11, "{found:?}");
 
+    // The same of a spreadsheet.
+    fs::write(place.path().join("points.csv"), "g;k\n9,8;2\n20;2\n").unwrap();
+    place.run("sample fall.yaml --points points.csv -o s.csv -q", 0);
+    assert_eq!(columns(&place.path().join("s.csv"))["speed"], found["speed"]);
+
     for (table, message) in [
         ("g,h\n1,2\n", "`h` is no uncertain parameter of the model; there are: g, k"),
         ("g\n", "there are no points"),
-        ("g\n9.8\n9,8\n", "CSV error"),
-        ("g\n9.8 m\n", "line 2, `g`: `9.8 m` is no number; values are plain numbers in SI units"),
+        ("g\n9.8\n9,8\n", "line 3: 2 cells, but the first line has 1"),
+        ("g\n9.8 m\n", "line 2, `g`: `9.8 m` is not a number; values are plain numbers in SI units"),
         ("g,g\n1,2\n", "there are two columns `g`"),
     ] {
         fs::write(place.path().join("points.csv"), table).unwrap();

@@ -39,8 +39,9 @@ pub(in crate::cli) struct DesignArgs {
 
 const DESIGN_HELP: &str = "\
 The model names free parameters with ranges of their nominal values, as `design: { rod: 0.2 to
-0.3 m }`, and an `objective`: `{ least: OUTPUT }`, `{ most: OUTPUT }` or `margin`. All requirements
-are to hold, with the tolerances about each value. Writes design.csv (the optima, the model's own
-values, and the optimum without tolerances), design.json, design.yaml (the best values, for --with
-or a scene), figures and design.html. The exit status is 4 where no values meet the requirements:
+0.3 m }`, and an `objective`: `{ least: OUTPUT }`, `{ most: OUTPUT }`, `margin` or `cost`. All
+requirements are to hold, with the tolerances about each value; with `cost` these are chosen, too.
+Writes design.csv (the optima, the model's own values, and the optimum without tolerances),
+front.csv (cost against margin), design.json, design.yaml (the best values, for --with or a scene),
+figures and design.html. The exit status is 4 where no values meet the requirements:
 then the nearest ones are printed.";

@@ -10,6 +10,7 @@ use crate::cli::args::PointArgs;
 use crate::model::is_standard_input;
 use crate::numerics::{Design, MOST_AXES, ParameterBox};
 use crate::store::AskedPoints;
+use crate::syntax::table::{Cell, Table};
 
 /// Most points of a design.
 const MOST: usize = 1 << 32;
@@ -57,27 +58,29 @@ impl Points {
 
     fn table(path: &Path) -> Result<Self, Failure> {
         let wrong = |message: String| Failure::Wrong(format!("{}: {message}", path.display()));
-        let from: Box<dyn Read> = match is_standard_input(path) {
-            true => Box::new(std::io::stdin().lock()),
-            false => Box::new(File::open(path).map_err(|error| wrong(error.to_string()))?),
+        let mut text = String::new();
+        let read = match is_standard_input(path) {
+            true => std::io::stdin().lock().read_to_string(&mut text),
+            false => File::open(path).and_then(|mut file| file.read_to_string(&mut text)),
         };
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(from);
-        let headings = reader.headers().map_err(|error| wrong(error.to_string()))?;
-        let names: Vec<String> = headings.iter().map(str::to_owned).collect();
+        read.map_err(|error| wrong(error.to_string()))?;
+        let table = Table::read(&text);
+        let headings = table.lines.first().map_or(&[][..], |line| &line.cells);
+        let names: Vec<String> = headings.iter().map(|cell| cell.text.to_owned()).collect();
         if let Some(twice) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
             return Err(wrong(format!("there are two columns `{}`", twice.1)));
         }
         let mut rows = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(|error| wrong(error.to_string()))?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let number = |(name, text): (&String, &str)| {
-                let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-                number.ok_or_else(|| {
-                    wrong(format!("line {line}, `{name}`: `{text}` is no number; values are plain numbers in SI units"))
+        for line in table.lines.iter().skip(1) {
+            if let Some(message) = table.misfit(line) {
+                return Err(wrong(format!("line {}: {message}", line.number)));
+            }
+            let number = |(name, cell): (&String, &Cell)| {
+                table.number(cell).map_err(|message| {
+                    wrong(format!("line {}, `{name}`: {message}; values are plain numbers in SI units", line.number))
                 })
             };
-            rows.push(names.iter().zip(&record).map(number).collect::<Result<Vec<f64>, _>>()?);
+            rows.push(names.iter().zip(&line.cells).map(number).collect::<Result<Vec<f64>, _>>()?);
         }
         if rows.is_empty() {
             return Err(wrong("there are no points".to_owned()));

@@ -78,7 +78,7 @@ fn overlay(allocation: &Allocation) -> String {
 }
 
 /// A tolerance in one piece with its nominal value.
-fn piece(own: &AllocatedTolerance) -> String {
+pub(super) fn piece(own: &AllocatedTolerance) -> String {
     let (scale, unit) = shown_unit(own);
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     let ToleranceZone { above, below } = own.after;

@@ -12,6 +12,7 @@ mod render;
 pub mod scope;
 pub mod source;
 pub mod suggest;
+pub mod table;
 pub mod text_file;
 mod tree;
 pub mod tuning;

@@ -3,6 +3,9 @@
 use super::ensemble::Closure;
 use crate::numerics::{ParameterBox, Phase, SparseBasis, SparseWork};
 
+/// ξ beyond the box by less is of its end.
+const ROUNDING: f64 = 1e-12;
+
 /// How motions are moved, to see what that does to outputs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Moves {
@@ -91,7 +94,14 @@ impl Expansion<'_> {
 
     /// Every output as it follows from the motion at some ξ: 2n lines of points.
     pub fn close<P: AsRef<[f64]>>(&self, points: &[P], motion: Vec<f64>) -> Vec<f64> {
-        let at = |parameter: usize, point: &P| self.domain.value(parameter, point.as_ref()[parameter]);
+        let at = |parameter: usize, point: &P| {
+            let xi = point.as_ref()[parameter];
+            // Coordinates go on beyond the box, and so do parameters: with those of its end, outputs had a kink.
+            match xi.abs() <= 1.0 + ROUNDING {
+                true => self.domain.value(parameter, xi),
+                false => self.domain.midpoint(parameter) + self.domain.half_width(parameter) * xi,
+            }
+        };
         let parameters = (0..self.domain.dimension())
             .flat_map(|parameter| points.iter().map(move |point| at(parameter, point)))
             .collect();

@@ -134,7 +134,7 @@ impl KeptSurrogate {
     /// `None` where the box was split.
     pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Option<Vec<f64>> {
         let [part] = self.boxes.as_slice() else { return None };
-        let points: Vec<Vec<f64>> = samples.iter().map(|sample| part.xi(sample.as_ref())).collect();
+        let points = part.points(samples.iter().map(AsRef::as_ref));
         let terms = part.basis.len();
         let coefficients: Vec<f64> =
             outputs.iter().flat_map(|&output| part.rows[row].of_output(output, terms).to_vec()).collect();
@@ -157,7 +157,7 @@ impl KeptSurrogate {
             let holds = |place: &usize| self.boxes.len() == 1 || part.contains(samples[*place].as_ref());
             let (inside, outside): (Vec<usize>, Vec<usize>) = left.into_iter().partition(holds);
             left = outside;
-            let points: Vec<Vec<f64>> = inside.iter().map(|&place| part.xi(samples[place].as_ref())).collect();
+            let points = part.points(inside.iter().map(|&place| samples[place].as_ref()));
             let found = part.values(row, outputs, &points, closures);
             for (of_output, found) in
                 values.chunks_exact_mut(samples.len().max(1)).zip(found.chunks_exact(inside.len().max(1)))
@@ -175,13 +175,16 @@ impl KeptBox {
         sample.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
     }
 
-    /// ξ of a sample; 0 along parameters without width.
-    fn xi(&self, sample: &[f64]) -> Vec<f64> {
-        let along = |axis: usize| match self.domain.half_width(axis) {
-            half if half > 0.0 => (sample[axis] - self.domain.midpoint(axis)) / half,
+    /// ξ of samples; 0 along parameters without width.
+    fn points<'s>(&self, samples: impl Iterator<Item = &'s [f64]>) -> Vec<Vec<f64>> {
+        let of = |axis: usize| (self.domain.midpoint(axis), self.domain.half_width(axis));
+        let axes: Vec<(f64, f64)> = (0..self.domain.dimension()).map(of).collect();
+        let along = |value: f64, axis: usize| match axes[axis] {
+            (middle, half) if half > 0.0 => (value - middle) / half,
             _ => 0.0,
         };
-        (0..sample.len()).map(along).collect()
+        let of_sample = |sample: &[f64]| (0..axes.len()).map(|axis| along(sample[axis], axis)).collect();
+        samples.map(of_sample).collect()
     }
 
     fn values<'c>(

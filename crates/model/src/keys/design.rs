@@ -18,6 +18,8 @@ schema_only! {
     pub enum ObjectiveName {
         /// The largest margin of all requirements, each as a share of its limit.
         Margin,
+        /// The cheapest tolerances that meet all requirements, allocated with the nominal values.
+        Cost,
     }
 
     /// What a design is to achieve.

@@ -130,7 +130,7 @@ fn limit(reader: &mut Reader, node: &Node, dimension: Option<Dimension>) -> Opti
 }
 
 fn read_objective(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<Objective> {
-    let help = "`margin`, `{ least: OUTPUT }` and `{ most: OUTPUT }`";
+    let help = "`margin`, `cost`, `{ least: OUTPUT }` and `{ most: OUTPUT }`";
     if let Value::Mapping(entries) = &node.value {
         let own = reader.fields::<keys::ObjectiveKinds>(node, fields.key_span("objective"))?;
         let given: Vec<&Entry> =
@@ -150,17 +150,26 @@ fn read_objective(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<O
         return Some(Objective::Worst { is_largest, distance: Box::new(distance) });
     }
     let scalar = reader.scalar(node, "an objective")?;
-    if scalar.text.trim() != "margin" {
-        let message = format!("`{}` is no objective", clip(scalar.text.trim()));
-        reader.error(node.span.clone(), message, format!("objectives are {help}"));
-        return None;
-    }
+    let (objective, lacking) = match scalar.text.trim() {
+        "margin" => (Objective::Margin, "a margin is that of requirements, and the model has none"),
+        "cost" => (Objective::Cost, "tolerances are as cheap as requirements allow, and the model has none"),
+        other => {
+            let message = format!("`{}` is no objective", clip(other));
+            reader.error(node.span.clone(), message, format!("objectives are {help}"));
+            return None;
+        }
+    };
     if reader.model.requirements.is_empty() {
         let help = "e.g. `requirements: { clears: x >= 0.4 m }`".to_owned();
-        reader.error(node.span.clone(), "a margin is that of requirements, and the model has none", help);
+        reader.error(node.span.clone(), lacking, help);
         return None;
     }
-    Some(Objective::Margin)
+    if matches!(objective, Objective::Cost) && !reader.model.statistics.is_priced() {
+        let help = "e.g. `rod: { value: 0.2 m, tolerance: 0.1 mm, cost: { reciprocal: 2 } }`".to_owned();
+        reader.error(node.span.clone(), "the cost is that of tolerances, and no parameter has a `cost`", help);
+        return None;
+    }
+    Some(objective)
 }
 
 /// Reports free parameters that nothing reads; in a variant that omits parts, they are not free.

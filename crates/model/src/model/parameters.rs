@@ -201,7 +201,8 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
         let Some([nominal, lower, upper]) = interval::bounds(reader, draft, nominal, &mut kind) else { return };
         values[index] = nominal;
         reader.model.parameters[index].value = if lower < upper {
-            says_more(reader, draft, index, law::Place { nominal, lower, upper }, &mut kind);
+            let written = written(reader, draft, &mut kind);
+            says_more(reader, draft, index, law::Place { nominal, lower, upper, written }, &mut kind);
             ParameterValue::Interval { nominal, lower, upper }
         } else {
             reader.certain.insert(reader.model.parameters[index].name.clone());
@@ -218,6 +219,21 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
         }
     }
     settle(reader, draft, index, kind);
+}
+
+/// Nominal value and limits as the file has them, where they are numbers that were replaced and a law of them stays.
+fn written(reader: &mut Reader, draft: &Draft, kind: &mut Kind) -> Option<[f64; 3]> {
+    let before = draft.spec.before.as_ref()?;
+    let value = before.value.as_ref().and_then(|node| reader.written(node));
+    let nominal = match (&value, &before.value) {
+        (Some(written), Some(node)) => Some(nominal(reader, draft, written, node)?.0.as_number()?),
+        _ => None,
+    };
+    let Draft { name_span, unit, .. } = draft;
+    let mut spec = (**before).clone();
+    spec.unit.clone_from(&draft.spec.unit);
+    let own = Draft { spec, name_span: name_span.clone(), unit: *unit, value, uses: Vec::new(), deviation: None };
+    interval::bounds(reader, &own, nominal, kind)
 }
 
 /// Reads the law of an uncertain parameter, and what its tolerance costs.

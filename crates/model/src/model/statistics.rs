@@ -99,7 +99,7 @@ fn default_law(reader: &mut Reader, node: &Node) {
         .uncertain()
         .filter_map(|(_, parameter)| match parameter.value {
             ParameterValue::Interval { nominal, lower, upper } => {
-                Some((parameter.name.clone(), Place { nominal, lower, upper }))
+                Some((parameter.name.clone(), Place { nominal, lower, upper, written: None }))
             }
             ParameterValue::Formula(_) => None,
         })
@@ -107,7 +107,7 @@ fn default_law(reader: &mut Reader, node: &Node) {
         // A zone has a joint law of its own.
         .filter(|(name, _)| !reader.model.zones.iter().any(|zone| zone.members.contains(name)))
         .collect();
-    let anywhere = Place { nominal: 0.0, lower: -1.0, upper: 1.0 };
+    let anywhere = Place { nominal: 0.0, lower: -1.0, upper: 1.0, written: None };
     if named(&scalar.text, anywhere).is_none() {
         let names = ["uniform", "normal", "truncated_normal", "triangular"];
         let message = format!("`{}` is no distribution that needs no numbers", clip(&scalar.text));

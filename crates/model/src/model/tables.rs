@@ -10,6 +10,7 @@ use crate::keys;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
+use crate::syntax::table::{self, Cell, Line};
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A value of a table and its place.
@@ -115,76 +116,54 @@ fn listed(reader: &mut Reader, node: &Node) -> Option<Vec<[Number; 2]>> {
         .collect()
 }
 
-/// Two columns of a CSV file. Errors in it have their places in it.
+/// Two columns of a file. Errors in it have their places in it.
 fn from_file(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Vec<[Number; 2]>> {
     let (start, text) = reader.file(node)?;
-    let delimiter = separator(&text);
-    let mut csv = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .delimiter(delimiter)
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let mut columns: Option<[usize; 2]> = None;
+    let table = table::Table::read(&text);
+    let Some(first) = table.lines.first() else {
+        reader.error(node.span.clone(), "the file has no lines of numbers", None);
+        return None;
+    };
+    let header = table.is_heading(first).then_some(first);
+    let [x, y] = chosen_columns(reader, fields, header)?;
     let mut points = Vec::new();
-    for record in csv.records() {
-        let record = match record {
-            Ok(record) => record,
-            Err(error) => {
-                reader.error(node.span.clone(), format!("the file is no CSV: {error}"), None);
-                return None;
-            }
-        };
-        let line = record.position().map_or(0, |position| position.byte() as usize);
-        let end = line + text[line..].find('\n').unwrap_or(text.len() - line);
-        let place = start + line..start + end;
-        let [x, y] = match columns {
-            Some(columns) => columns,
-            None => {
-                let header = record.iter().any(|field| field.parse::<f64>().is_err());
-                let chosen = chosen_columns(reader, fields, header.then_some(&record))?;
-                columns = Some(chosen);
-                if header {
-                    continue;
-                }
-                chosen
-            }
-        };
-        let number = |column: usize| record.get(column).and_then(|field| field.parse::<f64>().ok());
-        let (Some(a), Some(b)) = (number(x), number(y)) else {
-            let (column, field) = if number(x).is_none() { (x, record.get(x)) } else { (y, record.get(y)) };
-            let message = match field {
-                Some(field) => format!("`{}` is not a number", clip(field)),
-                None => format!("this line has no column {}", column + 1),
-            };
-            reader.error(place, message, None);
+    for line in &table.lines[usize::from(header.is_some())..] {
+        let at = |cell: &Cell| start + cell.start..start + cell.start + cell.text.len();
+        if let Some(message) = table.misfit(line) {
+            reader.error(at(&line.cells[0]), message, None);
             return None;
+        }
+        let mut number = |column: usize| {
+            let Some(cell) = line.cells.get(column) else {
+                reader.error(at(&line.cells[0]), format!("this line has no column {}", column + 1), None);
+                return None;
+            };
+            match table.number(cell) {
+                Ok(number) => Some((number, at(cell))),
+                Err(message) => {
+                    reader.error(at(cell), message, None);
+                    None
+                }
+            }
         };
-        points.push([(a, place.clone()), (b, place)]);
+        points.push([number(x)?, number(y)?]);
     }
     Some(points)
 }
 
-/// What separates the columns: the first of tab, semicolon and comma that the first line with numbers has.
-fn separator(text: &str) -> u8 {
-    let line = text.lines().find(|line| !line.starts_with('#') && !line.trim().is_empty()).unwrap_or("");
-    [b'\t', b';'].into_iter().find(|mark| line.as_bytes().contains(mark)).unwrap_or(b',')
-}
-
 /// Places of the columns that `columns` names, with the file's first line where that is a header.
-fn chosen_columns(reader: &mut Reader, fields: &Fields, header: Option<&csv::StringRecord>) -> Option<[usize; 2]> {
+fn chosen_columns(reader: &mut Reader, fields: &Fields, header: Option<&Line>) -> Option<[usize; 2]> {
     let Some(node) = fields.get("columns") else { return Some([0, 1]) };
     let [x, y] = reader.two(node, "a list of two columns")?.map(|node| {
         let scalar = reader.scalar(node, "the name of a column")?;
-        if let Some(place) = header.and_then(|header| header.iter().position(|name| name == scalar.text)) {
+        if let Some(place) = header.and_then(|header| header.cells.iter().position(|cell| cell.text == scalar.text)) {
             return Some(place);
         }
         if let Some(number) = scalar.text.parse::<usize>().ok().filter(|number| *number > 0) {
             return Some(number - 1);
         }
         let help = match header {
-            Some(header) => suggest::help(&scalar.text, "columns", header.iter()),
+            Some(header) => suggest::help(&scalar.text, "columns", header.cells.iter().map(|cell| cell.text)),
             None => Some("the file has no header: give the columns' numbers".to_owned()),
         };
         reader.error(node.span.clone(), format!("the file has no column `{}`", clip(&scalar.text)), help);

@@ -15,6 +15,7 @@ use symdiff::{Formula, Spline, SplineError, Unary};
 use crate::elements::Timing;
 use crate::model::description::{Description, ParameterValue};
 use crate::model::parameters::deviation_of;
+use crate::syntax::table::{Cell, Table};
 
 /// Before a parameter's value.
 const PARAMETER: &str = "# parameter ";
@@ -30,9 +31,14 @@ pub struct Witness {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WitnessError {
     /// It is no table.
-    #[error("it is no table: {0}")]
-    NoTable(String),
-    /// A field or a value that is no number.
+    #[error("line {line}: {message}")]
+    NoTable {
+        /// Why.
+        message: String,
+        /// From 1 on.
+        line: u64,
+    },
+    /// A value that is no number.
     #[error("`{text}` in line {line} is not a number")]
     NoNumber {
         /// It.
@@ -78,20 +84,21 @@ impl Witness {
             let number = number.ok_or_else(|| WitnessError::NoNumber { text: value.trim().to_owned(), line })?;
             parameters.push((name.trim().to_owned(), number));
         }
-        let mut csv = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
-        let no_table = |error: csv::Error| WitnessError::NoTable(error.to_string());
-        let names: Vec<String> = csv.headers().map_err(no_table)?.iter().skip(1).map(str::to_owned).collect();
+        let table = Table::read(text);
+        let names: Vec<String> = match table.lines.first() {
+            Some(heading) => heading.cells.iter().skip(1).map(|cell| cell.text.to_owned()).collect(),
+            None => return Err(WitnessError::NoTable { message: "it is empty".to_owned(), line: 1 }),
+        };
         let mut points: Vec<Vec<(f64, f64)>> = vec![Vec::new(); names.len()];
-        for record in csv.records() {
-            let record = record.map_err(no_table)?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let number = |text: &str| {
-                let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-                number.ok_or_else(|| WitnessError::NoNumber { text: text.to_owned(), line })
-            };
-            let time = number(record.get(0).unwrap_or_default())?;
-            for (points, text) in points.iter_mut().zip(record.iter().skip(1)) {
-                points.push((time, number(text)?));
+        for own in &table.lines[1..] {
+            let line = own.number as u64;
+            if let Some(message) = table.misfit(own) {
+                return Err(WitnessError::NoTable { message, line });
+            }
+            let number = |cell: &Cell| table.number(cell).map_err(|message| WitnessError::NoTable { message, line });
+            let time = number(&own.cells[0])?;
+            for (points, cell) in points.iter_mut().zip(&own.cells[1..]) {
+                points.push((time, number(cell)?));
             }
         }
         let function = |(name, points): (String, Vec<(f64, f64)>)| match Spline::linear(&points) {
@@ -163,7 +170,7 @@ mod tests {
         };
         assert_eq!(error("t,gust\n0,1\n1,1\n"), "it has no column for the excitation `push`");
         assert_eq!(error("t,push,gust\n0,1,1\n1,1,1\n"), "the model has no excitation `gust`");
-        assert_eq!(error("t,push\n0,1\n1,x\n"), "`x` in line 3 is not a number");
+        assert_eq!(error("t,push\n0,1\n1,x\n"), "line 3: `x` is not a number");
         assert_eq!(error("t,push\n0,1\n"), format!("`push`: {}", SplineError::TooFew));
         assert_eq!(error("# parameter m = 1\nt,push\n0,1\n1,1\n"), "the model has no parameter `m`");
         assert_eq!(error("# parameter k = a\nt,push\n0,1\n1,1\n"), "`a` in line 1 is not a number");

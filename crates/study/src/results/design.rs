@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Allocation, Criterion, NotMet, RequirementSummary};
+use super::{AllocatedTolerance, Allocation, Criterion, NotMet, RequirementSummary};
 use crate::grammar::display_unit::DisplayUnit;
 
 /// A parameter whose nominal value was free.
@@ -24,7 +24,7 @@ pub struct DesignParameter {
 /// Objective of a design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DesignObjective {
-    /// `least toe`, `most stroke`, or `margin`.
+    /// `least toe`, `most stroke`, `margin`, or `cost`.
     pub text: String,
     /// SI unit of its value; empty where dimensionless, unknown, or a share of limits.
     pub unit: String,
@@ -86,6 +86,26 @@ pub struct DesignProfile {
     pub worst: Vec<f64>,
 }
 
+/// The cheapest nominal values and tolerances that leave a margin, with a study of their own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DesignTrade {
+    /// The least margin of all requirements, as a share of its limit: in the worst case, or its quantile.
+    pub margin: f64,
+    /// How far that may be from the truth.
+    pub error: f64,
+    /// What the tolerances cost.
+    pub cost: f64,
+    /// Nominal values of the free parameters, SI.
+    pub values: Vec<f64>,
+    /// All tolerances, before and after.
+    pub tolerances: Vec<AllocatedTolerance>,
+    /// Verdicts of the study.
+    pub requirements: Vec<RequirementSummary>,
+    /// The share that fulfils all requirements, at least; absent for worst cases.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub share: Option<f64>,
+}
+
 /// What a search for nominal values found.
 #[derive(Clone, Debug, Serialize)]
 pub struct DesignStudy {
@@ -108,6 +128,10 @@ pub struct DesignStudy {
     /// The cheapest tolerances at the best point, and cost against margin there; absent where tolerances have no cost.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub allocation: Option<Allocation>,
+    /// Cost against margin, with nominal values and tolerances of each point, from the cheapest on; empty where
+    /// tolerances have no cost, or an output is the objective.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub front: Vec<DesignTrade>,
     /// The objective about the best point, by parameter.
     pub profiles: Vec<DesignProfile>,
     /// Simulations for surrogates.
@@ -122,10 +146,20 @@ impl DesignStudy {
         self.optima.first()
     }
 
+    /// Whether the cost of tolerances is the objective.
+    pub fn is_priced(&self) -> bool {
+        self.objective.text == "cost"
+    }
+
     /// By how much the worst case is better than that of the nominal optimum, as a share of that.
     pub fn gain(&self) -> Option<f64> {
         let (best, nominal) = (self.best()?, self.nominal_point.as_ref()?);
+        // Tolerances that miss the requirements have a cost, too.
+        if self.is_priced() && !(best.is_feasible && nominal.is_feasible) {
+            return None;
+        }
         let gain = if self.objective.is_least { nominal.worst - best.worst } else { best.worst - nominal.worst };
-        (nominal.worst != 0.0).then(|| gain / nominal.worst.abs())
+        // Of a value that is nothing but its error there is no share.
+        (nominal.worst.abs() > nominal.error + best.error).then(|| gain / nominal.worst.abs())
     }
 }

@@ -36,7 +36,7 @@ pub use chains::{ChainSummary, LinkSummary};
 pub use cost::example as cost_example;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integrator, cost_curves, pareto};
 pub use decisions::{Decision, Each, Saving};
-pub use design::{DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignProfile, DesignStudy};
+pub use design::{DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignProfile, DesignStudy, DesignTrade};
 pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint, DrawnSolid};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use excitations::{ExcitationSummary, FunctionWitness, WitnessFunction};

@@ -1,6 +1,7 @@
-//! A design's files: `design.csv` with all points, `design.json`, the overlay `design.yaml`, profiles of the objective,
-//! and the page `design.html`.
+//! A design's files: `design.csv` with all points, `front.csv` with cost against margin, `design.json`, the overlay
+//! `design.yaml`, profiles of the objective, and the page `design.html`.
 
+mod front;
 mod page;
 mod profile;
 
@@ -13,7 +14,7 @@ use super::folder::AtomicFiles;
 use super::rounded::rounded;
 use super::stems::unique_stems;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{Criterion, DesignKind, DesignPoint, DesignStudy};
+use crate::results::{AllocatedTolerance, Criterion, DesignKind, DesignPoint, DesignStudy};
 
 /// The overlay's file.
 pub const DESIGN_OVERLAY: &str = "design.yaml";
@@ -36,8 +37,15 @@ pub fn write_design(dir: &Path, design: &DesignStudy) -> Result<Vec<PathBuf>, Ex
         files.add(&format!("{stem}.design.svg"), svg.as_bytes())?;
         drawn.push(svg);
     }
-    if let Some(allocation) = design.allocation.as_ref().filter(|own| !own.trade.is_empty()) {
-        let svg = allocation::plot(allocation);
+    let of_best = design.allocation.as_ref().filter(|own| !own.trade.is_empty());
+    let trade = match design.front.is_empty() {
+        true => of_best.map(allocation::plot),
+        false => Some(front::drawn(design)),
+    };
+    if !design.front.is_empty() {
+        files.add("front.csv", &front::table(design)?)?;
+    }
+    if let Some(svg) = trade {
         files.add("cost.design.svg", svg.as_bytes())?;
         drawn.push(svg);
     }
@@ -81,7 +89,7 @@ fn criterion(design: &DesignStudy) -> String {
     }
 }
 
-/// The best nominal values; tolerances are the model's.
+/// The best nominal values with their tolerances, and other tolerances that were chosen with them.
 fn overlay(design: &DesignStudy) -> String {
     let Some(best) = design.best() else { return String::new() };
     let met = if best.is_feasible { "" } else { " (requirements are not met)" };
@@ -93,6 +101,12 @@ fn overlay(design: &DesignStudy) -> String {
     );
     for (index, own) in design.parameters.iter().enumerate() {
         text += &format!("  {}: {}\n", own.name, piece(design, best, index));
+    }
+    let chosen = design.allocation.iter().filter(|_| design.is_priced()).flat_map(|own| &own.tolerances);
+    let is_other =
+        |own: &&AllocatedTolerance| own.is_free && design.parameters.iter().all(|free| free.name != own.parameter);
+    for own in chosen.filter(is_other) {
+        text += &format!("  {}: {}\n", own.parameter, allocation::piece(own));
     }
     text
 }

@@ -5,7 +5,7 @@ use crate::export::allocation::shown_unit;
 use crate::export::report::{Section, plain_page};
 use crate::export::rounded::{rounded, shown as shown_in, significant};
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{Allocation, DesignPoint, DesignStudy, ToleranceZone};
+use crate::results::{Allocation, DesignPoint, DesignStudy, DesignTrade, ToleranceZone};
 
 /// A smaller gain is not told.
 const SHOWN: f64 = 5e-4;
@@ -18,12 +18,18 @@ pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
         criterion(design)
     ))];
     sections.push(all(design));
+    let value = if design.is_priced() { "cost" } else { "worst case" };
     if let Some(gain) = design.gain().filter(|gain| gain.abs() >= SHOWN) {
         sections.push(Section::Text(format!(
-            "At the optimum without tolerances the worst case is {}; at the optimum with tolerances it is {} % {}.",
+            "At the optimum without tolerances the {value} is {}; at the optimum with tolerances it is {} % {}.",
             design.nominal_point.as_ref().map_or_else(String::new, |point| objective(design, point.worst)),
             rounded(significant(100.0 * gain.abs(), 3)),
-            if gain < 0.0 { "worse" } else { "better" }
+            match (design.is_priced(), gain < 0.0) {
+                (true, true) => "more",
+                (true, false) => "less",
+                (false, true) => "worse",
+                (false, false) => "better",
+            }
         )));
     }
     sections.push(ranges(design));
@@ -37,6 +43,9 @@ pub(super) fn page(design: &DesignStudy, figures: Vec<String>) -> String {
         )));
     }
     sections.extend(design.allocation.as_ref().map(allocated));
+    if !design.front.is_empty() {
+        sections.push(front(design));
+    }
     sections.extend(figures.into_iter().map(Section::Figure));
     plain_page(&format!("{}: design", design.model), &sections)
 }
@@ -52,11 +61,16 @@ fn objective(design: &DesignStudy, value: f64) -> String {
 fn all(design: &DesignStudy) -> Section {
     let mut headings = vec!["point".to_owned()];
     headings.extend(design.parameters.iter().map(|own| own.name.clone()));
-    headings.extend(["nominal", "worst case", "error", "requirements"].map(str::to_owned));
+    let figures: &[&str] = if design.is_priced() { &["cost"] } else { &["nominal", "worst case", "error"] };
+    headings.extend(figures.iter().chain(&["requirements"]).map(|&own| own.to_owned()));
     let row = |(name, point): (String, &DesignPoint)| {
         let mut cells = vec![name];
         cells.extend(point.values.iter().enumerate().map(|(index, value)| shown(design, index, *value)));
-        cells.extend([point.nominal, point.worst, significant(point.error, 2)].map(|value| objective(design, value)));
+        let values = [point.nominal, point.worst, significant(point.error, 2)].map(|value| objective(design, value));
+        match design.is_priced() {
+            true => cells.push(rounded(significant(point.worst, 5))),
+            false => cells.extend(values),
+        }
         cells.push(if point.is_feasible { "hold" } else { "not met" }.to_owned());
         cells
     };
@@ -97,10 +111,7 @@ fn requirements(best: &DesignPoint) -> Section {
 fn allocated(allocation: &Allocation) -> Section {
     let row = |own: &crate::results::AllocatedTolerance| {
         let (scale, unit) = shown_unit(own);
-        let zone = |zone: ToleranceZone| {
-            let [above, below] = [zone.above, zone.below].map(|side| rounded(significant(scale * side, 4)));
-            format!("+{above} -{below} {unit}").trim_end().to_owned()
-        };
+        let zone = |zone: ToleranceZone| deviations(zone, scale, unit);
         let cost = |cost: Option<f64>| cost.map_or_else(String::new, |cost| rounded(significant(cost, 4)));
         let grade = own.grade.clone().unwrap_or_default();
         vec![
@@ -114,4 +125,31 @@ fn allocated(allocation: &Allocation) -> Section {
     };
     let headings = ["parameter", "tolerance", "cheapest", "grade", "cost", "then"].map(str::to_owned).to_vec();
     Section::Table("Tolerances at the optimum", headings, allocation.tolerances.iter().map(row).collect())
+}
+
+/// Deviations in a unit, of which one of SI is so many.
+fn deviations(zone: ToleranceZone, scale: f64, unit: &str) -> String {
+    let [above, below] = [zone.above, zone.below].map(|side| rounded(significant(scale * side, 4)));
+    let both = if above == below { format!("± {above}") } else { format!("+{above} -{below}") };
+    format!("{both} {unit}").trim_end().to_owned()
+}
+
+/// A row for each margin: the cheapest nominal values and tolerances that leave it.
+fn front(design: &DesignStudy) -> Section {
+    let changed = || design.front[0].tolerances.iter().filter(|own| own.is_free);
+    let mut headings = vec!["margin".to_owned(), "cost".to_owned()];
+    headings.extend(design.parameters.iter().map(|own| own.name.clone()));
+    headings.extend(changed().map(|own| format!("{} ±", own.parameter)));
+    let row = |own: &DesignTrade| {
+        let mut cells =
+            vec![format!("{} %", rounded(significant(100.0 * own.margin, 4))), rounded(significant(own.cost, 5))];
+        cells.extend(own.values.iter().enumerate().map(|(index, value)| shown(design, index, *value)));
+        cells.extend(own.tolerances.iter().filter(|own| own.is_free).map(|own| {
+            let (scale, unit) = shown_unit(own);
+            let grade = own.grade.as_ref().map_or_else(String::new, |grade| format!(" ({grade})"));
+            deviations(own.after, scale, unit) + &grade
+        }));
+        cells
+    };
+    Section::Table("Cost against margin", headings, design.front.iter().map(row).collect())
 }

@@ -13,6 +13,11 @@ pub(super) fn page(fit: &Fit, figures: impl Iterator<Item = String>) -> String {
         fit.outputs.iter().map(|output| output.name.as_str()).collect::<Vec<_>>().join(", "),
         rounded(significant(fit.residual, 3))
     ))];
+    let lost = fit.rows.iter().filter(|row| !row.error.is_finite()).count();
+    if lost > 0 {
+        let text = "without a reliable value of the model are not used, neither for the set nor against the model.";
+        sections.push(Section::Text(format!("{lost} of them {text}")));
+    }
     sections.push(parameters(fit));
     sections.extend(fit.set.iter().flat_map(|set| of_set(fit, set)));
     if let Some(unexplained) = &fit.unexplained {

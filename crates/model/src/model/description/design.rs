@@ -29,6 +29,8 @@ pub struct Free {
 pub enum Objective {
     /// The least margin of all requirements, each as a share of its limit.
     Margin,
+    /// The sum of what the tolerances cost, which are allocated with the nominal values.
+    Cost,
     /// The worst value of an output.
     Worst {
         /// Whether the largest value is to be small; else the smallest one is to be large.

@@ -69,6 +69,11 @@ impl Statistics {
         self.costs.iter().find(|(known, _)| known == name).map(|(_, cost)| cost)
     }
 
+    /// Whether some tolerance costs less where it is wider.
+    pub fn is_priced(&self) -> bool {
+        self.costs.iter().any(|(_, cost)| !matches!(cost, Cost::Fixed))
+    }
+
     /// The law of a parameter that lies in an interval.
     pub fn law(&self, name: &str, lower: f64, upper: f64) -> Law {
         let known = self.laws.iter().find(|(known, _)| known == name).map(|(_, law)| law.clone());

@@ -109,7 +109,7 @@ pub fn finish(
         values[deviation] = 0.0;
         let (lower, upper) = (-below, above);
         reader.model.parameters[deviation].value = if lower < upper {
-            says_more(reader, draft, deviation, law::Place { nominal: 0.0, lower, upper }, kind);
+            says_more(reader, draft, deviation, law::Place { nominal: 0.0, lower, upper, written: None }, kind);
             ParameterValue::Interval { nominal: 0.0, lower, upper }
         } else {
             reader.certain.insert(reader.model.parameters[deviation].name.clone());

@@ -19,10 +19,31 @@ pub struct Place {
     pub nominal: f64,
     pub lower: f64,
     pub upper: f64,
+    /// The same as the file has it, of which its laws are, where it is replaced.
+    pub written: Option<[f64; 3]>,
+}
+
+impl Place {
+    /// Where a value of the file's law comes to lie; its distance from the nominal value goes with the tolerance where
+    /// that is a `scaled` one.
+    fn moved(self, value: f64, scaled: bool) -> f64 {
+        let Some([nominal, lower, upper]) = self.written else { return value };
+        let (now, before) = match value < nominal {
+            true => (self.nominal - self.lower, nominal - lower),
+            false => (self.upper - self.nominal, upper - nominal),
+        };
+        let scale = if scaled && before > 0.0 { now / before } else { 1.0 };
+        self.nominal + scale * (value - nominal)
+    }
+
+    /// The ends of the file's interval, and of this one where it is the file's.
+    fn ends(self) -> [f64; 2] {
+        self.written.map_or([self.lower, self.upper], |[_, lower, upper]| [lower, upper])
+    }
 }
 
 /// A law by its name, over an interval.
-pub fn named(name: &str, Place { nominal, lower, upper }: Place) -> Option<Law> {
+pub fn named(name: &str, Place { nominal, lower, upper, .. }: Place) -> Option<Law> {
     let (mean, sigma) = (0.5 * lower + 0.5 * upper, (upper - lower) / (2.0 * TUNING.sigmas));
     let (distribution, by_tolerance) = match name {
         "uniform" => (Distribution::Uniform { lower, upper }, false),
@@ -52,7 +73,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
         return law;
     }
     let entry = reader.only::<keys::LawKinds>(node, node.span.clone())?;
-    let Place { nominal, lower, upper } = place;
+    let Place { nominal, lower, upper, .. } = place;
     let by_name = named(&entry.key, place);
     let distribution = match (entry.key.as_str(), by_name.as_ref().map(|law| &law.distribution)) {
         ("normal" | "truncated_normal", Some(default)) => {
@@ -69,6 +90,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
                 return None;
             }
             let by_tolerance = fields.get("sigma").is_none();
+            let mean = if fields.get("mean").is_some() { place.moved(mean, by_tolerance) } else { mean };
             let distribution = match default {
                 Distribution::Normal { .. } => Distribution::Normal { mean, sigma },
                 _ => Distribution::TruncatedNormal { mean, sigma, lower, upper },
@@ -80,8 +102,10 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             let mode = match fields.get("mode") {
                 None => nominal,
                 Some(node) => {
-                    let mode = interval::bare_number(reader, draft, node, kind)?;
-                    if !(lower..=upper).contains(&mode) {
+                    let written = interval::bare_number(reader, draft, node, kind)?;
+                    let mode = place.moved(written, true);
+                    let [first, last] = place.ends();
+                    if !(first..=last).contains(&written) {
                         reader.error(node.span.clone(), "the mode lies outside of the interval", None);
                         return None;
                     }
@@ -104,7 +128,11 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             let sigma = reader.required(&fields, "sigma").and_then(|node| positive(reader, node));
             let (median, at) = match fields.get("median") {
                 None => (nominal, entry.key_span.clone()),
-                Some(node) => (interval::bare_number(reader, draft, node, kind)?, node.span.clone()),
+                Some(node) => {
+                    // Its logarithm deviates: it goes with the nominal value by a factor.
+                    let factor = place.written.map_or(1.0, |[before, ..]| nominal / before);
+                    (factor * interval::bare_number(reader, draft, node, kind)?, node.span.clone())
+                }
             };
             if median <= 0.0 || lower <= 0.0 {
                 let help = format!("the median is {median}, and the interval begins at {lower}");
@@ -133,18 +161,13 @@ pub fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
 }
 
 /// Points of a density, ascending, within the interval.
-fn table(
-    reader: &mut Reader,
-    draft: &Draft,
-    node: &Node,
-    Place { lower, upper, .. }: Place,
-    kind: &mut Kind,
-) -> Option<Vec<(f64, f64)>> {
+fn table(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind: &mut Kind) -> Option<Vec<(f64, f64)>> {
     let Value::Sequence(items) = &node.value else {
         let help = "e.g. `[[0.1, 0], [0.2, 1], [0.3, 0]]`".to_owned();
         reader.error(node.span.clone(), "a table is a list of pairs of value and density", help);
         return None;
     };
+    let [lower, upper] = place.ends();
     let mut points: Vec<(f64, f64)> = Vec::with_capacity(items.len());
     for item in items {
         let [x, density] = reader.two(item, "a value and its density")?;
@@ -160,11 +183,12 @@ fn table(
             reader.error(x.span.clone(), "this value lies outside of the interval", None);
             return None;
         }
+        let x_value = place.moved(x_value.clamp(lower, upper), true);
         if points.last().is_some_and(|last| last.0 >= x_value) {
             reader.error(x.span.clone(), "values ascend, but this one does not come after the one before", None);
             return None;
         }
-        points.push((x_value.clamp(lower, upper), value));
+        points.push((x_value.clamp(place.lower, place.upper), value));
     }
     if points.len() < 2 || points.iter().all(|point| point.1 == 0.0) {
         reader.error(node.span.clone(), "a table has two points at least, and a density somewhere", None);

@@ -9,7 +9,7 @@ use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A parameter as it is written.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Spec {
     pub value: Option<Node>,
     pub unit: Option<Node>,
@@ -21,6 +21,8 @@ pub struct Spec {
     pub class: Option<Node>,
     pub distribution: Option<Node>,
     pub cost: Option<Node>,
+    /// As the file has it, where value or deviation is replaced and a law or a cost of the file stays.
+    pub before: Option<Box<Spec>>,
     /// The deviation is said twice, as was reported: there is none to go on with.
     pub contradictory: bool,
     /// Value and deviation stand in one piece.
@@ -65,8 +67,9 @@ impl Spec {
         let before = std::mem::replace(self, kept);
         self.whole(reader, node);
         if self.value.is_none() && self.interval.is_none() {
-            self.value = before.value;
+            self.value.clone_from(&before.value);
         }
+        self.before = self.distribution.is_some().then(|| Box::new(before));
         if !self.is_uncertain() {
             // A parameter set to one number varies no more.
             (self.distribution, self.cost) = (None, None);

@@ -80,7 +80,7 @@ impl Item {
 /// All uncertain parameters; those with a cost reach up to `widest` times their tolerances.
 pub fn items(description: &Description, widest: f64) -> Vec<Item> {
     let statistics = &description.statistics;
-    let priced = statistics.costs.iter().any(|(_, cost)| !matches!(cost, Cost::Fixed));
+    let priced = statistics.is_priced();
     let of = |parameter: &crate::model::Parameter| {
         let ParameterValue::Interval { nominal, lower, upper } = parameter.value else { return None };
         let (above, below) = (upper - nominal, nominal - lower);

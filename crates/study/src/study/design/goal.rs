@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::axes::Axes;
 use crate::model::{Design, Objective};
 use crate::numerics::Linear;
 
@@ -9,12 +10,14 @@ use crate::numerics::Linear;
 const ROUNDING: f64 = 1e-9;
 
 /// Objective, in the slacks of all requirements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// The least of all is to be large.
     Margin,
     /// The last is to be large, the others are not to be negative.
     Last,
+    /// The cost is to be small, and each requirement is to leave this margin.
+    Cost(f64),
 }
 
 /// How good a design is.
@@ -31,14 +34,30 @@ impl Goal {
         match design.objective {
             Objective::Margin => Self::Margin,
             Objective::Worst { .. } => Self::Last,
+            Objective::Cost => Self::Cost(0.0),
         }
     }
 
-    /// The merit of a design with these least slacks, of each requirement.
+    /// The margin that requirements are to leave.
+    pub fn margin(self) -> f64 {
+        if let Self::Cost(margin) = self { margin } else { 0.0 }
+    }
+
+    /// What counts of a point that leaves these slacks: for a cost, they begin at the margin, and the cost follows with
+    /// the other sign.
+    pub fn counted(self, axes: &Axes, point: &[f64], mut slacks: Vec<f64>) -> Vec<f64> {
+        if let Self::Cost(margin) = self {
+            slacks.iter_mut().for_each(|slack| *slack -= margin);
+            slacks.push(-axes.cost(point));
+        }
+        slacks
+    }
+
+    /// The merit of a design of which this counts.
     pub fn merit(self, slacks: &[f64]) -> Merit {
         let least = |own: &[f64]| own.iter().copied().fold(f64::INFINITY, f64::min);
         match (self, slacks) {
-            (Self::Last, [limits @ .., last]) => {
+            (Self::Last | Self::Cost(_), [limits @ .., last]) => {
                 let violation = (-least(limits)).max(0.0);
                 Merit { violation: if violation < ROUNDING { 0.0 } else { violation }, value: *last }
             }
@@ -46,9 +65,9 @@ impl Goal {
         }
     }
 
-    /// Goals and limits among linearised slacks, each with its requirement's number.
+    /// Goals and limits among linearised slacks, each with its number among `count`.
     pub fn split(self, count: usize, all: Vec<(usize, Linear)>) -> [Vec<Linear>; 2] {
-        let is_goal = |requirement: usize| self == Self::Margin || requirement + 1 == count;
+        let is_goal = |own: usize| self == Self::Margin || own + 1 == count;
         let (goals, limits): (Vec<_>, Vec<_>) = all.into_iter().partition(|(requirement, _)| is_goal(*requirement));
         [goals, limits].map(|own| own.into_iter().map(|(_, linear)| linear).collect())
     }

@@ -4,28 +4,36 @@
 //! of all margins (`surface`); on it, `worst` finds what the worst case of a candidate leaves, and `search` the local
 //! optima, in the order of `goal`. About each of these a surrogate over a narrower region makes the optimum sharper
 //! (`refine`), and a study of its own tells its figures (`points`). The same without tolerances finds the optimum that
-//! one would have chosen otherwise.
+//! one would have chosen otherwise. Where the cost is the objective, tolerances belong to the point (`width`, `price`);
+//! they are those that allocation finds (`allocated`), and `front` has cost against margin.
 
+mod allocated;
 mod axes;
+mod front;
 mod goal;
 mod instants;
 mod points;
+mod price;
 mod profiles;
 mod refine;
 mod search;
 mod share;
 mod surface;
+mod width;
 mod worst;
 
 use std::ops::Range;
 
-use super::{AllocateError, AllocateOptions, Options, RunError, allocate, reduced, statistics};
-use crate::model::{Cost, Description, Objective};
-use crate::results::{Allocation, Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
+use super::{Options, RunError, reduced, statistics};
+use crate::model::{Description, Objective};
+use crate::results::{Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
+use allocated::at_cost;
 use axes::{Axes, without_tolerances};
+use front::{front, front_beside};
 use goal::Goal;
 use instants::{at_instants, required};
 use points::{Studied, not_met, studied};
+use price::Priced;
 use profiles::profiles;
 use refine::refined;
 use search::{are_alike, optima};
@@ -57,7 +65,11 @@ pub enum DesignError {
 }
 
 /// Question to a model: its requirements, of which the objective's may be the last.
+#[derive(Clone)]
 struct Question {
+    /// As it is asked, without what its results do not need.
+    shown: Description,
+    /// With outputs for its requirements.
     model: Description,
     /// The same with requirements at instants, of which surrogates are made; and which of these stand for each.
     at_instants: Description,
@@ -77,18 +89,26 @@ impl Question {
 
     /// The same without tolerances.
     fn without_tolerances(&self) -> Self {
-        let [model, at_instants] = [&self.model, &self.at_instants].map(without_tolerances);
-        Self { model, at_instants, instants: self.instants.clone(), share: None, ..*self }
+        let [shown, model, at_instants] = [&self.shown, &self.model, &self.at_instants].map(without_tolerances);
+        // Without tolerances nothing costs: the largest margin leaves most to them.
+        let goal = if let Goal::Cost(_) = self.goal { Goal::Margin } else { self.goal };
+        Self { shown, model, at_instants, instants: self.instants.clone(), goal, share: None, ..*self }
     }
 
     /// What counts of a candidate, on a surrogate.
     fn assessed<'s>(&self, surface: &'s Surface) -> Result<Box<dyn Assessed + 's>, DesignError> {
-        let Some(share) = self.share.filter(|_| surface.axes.uncertain() > 0) else {
-            return Ok(Box::new(Worst::new(surface)));
+        let requirements: Box<dyn Assessed + 's> = match self.share.filter(|_| surface.axes.uncertain() > 0) {
+            None => Box::new(Worst::new(surface)),
+            Some(share) => {
+                let from = surface.axes.start();
+                let laws = statistics::laws(&surface.axes.at(&self.model, &from)).map_err(DesignError::Unsuitable)?;
+                Box::new(Yield::new(surface, self.goal, &laws, &from, share))
+            }
         };
-        let from = surface.axes.start();
-        let laws = statistics::laws(&surface.axes.at(&self.model, &from)).map_err(DesignError::Unsuitable)?;
-        Ok(Box::new(Yield::new(surface, self.goal, &laws, &from, share)))
+        Ok(match self.goal {
+            Goal::Cost(_) => Box::new(Priced { requirements, axes: &surface.axes, goal: self.goal }),
+            Goal::Margin | Goal::Last => requirements,
+        })
     }
 }
 
@@ -113,7 +133,7 @@ pub fn design(description: &Description, asked: DesignOptions, options: &Options
     let mut model = description.clone();
     model.design = None;
     model.statistics.asked = false;
-    let is_least = matches!(design.objective, Objective::Worst { is_largest: true, .. });
+    let is_least = matches!(design.objective, Objective::Worst { is_largest: true, .. } | Objective::Cost);
     let objective = match &design.objective {
         Objective::Worst { distance, .. } => {
             model.requirements.push((**distance).clone());
@@ -124,40 +144,28 @@ pub fn design(description: &Description, asked: DesignOptions, options: &Options
                 is_least,
             }
         }
-        Objective::Margin => {
-            DesignObjective { text: "margin".to_owned(), unit: String::new(), display: None, is_least }
+        Objective::Margin | Objective::Cost => {
+            let text = if is_least { "cost" } else { "margin" }.to_owned();
+            DesignObjective { text, unit: String::new(), display: None, is_least }
         }
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
     pool.map_err(RunError::from)?.install(|| {
-        let model = required(&model);
-        let (at_instants, instants) = at_instants(&model);
-        let [model, at_instants] = [model, at_instants].map(|own| reduced::expanded(&own).into_owned());
-        let axes = Axes::of(&model, &design.free);
-        let question = Question { model, at_instants, instants, goal: Goal::of(design), is_least, share: asked.share };
-        let mut found = designed(&question, &axes, objective, options)?;
-        found.allocation = allocated(description, &axes, &found, asked, options)?;
-        Ok(found)
+        let shown = required(&model);
+        let (at_instants, instants) = at_instants(&shown);
+        let [model, at_instants] = [&shown, &at_instants].map(|own| reduced::expanded(own).into_owned());
+        let goal = Goal::of(design);
+        let axes = match goal {
+            Goal::Cost(_) => Axes::priced(&model, &design.free, WIDEST),
+            Goal::Margin | Goal::Last => Axes::of(&model, &design.free),
+        };
+        if matches!(goal, Goal::Cost(_)) && axes.widths.is_empty() {
+            let message = "no tolerance may change: all are `cost: fixed`, or have a distribution that does not follow the tolerance";
+            return Err(DesignError::Unsuitable(message.to_owned()));
+        }
+        let question = Question { shown, model, at_instants, instants, goal, is_least, share: asked.share };
+        designed(&question, &axes, objective, options)
     })
-}
-
-/// What the tolerances may become at the best point, and cost against margin there, where they have costs.
-fn allocated(
-    description: &Description,
-    axes: &Axes,
-    found: &DesignStudy,
-    asked: DesignOptions,
-    options: &Options,
-) -> Result<Option<Allocation>, DesignError> {
-    let is_priced = |cost: &Cost| !matches!(cost, Cost::Fixed);
-    let priced = description.statistics.costs.iter().any(|(_, cost)| is_priced(cost));
-    let Some(best) = found.best().filter(|best| best.is_feasible && priced) else { return Ok(None) };
-    let asked = AllocateOptions { share: asked.share, widest: WIDEST };
-    match allocate(&axes.at(description, &best.values), asked, options) {
-        Ok(allocation) => Ok(Some(allocation)),
-        Err(AllocateError::Unsuitable(_)) => Ok(None),
-        Err(AllocateError::Run(error)) => Err(error.into()),
-    }
 }
 
 fn designed(
@@ -168,15 +176,19 @@ fn designed(
 ) -> Result<DesignStudy, DesignError> {
     let mut simulations = 0;
     let mut confirming = 0;
+    let is_priced = matches!(question.goal, Goal::Cost(_));
     let mut figures = |point: &[f64], kind: DesignKind| -> Result<Option<DesignPoint>, DesignError> {
-        let found = studied(question, axes, point, kind, options)?;
+        let found = match is_priced && kind != DesignKind::Model {
+            true => at_cost(question, axes, point, kind, options)?,
+            false => studied(question, axes, point, kind, options)?,
+        };
         confirming += found.as_ref().map_or(0, |found| found.simulations + found.of_surrogate);
         Ok(found.map(|found| found.found))
     };
     (options.stage)("the model's own values");
     let model_point = figures(&axes.present(), DesignKind::Model)?;
     let mut known = vec![axes.start()];
-    let mut nominal_point = None;
+    let (mut nominal_point, mut largest) = (None, f64::NAN);
     if axes.uncertain() > 0 {
         (options.stage)("the optimum without tolerances");
         let bare = question.without_tolerances();
@@ -184,14 +196,29 @@ fn designed(
         let found = found(&bare, &own, &known, 1, options)?;
         simulations += found.simulations;
         if let Some(best) = found.optima.first() {
-            nominal_point = figures(&best.point, DesignKind::Nominal)?;
-            known.push(best.point.clone());
+            largest = best.merit.value;
+            let point = axes.with_widths(&best.point);
+            nominal_point = figures(&point, DesignKind::Nominal)?;
+            known.push(point);
         }
     }
     (options.stage)("the optimum with tolerances");
-    let found = found(question, axes, &known, REPORTED, options)?;
+    let mut found = found(question, axes, &known, REPORTED, options)?;
+    let front = match question.goal {
+        Goal::Cost(_) => front(question, axes, &mut found, largest, options)?,
+        Goal::Margin => front_beside(question, &found.optima[0].point.clone(), largest, &mut found, options)?,
+        Goal::Last => Vec::new(),
+    };
     simulations += found.simulations;
     confirming += found.confirming;
+    // The cheapest tolerances at the best point.
+    let best = &mut found.optima[0];
+    let allocation = match best.allocation.take() {
+        None if best.found.is_feasible && question.shown.statistics.is_priced() => {
+            allocated::allocated(question, axes, &best.point, options)?
+        }
+        own => own,
+    };
     let parameter = |(free, searched): (&crate::model::Free, &[f64; 2])| {
         let unit = question.model.parameters.iter().find(|own| own.name == free.name).map(|own| own.unit.clone());
         DesignParameter {
@@ -214,7 +241,8 @@ fn designed(
         optima,
         model_point,
         nominal_point,
-        allocation: None,
+        allocation,
+        front,
         profiles,
         simulations,
         confirming,
@@ -237,7 +265,7 @@ impl Found {
     /// Whether an optimum is known that is as good as at a point.
     fn has(&self, axes: &Axes, point: &[f64]) -> bool {
         let ranges = axes.ranges();
-        self.optima.iter().any(|other| are_alike(&ranges, &other.point, point))
+        self.optima.iter().any(|other| are_alike(&ranges[..axes.free.len()], &other.point, point))
     }
 
     /// Counts a surrogate.

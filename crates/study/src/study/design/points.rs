@@ -5,12 +5,17 @@ use super::goal::{Goal, Merit};
 use super::surface::{self, Surface, about, scale};
 use super::{DesignError, Question};
 use crate::model::{Description, Requirement};
-use crate::results::{Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost};
+use crate::results::{
+    Allocation, Bounds, DesignKind, DesignPoint, NotMet, RequirementSummary, Summary, Verdict, foremost,
+};
 use crate::study::allocate::run_simulations;
 use crate::study::{Kept, Options, RunError, reduced, statistics, subsystems};
 
 /// Half of the region, as a share of the ranges, of the surrogate of which a quantile is told.
 const QUANTILE: f64 = 1e-3;
+
+/// A margin that is missed by less is left.
+const ROUNDING: f64 = 1e-9;
 
 /// A point with the study of its worst cases.
 #[derive(Clone, Debug)]
@@ -19,6 +24,10 @@ pub struct Studied {
     pub merit: Merit,
     /// Margins of all requirements less their errors, the objective's last.
     pub margins: Vec<f64>,
+    /// The least margin of the model's requirements as a share of its limit, and how far it may be off.
+    pub margin: [f64; 2],
+    /// Where tolerances were allocated.
+    pub allocation: Option<Allocation>,
     pub found: DesignPoint,
     /// Simulations of the study.
     pub simulations: usize,
@@ -37,37 +46,51 @@ pub fn studied(
     let options = Options { methods: None, store: None, ..*options };
     let at = axes.at(&question.model, point);
     // Only the verdicts of optima are worth more simulations.
-    let study = if kind == DesignKind::Optimum { reduced::run } else { subsystems::run };
+    let is_priced = matches!(question.goal, Goal::Cost(_));
+    let study = if kind == DesignKind::Optimum || is_priced { reduced::run } else { subsystems::run };
     let [nominal, found] = [without_tolerances(&at), at].map(|model| margins(question, model, study, &options));
     let (Some(nominal), Some(found)) = (nominal?, found?) else { return Ok(None) };
     let Margins { all, mut requirements, simulations } = found;
     let slacks = |all: &[[f64; 2]]| -> Vec<f64> {
         all.iter().zip(&question.model.requirements).map(|([margin, _], own)| margin / scale(own)).collect()
     };
-    let of_nominal = question.goal.merit(&slacks(&nominal.all)).value;
+    let merit = |all: &[[f64; 2]]| {
+        let merit = question.goal.merit(&question.goal.counted(axes, point, slacks(all)));
+        if is_priced { Merit { value: -axes.price(point), ..merit } } else { merit }
+    };
+    let of_nominal = merit(&nominal.all).value;
     let sign = if question.is_least { -1.0 } else { 1.0 };
     let at_limits = axes.free.iter().zip(point).filter(|(own, value)| **value <= own.lower || **value >= own.upper);
+    requirements.truncate(question.required());
+    // Of the verdicts, which are sharper than the bounds in the rows.
+    let known = requirements.iter().zip(&question.model.requirements);
+    let known: Vec<[f64; 2]> =
+        known.map(|(found, own)| [found.margin, found.error].map(|part| part / scale(own))).collect();
+    let least = known.iter().map(|[margin, _]| *margin).fold(f64::INFINITY, f64::min);
+    let leaves_enough = known.iter().all(|[margin, error]| margin - error >= question.goal.margin() - ROUNDING);
     let mut studied = Studied {
         point: point.to_vec(),
-        merit: question.goal.merit(&slacks(&all)),
+        merit: merit(&all),
         margins: all.iter().map(|[margin, error]| margin - error).collect(),
+        margin: [least, known.iter().map(|[_, error]| *error).fold(0.0, f64::max)],
+        allocation: None,
         simulations: simulations + nominal.simulations,
         of_surrogate: 0,
         found: DesignPoint {
             kind,
-            values: point.to_vec(),
+            values: point[..axes.free.len()].to_vec(),
             deviations: axes.deviations(point),
             nominal: sign * of_nominal,
             worst: f64::NAN,
-            error: error(question, &all),
+            error: if is_priced { 0.0 } else { error(question, &all) },
             requirements: Vec::new(),
             share: None,
             is_feasible: false,
             at_limits: at_limits.map(|(own, _)| own.name.clone()).collect(),
         },
     };
-    requirements.truncate(question.required());
-    studied.found.is_feasible = requirements.iter().all(|own| own.verdict == Verdict::Holds);
+    studied.found.is_feasible = requirements.iter().all(|own| own.verdict == Verdict::Holds)
+        && (leaves_enough || question.goal.margin() == 0.0);
     studied.found.requirements = requirements;
     if let Some(share) = question.share
         && !by_share(question, axes, share, &mut studied, &options)?
@@ -146,7 +169,7 @@ fn error(question: &Question, all: &[[f64; 2]]) -> f64 {
     let mut errors = all.iter().zip(&question.model.requirements).map(|([_, error], of)| error / scale(of));
     match question.goal {
         Goal::Last => errors.next_back().unwrap_or(f64::NAN),
-        Goal::Margin => errors.fold(0.0, f64::max),
+        Goal::Margin | Goal::Cost(_) => errors.fold(0.0, f64::max),
     }
 }
 
@@ -163,9 +186,16 @@ fn by_share(
     let surface = Surface::new(question, axes, &about(&point, &axes.ranges(), QUANTILE), &point, options)?;
     let slacks = question.assessed(&surface)?.slacks(&point);
     studied.of_surrogate = surface.simulations;
-    studied.merit = question.goal.merit(&slacks);
     studied.margins = slacks.iter().zip(&surface.scales).map(|(slack, scale)| slack * scale).collect();
-    studied.found.error = surface::error(&surface, question.goal);
+    // At least the margin that was asked for: the yield with it was confirmed where tolerances were allocated.
+    studied.margin = [question.goal.margin(), 0.0];
+    let merit = question.goal.merit(&slacks);
+    if let Goal::Cost(_) = question.goal {
+        studied.merit.violation = merit.violation;
+    } else {
+        studied.merit = merit;
+        studied.found.error = surface::error(&surface, question.goal);
+    }
     let mut at = axes.at(&question.model, &point);
     at.statistics.asked = true;
     at.requirements.truncate(question.required());

@@ -1,5 +1,6 @@
 //! The objective along each free parameter, through a point.
 
+use super::goal::Goal;
 use super::surface::Surface;
 use super::{DesignError, Question};
 use crate::results::DesignProfile;
@@ -10,7 +11,8 @@ const POINTS: usize = 41;
 /// The profiles through a point on a surrogate; none of one that does not have the point.
 pub fn profiles(question: &Question, surface: &Surface, point: &[f64]) -> Result<Vec<DesignProfile>, DesignError> {
     let is_inside = point.iter().zip(&surface.region).all(|(value, [lower, upper])| (lower..=upper).contains(&value));
-    if !is_inside {
+    // The cost does not depend on a nominal value alone.
+    if !is_inside || matches!(question.goal, Goal::Cost(_)) {
         return Ok(Vec::new());
     }
     let sign = if question.is_least { -1.0 } else { 1.0 };

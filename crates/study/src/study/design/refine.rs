@@ -1,6 +1,8 @@
 //! An optimum made sharper: by surrogates over narrower regions about it, and by the study that confirms it.
 
+use super::allocated;
 use super::axes::Axes;
+use super::goal::Goal;
 use super::points::{Studied, studied};
 use super::search::{self, Optimum, SHARP, local};
 use super::surface::{Surface, about};
@@ -46,6 +48,12 @@ pub fn refined(
         }
     }
     match last.filter(|_| !all.has(axes, &point)) {
+        Some(surface) if matches!(question.goal, Goal::Cost(_)) => {
+            let found = allocated::confirmed(question, axes, point, &surface, options)?;
+            all.simulations += found.as_ref().map_or(0, |found| found.of_surrogate);
+            all.confirming += found.as_ref().map_or(0, |found| found.simulations);
+            Ok(found)
+        }
         Some(surface) => confirmed(question, axes, point, surface, all, options),
         None => Ok(None),
     }

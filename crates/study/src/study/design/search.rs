@@ -8,7 +8,7 @@ use super::goal::{Goal, Merit};
 use super::surface::Surface;
 use super::worst::Assessed;
 use super::{DesignError, Question};
-use crate::numerics::{Design, Linear, best_step, corners};
+use crate::numerics::{Design, Linear, corners};
 use crate::study::Options;
 
 /// Starts that are compared, for each free parameter, and those that are followed.
@@ -21,7 +21,7 @@ const FIRST: f64 = 0.2;
 const LARGEST: f64 = 0.5;
 
 /// Where a search ends, in the same shares: one over whole ranges, and one that makes an optimum sharper.
-const ROUGH: f64 = 1e-3;
+pub const ROUGH: f64 = 1e-3;
 pub const SHARP: f64 = 1e-4;
 
 /// Corners of the tolerances at which starts are compared.
@@ -67,7 +67,8 @@ pub fn optima(
             return Err(DesignError::Interrupted);
         }
         let own = local(surface, &mut *question.assessed(surface)?, goal, &start, ROUGH);
-        match found.iter_mut().find(|other| are_alike(&surface.region, &other.point, &own.point)) {
+        let nominal = &surface.region[..surface.axes.free.len()];
+        match found.iter_mut().find(|other| are_alike(nominal, &other.point, &own.point)) {
             Some(other) if own.merit.is_better(&other.merit) => *other = own,
             Some(_) => {}
             None => found.push(own),
@@ -95,7 +96,7 @@ fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
             let own = &slacks[requirement * samples.len() + index * cases.len()..][..cases.len()];
             own.iter().copied().fold(f64::INFINITY, f64::min)
         };
-        let slacks: Vec<f64> = (0..surface.count()).map(least).collect();
+        let slacks = goal.counted(&surface.axes, &point, (0..surface.count()).map(least).collect());
         Optimum { merit: goal.merit(&slacks), point }
     };
     let mut all: Vec<Optimum> = points.into_iter().enumerate().map(own).collect();
@@ -113,7 +114,7 @@ fn starts(surface: &Surface, goal: Goal, known: &[Vec<f64>]) -> Vec<Vec<f64>> {
     chosen
 }
 
-/// Whether two optima of a region are one.
+/// Whether two optima of a region of nominal values are one.
 pub fn are_alike(region: &[[f64; 2]], a: &[f64], b: &[f64]) -> bool {
     let along = a.iter().zip(b).zip(region);
     along.into_iter().all(|((a, b), [lower, upper])| (a - b).abs() <= ALIKE * (upper - lower))
@@ -124,7 +125,9 @@ pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: 
     let inside = |value: f64, [lower, upper]: &[f64; 2]| value.clamp(*lower, *upper);
     let point: Vec<f64> = start.iter().zip(&surface.region).map(|(value, ends)| inside(*value, ends)).collect();
     let mut best = Optimum { merit: goal.merit(&assessed.slacks(&point)), point };
-    let (mut radius, mut weight, mut again) = (FIRST, 0.0_f64, 0);
+    // Tolerances can always make up for a violation.
+    let least_weight = if matches!(goal, Goal::Cost(_)) { f64::INFINITY } else { 0.0 };
+    let (mut radius, mut weight, mut again) = (FIRST, least_weight, 0);
     for _ in 0..STEPS {
         // A step along limits leaves them by its square: violations have a price. At last nothing may be missed.
         if radius < smallest && (weight.is_infinite() || best.merit.violation == 0.0) {
@@ -133,15 +136,23 @@ pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: 
         if radius < smallest {
             (radius, weight) = (RESTORED * smallest, f64::INFINITY);
         }
-        let [goals, limits] = goal.split(surface.count(), assessed.linearised(&best.point));
+        let [goals, limits] = goal.split(assessed.count(), assessed.linearised(&best.point));
         weight = weight.max(price(surface, &goals, &limits));
         let ends = |sign: f64| -> Vec<f64> {
-            let along = best.point.iter().zip(&surface.region);
-            along.map(|(own, ends)| inside(own + sign * radius * (ends[1] - ends[0]), ends) - own).collect()
+            let along = best.point.iter().zip(&surface.region).enumerate();
+            along.map(|(axis, (own, ends))| surface.axes.moved_by(axis, *own, sign * radius, *ends) - own).collect()
         };
-        let step = best_step(&goals, &limits, &ends(-1.0), &ends(1.0));
-        let point: Vec<f64> = best.point.iter().zip(&step).map(|(own, step)| own + step).collect();
-        let merit = goal.merit(&assessed.slacks(&point));
+        let (least, most) = (ends(-1.0), ends(1.0));
+        let moved = |step: &[f64]| -> Vec<f64> { best.point.iter().zip(step).map(|(own, step)| own + step).collect() };
+        let step = assessed.step(&best.point, &goals, &limits, [&least, &most]);
+        let mut point = moved(&step);
+        let mut merit = goal.merit(&assessed.slacks(&point));
+        if !merit.is_better_by(&best.merit, weight) && merit.violation > best.merit.violation {
+            let bent = bent(assessed, goal, &best.point, &step);
+            let step = assessed.step(&best.point, &goals, &bent, [&least, &most]);
+            point = assessed.restored(moved(&step));
+            merit = goal.merit(&assessed.slacks(&point));
+        }
         if merit.is_better_by(&best.merit, weight) {
             best = Optimum { point, merit };
             (radius, again) = ((WIDER * radius).min(LARGEST), 0);
@@ -152,6 +163,20 @@ pub fn local(surface: &Surface, assessed: &mut dyn Assessed, goal: Goal, start: 
         }
     }
     best
+}
+
+/// Limits about a point with the values that they have at the end of a step, where they bend away from it (R. Fletcher,
+/// Second order corrections for non-differentiable optimization, Lect. Notes Math. 912 (1982) 85).
+fn bent(assessed: &mut dyn Assessed, goal: Goal, point: &[f64], step: &[f64]) -> Vec<Linear> {
+    let end: Vec<f64> = point.iter().zip(step).map(|(own, step)| own + step).collect();
+    let count = assessed.count();
+    // The cases that are known are the same at both.
+    let [here, there] = [point, &end].map(|at| goal.split(count, assessed.linearised(at)));
+    let bent = |(here, there): (&Linear, &Linear)| {
+        let along: f64 = here.slopes.iter().zip(step).map(|(slope, step)| slope * step).sum();
+        Linear { value: there.value - along, slopes: here.slopes.clone() }
+    };
+    here[1].iter().zip(&there[1]).map(bent).collect()
 }
 
 /// The best of some points; the one given where there is none.

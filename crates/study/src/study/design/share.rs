@@ -37,7 +37,7 @@ impl<'s> Yield<'s> {
     fn groups(&self) -> Vec<Vec<usize>> {
         let count = self.surface.count();
         match self.goal {
-            Goal::Margin => vec![(0..count).collect()],
+            Goal::Margin | Goal::Cost(_) => vec![(0..count).collect()],
             Goal::Last => vec![(0..count - 1).collect(), vec![count - 1]],
         }
     }
@@ -71,6 +71,10 @@ impl Assessed for Yield<'_> {
             group.into_iter().for_each(|own| slacks[own] = quantile);
         }
         slacks
+    }
+
+    fn count(&self) -> usize {
+        self.surface.count()
     }
 
     fn has_learnt(&self) -> bool {

@@ -139,6 +139,6 @@ pub fn error(surface: &Surface, goal: Goal) -> f64 {
     };
     match goal {
         Goal::Last => of(surface.count() - 1),
-        Goal::Margin => (0..surface.count()).map(of).fold(0.0, f64::max),
+        Goal::Margin | Goal::Cost(_) => (0..surface.count()).map(of).fold(0.0, f64::max),
     }
 }

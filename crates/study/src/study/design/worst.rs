@@ -1,7 +1,7 @@
 //! What the worst case leaves, as a function of the nominal values.
 
 use super::surface::Surface;
-use crate::numerics::{ExtremeSearch, Extremes, Linear};
+use crate::numerics::{ExtremeSearch, Extremes, Linear, best_step};
 
 /// Worst cases that are remembered for each requirement; those nearer than this, in ξ, are one.
 const REMEMBERED: usize = 12;
@@ -12,8 +12,11 @@ const STEP: f64 = 1e-4;
 
 /// What the samples that count leave of the requirements about a point.
 pub trait Assessed {
-    /// The least slack of each requirement.
+    /// The least slack of each requirement, and what counts beside.
     fn slacks(&mut self, point: &[f64]) -> Vec<f64>;
+
+    /// How many these are.
+    fn count(&self) -> usize;
 
     /// Whether the last point showed a case that was not known: a step from the point before may be better now.
     fn has_learnt(&self) -> bool;
@@ -21,6 +24,16 @@ pub trait Assessed {
     /// Slacks that are least there, or were about points before, with their derivatives with respect to the point and
     /// the requirement's number.
     fn linearised(&mut self, point: &[f64]) -> Vec<(usize, Linear)>;
+
+    /// The best step from a point within a box, by goals and limits that are linear in it.
+    fn step(&self, _: &[f64], goals: &[Linear], limits: &[Linear], [least, most]: [&[f64]; 2]) -> Vec<f64> {
+        best_step(goals, limits, least, most)
+    }
+
+    /// A point nearby that violates less, where one can be had without another step.
+    fn restored(&mut self, point: Vec<f64>) -> Vec<f64> {
+        point
+    }
 }
 
 /// Of every case within the tolerances.
@@ -74,6 +87,10 @@ impl Assessed for Worst<'_> {
         slacks
     }
 
+    fn count(&self) -> usize {
+        self.surface.count()
+    }
+
     fn has_learnt(&self) -> bool {
         self.has_learnt
     }
@@ -113,7 +130,9 @@ pub fn around(surface: &Surface, point: &[f64]) -> Vec<Vec<f64>> {
 pub fn quotients(values: &[f64], points: &[Vec<f64>]) -> Linear {
     let slope = |axis: usize| {
         let [below, above] = [1 + 2 * axis, 2 + 2 * axis];
-        (values[above] - values[below]) / (points[above][axis] - points[below][axis])
+        let moved = points[above][axis] - points[below][axis];
+        // A tolerance with a single grade has no neighbours.
+        if moved > 0.0 { (values[above] - values[below]) / moved } else { 0.0 }
     };
     Linear { value: values[0], slopes: (0..points[0].len()).map(slope).collect() }
 }

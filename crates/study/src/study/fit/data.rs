@@ -6,6 +6,7 @@
 use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::{Description, Output};
 use crate::syntax::suggest;
+use crate::syntax::table::{Cell, Line, Table};
 
 /// (√5 − 1)/2
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -69,12 +70,6 @@ struct Column {
     si: f64,
 }
 
-/// A cell, trimmed and without quotes, and the column of its first character, from 1.
-struct Cell<'t> {
-    text: &'t str,
-    column: usize,
-}
-
 impl DataError {
     fn at(line: usize, column: usize, message: impl Into<String>) -> Self {
         Self { line, column, message: message.into() }
@@ -103,39 +98,24 @@ impl Measurements {
     /// # Errors
     /// At the first cell that cannot be used.
     pub fn read(text: &str, description: &Description, noise: &[NoiseBound]) -> Result<Self, DataError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line));
-        let mut lines = lines.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
-        let Some((line, heading)) = lines.next() else {
+        let table = Table::read(text);
+        let Some((heading, lines)) = table.lines.split_first() else {
             return Err(DataError::at(0, 0, "the table is empty: it needs a heading, as `time, x`, and rows"));
         };
-        let columns = columns(line, &cells(heading), description)?;
+        let columns = columns(heading.number, &heading.cells, description)?;
         let bounds = bounds(noise, description)?;
         let mut values = Vec::new();
-        for (line, row) in lines {
-            values.extend(measured(line, &cells(row), &columns, description, &bounds)?);
+        for line in lines {
+            if let Some(message) = table.misfit(line) {
+                return Err(DataError::at(line.number, 1, message));
+            }
+            values.extend(measured(&table, line, &columns, description, &bounds)?);
         }
         if values.is_empty() {
             return Err(DataError::at(0, 0, "the table has no measured values below its heading"));
         }
         Ok(Self { values })
     }
-}
-
-fn cells(line: &str) -> Vec<Cell<'_>> {
-    let mut begin = 0;
-    let cell = |text: &'_ str| {
-        let trimmed = text.trim().trim_matches('"').trim();
-        let first = begin + text.find(trimmed).unwrap_or(0);
-        begin += text.len() + 1;
-        (trimmed.len(), first)
-    };
-    let spans: Vec<(usize, usize)> = line.split(',').map(cell).collect();
-    let of = |(length, first): (usize, usize)| Cell {
-        text: &line[first..first + length],
-        column: 1 + line[..first].chars().count(),
-    };
-    spans.into_iter().map(of).collect()
 }
 
 /// One of the unit in which the model shows an output, in SI.
@@ -236,24 +216,20 @@ fn bounds(noise: &[NoiseBound], description: &Description) -> Result<Vec<Option<
 
 /// Measured values of a line.
 fn measured(
-    line: usize,
-    cells: &[Cell],
+    table: &Table,
+    line: &Line,
     columns: &[Column],
     description: &Description,
     bounds: &[Option<f64>],
 ) -> Result<Vec<Measured>, DataError> {
-    if cells.len() != columns.len() {
-        let message = format!("{} cells, but the heading has {}", cells.len(), columns.len());
-        return Err(DataError::at(line, 1, message));
-    }
+    let Line { number: line, cells } = line;
+    let line = *line;
     let number = |index: usize| -> Result<Option<f64>, DataError> {
-        let Cell { text, column } = cells[index];
-        if text.is_empty() {
+        if cells[index].text.is_empty() {
             return Ok(None);
         }
-        let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
         let number =
-            number.ok_or_else(|| DataError::at(line, column, format!("`{}` is no number", suggest::clip(text))))?;
+            table.number(&cells[index]).map_err(|message| DataError::at(line, cells[index].column, message))?;
         Ok(Some(number * columns[index].si))
     };
     let find = |wanted: Quantity| columns.iter().position(|column| column.quantity == wanted);

@@ -89,7 +89,8 @@ fn fitted(model: &Description, measurements: &Measurements, options: &Options) -
     let xi = minimum.frame.xi(&estimate.eta);
     let contradiction = if is_empty {
         (options.stage)("rows without an explanation");
-        let whole = Local::new(&run.readings(measurements)?, &Frame::whole(k), &prior, measurements, COARSE)?;
+        let readings = run.readings(measurements)?.strict(true);
+        let whole = Local::new(&readings, &Frame::whole(k), &prior, measurements, COARSE)?;
         Some(unexplained(&whole, &minimum.local, measurements, options.interrupted))
     } else {
         None

@@ -31,6 +31,8 @@ pub struct Readings<'r> {
     kept: &'r Kept,
     evaluator: Evaluator<'r>,
     rows: Vec<Reading>,
+    /// Whether rows that are flagged tell nothing, though their error is known.
+    strict: bool,
 }
 
 /// A measured row.
@@ -98,11 +100,27 @@ impl Run {
             output: own.output,
             interpolation: Interpolation::new(self.kept.times(), own.time),
         };
-        Ok(Readings { kept: &self.kept, evaluator, rows: measurements.values.iter().map(reading).collect() })
+        let rows = measurements.values.iter().map(reading).collect();
+        Ok(Readings { kept: &self.kept, evaluator, rows, strict: false })
     }
 }
 
 impl Readings<'_> {
+    /// The same, where rows that are flagged tell nothing.
+    pub fn strict(self, strict: bool) -> Self {
+        Self { strict, ..self }
+    }
+
+    /// Whether some row is flagged with a known error.
+    pub fn has_flagged(&self) -> bool {
+        let is_flagged = |reading: &Reading| {
+            let rows = reading.interpolation.iter().flat_map(|own| &own.fine);
+            let error = self.kept.error(reading.output);
+            rows.into_iter().any(|(row, _)| error.coarse.get(*row) == Some(&true))
+        };
+        self.rows.iter().any(is_flagged)
+    }
+
     /// Errors of simulation and surrogate anywhere in the box, by measured row; infinite where nothing is known.
     pub fn errors(&self) -> Vec<f64> {
         let of = |reading: &Reading| {
@@ -110,9 +128,10 @@ impl Readings<'_> {
             let error = self.kept.error(reading.output);
             let at = |&(row, weight): &(usize, f64)| -> f64 {
                 let own = error.total.get(row).copied().unwrap_or(f64::INFINITY);
-                // A row whose error is large but known can be relied on.
+                // A row whose error is large but known narrows the set; alone it does not make it empty.
                 let flag = |flags: &[bool]| flags.get(row).copied();
-                let is_known = flag(&error.unresolved) == Some(false) || flag(&error.coarse) == Some(true);
+                let is_coarse = !self.strict && flag(&error.coarse) == Some(true);
+                let is_known = flag(&error.unresolved) == Some(false) || is_coarse;
                 if own.is_nan() || !is_known { f64::INFINITY } else { weight.abs() * own }
             };
             interpolation.fine.iter().map(at).sum()

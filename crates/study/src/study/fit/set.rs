@@ -50,7 +50,8 @@ pub struct Set {
     pub paving: Paving,
 }
 
-/// Approaches the set from the model's box, in which `first` has surrogates.
+/// Approaches the set from the model's box, in which `first` has surrogates. Rows that are flagged narrow it by their
+/// stated errors, but do not make it empty.
 ///
 /// # Errors
 /// Where a narrower box cannot be run.
@@ -61,11 +62,24 @@ pub fn found(
     first: &Run,
     options: &Options,
 ) -> Result<Found, FitError> {
+    let approach = Approach::begun(description, prior, first, options);
+    let mut has_flagged = false;
+    let found = approached(approach, measurements, &mut has_flagged)?;
+    if found.set.is_some() || !has_flagged {
+        return Ok(found);
+    }
+    let approach = Approach { strict: true, ..Approach::begun(description, prior, first, options) };
+    let again = approached(approach, measurements, &mut has_flagged)?;
+    Ok(Found { simulations: again.simulations + found.simulations, ..again })
+}
+
+fn approached(mut approach: Approach, measurements: &Measurements, has_flagged: &mut bool) -> Result<Found, FitError> {
     let few = measurements.thinned(FEW);
     let mut used = &few;
-    let mut approach = Approach::begun(description, prior, first, options);
+    let options = approach.options;
     for _ in 0..ROUNDS {
         (options.stage)("consistent parameters");
+        *has_flagged |= approach.run().readings(used)?.has_flagged();
         let local = approach.local(used, COARSE)?;
         let paving = pave(&local.tubes, APPROACH, options.interrupted);
         if (options.interrupted)() {
@@ -111,6 +125,8 @@ struct Approach<'a> {
     first: &'a Run,
     /// Over a narrower box, where there is one.
     narrower: Option<Run>,
+    /// Whether rows that are flagged tell nothing.
+    strict: bool,
     frame: Frame,
     runs: usize,
     finer: Finer,
@@ -124,7 +140,8 @@ impl<'a> Approach<'a> {
         let frame = Frame::whole(prior.dimension());
         let before = f64::INFINITY;
         let finer = Finer::default();
-        Self { description, prior, options, first, narrower: None, frame, runs: 1, finer, before, simulations: 0 }
+        let (narrower, strict) = (None, false);
+        Self { description, prior, options, first, narrower, strict, frame, runs: 1, finer, before, simulations: 0 }
     }
 
     fn run(&self) -> &Run {
@@ -132,7 +149,8 @@ impl<'a> Approach<'a> {
     }
 
     fn local(&self, measurements: &Measurements, fine: f64) -> Result<Local, FitError> {
-        Local::new(&self.run().readings(measurements)?, &self.frame, self.prior, measurements, fine)
+        let readings = self.run().readings(measurements)?.strict(self.strict);
+        Local::new(&readings, &self.frame, self.prior, measurements, fine)
     }
 
     /// Better surrogates, where their error counts and they are worth it: over the box around a frame that has shrunk,

@@ -1,0 +1,76 @@
+//! The cheapest tolerances at nominal values.
+
+use symdiff::{Binary, Formula};
+
+use super::axes::Axes;
+use super::points::{Studied, studied};
+use super::search;
+use super::surface::{Surface, scale};
+use super::{DesignError, Question, WIDEST};
+use crate::model::Description;
+use crate::results::{Allocation, DesignKind};
+use crate::study::{AllocateError, AllocateOptions, Options, allocate};
+
+/// The model whose requirements are to leave this margin, as a share of their limits.
+fn with_margin(description: &Description, margin: f64) -> Description {
+    let mut model = description.clone();
+    for own in &mut model.requirements {
+        let less = Formula::number(margin * scale(own));
+        own.slacks.iter_mut().for_each(|slack| *slack = slack.combined(Binary::Sub, &less));
+    }
+    model
+}
+
+/// The cheapest tolerances at nominal values, as a study confirms them; `None` where none may change.
+pub fn allocated(
+    question: &Question,
+    axes: &Axes,
+    point: &[f64],
+    options: &Options,
+) -> Result<Option<Allocation>, DesignError> {
+    let asked = AllocateOptions { share: question.share, widest: WIDEST };
+    let mut model = with_margin(&question.shown, question.goal.margin());
+    model.requirements.truncate(question.required());
+    match allocate(&axes.at(&model, &axes.with_present(point)), asked, options) {
+        Ok(allocation) => Ok(Some(allocation)),
+        Err(AllocateError::Unsuitable(_)) => Ok(None),
+        Err(AllocateError::Run(error)) => Err(error.into()),
+    }
+}
+
+/// The study at nominal values with the cheapest tolerances there; with those of the point where none will do.
+pub fn at_cost(
+    question: &Question,
+    axes: &Axes,
+    point: &[f64],
+    kind: DesignKind,
+    options: &Options,
+) -> Result<Option<Studied>, DesignError> {
+    let allocation = allocated(question, axes, point, options)?;
+    let met = allocation.as_ref().filter(|own| own.not_met.is_empty());
+    let point = met.map_or_else(|| point.to_vec(), |own| axes.with_tolerances(point, &own.tolerances));
+    let Some(mut found) = studied(question, axes, &point, kind, options)? else { return Ok(None) };
+    if let Some(own) = &allocation {
+        found.of_surrogate += own.simulations;
+        found.simulations += own.confirming;
+        // Its requirements are those with the margin.
+        found.found.is_feasible &= own.is_confirmed;
+    }
+    found.allocation = allocation.filter(|own| own.not_met.is_empty());
+    Ok(Some(found))
+}
+
+/// The same about a rough optimum, at rounded values.
+pub fn confirmed(
+    question: &Question,
+    axes: &Axes,
+    point: Vec<f64>,
+    surface: &Surface,
+    options: &Options,
+) -> Result<Option<Studied>, DesignError> {
+    let mut assessed = question.assessed(surface)?;
+    // What a rounded point misses is made up for by tighter tolerances.
+    let rounded = axes.rounded(&point).into_iter().map(|own| assessed.restored(own)).collect();
+    let point = search::best_of(&mut *assessed, question.goal, rounded, point);
+    at_cost(question, axes, &point, DesignKind::Optimum, options)
+}
