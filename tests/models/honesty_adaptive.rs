@@ -239,8 +239,8 @@ bounds: { chebyshev: { order: 3 }, scan: { points: 4 } }
     }
 }
 
-/// A light mass on a stiff spring, at rest by the nominal start and shaken at the box's ends, is too fast for the steps.
-/// Outputs that hardly feel it are resolved all the same.
+/// A light mass on a stiff spring, at rest by the nominal start and shaken at the box's ends, is too fast for the
+/// steps. Outputs that hardly feel it are resolved all the same.
 #[test]
 fn a_fast_mode_spoils_no_other_output() {
     let bounds = run(&read(

@@ -73,7 +73,7 @@ fn certificates_are_proven_again_and_changed_ones_are_refused() {
 
     // A radius that is too small.
     let tube = own["tube"].as_str().unwrap().to_owned();
-    let small = vec!["0x1p-80"; 4].join(" ");
+    let small = ["0x1p-80"; 4].join(" ");
     let found = verified(&place, &change(cell, &tube, &small), "", 4);
     assert!(found.contains("cell 1 from 0 s: position 0 may be"), "{found}");
 

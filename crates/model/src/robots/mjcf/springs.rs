@@ -11,7 +11,7 @@
 //! kᵥ = 2 ζ √(kₚ m),   1/m = g M⁻¹ gᵀ
 //! ```
 //!
-//! where g is the gradient of its length: m is what it feels while all else is free.
+//! where g is the gradient of its length: it feels the mass m while all else is free.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 

@@ -75,7 +75,7 @@ impl Adaptation<'_> {
         Ok(())
     }
 
-    /// Largest error of estimates in some rows, as far as samples make it smaller, over the one that is allowed, with its
+    /// Largest error of estimates in some rows, as far as samples make it smaller, over the allowed one, with its
     /// safety.
     fn worst(&self, rows: &[usize], found: &[Estimate]) -> f64 {
         let of_row = |(&row, found): (&usize, &[Estimate])| {
