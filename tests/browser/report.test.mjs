@@ -38,7 +38,7 @@ test('reports are small, open from the disk, ask for nothing and say nothing wro
 });
 
 /** Stack-ups of dimensions alone: nothing moves, and pictures have no time. */
-const stacks = ['bearing_gap', 'bearing_gap_design', 'overrunning_clutch'];
+const stacks = ['bearing_gap', 'bearing_gap_design', 'overrunning_clutch', 'stack_to_price'];
 
 /** Faults of a report in which nothing was touched: an empty view, figures without courses, numbers that are none. */
 const empty = (page, isStack) => page.evaluate((isStack) => {
