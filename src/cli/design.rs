@@ -131,26 +131,36 @@ fn overview(found: &DesignStudy) -> String {
     text
 }
 
+/// A table with a column for each of at most five things, beside a name and a unit.
+struct Columns<'t, T> {
+    table: Table<7>,
+    things: &'t [&'t T],
+}
+
+impl<'t, T> Columns<'t, T> {
+    fn new(title: &'static str, headings: &[&'static str], things: &'t [&'t T]) -> Self {
+        let heading = |index: usize| (headings.get(index).copied().unwrap_or(""), Align::Right);
+        let first = [(title, Align::Left), ("unit", Align::Left)];
+        let headings = std::array::from_fn(|index| first.get(index).copied().unwrap_or_else(|| heading(index - 2)));
+        Self { table: Table::new(headings), things }
+    }
+
+    fn row(&mut self, name: &str, unit: &str, cell: &dyn Fn(&T) -> String) {
+        let mut cells = [name, unit, "", "", "", "", ""].map(str::to_owned);
+        cells[2..].iter_mut().zip(self.things).for_each(|(own, thing)| *own = cell(thing));
+        self.table.row(cells);
+    }
+}
+
 /// A column for each point: values, then the objective.
 fn points(found: &DesignStudy) -> String {
     let model = found.model_point.as_ref().map(|point| ("model", point));
     let nominal = found.nominal_point.as_ref().map(|point| ("no tolerances", point));
     let optima = ["optimum", "second", "third"].into_iter().zip(&found.optima);
     let columns: Vec<(&str, &DesignPoint)> = model.into_iter().chain(nominal).chain(optima).collect();
-    let heading = |index: usize| columns.get(index).map_or("", |(heading, _)| heading);
-    let mut table = Table::new([
-        ("", Align::Left),
-        ("unit", Align::Left),
-        (heading(0), Align::Right),
-        (heading(1), Align::Right),
-        (heading(2), Align::Right),
-        (heading(3), Align::Right),
-        (heading(4), Align::Right),
-    ]);
-    let mut row = |name: &str, unit: &str, cell: &dyn Fn(&DesignPoint) -> String| {
-        let cell = |index: usize| columns.get(index).map_or_else(String::new, |(_, point)| cell(point));
-        table.row([name.to_owned(), unit.to_owned(), cell(0), cell(1), cell(2), cell(3), cell(4)]);
-    };
+    let (headings, points): (Vec<&str>, Vec<&DesignPoint>) = columns.into_iter().unzip();
+    let mut table = Columns::new("", &headings, &points);
+    let mut row = |name: &str, unit: &str, cell: &dyn Fn(&DesignPoint) -> String| table.row(name, unit, cell);
     for (index, own) in found.parameters.iter().enumerate() {
         let unit = ShownUnit::of(&own.display, &own.unit);
         row(&own.name, unit.text, &|point| short(unit.of_si(point.values[index])));
@@ -158,7 +168,7 @@ fn points(found: &DesignStudy) -> String {
     if found.is_priced() {
         row("cost", "", &|point| short(point.worst));
         row("requirements", "", &|point| if point.is_feasible { "hold" } else { "not met" }.to_owned());
-        return table.render(2);
+        return table.table.render(2);
     }
     let unit = ShownUnit::of(&found.objective.display, &found.objective.unit);
     let is_margin = found.objective.text == "margin";
@@ -170,28 +180,17 @@ fn points(found: &DesignStudy) -> String {
     row("nominal", unit.text, &|point| short(unit.of_si(point.nominal)));
     row(&worst, unit.text, &|point| short(unit.of_si(point.worst)));
     row("± error", unit.text, &|point| format!("{:.1e}", unit.of_si(point.error)));
-    if columns.iter().any(|(_, point)| !point.requirements.is_empty()) {
+    if points.iter().any(|point| !point.requirements.is_empty()) {
         row("requirements", "", &|point| if point.is_feasible { "hold" } else { "not met" }.to_owned());
     }
-    table.render(2)
+    table.table.render(2)
 }
 
 /// A column for each margin: the cheapest nominal values and tolerances that leave it.
 fn front(found: &DesignStudy) -> String {
-    let heading = |index: usize| if index < found.front.len() { "margin" } else { "" };
-    let mut table = Table::new([
-        ("cost against", Align::Left),
-        ("unit", Align::Left),
-        (heading(0), Align::Right),
-        (heading(1), Align::Right),
-        (heading(2), Align::Right),
-        (heading(3), Align::Right),
-        (heading(4), Align::Right),
-    ]);
-    let mut row = |name: &str, unit: &str, cell: &dyn Fn(&DesignTrade) -> String| {
-        let cell = |index: usize| found.front.get(index).map_or_else(String::new, cell);
-        table.row([name.to_owned(), unit.to_owned(), cell(0), cell(1), cell(2), cell(3), cell(4)]);
-    };
+    let front: Vec<&DesignTrade> = found.front.iter().collect();
+    let mut table = Columns::new("cost against", &vec!["margin"; front.len()], &front);
+    let mut row = |name: &str, unit: &str, cell: &dyn Fn(&DesignTrade) -> String| table.row(name, unit, cell);
     row("margin", "%", &|own| short(100.0 * own.margin));
     row("cost", "", &|own| short(own.cost));
     for (index, own) in found.parameters.iter().enumerate() {
@@ -209,5 +208,5 @@ fn front(found: &DesignStudy) -> String {
             }
         });
     }
-    table.render(2)
+    table.table.render(2)
 }
