@@ -11,6 +11,8 @@ mod loaded;
 mod motion;
 mod orders;
 
+use rayon::prelude::*;
+
 use super::black_box::needs_equations;
 use super::formulation::compiled;
 use super::{Options, RunError, first_step, scheme};
@@ -96,18 +98,20 @@ pub fn verify(description: &Description, options: &Options) -> Result<Verificati
         Analysis::Modes(_) => return Err(VerifyError::NoSteps("modes")),
         _ => (),
     }
-    let mut formulations = Vec::new();
-    for formulation in [Formulation::Absolute, Formulation::Joint] {
+    let of = |formulation: Formulation| {
         (options.stage)("compiling");
         let questions = Questions { formulation, powers: true, ..Questions::of(description) };
-        let simulator = match compiled(&questions) {
+        match compiled(&questions) {
             // Absolute coordinates are there already.
-            Err(RunError::Build(BuildError::NoJointCoordinates { .. })) => continue,
-            compiled => compiled?,
-        };
-        formulations.push(of_formulation(description, &simulator, options)?);
-    }
-    Ok(Verification { model: description.name.clone(), formulations })
+            Err(RunError::Build(BuildError::NoJointCoordinates { .. })) => Ok(None),
+            compiled => of_formulation(description, &compiled?, options).map(Some),
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let found: Result<Vec<Option<FormulationVerification>>, VerifyError> = pool
+        .map_err(RunError::from)?
+        .install(|| [Formulation::Absolute, Formulation::Joint].into_par_iter().map(of).collect());
+    Ok(Verification { model: description.name.clone(), formulations: found?.into_iter().flatten().collect() })
 }
 
 fn of_formulation(
@@ -157,16 +161,16 @@ fn of_formulation(
             return Ok(found);
         }
     };
-    for integration in INTEGRATIONS {
+    let of = |integration: Integration| {
         (options.stage)("orders");
         let scheme = integration.name().unwrap_or_else(|| "HHT-I3".to_owned());
-        let verified = match convergence(&loaded, &motion, integration, options.interrupted) {
-            Ok(convergence) => SchemeVerification { scheme, convergence, failure: None },
-            Err(SimulationError::Interrupted) => return Err(VerifyError::Interrupted),
-            Err(error) => SchemeVerification { scheme, convergence: Vec::new(), failure: Some(error.to_string()) },
-        };
-        found.schemes.push(verified);
-    }
+        match convergence(&loaded, &motion, integration, options.interrupted) {
+            Ok(convergence) => Ok(SchemeVerification { scheme, convergence, failure: None }),
+            Err(SimulationError::Interrupted) => Err(VerifyError::Interrupted),
+            Err(error) => Ok(SchemeVerification { scheme, convergence: Vec::new(), failure: Some(error.to_string()) }),
+        }
+    };
+    found.schemes = INTEGRATIONS.into_par_iter().map(of).collect::<Result<_, _>>()?;
     Ok(found)
 }
 
