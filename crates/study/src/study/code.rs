@@ -4,7 +4,7 @@ use super::black_box::needs_mechanism;
 use super::prepared::Prepared;
 use super::problem::Study;
 use super::sample::steps_of_samples;
-use super::{Options, RunError};
+use super::{Options, RunError, pool};
 use crate::c_code::{CModel, CodeRequest, FmiVersion, NoCode, c_code};
 use crate::model::Description;
 use crate::reduce::Reduction;
@@ -28,7 +28,7 @@ pub enum CodeError {
 /// be one.
 pub fn code(description: &Description, inputs: &[String], version: FmiVersion) -> Result<CModel, CodeError> {
     needs_mechanism(description, "source code").map_err(RunError::from)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(0).build().map_err(RunError::from)?;
+    let pool = pool(None).map_err(RunError::from)?;
     pool.install(|| {
         let Prepared { subsystem, simulator } = Prepared::new(Reduction::joined(description))?;
         let options = Options { methods: Some(Vec::new()), ..Options::default() };

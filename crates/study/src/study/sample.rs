@@ -9,7 +9,7 @@ use super::stepping::{StepPlan, balance, controlling_samples, divided, planned};
 
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
 use super::prepared::{Prepared, choices, prepare};
-use super::{Options, RunError, reduced};
+use super::{Options, RunError, pool, reduced};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::Description;
 use crate::numerics::Sample;
@@ -63,7 +63,7 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
     chosen: Chosen,
     write: impl FnOnce(&Trajectories) -> Result<T, E> + Send,
 ) -> Result<T, E> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool(options.threads);
     let pool = pool.map_err(RunError::from)?;
     let model = reduced::expanded(description);
     pool.install(|| {

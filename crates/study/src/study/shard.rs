@@ -3,7 +3,7 @@
 use super::ensemble::{Progress, simulate_part};
 use super::prepared::{Prepared, choices, prepare};
 use super::problem::Study;
-use super::{Options, RunError, reduced};
+use super::{Options, RunError, pool, reduced};
 use crate::model::Description;
 use crate::simulate::{SimulationError, Steps};
 use crate::store::{PartStore, StoreError};
@@ -19,7 +19,7 @@ pub fn simulate_parts(
     store: &PartStore,
     names: &[String],
 ) -> Result<(), RunError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    let pool = pool(options.threads)?;
     let model = reduced::expanded(description);
     pool.install(|| simulate(&model, options, store, names))
 }

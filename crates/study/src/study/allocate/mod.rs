@@ -12,7 +12,7 @@ mod surface;
 mod wide;
 mod worst;
 
-use super::{Options, RunError, reduced, statistics};
+use super::{Options, RunError, pool, reduced, statistics};
 use crate::model::Description;
 use crate::numerics::statistics::normal_quantile;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, NotMet, Summary, ToleranceZone, TradePoint, Verdict};
@@ -84,7 +84,7 @@ pub fn allocate(
             "no tolerance may change: all are `cost: fixed`, or have a distribution that does not follow the tolerance",
         );
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool(options.threads);
     let pool = pool.map_err(RunError::from)?;
     pool.install(|| {
         let model = reduced::expanded(description);

@@ -24,7 +24,7 @@ mod worst;
 
 use std::ops::Range;
 
-use super::{Options, RunError, reduced, statistics};
+use super::{Options, RunError, pool, reduced, statistics};
 use crate::model::{Description, Objective};
 use crate::results::{Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
 use allocated::at_cost;
@@ -149,7 +149,7 @@ pub fn design(description: &Description, asked: DesignOptions, options: &Options
             DesignObjective { text, unit: String::new(), display: None, is_least }
         }
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool(options.threads);
     pool.map_err(RunError::from)?.install(|| {
         let shown = required(&model);
         let (at_instants, instants) = at_instants(&shown);

@@ -24,7 +24,7 @@ use readings::{Finer, Run};
 use set::Set;
 use unexplained::unexplained;
 
-use super::{Chosen, Options, RunError, sample, uncertain};
+use super::{Chosen, Options, RunError, pool, sample, uncertain};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, Sample};
 use crate::results::{Fit, FitOutput, FitParameter, FitRow};
@@ -64,7 +64,7 @@ pub fn fit(description: &Description, measurements: &Measurements, options: &Opt
     model.reduced.clear();
     model.requirements.clear();
     model.statistics.asked = false;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool(options.threads);
     pool.map_err(RunError::from)?.install(|| fitted(&model, measurements, options))
 }
 

@@ -8,9 +8,9 @@ mod rows;
 mod samples;
 mod thinning;
 
-use super::RunError;
 use super::drawing::asked::{Asked, AskedBody, Values};
 use super::drawing::{drawn, extent, has_ground};
+use super::{RunError, pool};
 use crate::model::Description;
 use crate::numerics::{Sample, SparseWork, SurrogateWork};
 use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
@@ -42,7 +42,7 @@ pub struct MotionOptions<'a> {
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped, and at an interruption.
 pub fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    let pool = pool(options.threads)?;
     pool.install(|| {
         // Its ground is drawn when it is known what the motion passes.
         let drawing = drawn(description, None)?;

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::black_box::needs_equations;
 use super::formulation::compiled;
-use super::{Options, RunError, first_step, scheme};
+use super::{Options, RunError, first_step, pool, scheme};
 use crate::assemble::{BuildError, Questions};
 use crate::compile::compile_equations;
 use crate::model::{Analysis, Description, Formulation, Stepping};
@@ -107,7 +107,7 @@ pub fn verify(description: &Description, options: &Options) -> Result<Verificati
             compiled => of_formulation(description, &compiled?, options).map(Some),
         }
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool(options.threads);
     let found: Result<Vec<Option<FormulationVerification>>, VerifyError> = pool
         .map_err(RunError::from)?
         .install(|| [Formulation::Absolute, Formulation::Joint].into_par_iter().map(of).collect());
