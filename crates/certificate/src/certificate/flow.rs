@@ -1,6 +1,8 @@
 //! How distances of motions grow over a cell: e(τ) = Φ(τ) e(−1) + g(τ).
 
-use super::majorant::bound;
+use symdiff::taylor_model::{ModelSpace, up};
+
+use super::majorant::{bound, resolvent};
 use super::matrix::{Bounds, Models};
 use super::spaces::{Cell, Space, matrix_at};
 
@@ -31,6 +33,58 @@ impl Flow {
         let missed = missed(space, cell, &transition, slopes, sizes)?;
         Some(Self { transition, missed, growth })
     }
+}
+
+/// Accelerations over a tube about an approximation.
+#[derive(Clone, Debug)]
+pub struct Accelerations {
+    /// Bound of |f(ŷ) − ŵ|, n.
+    pub missed: Vec<f64>,
+    /// A: by positions and velocities, n × 2n.
+    pub slopes: Models,
+}
+
+impl Accelerations {
+    /// Of equations F(y, x) = 0 for x = (w, λ): their derivatives by x and by y over the tube, `inverse`, which may be
+    /// anything, for those by x, and bounds of F at the approximation. `None` where derivatives by x may be singular.
+    pub fn new(
+        space: &ModelSpace,
+        inverse: &Models,
+        by_unknown: &Models,
+        by_state: &Models,
+        residual: &[f64],
+    ) -> Option<Self> {
+        let (n, last) = (by_state.columns / 2, space.size() - 1);
+        let contraction = inverse.times(space, by_unknown).off_identity(space).bounds(space);
+        let sizes = inverse.bounds(space).times(residual);
+        let beyond = resolvent(&contraction, &Bounds::of(sizes.len(), 1, &sizes))?;
+        let missed = (0..n).map(|row| up(sizes[row] + beyond.at(row, 0))).collect();
+        // ∂x/∂y = −J⁻¹ F_y, and J⁻¹ = (C J)⁻¹ C.
+        let mut all = inverse.times(space, by_state);
+        all.negate();
+        let beyond = resolvent(&contraction, &all.bounds(space))?;
+        let mut slopes = all.part(space, 0..n, 0..2 * n);
+        for (row, column) in (0..n).flat_map(|row| (0..2 * n).map(move |column| (row, column))) {
+            let radius = &mut slopes.at_mut(row, column)[last];
+            *radius = up(*radius + beyond.at(row, column));
+        }
+        Some(Self { missed, slopes })
+    }
+}
+
+/// Bounds of v̂ − q̂' and of ŵ − v̂', 2n.
+#[must_use]
+pub fn kinematic_defect(space: &Space, cell: Cell, q: &Models, v: &Models, w: &Models) -> Vec<f64> {
+    let (mut rate, mut left) = (vec![0.0; space.cell.size()], vec![0.0; space.cell.size()]);
+    let mut found = Vec::with_capacity(2 * q.rows);
+    for (of, by) in [(q, v), (v, w)] {
+        for row in 0..of.rows {
+            space.rate(of.at(row, 0), cell.half, &mut rate);
+            space.cell.sub(by.at(row, 0), &rate, &mut left);
+            found.push(space.cell.bound(&left));
+        }
+    }
+    found
 }
 
 /// [0 I; A] of bounds of A.

@@ -2,11 +2,11 @@
 
 use symdiff::taylor_model::{ModelSpace, up};
 
-use super::super::flow::{Flow, of_first_order};
+use super::super::flow::{Accelerations, Flow, kinematic_defect, of_first_order};
 use super::super::frame::Frame;
 use super::super::krawczyk::{self, Image};
-use super::super::majorant::{bound, resolvent};
-use super::super::matrix::{Bounds, Models};
+use super::super::majorant::bound;
+use super::super::matrix::Models;
 use super::super::spaces::{Cell, Space, matrix_at, truncate};
 use super::super::{Equations, ProvenCell};
 use super::evaluation::{Given, State, evaluate};
@@ -144,11 +144,11 @@ impl Passed {
         let time = Shapes::time(&fine.cell, cell);
         let given = Given { space: &fine.cell, time: &time, parameters: &shapes.parameters[0] };
         let residual = motion.bounds(&given, &state);
-        let kinematic = kinematic_defect(fine, cell, &state);
+        let kinematic = kinematic_defect(fine, cell, &state.q, &state.v, &state.w);
 
         let time = Shapes::time(&coarse.cell, cell);
         let given = Given { space: &coarse.cell, time: &time, parameters: &shapes.parameters[1] };
-        let linear = Linear::over_tube(motion, &given, &state, &proven.tube, &residual).ok_or(Open::Irregular)?;
+        let linear = over_tube(motion, &given, &state, &proven.tube, &residual).ok_or(Open::Irregular)?;
         let defect: Vec<f64> =
             (0..2 * n).map(|row| up(kinematic[row] + if row < n { 0.0 } else { linear.missed[row - n] })).collect();
         let sizes = of_first_order(&linear.slopes.bounds(&coarse.cell));
@@ -172,15 +172,8 @@ impl Passed {
     /// The motion at an instant, with radii of q and v.
     pub fn at(&self, shapes: &Shapes, tau: f64) -> State {
         let (fine, coarse) = (&shapes.fine, &shapes.coarse);
-        let at = |models: &Models| matrix_at(fine, models, tau);
-        let State { q, v, w, lambda } = &self.state;
-        let mut state = State { q: at(q), v: at(v), w: at(w), lambda: at(lambda) };
-        let errors = self.frame.error_at(coarse, &self.flow, tau);
-        let (n, last) = (state.q.rows, fine.box_of.size() - 1);
-        for (row, error) in errors.iter().enumerate() {
-            let model = if row < n { state.q.at_mut(row, 0) } else { state.v.at_mut(row - n, 0) };
-            model[last] = up(model[last] + error);
-        }
+        let mut state = self.state.map(|models| matrix_at(fine, models, tau));
+        state.widen(&fine.box_of, &self.frame.error_at(coarse, &self.flow, tau));
         state
     }
 }
@@ -217,72 +210,31 @@ fn distances(space: &Space, models: &Models, from: &Models) -> Vec<f64> {
     (0..models.rows).map(&mut distance).collect()
 }
 
-/// Bounds of v̂ − q̂' and of ŵ − v̂', 2n.
-fn kinematic_defect(space: &Space, cell: Cell, State { q, v, w, .. }: &State) -> Vec<f64> {
-    let (mut rate, mut left) = (vec![0.0; space.cell.size()], vec![0.0; space.cell.size()]);
-    let mut defect = |of: &Models, by: &Models, row: usize| {
-        space.rate(of.at(row, 0), cell.half, &mut rate);
-        space.cell.sub(by.at(row, 0), &rate, &mut left);
-        space.cell.bound(&left)
+/// The accelerations over a tube.
+fn over_tube(motion: &Unknowns, given: &Given, fine: &State, tube: &[f64], residual: &[f64]) -> Option<Accelerations> {
+    let (space, n) = (given.space, motion.equations.coordinates);
+    let last = space.size() - 1;
+    let cut = |models: &Models| {
+        let mut cut = Models::zero(space, models.rows, 1);
+        (0..models.rows).for_each(|row| truncate(models.at(row, 0), space, cut.at_mut(row, 0)));
+        cut
     };
-    [(q, v), (v, w)]
-        .iter()
-        .flat_map(|&(of, by)| (0..q.rows).map(|row| defect(of, by, row)).collect::<Vec<_>>())
-        .collect()
-}
-
-/// The equations over a tube.
-struct Linear {
-    /// Bound of |f(ŷ) − ŵ|, n.
-    missed: Vec<f64>,
-    /// A: accelerations by q and v, n × 2n.
-    slopes: Models,
-}
-
-impl Linear {
-    fn over_tube(motion: &Unknowns, given: &Given, fine: &State, tube: &[f64], residual: &[f64]) -> Option<Self> {
-        let (space, n) = (given.space, motion.equations.coordinates);
-        let last = space.size() - 1;
-        let cut = |models: &Models| {
-            let mut cut = Models::zero(space, models.rows, 1);
-            (0..models.rows).for_each(|row| truncate(models.at(row, 0), space, cut.at_mut(row, 0)));
-            cut
-        };
-        let mut state = State { q: cut(&fine.q), v: cut(&fine.v), w: cut(&fine.w), lambda: cut(&fine.lambda) };
-        let bare = |models: &Models| models.clone().without_radii();
-        let about = State { q: bare(&state.q), v: bare(&state.v), w: bare(&state.w), lambda: bare(&state.lambda) };
-        let inverse = motion.inverse(given, &about)?;
-        for (row, tube) in tube.iter().enumerate() {
-            let model = if row < n { state.q.at_mut(row, 0) } else { state.v.at_mut(row - n, 0) };
-            model[last] = up(model[last] + tube);
+    let mut state = fine.map(cut);
+    let inverse = motion.inverse(given, &state.bare())?;
+    state.widen(space, tube);
+    let tails = [state.w.clone(), state.lambda.clone()];
+    motion.enclose(given, &mut state, &inverse)?;
+    // ŵ and λ̂ themselves are to be in the enclosure, too.
+    for (models, tails) in [&mut state.w, &mut state.lambda].into_iter().zip(&tails) {
+        for row in 0..models.rows {
+            let radius = &mut models.at_mut(row, 0)[last];
+            *radius = larger(*radius, tails.at(row, 0)[last]);
         }
-        let tails = [state.w.clone(), state.lambda.clone()];
-        motion.enclose(given, &mut state, &inverse)?;
-        // ŵ and λ̂ themselves are to be in the enclosure, too.
-        for (models, tails) in [&mut state.w, &mut state.lambda].into_iter().zip(&tails) {
-            for row in 0..models.rows {
-                let radius = &mut models.at_mut(row, 0)[last];
-                *radius = larger(*radius, tails.at(row, 0)[last]);
-            }
-        }
-        let places: Vec<usize> = motion.places.iter().copied().chain(0..2 * n).collect();
-        let (_, all) = motion.linearised(given, &state, &places);
-        let unknowns = motion.places.len();
-        let by_unknown = all.part(space, 0..unknowns, 0..unknowns);
-        let by_state = all.part(space, 0..unknowns, unknowns..unknowns + 2 * n);
-        let contraction = inverse.times(space, &by_unknown).off_identity(space).bounds(space);
-        let sizes = inverse.bounds(space).times(residual);
-        let beyond = resolvent(&contraction, &Bounds::of(sizes.len(), 1, &sizes))?;
-        let missed = (0..n).map(|row| up(sizes[row] + beyond.at(row, 0))).collect();
-        // A = −J⁻¹ F_y, and J⁻¹ = (C J)⁻¹ C.
-        let mut all = inverse.times(space, &by_state);
-        all.negate();
-        let beyond = resolvent(&contraction, &all.bounds(space))?;
-        let mut slopes = all.part(space, 0..n, 0..2 * n);
-        for (row, column) in (0..n).flat_map(|row| (0..2 * n).map(move |column| (row, column))) {
-            let radius = &mut slopes.at_mut(row, column)[last];
-            *radius = up(*radius + beyond.at(row, column));
-        }
-        Some(Self { missed, slopes })
     }
+    let places: Vec<usize> = motion.places.iter().copied().chain(0..2 * n).collect();
+    let (_, all) = motion.linearised(given, &state, &places);
+    let unknowns = motion.places.len();
+    let by_unknown = all.part(space, 0..unknowns, 0..unknowns);
+    let by_state = all.part(space, 0..unknowns, unknowns..unknowns + 2 * n);
+    Accelerations::new(space, &inverse, &by_unknown, &by_state, residual)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use symdiff::taylor_model::{ModelScratch, ModelSpace};
+use symdiff::taylor_model::{ModelScratch, ModelSpace, up};
 use symdiff::{Binary, Interval, Unary};
 
 use super::super::matrix::Models;
@@ -23,6 +23,27 @@ pub(super) struct State {
     pub v: Models,
     pub w: Models,
     pub lambda: Models,
+}
+
+impl State {
+    /// The same of each column.
+    pub fn map(&self, of: impl Fn(&Models) -> Models) -> Self {
+        Self { q: of(&self.q), v: of(&self.v), w: of(&self.w), lambda: of(&self.lambda) }
+    }
+
+    /// Without radii.
+    pub fn bare(&self) -> Self {
+        self.map(|models| models.clone().without_radii())
+    }
+
+    /// Adds to the radii of positions and velocities, 2n.
+    pub fn widen(&mut self, space: &ModelSpace, by: &[f64]) {
+        let (n, last) = (self.q.rows, space.size() - 1);
+        for (row, by) in by.iter().enumerate() {
+            let model = if row < n { self.q.at_mut(row, 0) } else { self.v.at_mut(row - n, 0) };
+            model[last] = up(model[last] + by);
+        }
+    }
 }
 
 /// Time and parameters.

@@ -273,9 +273,7 @@ fn observed(
     let mut t = vec![0.0; space.size()];
     t[0] = time;
     let given = Given { space, time: &t, parameters: &shapes.parameters[2] };
-    let bare = |models: &Models| models.clone().without_radii();
-    let about = State { q: bare(&state.q), v: bare(&state.v), w: bare(&state.w), lambda: bare(&state.lambda) };
-    let solved = motion.inverse(&given, &about).and_then(|inverse| motion.enclose(&given, &mut state, &inverse));
+    let solved = motion.inverse(&given, &state.bare()).and_then(|inverse| motion.enclose(&given, &mut state, &inverse));
     if solved.is_none() {
         // Outputs may not depend on them.
         for models in [&mut state.w, &mut state.lambda] {

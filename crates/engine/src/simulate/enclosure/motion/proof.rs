@@ -6,8 +6,8 @@ use symdiff::taylor_model::{ModelSpace, up};
 use super::super::EnclosureError;
 use super::super::start;
 use super::approximation::Approximation;
-use crate::certificate::flow::{Flow, of_first_order};
-use crate::certificate::majorant::{bound, resolvent};
+use crate::certificate::flow::{Accelerations, Flow, kinematic_defect, of_first_order};
+use crate::certificate::majorant::bound;
 use crate::certificate::matrix::{Bounds, Models};
 use crate::certificate::spaces::{Cell, Space, truncate};
 use crate::compile::EquationsProgram;
@@ -62,11 +62,11 @@ impl Claim<'_> {
         coarse: &mut ModelMemory,
         slopes: Option<&Bounds>,
     ) -> Result<Proven, EnclosureError> {
-        let unproven = EnclosureError::Unproven;
         let duration = 2.0 * self.cell.half;
-        let n = self.approximation.q.rows;
+        let Approximation { q, v, w, .. } = self.approximation;
+        let n = q.rows;
         let residual = self.residual(fine);
-        let kinematic = self.kinematic_defect();
+        let kinematic = kinematic_defect(self.fine, self.cell, q, v, w);
         let entry: Vec<f64> = self.at_start.iter().zip(self.jump).map(|(a, b)| up(a + b)).collect();
         let guess = slopes.and_then(|slopes| bound(slopes, &entry, duration, &kinematic));
         let mut tube: Vec<f64> = guess.unwrap_or_else(|| entry.clone()).iter().map(|e| WIDER * e + 1e-14).collect();
@@ -87,7 +87,7 @@ impl Claim<'_> {
             }
             tube = reached.iter().map(|e| WIDER * e + 1e-14).collect();
         }
-        Err(unproven)
+        Err(EnclosureError::Unproven)
     }
 
     /// Bounds of the equations' residuals at the approximation, n + m.
@@ -99,29 +99,13 @@ impl Claim<'_> {
         rows.map(|&register| self.fine.cell.bound(memory.model(register))).collect()
     }
 
-    /// Bounds of v̂ − q̂' and of ŵ − v̂', 2n.
-    fn kinematic_defect(&self) -> Vec<f64> {
-        let Approximation { q, v, w, .. } = self.approximation;
-        let space = &self.fine.cell;
-        let (mut rate, mut left) = (vec![0.0; space.size()], vec![0.0; space.size()]);
-        let mut found = Vec::with_capacity(2 * q.rows);
-        for (of, by) in [(q, v), (v, w)] {
-            for row in 0..of.rows {
-                self.fine.rate(of.at(row, 0), self.cell.half, &mut rate);
-                space.sub(by.at(row, 0), &rate, &mut left);
-                found.push(space.bound(&left));
-            }
-        }
-        found
-    }
-
     /// Derivatives of the accelerations by q and v for every motion in the tube.
     fn linearise(
         &self,
         memory: &mut ModelMemory,
         tube: &[f64],
         residual: &[f64],
-    ) -> Result<Linearised, EnclosureError> {
+    ) -> Result<Accelerations, EnclosureError> {
         let space = &self.coarse.cell;
         let (layout, n) = (&self.program.layout, self.approximation.q.rows);
         let last = space.size() - 1;
@@ -140,12 +124,6 @@ impl Claim<'_> {
             *radius = larger(*radius, tail);
         }
         let matrix = equations.matrix(space, memory);
-        let contraction = self.inverse.times(space, &matrix).off_identity(space).bounds(space);
-        let sizes = self.inverse.bounds(space).times(residual);
-        let column = Bounds::of(sizes.len(), 1, &sizes);
-        let beyond = resolvent(&contraction, &column).ok_or(EnclosureError::Unproven)?;
-        let missed = (0..n).map(|row| up(sizes[row] + beyond.at(row, 0))).collect();
-
         memory.run(self.program.rates_jacobian());
         let mut by_state = Models::zero(space, matrix.rows, 2 * n);
         let [by_q, by_v, ..] = &self.program.motion_by;
@@ -156,27 +134,8 @@ impl Claim<'_> {
                 by_state.at_mut(below + row, right + column).copy_from_slice(memory.model(register));
             }
         }
-        // ∂(w, λ)/∂y = −J⁻¹ F_y, and J⁻¹ = (C J)⁻¹ C.
-        let mut all = self.inverse.times(space, &by_state);
-        all.negate();
-        let beyond = resolvent(&contraction, &all.bounds(space)).ok_or(EnclosureError::Unproven)?;
-        let mut slopes = all.part(space, 0..n, 0..2 * n);
-        for row in 0..n {
-            for column in 0..2 * n {
-                let radius = &mut slopes.at_mut(row, column)[last];
-                *radius = up(*radius + beyond.at(row, column));
-            }
-        }
-        Ok(Linearised { missed, slopes })
+        Accelerations::new(space, self.inverse, &matrix, &by_state, residual).ok_or(EnclosureError::Unproven)
     }
-}
-
-/// The equations about an approximation, over a tube.
-struct Linearised {
-    /// Bound of |f(ŷ) − ŵ|, n.
-    missed: Vec<f64>,
-    /// Accelerations by q and v, n × 2n.
-    slopes: Models,
 }
 
 /// Approximate inverse of the matrix by (w, λ) about an approximation.
