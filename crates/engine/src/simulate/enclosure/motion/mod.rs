@@ -361,7 +361,7 @@ fn polynomials(of: &Models) -> Vec<Vec<f64>> {
 fn rounded(mut polynomials: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for own in &mut polynomials {
         let size: f64 = own.iter().map(|c| c.abs()).sum();
-        let unit = 2.0_f64.powi(symdiff::math::log2(size).ceil() as i32 - 58);
+        let unit = 2.0_f64.powi((symdiff::math::log2(size).ceil() as i32).saturating_sub(58));
         if unit.is_normal() {
             own.iter_mut().for_each(|c| *c = (*c / unit).round() * unit);
         }
@@ -374,4 +374,17 @@ fn radii(space: &Space, end: &Approximation) -> Vec<f64> {
     let last = space.box_of.size() - 1;
     let rows = [&end.q, &end.v].into_iter().flat_map(|models| (0..models.rows).map(|row| models.at(row, 0)[last]));
     rows.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    /// A multiplier that is zero has a size of which there is no logarithm.
+    #[test]
+    fn coefficients_are_rounded_to_a_share_of_their_sum() {
+        let unit = 2.0_f64.powi(-57);
+        let polynomials = vec![vec![0.0, 0.0], vec![1.0, 0.5, 3.25 * unit]];
+        assert_eq!(rounded(polynomials), [vec![0.0, 0.0], vec![1.0, 0.5, 3.0 * unit]]);
+    }
 }
