@@ -90,7 +90,7 @@ fn fronts(points: &[CostPoint], own: f64) -> Vec<&CostPoint> {
     let front = |method| {
         let of: Vec<&CostPoint> = points.iter().filter(|point| point.method == method).collect();
         let places: Vec<(f64, f64)> = of.iter().map(|point| point.place(own)).collect();
-        pareto(&places).into_iter().rev().map(move |place| of[place]).collect::<Vec<_>>()
+        pareto(&places).into_iter().rev().map(move |index| of[index]).collect::<Vec<_>>()
     };
     cost_curves(points).into_iter().flat_map(front).collect()
 }

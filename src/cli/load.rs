@@ -120,9 +120,9 @@ fn files(reading: &Reading) -> (Vec<ModelFile>, Vec<(String, String)>) {
         let sha256 = Sha256::digest(&source.text).iter().map(|byte| format!("{byte:02x}")).collect();
         let file = ModelFile { name: name.clone(), sha256 };
         // A robot alone stands behind the text of the model that is made of it. Files of two folders may have one name.
-        if let Some(place) = paths.iter().position(|path| *path == source.name) {
-            files[place] = file;
-            texts[place].1.clone_from(&source.text);
+        if let Some(index) = paths.iter().position(|path| *path == source.name) {
+            files[index] = file;
+            texts[index].1.clone_from(&source.text);
         } else {
             paths.push(&source.name);
             files.push(file);

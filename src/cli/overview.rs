@@ -229,8 +229,8 @@ pub(super) fn excluded(bounds: &Bounds, summary: &Summary) -> Option<String> {
     if least == 1.0 {
         return None;
     }
-    let hull = |(place, parameter): (usize, &ParameterSummary)| {
-        let ends = summary.pieces.iter().map(|piece| (piece.lower[place], piece.upper[place]));
+    let hull = |(index, parameter): (usize, &ParameterSummary)| {
+        let ends = summary.pieces.iter().map(|piece| (piece.lower[index], piece.upper[index]));
         let (lower, upper) = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let narrower = lower > parameter.lower || upper < parameter.upper;
         let unit = ShownUnit::of(&parameter.display, &parameter.unit);

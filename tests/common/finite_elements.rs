@@ -40,13 +40,13 @@ impl Beam {
             // −θ_y.
             for (coordinate, k, m) in [(0, self.axial, self.mass), (3, self.torsional, self.turning)] {
                 for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                    let place = (first + OF_NODE * i + coordinate, first + OF_NODE * j + coordinate);
-                    stiffness[place] += k / h * if i == j { 1.0 } else { -1.0 };
-                    mass[place] += m * h / 6.0 * if i == j { 2.0 } else { 1.0 };
+                    let index = (first + OF_NODE * i + coordinate, first + OF_NODE * j + coordinate);
+                    stiffness[index] += k / h * if i == j { 1.0 } else { -1.0 };
+                    mass[index] += m * h / 6.0 * if i == j { 2.0 } else { 1.0 };
                 }
             }
             for (across, slope, sign, bending) in [(1, 5, 1.0, self.bending[1]), (2, 4, -1.0, self.bending[0])] {
-                let places = [across, slope, across + OF_NODE, slope + OF_NODE].map(|place| first + place);
+                let places = [across, slope, across + OF_NODE, slope + OF_NODE].map(|index| first + index);
                 let signs = [1.0, sign * h, 1.0, sign * h];
                 let k =
                     [[12.0, 6.0, -12.0, 6.0], [6.0, 4.0, -6.0, 2.0], [-12.0, -6.0, 12.0, -6.0], [6.0, 2.0, -6.0, 4.0]];
@@ -92,9 +92,9 @@ impl Matrices {
         for (column, &row) in outer.iter().enumerate() {
             basis[(row, column)] = 1.0;
         }
-        for (place, &row) in inner.iter().enumerate() {
-            (0..outer.len()).for_each(|column| basis[(row, column)] = follow[(place, column)]);
-            (0..modes).for_each(|mode| basis[(row, outer.len() + mode)] = shapes[(place, mode)]);
+        for (index, &row) in inner.iter().enumerate() {
+            (0..outer.len()).for_each(|column| basis[(row, column)] = follow[(index, column)]);
+            (0..modes).for_each(|mode| basis[(row, outer.len() + mode)] = shapes[(index, mode)]);
         }
         let [mass, stiffness] = [&self.mass, &self.stiffness].map(|of| basis.transpose() * of * &basis);
         Self { mass, stiffness }

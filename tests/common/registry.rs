@@ -74,11 +74,11 @@ impl Mechanism {
     /// The assembly `all` with an element, in the plane or in space.
     pub fn assembly(&self, spatial: bool, keyword: &str, example: &str) -> String {
         let mut bodies = format!("      ground: {{ points: {{ {} }} }}\n", self.ground);
-        for (place, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.bodies.iter().enumerate() {
             let inertia = if spatial { "[0.02, 0.03, 0.04]" } else { "0.03" };
             bodies += &format!(
                 "      {body}: {{ mass: {}, inertia: {inertia}, points: {{ {} }} }}\n",
-                1.0 + 0.1 * place as f64,
+                1.0 + 0.1 * index as f64,
                 (self.points)(body)
             );
         }
@@ -88,8 +88,8 @@ impl Mechanism {
         }
         let it = format!("it: {{ {keyword}: {example} }}");
         let mut effects = String::new();
-        for (place, body) in self.bodies.iter().enumerate() {
-            let push = 1.0 + 0.3 * place as f64;
+        for (index, body) in self.bodies.iter().enumerate() {
+            let push = 1.0 + 0.3 * index as f64;
             effects += &format!(
                 "push_{body}: {{ force: {{ on: {body}, value: [{push}, -0.7] }} }}, turn_{body}: {{ torque: {{ on: {body}, value: 0.02 }} }}, "
             );
@@ -108,10 +108,10 @@ impl Mechanism {
             // What a start is nearest to weighs angles against lengths of the model's size, so that the wheel's angle
             // is given.
             let wheel = if spatial { "" } else { "wheel.angle: 0" };
-            let place = if spatial { ["0.5, bob.z: 0", "0, follower.z: 0"] } else { ["0.5", "0.03"] };
+            let index = if spatial { ["0.5, bob.z: 0", "0, follower.z: 0"] } else { ["0.5", "0.03"] };
             format!(
                 "initial: {{ {} }}\n    guess: {{ bob.y: 0, bob.x: {}, follower.x: 0, follower.y: {} }}",
-                wheel, place[0], place[1]
+                wheel, index[0], index[1]
             )
         } else {
             let free = if spatial {

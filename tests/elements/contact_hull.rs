@@ -36,7 +36,7 @@ fn from_triangle(p: Point, [a, b, c]: [Point; 3]) -> f64 {
 }
 
 fn triangles(points: &[Point]) -> impl Iterator<Item = [Point; 3]> + '_ {
-    let after = |place: usize| place + 1..points.len();
+    let after = |index: usize| index + 1..points.len();
     let pairs = (0..points.len()).flat_map(move |i| after(i).map(move |j| (i, j)));
     pairs.flat_map(move |(i, j)| after(j).map(move |k| [points[i], points[j], points[k]]))
 }

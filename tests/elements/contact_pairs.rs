@@ -42,7 +42,7 @@ impl Body {
 fn nearest_of(points: &[Point]) -> (Point, Vec<Point>) {
     let mut best: Option<(f64, Point, Vec<Point>)> = None;
     for some in 1_usize..1 << points.len() {
-        let chosen: Vec<Point> = (0..points.len()).filter(|place| some >> place & 1 == 1).map(|place| points[place]).collect();
+        let chosen: Vec<Point> = (0..points.len()).filter(|index| some >> index & 1 == 1).map(|index| points[index]).collect();
         let edges: Vec<Point> = chosen[1..].iter().map(|&point| sum(point, chosen[0], -1.0)).collect();
         let size = edges.len();
         let mut rows: Vec<Vec<f64>> = edges
@@ -58,17 +58,17 @@ fn nearest_of(points: &[Point]) -> (Point, Vec<Point>) {
                 rows[other].iter_mut().zip(row).for_each(|(value, own)| *value -= factor * own);
             }
         }
-        let shares: Vec<f64> = (0..size).map(|place| rows[place][size] / rows[place][place]).collect();
+        let shares: Vec<f64> = (0..size).map(|index| rows[index][size] / rows[index][index]).collect();
         if shares.iter().all(|share| *share > 0.0) && shares.iter().sum::<f64>() < 1.0 {
-            let place = edges.iter().zip(&shares).fold(chosen[0], |place, (&edge, &share)| sum(place, edge, share));
-            let square = dot(place, place);
+            let index = edges.iter().zip(&shares).fold(chosen[0], |index, (&edge, &share)| sum(index, edge, share));
+            let square = dot(index, index);
             if best.as_ref().is_none_or(|(least, ..)| square < *least) {
-                best = Some((square, place, chosen));
+                best = Some((square, index, chosen));
             }
         }
     }
-    let (_, place, chosen) = best.unwrap();
-    (place, chosen)
+    let (_, index, chosen) = best.unwrap();
+    (index, chosen)
 }
 
 /// How far two bodies are apart, of which the second is turned and displaced; zero where they meet. A lower and an
@@ -172,8 +172,8 @@ simulation: {{ duration: 1, step: 5e-3, output_step: 5e-3 }}
     let (mut outside, mut touching) = (0, 0);
     for (row, gap) in curve(&bounds, "gap").iter().enumerate() {
         let point = |name: &str| {
-            let place = ["x", "y", "z"].map(|axis| curve(&bounds, &format!("{name}{axis}"))[row]);
-            let offset = sum(place, [0.1, -0.2, 0.3], -1.0);
+            let index = ["x", "y", "z"].map(|axis| curve(&bounds, &format!("{name}{axis}"))[row]);
+            let offset = sum(index, [0.1, -0.2, 0.3], -1.0);
             frame.map(|axis| dot(axis, offset))
         };
         let origin = point("o");

@@ -125,8 +125,8 @@ fn corners_are_spheres() {
 /// the middle of a cube.
 #[test]
 fn a_centre_inside_is_pushed_out() {
-    for (place, depth) in [([0.05, 0.02, 0.12], 0.08), ([0.0, 0.0, 0.0], 0.2), ([-0.15, 0.0, 0.0], 0.05), ([0.1, 0.1, 0.0], 0.1)] {
-        let [x, y, z] = place;
+    for (index, depth) in [([0.05, 0.02, 0.12], 0.08), ([0.0, 0.0, 0.0], 0.2), ([-0.15, 0.0, 0.0], 0.05), ([0.1, 0.1, 0.0], 0.1)] {
+        let [x, y, z] = index;
         let bounds = nominal(&read(&format!(
             "
 bodies: {{ ball: {{ mass: 2, inertia: [0.004, 0.004, 0.004] }} }}
@@ -139,7 +139,7 @@ simulation: {{ duration: 0.1, step: 2e-5, output_step: 0.01 }}
         let v = ["vx", "vy", "vz"].map(|name| *curve(&bounds, name).last().unwrap());
         let speed = v.iter().map(|v| v * v).sum::<f64>().sqrt();
         let expected = (1e4_f64 / 2.0).sqrt() * (depth + 0.03);
-        assert!((speed - expected).abs() < 1e-3 * expected, "{place:?}: {v:?}, not {expected}");
+        assert!((speed - expected).abs() < 1e-3 * expected, "{index:?}: {v:?}, not {expected}");
         assert!((curve(&bounds, "gap")[0] + depth + 0.03).abs() < 1e-12);
         let energy = curve(&bounds, "energy");
         assert!(largest(energy.iter().map(|e| e / energy[0] - 1.0)) < 1e-4);

@@ -102,8 +102,8 @@ fn by_old_values(time: f64) -> Vec<f64> {
             if step <= 0.0 {
                 return 0.1;
             }
-            let place = (step as usize).min(known.len() - 2);
-            let (s, [a, da, _], [b, db, _]) = (step - place as f64, known[place], known[place + 1]);
+            let index = (step as usize).min(known.len() - 2);
+            let (s, [a, da, _], [b, db, _]) = (step - index as f64, known[index], known[index + 1]);
             let (da, db) = (h * da, h * db);
             a + s * (da + s * (3.0 * (b - a) - 2.0 * da - db + s * (2.0 * (a - b) + da + db)))
         };

@@ -53,8 +53,8 @@ fn two_members_turn_in_a_ratio() {
         (["carrier", "sun"], 1.0 + RATIO),
     ] {
         let bounds = run(&members);
-        let place = |name: &str| ["sun", "ring", "carrier"].iter().position(|known| *known == name).unwrap();
-        let [driven, other] = members.map(|name| INERTIA[place(name)]);
+        let index = |name: &str| ["sun", "ring", "carrier"].iter().position(|known| *known == name).unwrap();
+        let [driven, other] = members.map(|name| INERTIA[index(name)]);
         let acceleration = DRIVE / (driven + ratio * ratio * other);
         assert_exact(&bounds, members[0], |t| acceleration * t);
         assert_exact(&bounds, members[1], |t| ratio * acceleration * t);

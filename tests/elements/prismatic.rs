@@ -67,10 +67,10 @@ fn a_named_displacement_starts_with_dampers_and_drag() {
         "d: { spring_damper: { between: [ground.q, slider], stiffness: 7, damping: 0.4, free_length: 0.1 } }",
         "d: { drag: { on: slider.a, quadratic: 0.3 } }, g: { gravity: { acceleration: [1, 2, -3] } }",
     ];
-    for (place, effect) in (0..6).flat_map(|place| acting.map(|effect| (place, effect))) {
-        let [a, b, c] = std::array::from_fn(|axis| (1.3 * f64::from(place) + 2.1 * axis as f64).sin());
-        let kind = if place % 2 == 0 { "prismatic" } else { "cylindrical" };
-        let turning = if place % 2 == 0 { "" } else { ", slide.angle: 0.3" };
+    for (index, effect) in (0..6).flat_map(|index| acting.map(|effect| (index, effect))) {
+        let [a, b, c] = std::array::from_fn(|axis| (1.3 * f64::from(index) + 2.1 * axis as f64).sin());
+        let kind = if index % 2 == 0 { "prismatic" } else { "cylindrical" };
+        let turning = if index % 2 == 0 { "" } else { ", slide.angle: 0.3" };
         let [absolute, joint] = ["absolute", "joint"].map(|formulation| {
             let bounds = nominal(&read(&format!(
                 "
@@ -88,7 +88,7 @@ simulation: {{ duration: 0.2, step: 1e-3, output_step: 0.02, formulation: {formu
         });
         for (found, expected) in absolute.iter().flatten().zip(joint.iter().flatten()) {
             // The steps' errors, (ωh)², differ with the coordinates where the body turns.
-            assert!((found - expected).abs() < 1e-6, "{kind} {place}: {found}, not {expected}");
+            assert!((found - expected).abs() < 1e-6, "{kind} {index}: {found}, not {expected}");
         }
     }
 }

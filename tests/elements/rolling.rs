@@ -112,7 +112,7 @@ simulation: { duration: 0.8, step: 1e-3, output_step: 0.02 }
     assert!(largest(["along", "across"].into_iter().flat_map(|name| curve(&runs[0], name).iter().copied())) < 1e-11);
     let far = curve(&runs[0], "x");
     assert!(largest(far.iter().map(|x| x - far[0])) > 0.05, "{far:?}");
-    let off = |place: usize| largest(curve(&runs[place], "x").iter().zip(curve(&runs[2], "x")).map(|(a, b)| a - b));
+    let off = |index: usize| largest(curve(&runs[index], "x").iter().zip(curve(&runs[2], "x")).map(|(a, b)| a - b));
     // The finest is off by a fifth of what the middle one differs from it.
     assert!(order(off(0), off(1)) > 1.9 && order(off(0), off(1)) < 2.7, "{} {}", off(0), off(1));
 }

@@ -91,7 +91,7 @@ bounds: {{ chebyshev: {{ order: 6 }} }}
             assert!(off < allowed, "{simulation}: {off:e}");
             let band = band(output(&bounds, "x"), Method::Chebyshev);
             for (row, &t) in bounds.times.iter().enumerate() {
-                let all = (0..=200).map(|place| x(2.94 + 0.12 * f64::from(place) / 200.0, t));
+                let all = (0..=200).map(|index| x(2.94 + 0.12 * f64::from(index) / 200.0, t));
                 let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
                 let off = (band.lower[row] - low).abs().max((band.upper[row] - high).abs());
                 assert!(off < band.error.total[row] + allowed, "{simulation} {t}: {off:e}");
@@ -148,7 +148,7 @@ fn rolling_coin(tilt: f64, omega: [f64; 3], rows: usize) -> Vec<[f64; 7]> {
 fn a_coin_wobbles_by_the_newton_euler_equations() {
     let (tilt, omega) = (1.0, [0.3, 1.5, -9.0]);
     let exact = rolling_coin(tilt, omega, 41);
-    let wanted = |place: usize| exact.iter().map(|row| row[place]).collect::<Vec<f64>>();
+    let wanted = |index: usize| exact.iter().map(|row| row[index]).collect::<Vec<f64>>();
     let up: Vec<f64> = exact.iter().map(|row| row[0].cos()).collect();
     assert!(largest(up.iter().map(|value| value - up[0])) > 0.15, "it hardly wobbles: {up:?}");
     for (simulation, allowed) in [("step: 5e-4", 2e-3), ("step: 1e-3, extrapolation: 4", 1e-6), WAYS[3]] {
@@ -224,8 +224,8 @@ fn a_coin_keeps_its_energy_and_does_not_slip() {
             assert!(off < 1e-9, "{slip}: {off:e}");
         }
     }
-    let drift = |place: usize| {
-        let energy = curve(&runs[place], "energy");
+    let drift = |index: usize| {
+        let energy = curve(&runs[index], "energy");
         largest(energy.iter().map(|value| value - energy[0]))
     };
     assert!(drift(2) < 1e-4 && order(drift(1), drift(2)) > 1.7, "{} {}", drift(1), drift(2));
@@ -276,8 +276,8 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
     for (simulation, allowed) in WAYS {
         for formulation in [Formulation::Absolute, Formulation::Joint] {
             let found = nominal(&formulated(read(&text.replace("step: 1e-3", simulation)), formulation));
-            for (name, place) in [("x", 3), ("y", 4), ("omega", 1)] {
-                let wanted: Vec<f64> = exact.iter().map(|row| row[place]).collect();
+            for (name, index) in [("x", 3), ("y", 4), ("omega", 1)] {
+                let wanted: Vec<f64> = exact.iter().map(|row| row[index]).collect();
                 let off = distance(curve(&found, name), &wanted);
                 assert!(off < allowed, "{simulation} {formulation:?} {name}: {off:e}");
             }

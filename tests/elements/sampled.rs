@@ -59,9 +59,9 @@ fn a_held_force_moves_a_mass_by_its_difference_equation() {
         ("scheme: explicit, tolerance: 1e-9, output_step: 0.04", 1e-11),
     ] {
         let bounds = nominal(&read(&text(FEEDBACK, "", OUTPUTS, simulation)));
-        for (name, place, unit) in [("x", 0, 1.0), ("v", 1, 1.0), ("a", 2, 0.5), ("command", 2, 1.0)] {
+        for (name, index, unit) in [("x", 0, 1.0), ("v", 1, 1.0), ("a", 2, 0.5), ("command", 2, 1.0)] {
             let rows = bounds.times.iter().zip(curve(&bounds, name));
-            let error = largest(rows.map(|(&t, value)| value - unit * motion(40.0, t)[place]));
+            let error = largest(rows.map(|(&t, value)| value - unit * motion(40.0, t)[index]));
             assert!(error < 20.0 * allowed, "{simulation}: {name} is off by {error:e}");
         }
     }
@@ -73,11 +73,11 @@ fn bounds_are_those_of_the_difference_equation() {
     for simulation in ["step: 2e-3, output_step: 0.05", "scheme: explicit, tolerance: 1e-9, output_step: 0.05"] {
         let bounds = run(&read(&text(FEEDBACK, "", OUTPUTS, simulation)));
         assert_eq!(output(&bounds, "command").unit, "N");
-        for (name, place) in [("x", 0), ("command", 2)] {
+        for (name, index) in [("x", 0), ("command", 2)] {
             for method in [Method::Chebyshev, Method::Taylor, Method::Scan] {
                 let band = band(output(&bounds, name), method);
                 for (row, &t) in bounds.times.iter().enumerate() {
-                    let values = (0..=400).map(|place| 36.0 + 0.02 * f64::from(place)).map(|gain| motion(gain, t)[place]);
+                    let values = (0..=400).map(|index| 36.0 + 0.02 * f64::from(index)).map(|gain| motion(gain, t)[index]);
                     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
                     let allowed = 1e-5 * (high - low) + 1.01 * band.error.total[row] + 1e-11;
                     let (below, above) = (band.lower[row] - low, band.upper[row] - high);

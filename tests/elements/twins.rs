@@ -14,17 +14,17 @@ impl Mechanism {
     fn with_twins(&self, spatial: bool, (keyword, example): (&str, &str), twins: &[Twin]) -> Result<Description, String> {
         let mut instances = String::new();
         let mut outputs = String::new();
-        for (place, twin) in twins.iter().enumerate() {
-            instances += &format!("  i{place}: {{ of: all{} }}\n", twin.keys(spatial));
+        for (index, twin) in twins.iter().enumerate() {
+            instances += &format!("  i{index}: {{ of: all{} }}\n", twin.keys(spatial));
             for body in self.bodies {
                 let letters: &[&str] = if spatial { &["x", "y", "z", "omega.x", "omega.y", "omega.z"] } else { &["x", "y", "angle"] };
                 for letter in letters {
-                    outputs += &format!("  i{place}.{body}.{letter}: i{place}.{body}.{letter}\n");
+                    outputs += &format!("  i{index}.{body}.{letter}: i{index}.{body}.{letter}\n");
                 }
             }
             if !spatial {
                 for body in self.turning {
-                    outputs += &format!("  i{place}.{body}.angle: i{place}.{body}.angle\n");
+                    outputs += &format!("  i{index}.{body}.angle: i{index}.{body}.angle\n");
                 }
             }
         }
@@ -88,13 +88,13 @@ const IN_SPACE: [Twin; 5] = [
 ];
 
 /// Compares an instance with the first one, row by row.
-fn compare(mechanism: &Mechanism, spatial: bool, bounds: &Bounds, place: usize, twin: &Twin, what: &str) {
+fn compare(mechanism: &Mechanism, spatial: bool, bounds: &Bounds, index: usize, twin: &Twin, what: &str) {
     let image = twin.image();
     let sign = image.determinant().signum();
     let rows = bounds.times.len();
     let value = |instance: usize, body: &str, letter: &str, row: usize| curve(bounds, &format!("i{instance}.{body}.{letter}"))[row];
     let close = |found: f64, wanted: f64, of: &str| {
-        assert!((found - wanted).abs() < 1e-7 * (1.0 + wanted.abs()), "{what}: {of} of twin {place} is {found}, not {wanted}");
+        assert!((found - wanted).abs() < 1e-7 * (1.0 + wanted.abs()), "{what}: {of} of twin {index} is {found}, not {wanted}");
     };
     for row in 0..rows {
         for body in mechanism.bodies {
@@ -103,16 +103,16 @@ fn compare(mechanism: &Mechanism, spatial: bool, bounds: &Bounds, place: usize, 
             };
             let letters = ["x", "y", if spatial { "z" } else { "" }];
             let wanted = image * vector(0, letters) + Vector3::from(twin.moved);
-            (0..if spatial { 3 } else { 2 }).for_each(|axis| close(vector(place, letters)[axis], wanted[axis], body));
+            (0..if spatial { 3 } else { 2 }).for_each(|axis| close(vector(index, letters)[axis], wanted[axis], body));
             if spatial {
                 let letters = ["omega.x", "omega.y", "omega.z"];
                 let wanted = sign * (image * vector(0, letters));
-                (0..3).for_each(|axis| close(vector(place, letters)[axis], wanted[axis], body));
+                (0..3).for_each(|axis| close(vector(index, letters)[axis], wanted[axis], body));
             }
         }
         for body in mechanism.bodies.iter().chain(mechanism.turning).filter(|_| !spatial) {
             let wanted = sign * value(0, body, "angle", row) + twin.degrees.to_radians();
-            close(value(place, body, "angle", row), wanted, body);
+            close(value(index, body, "angle", row), wanted, body);
         }
     }
 }
@@ -141,8 +141,8 @@ fn twins_of(
     }
     let description = mechanism.with_twins(spatial, example, &chosen).unwrap_or_else(|wrong| panic!("{what}: {wrong}"));
     let bounds = nominal(&description);
-    for (place, twin) in chosen.iter().enumerate().skip(1) {
-        compare(mechanism, spatial, &bounds, place, twin, &what);
+    for (index, twin) in chosen.iter().enumerate().skip(1) {
+        compare(mechanism, spatial, &bounds, index, twin, &what);
     }
     Some([chosen.len() - 1, chosen.iter().filter(|twin| twin.mirror.is_some()).count()])
 }

@@ -52,12 +52,12 @@ fn one(number: u64, draw: &Draw, tally: &mut Tally) {
     let Ok(result) = Model::from_yaml_str("draw", &draw.yaml()).and_then(study) else { return };
     let truth = truth::ranges(draw, result.times(), 0);
     let mut is_proven = false;
-    for (place, output) in result.outputs().enumerate() {
+    for (index, output) in result.outputs().enumerate() {
         let Some(band) = output.bands().find(|band| band.method().name() == "certified") else { continue };
-        let inputs = draw.outputs[place].inputs.iter();
+        let inputs = draw.outputs[index].inputs.iter();
         let coordinates: f64 = inputs.map(|&(term, _)| draw.terms[term].size).sum();
-        let size = truth[place].iter().fold(coordinates, |size, range| size.max(range.upper.abs()));
-        for (row, truth) in truth[place].iter().enumerate() {
+        let size = truth[index].iter().fold(coordinates, |size, range| size.max(range.upper.abs()));
+        for (row, truth) in truth[index].iter().enumerate() {
             let (lower, upper) = (band.lower()[row], band.upper()[row]);
             tally.rows += 1;
             if lower.is_nan() {

@@ -194,8 +194,8 @@ impl Draw {
         section("initial", &|term| &term.initial);
         section("guess", &|term| &term.guess);
         text += "outputs:\n";
-        for (place, output) in self.outputs.iter().enumerate() {
-            writeln!(text, "  o{place}: \"{}\"", output.formula(&self.terms)).unwrap();
+        for (index, output) in self.outputs.iter().enumerate() {
+            writeln!(text, "  o{index}: \"{}\"", output.formula(&self.terms)).unwrap();
         }
         let stepping = match self.time.stepping {
             Stepping::Steps(steps) => format!("step: {:?}", self.time.row / steps as f64),

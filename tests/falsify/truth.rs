@@ -25,7 +25,7 @@ pub fn ranges(draw: &Draw, times: &[f64], level: u32) -> Vec<Vec<Range>> {
         .terms
         .iter()
         .enumerate()
-        .map(|(place, term)| if needed(place) { search::ranges(term, times, level) } else { Vec::new() })
+        .map(|(index, term)| if needed(index) { search::ranges(term, times, level) } else { Vec::new() })
         .collect();
     let of_output = |output: &Output| {
         let at = |row: usize| {

@@ -121,22 +121,22 @@ fn run(draw: &Draw, begun: Instant) -> Result<StudyResult, mbint::Error> {
 
 fn judge(draw: &Draw, result: &StudyResult, truth: &[Vec<Range>], unsure: &[Vec<f64>]) -> Vec<Verdict> {
     let mut verdicts = Vec::new();
-    for (place, output) in result.outputs().enumerate() {
+    for (index, output) in result.outputs().enumerate() {
         let bands: Vec<Band> = output.bands().collect();
-        let inputs = draw.outputs[place].inputs.iter();
+        let inputs = draw.outputs[index].inputs.iter();
         let coordinates: f64 = inputs.map(|&(term, _)| draw.terms[term].size).sum();
         for &band in &bands {
-            let size = truth[place].iter().fold(coordinates, |size, range| size.max(range.upper.abs()));
-            let slack: Vec<f64> = unsure[place].iter().map(|unsure| unsure + ROUNDING * size).collect();
+            let size = truth[index].iter().fold(coordinates, |size, range| size.max(range.upper.abs()));
+            let slack: Vec<f64> = unsure[index].iter().map(|unsure| unsure + ROUNDING * size).collect();
             let ends = result.failure().is_some();
-            let verdict = compare(band, result.times(), &truth[place], &slack, ends);
+            let verdict = compare(band, result.times(), &truth[index], &slack, ends);
             let contradicted = (0..slack.len())
                 .filter(|&row| is_contradicted(band, &bands, output.nominal()[row], row, ROUNDING * size))
                 .count();
             let name = band.method().name();
             let label =
                 if draw.bounds.tolerance.is_some() && name == "chebyshev" { "chebyshev to a tolerance" } else { name };
-            verdicts.push(Verdict { output: place, label, contradicted, ..verdict });
+            verdicts.push(Verdict { output: index, label, contradicted, ..verdict });
         }
     }
     verdicts

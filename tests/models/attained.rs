@@ -49,9 +49,9 @@ fn last_mass(parameters: &[f64]) -> Vec<f64> {
 
 fn model() -> String {
     let mut text = "parameters:\n".to_owned();
-    for (place, value) in nominal().iter().enumerate() {
-        let (name, unit) = [("m", "kg"), ("k", "N/m"), ("c", "N*s/m")][place % 3];
-        text += &format!("  {name}{}: {{ value: {value}, unit: {unit}, tolerance: 10% }}\n", place / 3);
+    for (index, value) in nominal().iter().enumerate() {
+        let (name, unit) = [("m", "kg"), ("k", "N/m"), ("c", "N*s/m")][index % 3];
+        text += &format!("  {name}{}: {{ value: {value}, unit: {unit}, tolerance: 10% }}\n", index / 3);
     }
     text += "bodies:\n";
     (0..MASSES).for_each(|mass| text += &format!("  b{mass}: {{ mass: m{mass}, coordinates: [x] }}\n"));

@@ -16,8 +16,8 @@ fn error(curves: [&[f64]; 4], row_of: impl Fn(f64) -> usize) -> f64 {
     let states = reference("ivp/car_axis.csv");
     let errors = states
         .iter()
-        .flat_map(|state| (0..4).map(move |place| (state[0], place, state[place + 1])))
-        .map(|(t, place, exact)| curves[place][row_of(t)] - exact);
+        .flat_map(|state| (0..4).map(move |index| (state[0], index, state[index + 1])))
+        .map(|(t, index, exact)| curves[index][row_of(t)] - exact);
     largest(errors)
 }
 

@@ -121,8 +121,8 @@ fn chains_of_160_links_cost_four_times_as_much_as_of_40() {
 /// A chain in space whose links bend and twist in turn: the torque about an axis of twist is the same sum for two
 /// links.
 fn twisting_chain(links: usize) -> String {
-    AXES.iter().enumerate().fold(chain(links, true), |text, (place, axis)| {
-        let other = ["[0, 1, 0]", "[1, 0, 0]"][place % 2];
+    AXES.iter().enumerate().fold(chain(links, true), |text, (index, axis)| {
+        let other = ["[0, 1, 0]", "[1, 0, 0]"][index % 2];
         text.replace(&format!("axis: {axis:?}"), &format!("axis: {other}"))
     })
 }
@@ -187,9 +187,9 @@ fn a_chain_of_twenty_moves_as_pinocchio_says() {
     let angles = [0.3697232906, 0.163273643, -0.039319955, 0.04612344483];
     let accelerations = [28.16537129, -6.418745082, -23.76886849, -92.29458895];
     let tip = [4.10494816, 3.21922696, -1.9233029];
-    for (place, i) in places.iter().enumerate() {
+    for (index, i) in places.iter().enumerate() {
         let found = curve(&explicit, &format!("j{i}.angular_acceleration"))[0];
-        assert!((found - accelerations[place]).abs() < 1e-7, "j{i}: {found}");
+        assert!((found - accelerations[index]).abs() < 1e-7, "j{i}: {found}");
     }
     let ends = names.iter().filter(|name| !name.ends_with("acceleration")).zip(angles.iter().chain(&tip));
     for (name, wanted) in ends {

@@ -43,13 +43,13 @@ fn peaucelliers_line_bends_as_inversion_says() {
     let mut description = model("peaucellier");
     description.bounds = BoundsRequest { scan: Some(Scan::of_points(3, 2)), ..description.bounds };
     let bounds = run(&description);
-    for (name, place) in [("pen_x", 0), ("pen_y", 1)] {
+    for (name, index) in [("pen_x", 0), ("pen_y", 1)] {
         let output = output(&bounds, name);
         let band = band(output, Method::Scan);
         for (row, &t) in bounds.times.iter().enumerate() {
             let values: Vec<f64> = [-1e-4, 0.0, 1e-4]
                 .iter()
-                .flat_map(|c| [-1e-4, 0.0, 1e-4].map(|a| pen(0.09 + c, 0.2 + a, t)[place]))
+                .flat_map(|c| [-1e-4, 0.0, 1e-4].map(|a| pen(0.09 + c, 0.2 + a, t)[index]))
                 .collect();
             let lower = values.iter().copied().fold(f64::INFINITY, f64::min);
             let upper = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -75,8 +75,8 @@ fn toe(t: f64) -> Point {
 #[test]
 fn jansens_toe_is_where_circles_meet() {
     let bounds = nominal(&model("jansen"));
-    for (name, place) in [("toe_x", 0), ("toe_y", 1)] {
-        let error = distance_from(&bounds.times, curve(&bounds, name), |t| toe(t)[place]);
+    for (name, index) in [("toe_x", 0), ("toe_y", 1)] {
+        let error = distance_from(&bounds.times, curve(&bounds, name), |t| toe(t)[index]);
         assert!(error < CLOSED, "{name} is off by {error:e} m");
     }
 }

@@ -86,7 +86,7 @@ fn jumps_that_may_coincide_are_no_reason_for_ever_shorter_steps() {
         // A step of force F at t0 adds F/k (1 − cos ω(t − t0)).
         let step = |force: f64, at: f64| if t > at { force / 48.0 * (1.0 - (4.0 * (t - at)).cos()) } else { 0.0 };
         let later: f64 =
-            jumps.iter().enumerate().map(|(place, &at)| step(if place % 13 % 2 == 0 { -18.0 } else { 18.0 }, at)).sum();
+            jumps.iter().enumerate().map(|(index, &at)| step(if index % 13 % 2 == 0 { -18.0 } else { 18.0 }, at)).sum();
         0.02 * (4.0 * t).cos() + step(18.0, 0.0) + later
     };
     let off = distance_from(&bounds.times, curve(&bounds, "x"), exact);

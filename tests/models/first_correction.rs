@@ -24,9 +24,9 @@ fn a_first_correction_is_a_correction() {
         for step in 0..20 {
             stepper.step(h, f64::from(step + 1) * h);
             let mut tile = stepper.tile().clone();
-            for (place, register) in program.layout.iterate.clone().chain(program.layout.lambda.clone()).enumerate() {
+            for (index, register) in program.layout.iterate.clone().chain(program.layout.lambda.clone()).enumerate() {
                 for (lane, value) in tile.lane_mut(register).iter_mut().enumerate() {
-                    *value *= 1.0 + 0.1 * ((place + 3 * lane) as f64).sin();
+                    *value *= 1.0 + 0.1 * ((index + 3 * lane) as f64).sin();
                 }
             }
             tile.run(program.factor());

@@ -127,7 +127,7 @@ fn errors_of_the_pendulum_are_honest() {
             angles.iter().map(|[angle, _]| [-l * angle.sin(), -l * angle.cos()]).collect()
         })
         .collect();
-    let truth = |place: usize| range_over(curves.iter().map(|curve| curve.iter().map(|p| p[place]).collect()), rows);
+    let truth = |index: usize| range_over(curves.iter().map(|curve| curve.iter().map(|p| p[index]).collect()), rows);
     let mut settings = Settings::default();
     for (h, order) in [(5e-3, 3), (1e-3, 5), (2.5e-4, 7)] {
         let description = all_methods(model("pendulum").duration(5.0).step(h), order);
@@ -170,7 +170,7 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.02 }
             }
         }
     }
-    let truth = |place: usize| range_over(curves.iter().map(|curve| curve.iter().map(|p| p[place]).collect()), rows);
+    let truth = |index: usize| range_over(curves.iter().map(|curve| curve.iter().map(|p| p[index]).collect()), rows);
     let mut settings = Settings::default();
     for (h, order) in [(5e-3, 2), (1e-3, 4)] {
         let description = all_methods(description.clone().step(h), order);
@@ -204,7 +204,7 @@ fn errors_of_the_double_pendulum_are_honest() {
             curves.push(solution.iter().map(end).collect::<Vec<_>>());
         }
     }
-    let truth = |place: usize| range_over(curves.iter().map(|curve| curve.iter().map(|p| p[place]).collect()), rows);
+    let truth = |index: usize| range_over(curves.iter().map(|curve| curve.iter().map(|p| p[index]).collect()), rows);
     let mut settings = Settings::default();
     for (h, order) in [(2e-3, 3), (1e-3, 5)] {
         let description = all_methods(model("double_pendulum").step(h), order);

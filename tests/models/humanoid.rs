@@ -130,12 +130,12 @@ fn dropped() -> Vec<[f64; 2 * UNKNOWNS]> {
     let angles = [90.0, 25.0 - 90.0, -20.0 - 90.0, -90.0, -70.0, 10.0 - 90.0, -12.0 - 90.0, -90.0, -70.0f64];
     let mut start = [0.0; 2 * UNKNOWNS];
     start[1] = hips;
-    angles.iter().enumerate().for_each(|(place, angle)| start[place + 2] = angle.to_radians());
+    angles.iter().enumerate().for_each(|(index, angle)| start[index + 2] = angle.to_radians());
     let motion = |_: f64, y: [f64; 2 * UNKNOWNS]| {
-        let half = |first: usize| -> Unknowns { std::array::from_fn(|place| y[first + place]) };
+        let half = |first: usize| -> Unknowns { std::array::from_fn(|index| y[first + index]) };
         let [q, w] = [half(0), half(UNKNOWNS)];
         let a = accelerations(q, w);
-        std::array::from_fn(|place| if place < UNKNOWNS { w[place] } else { a[place - UNKNOWNS] })
+        std::array::from_fn(|index| if index < UNKNOWNS { w[index] } else { a[index - UNKNOWNS] })
     };
     dormand_prince(motion, start, 0.01, 51, 1e-10)
 }
@@ -143,7 +143,7 @@ fn dropped() -> Vec<[f64; 2 * UNKNOWNS]> {
 #[test]
 fn the_humanoid_lands_on_its_feet() {
     let expected = dropped();
-    let angle = |place: usize| expected.iter().map(|row| row[place]).collect::<Vec<f64>>();
+    let angle = |index: usize| expected.iter().map(|row| row[index]).collect::<Vec<f64>>();
     let observed = [
         ("trunk.hip.x", angle(0)),
         ("trunk.hip.y", angle(1)),

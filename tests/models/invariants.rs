@@ -96,7 +96,7 @@ fn what_the_motor_gives_is_stored_or_lost() {
     // rule.
     let formulas = ["energy", "tau*crank.angle", "-c*slider.vx^2"];
     let bounds = nominal(&model("slider_crank").observing(&formulas).step(1e-4).rows_every(1e-3));
-    let [energy, given, power] = [0, 1, 2].map(|place| &bounds.outputs[place].nominal);
+    let [energy, given, power] = [0, 1, 2].map(|index| &bounds.outputs[index].nominal);
     let mut lost = 0.0;
     let mut worst = 0.0_f64;
     for row in (2..energy.len()).step_by(2) {

@@ -69,11 +69,11 @@ fn agrees(text: &str, tolerance: f64) {
     for (row, time) in kept.times().iter().enumerate() {
         let values = evaluator.values(row, &every, &SAMPLES);
         for output in every {
-            for (place, truth) in truths.iter().enumerate() {
-                let (found, truth) = (values[output * SAMPLES.len() + place], truth.outputs[output].nominal[row]);
+            for (index, truth) in truths.iter().enumerate() {
+                let (found, truth) = (values[output * SAMPLES.len() + index], truth.outputs[output].nominal[row]);
                 let error = kept.error(output).total[row];
                 let allowed = error + tolerance * span(output) + 1e-12;
-                assert!((found - truth).abs() <= allowed, "{time}, {output}, {place}: {found} {truth} {error}");
+                assert!((found - truth).abs() <= allowed, "{time}, {output}, {index}: {found} {truth} {error}");
             }
         }
     }

@@ -95,12 +95,12 @@ pub fn two_loops() -> String {
         text += &bar(name, "left", "right");
     }
     text += "joints:\n";
-    for place in 0..3 {
-        text += &format!("  foot{place}: {{ revolute: [ground.P{place}, bar{place}.foot] }}\n");
+    for index in 0..3 {
+        text += &format!("  foot{index}: {{ revolute: [ground.P{index}, bar{index}.foot] }}\n");
     }
-    for place in 0..2 {
-        text += &format!("  left{place}: {{ revolute: [bar{place}.end, coupler{place}.left] }}\n");
-        text += &format!("  right{place}: {{ revolute: [coupler{place}.right, bar{}.end] }}\n", place + 1);
+    for index in 0..2 {
+        text += &format!("  left{index}: {{ revolute: [bar{index}.end, coupler{index}.left] }}\n");
+        text += &format!("  right{index}: {{ revolute: [coupler{index}.right, bar{}.end] }}\n", index + 1);
     }
     text += "
 effects: { weight: { gravity: { acceleration: [0, -9.81] } } }

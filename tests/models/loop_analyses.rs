@@ -93,11 +93,11 @@ fn loops_vibrate_alike() {
         description.starts_at_equilibrium = true;
         run(&description)
     });
-    let [absolute, joint] = [0, 1].map(|place: usize| value(&bounds[place], "mode1.frequency"));
+    let [absolute, joint] = [0, 1].map(|index: usize| value(&bounds[index], "mode1.frequency"));
     assert!(absolute > 0.1);
     close(joint, absolute, 1e-9);
-    let [a, b] = [0, 1].map(|place: usize| {
-        let band = band(output(&bounds[place], "mode1.frequency"), Method::Chebyshev);
+    let [a, b] = [0, 1].map(|index: usize| {
+        let band = band(output(&bounds[index], "mode1.frequency"), Method::Chebyshev);
         [band.lower[0], band.upper[0]]
     });
     close(b[0], a[0], 1e-6);

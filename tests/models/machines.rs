@@ -52,8 +52,8 @@ fn arms(t: f64) -> [f64; 3] {
 fn the_delta_robots_plate_is_where_three_spheres_meet() {
     let formulas = ["plate.x", "plate.y", "plate.z", "plate.p0"];
     let bounds = nominal(&model("delta_robot").observing(&formulas));
-    for (place, name) in formulas[..3].iter().enumerate() {
-        let error = distance_from(&bounds.times, curve(&bounds, name), |t| plate(arms(t))[place]);
+    for (index, name) in formulas[..3].iter().enumerate() {
+        let error = distance_from(&bounds.times, curve(&bounds, name), |t| plate(arms(t))[index]);
         assert!(error < CLOSED, "{name} is off by {error:e} m");
     }
     // It does not turn.

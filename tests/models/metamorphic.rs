@@ -100,7 +100,7 @@ fn slider_crank(origin: (f64, f64), scale: f64, side: f64, parameters: [usize; 2
         format!("  l1: {{ value: {}, unit: m, tolerance: 2% }}\n", 0.17 * scale),
         format!("  tau: {{ value: {}, unit: N*m, tolerance: 4% }}\n", 0.6 * side * scale * scale),
     ];
-    let uncertain: String = parameters.iter().map(|&place| uncertain[place].as_str()).collect();
+    let uncertain: String = parameters.iter().map(|&index| uncertain[index].as_str()).collect();
     let (x, y) = origin;
     let angle = 0.7 * side;
     read(&format!(

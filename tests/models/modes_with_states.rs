@@ -16,12 +16,12 @@ fn roots(coefficients: &[f64]) -> Vec<Complex> {
     let order = coefficients.len() - 1;
     let value = |s: Complex| coefficients.iter().fold(Complex::new(0.0, 0.0), |sum, c| sum * s + c / coefficients[0]);
     let size = (coefficients[order] / coefficients[0]).abs().powf(1.0 / order as f64);
-    let mut found: Vec<Complex> = (0..order).map(|place| Complex::new(0.4, 0.9).powu(place as u32) * size).collect();
+    let mut found: Vec<Complex> = (0..order).map(|index| Complex::new(0.4, 0.9).powu(index as u32) * size).collect();
     for _ in 0..2000 {
-        for place in 0..order {
-            let others = (0..order).filter(|&other| other != place).map(|other| found[place] - found[other]);
-            let change = value(found[place]) / others.product::<Complex>();
-            found[place] -= change;
+        for index in 0..order {
+            let others = (0..order).filter(|&other| other != index).map(|other| found[index] - found[other]);
+            let change = value(found[index]) / others.product::<Complex>();
+            found[index] -= change;
         }
     }
     found.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
@@ -31,8 +31,8 @@ fn roots(coefficients: &[f64]) -> Vec<Complex> {
 /// Compares mode by mode with eigenvalues, of which one of each pair stands there, the slowest first.
 #[track_caller]
 fn are(bounds: &Bounds, wanted: &[Complex], tolerance: f64) {
-    for (place, root) in wanted.iter().enumerate() {
-        let told = |quantity: &str| value(bounds, &format!("mode{}.{quantity}", place + 1));
+    for (index, root) in wanted.iter().enumerate() {
+        let told = |quantity: &str| value(bounds, &format!("mode{}.{quantity}", index + 1));
         close(told("growth"), root.re, tolerance);
         if root.im == 0.0 {
             close(told("time_constant"), -1.0 / root.re, tolerance);
@@ -157,8 +157,8 @@ outputs: {{ current: drive.current, angle: rotor.angle }}
         );
         assert_eq!(value(&bounds, "mode1.growth"), 0.0);
         let found = one_of_each(roots(&polynomial));
-        for (place, root) in found.iter().enumerate() {
-            close(value(&bounds, &format!("mode{}.growth", place + 2)), root.re, 1e-10);
+        for (index, root) in found.iter().enumerate() {
+            close(value(&bounds, &format!("mode{}.growth", index + 2)), root.re, 1e-10);
         }
         close(value(&bounds, "growth"), found[0].re, 1e-10);
     }
@@ -171,7 +171,7 @@ fn a_filter_has_its_poles_whatever_it_listens_to() {
     let w = TAU * 3.0;
     let b = [1.0, 2.613_125_929_752_753, 3.414_213_562_373_095, 2.613_125_929_752_753, 1.0];
     let denominator: Vec<String> =
-        b.iter().enumerate().map(|(place, b)| format!("{:e} s^{}", b / w.powi(4 - place as i32), 4 - place)).collect();
+        b.iter().enumerate().map(|(index, b)| format!("{:e} s^{}", b / w.powi(4 - index as i32), 4 - index)).collect();
     let denominator = denominator.join(", ").replace(" s^0", "");
     let text = format!(
         "
@@ -391,10 +391,10 @@ bounds: {{ chebyshev: {{ order: 5 }}, scan: {{ points: 11 }} }}
     // Nominally two lags with (5 ± √5)/2; beyond g = 6.25 both have −5/2.
     let bounds = run(&read(&text("8", "{ value: 5, interval: [4, 7] }")));
     let lags = |g: f64| [-1.0, 1.0].map(|sign| -2.5 - 0.5 * sign * (25.0 - 4.0 * g).max(0.0).sqrt());
-    for (mode, place) in [(1, 0), (2, 1)] {
-        close(value(&bounds, &format!("mode{mode}.growth")), lags(5.0)[place], 1e-10);
+    for (mode, index) in [(1, 0), (2, 1)] {
+        close(value(&bounds, &format!("mode{mode}.growth")), lags(5.0)[index], 1e-10);
         let [lower, upper, _] = ends(&bounds, &format!("mode{mode}.growth"), Method::Scan);
-        let wanted = [4.0, 7.0].map(|g| lags(g)[place]);
+        let wanted = [4.0, 7.0].map(|g| lags(g)[index]);
         close(lower, wanted[0].min(wanted[1]), 1e-6);
         close(upper, wanted[0].max(wanted[1]), 1e-6);
         // It is not smooth, and the error of the polynomial says so.
@@ -423,11 +423,11 @@ simulation: { duration: 0.4, step: 1e-3, output_step: 0.1 }
     let row = |name: &str| bounds.outputs.iter().find(|output| output.name == name).unwrap().nominal.clone();
     let angles = row("angle");
     assert!(angles.len() == 5 && angles[4] < 0.2, "{angles:?}");
-    for (place, angle) in angles.iter().enumerate() {
+    for (index, angle) in angles.iter().enumerate() {
         let found = one_of_each(roots(&[0.1 + 2.0 * 0.36, 0.5, 2.0 * 9.81 * 0.6 * angle.cos() + 3.0, 4.0]));
-        close(row("mode1.growth")[place], found[0].re, 1e-9);
-        close(TAU * row("mode2.frequency")[place], found[1].norm(), 1e-9);
-        close(row("mode2.growth")[place], found[1].re, 1e-8);
+        close(row("mode1.growth")[index], found[0].re, 1e-9);
+        close(TAU * row("mode2.frequency")[index], found[1].norm(), 1e-9);
+        close(row("mode2.growth")[index], found[1].re, 1e-8);
     }
 }
 

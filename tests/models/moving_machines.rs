@@ -37,16 +37,16 @@ fn the_cam_pushes_with_the_followers_inertia_and_spring() {
         let after_start = |t: f64| t > 0.01;
         names.map(|name| {
             let values = curve(&bounds, name).iter().zip(&bounds.times).filter(|(_, t)| after_start(**t));
-            let place = names.iter().position(|known| *known == name).unwrap();
-            values.map(|(value, t)| (value.abs() - expected(*t)[place].abs()).abs()).fold(0.0, f64::max)
+            let index = names.iter().position(|known| *known == name).unwrap();
+            values.map(|(value, t)| (value.abs() - expected(*t)[index].abs()).abs()).fold(0.0, f64::max)
         })
     });
     println!("{errors:?}");
     assert!(errors[1][0] < CLOSED, "{errors:?}");
-    for place in 1..4 {
-        let largest = [1.0, 100.0, 10.0, 1.0][place];
-        assert!(errors[1][place] < 1e-7 * largest, "{}: {errors:?}", names[place]);
-        assert!((order(errors[0][place], errors[1][place]) - 2.0).abs() < 0.3, "{}: {errors:?}", names[place]);
+    for index in 1..4 {
+        let largest = [1.0, 100.0, 10.0, 1.0][index];
+        assert!(errors[1][index] < 1e-7 * largest, "{}: {errors:?}", names[index]);
+        assert!((order(errors[0][index], errors[1][index]) - 2.0).abs() < 0.3, "{}: {errors:?}", names[index]);
     }
 }
 
@@ -81,9 +81,9 @@ fn the_belts_strands_share_what_turns_the_fan() {
         ]
     });
     println!("{errors:?}");
-    for place in 0..3 {
-        let (coarse, fine) = (errors[0][place], errors[1][place]);
-        assert!(fine < [5e-5, 2e-3, 2e-3][place] && (order(coarse, fine) - 2.0).abs() < 0.2, "{errors:?}");
+    for index in 0..3 {
+        let (coarse, fine) = (errors[0][index], errors[1][index]);
+        assert!(fine < [5e-5, 2e-3, 2e-3][index] && (order(coarse, fine) - 2.0).abs() < 0.2, "{errors:?}");
     }
 }
 

@@ -122,10 +122,10 @@ fn an_inertial_without_inertia_is_a_point() {
 
 /// A box of half sizes 0.1, 0.2 and 0.3 about its middle, as a file of each format.
 fn write_boxes(folder: &Path) {
-    let corner = |place: usize| {
-        [0.1, 0.2, 0.3].iter().enumerate().map(move |(i, half)| if place >> i & 1 == 1 { *half } else { -half })
+    let corner = |index: usize| {
+        [0.1, 0.2, 0.3].iter().enumerate().map(move |(i, half)| if index >> i & 1 == 1 { *half } else { -half })
     };
-    let corners: Vec<Vec<f64>> = (0..8).map(|place| corner(place).collect()).collect();
+    let corners: Vec<Vec<f64>> = (0..8).map(|index| corner(index).collect()).collect();
     const FACES: [[usize; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let mut obj: String = corners.iter().map(|c| format!("v {} {} {}\n", c[0], c[1], c[2])).collect();
     FACES
@@ -139,9 +139,9 @@ fn write_boxes(folder: &Path) {
     for triangle in &triangles {
         binary.extend([0; 12]);
         text.push_str("facet normal 0 0 0\nouter loop\n");
-        for &place in triangle {
-            binary.extend(corners[place].iter().flat_map(|part| (*part as f32).to_le_bytes()));
-            text.push_str(&format!("vertex {} {} {}\n", corners[place][0], corners[place][1], corners[place][2]));
+        for &index in triangle {
+            binary.extend(corners[index].iter().flat_map(|part| (*part as f32).to_le_bytes()));
+            text.push_str(&format!("vertex {} {} {}\n", corners[index][0], corners[index][1], corners[index][2]));
         }
         binary.extend([0; 2]);
         text.push_str("endloop\nendfacet\n");
@@ -150,7 +150,7 @@ fn write_boxes(folder: &Path) {
     std::fs::write(folder.join("text.STL"), text + "endsolid\n").unwrap();
     let mut msh: Vec<u8> = [8, 0, 0, 12].into_iter().flat_map(i32::to_le_bytes).collect();
     msh.extend(corners.iter().flatten().flat_map(|part| (*part as f32).to_le_bytes()));
-    msh.extend(triangles.iter().flatten().flat_map(|place| (*place as i32).to_le_bytes()));
+    msh.extend(triangles.iter().flatten().flat_map(|index| (*index as i32).to_le_bytes()));
     std::fs::write(folder.join("box.msh"), msh).unwrap();
 }
 

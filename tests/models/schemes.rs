@@ -127,9 +127,9 @@ fn amplification(scheme: Scheme, h: f64) -> Matrix3<f64> {
     let mut stepper = Stepper::new(&simulator.program, &start);
     let unit = [1.0, 1.0 / h, 1.0 / (h * h)];
     let registers = [layout.q.start, layout.v.start, layout.a.start];
-    for (place, &register) in registers.iter().enumerate() {
+    for (index, &register) in registers.iter().enumerate() {
         stepper.tile_mut().lane_mut(register).fill(0.0);
-        stepper.tile_mut().lane_mut(register)[place] = unit[place];
+        stepper.tile_mut().lane_mut(register)[index] = unit[index];
     }
     stepper.tile_mut().lane_mut(layout.w.start).copy_from_slice(&[-1e6, 0.0, 0.0, 0.0]);
     assert_eq!(stepper.step(h, h), []);
@@ -218,8 +218,8 @@ fn jets_are_the_derivatives_of_every_scheme() {
         assert_eq!(run.advance(&schedule, 0..schedule.rows, &mut jets), None);
         let moved = |by: f64| courses(&simulator, &schedule, vec![sample[0] + by, sample[1]].into());
         let (above, below) = (moved(half), moved(-half));
-        for (place, jet) in jets.chunks_exact(space.len()).enumerate() {
-            let (row, output) = (place / 2, place % 2);
+        for (index, jet) in jets.chunks_exact(space.len()).enumerate() {
+            let (row, output) = (index / 2, index % 2);
             let slope = (above[output][row] - below[output][row]) / (2.0 * half);
             // Newton's tolerance over the difference of parameters, and the third derivative.
             assert!((jet[1] - slope).abs() < 1e-5 * (1.0 + slope.abs()), "{scheme:?}: {} is not {slope}", jet[1]);

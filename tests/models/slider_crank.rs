@@ -70,9 +70,9 @@ fn nominal_motion_extrapolates_to_the_references() {
     // Without its h² term the error is of third order. Were the scheme's start or any force off by O(h), or the
     // equations other than the reference's, nothing would fall.
     let runs = [4e-4, 2e-4, 1e-4].map(|h| nominal(&slider_crank().step(h).rows_every(0.05)));
-    let errors = [0, 1].map(|place| {
-        let limit = richardson(curve(&runs[place], "slider.x"), curve(&runs[place + 1], "slider.x"));
-        largest(states().iter().map(|state| limit[row(&runs[place], state[0])] - state[1]))
+    let errors = [0, 1].map(|index| {
+        let limit = richardson(curve(&runs[index], "slider.x"), curve(&runs[index + 1], "slider.x"));
+        largest(states().iter().map(|state| limit[row(&runs[index], state[0])] - state[1]))
     });
     println!("extrapolated: {errors:?}");
     assert!((order(errors[0], errors[1]) - 3.0).abs() < 0.3, "{errors:?}");

@@ -107,8 +107,8 @@ fn a_dissipating_contact_is_as_another_integrator_has_it() {
     let (bounds, summary) = run_methods(&read(BOUNCE), None);
     assert_eq!(integrated(&summary, "chebyshev").1, 16);
     let mut truths = vec![[[f64::INFINITY, f64::NEG_INFINITY]; 2]; bounds.times.len()];
-    for place in 0..25 {
-        let [a, b] = [f64::from(place % 5) / 2.0 - 1.0, f64::from(place / 5) / 2.0 - 1.0];
+    for index in 0..25 {
+        let [a, b] = [f64::from(index % 5) / 2.0 - 1.0, f64::from(index / 5) / 2.0 - 1.0];
         let (height, d) = (1.0 + 0.02 * a, 0.1 * (1.0 + 0.05 * b));
         let rate = |_: f64, [y, v]: [f64; 2]| [v, -9.81 + 1e5 * (-y).max(0.0) * (1.0 - d * v)];
         let motion = dormand_prince(rate, [height, 0.0], 0.02, bounds.times.len(), 1e-12);
@@ -387,7 +387,7 @@ fn bounces_without_end_are_flagged_from_a_time() {
     let band = band(output(&bounds, "v"), Method::Chebyshev);
     for (row, &t) in bounds.times.iter().enumerate() {
         assert_eq!(band.error.unresolved[row], t > followed.until, "at {t}: {:?}", band.error.total[row]);
-        let heights = (0..=400).map(|place| 1.0 + 0.02 * (f64::from(place) / 200.0 - 1.0));
+        let heights = (0..=400).map(|index| 1.0 + 0.02 * (f64::from(index) / 200.0 - 1.0));
         let [lower, upper] = range(heights.map(|height| elastic(height, 1e5, t)[1]));
         let error = band.error.total[row] + 1e-9;
         let is_held = band.lower[row] - lower <= error && upper - band.upper[row] <= error;

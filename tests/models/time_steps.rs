@@ -305,10 +305,10 @@ bounds: { taylor: { order: 3 }, scan: { points: 15 } }
         })
         .collect();
     let mut findings = Findings::default();
-    for (place, name) in ["x", "y", "z"].into_iter().enumerate() {
+    for (index, name) in ["x", "y", "z"].into_iter().enumerate() {
         let row = |t: f64| (t / 0.02).round() as usize;
         let nearest = |xi: f64| (50.0 * (xi + 1.0)).round() as usize;
-        check(&mut findings, &bounds, name, 10.0, |xi, t| height * curves[nearest(xi)][row(t)][place]);
+        check(&mut findings, &bounds, name, 10.0, |xi, t| height * curves[nearest(xi)][row(t)][index]);
     }
     findings.none();
 }

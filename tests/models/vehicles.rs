@@ -23,8 +23,8 @@ fn the_quarter_car_drives_over_its_bump() {
     let expected = quarter_car();
     let errors = [1e-3, 5e-4].map(|h| {
         let bounds = nominal(&model("quarter_car").observing(&["wheel.y", "body.y"]).step(h));
-        let error = |name: &str, place: usize| {
-            let expected: Vec<f64> = expected.iter().map(|row| row[place]).collect();
+        let error = |name: &str, index: usize| {
+            let expected: Vec<f64> = expected.iter().map(|row| row[index]).collect();
             distance(curve(&bounds, name), &expected)
         };
         error("wheel.y", 0).max(error("body.y", 1))
@@ -63,8 +63,8 @@ fn the_braking_car_dives() {
     let names = ["car.vx", "car.y", "car.angle"];
     let errors = [2e-3, 1e-3].map(|h| {
         let bounds = nominal(&model("braking_car").observing(&names).step(h));
-        let errors = names.iter().zip([3, 1, 2]).map(|(name, place)| {
-            let expected: Vec<f64> = expected.iter().map(|row| row[place]).collect();
+        let errors = names.iter().zip([3, 1, 2]).map(|(name, index)| {
+            let expected: Vec<f64> = expected.iter().map(|row| row[index]).collect();
             distance(curve(&bounds, name), &expected)
         });
         errors.fold(0.0, f64::max)

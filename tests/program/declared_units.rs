@@ -34,8 +34,8 @@ fn words<'t>(text: &'t str, beginning: &str) -> Vec<&'t str> {
 /// The number before a word.
 #[track_caller]
 fn before(words: &[&str], word: &str) -> f64 {
-    let place = words.iter().position(|own| *own == word).unwrap_or_else(|| panic!("{word} in {words:?}"));
-    words[place - 1].parse().unwrap_or_else(|_| panic!("a number before {word} in {words:?}"))
+    let index = words.iter().position(|own| *own == word).unwrap_or_else(|| panic!("{word} in {words:?}"));
+    words[index - 1].parse().unwrap_or_else(|_| panic!("a number before {word} in {words:?}"))
 }
 
 #[track_caller]

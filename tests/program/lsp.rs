@@ -133,10 +133,10 @@ fn half_typed_texts_are_answered() {
         let file = &files[random(files.len())];
         let text = fs::read_to_string(file).unwrap();
         let letters: Vec<char> = text.chars().collect();
-        let place = random(letters.len());
+        let index = random(letters.len());
         let piece = pieces[random(pieces.len())];
         let gone = random(30);
-        let (before, behind) = (&letters[..place], &letters[(place + gone).min(letters.len())..]);
+        let (before, behind) = (&letters[..index], &letters[(index + gone).min(letters.len())..]);
         let before: String = before.iter().collect();
         let behind: String = behind.iter().collect();
         let typed = match round % 3 {

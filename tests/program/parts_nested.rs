@@ -385,7 +385,7 @@ fn frames_in_space_compose() {
             ),
         ),
     ];
-    for (place, outer) in outer {
+    for (index, outer) in outer {
         let outputs = |part: &dyn Fn(usize, &str, &str) -> String| -> String {
             let of = |number: usize| {
                 let axes = ["x", "y", "z"].map(|axis| {
@@ -403,7 +403,7 @@ fn frames_in_space_compose() {
             "{ARM}
   crew:
     instances: {{ a0: {{ of: arm, {} }}, a1: {{ of: arm, {} }}, a2: {{ of: arm, {} }} }}
-instances: {{ all: {{ of: crew, {place} }} }}
+instances: {{ all: {{ of: crew, {index} }} }}
 effects: {{ weight: {{ gravity: {{ acceleration: [1, 2, -9.81] }} }} }}
 outputs: {{ {} }}
 {ASKED}",
@@ -588,10 +588,10 @@ outputs: {{ x1: one.rim.x, y1: one.rim.y, x2: two.rim.y - 1, y2: 1 - two.rim.x }
         )
     };
     // A quarter turn has the image's x along −y; without the mirror along y.
-    for (place, sign) in
+    for (index, sign) in
         [("at: { position: [1, 1], angle: 90 deg }", 1.0), ("at: { position: [1, 1], angle: 90 deg }, mirror: x", -1.0)]
     {
-        let found = bounds(&side(place));
+        let found = bounds(&side(index));
         for (name, sign) in [("x", sign), ("y", 1.0)] {
             let [one, two] = ["1", "2"].map(|number| courses(&found, &format!("{name}{number}"))[0].clone());
             let start = if name == "x" { 0.7 } else { 0.1 };

@@ -294,8 +294,8 @@ outputs: {{ {}, {} }}
         );
         let found = bounds(&text);
         for joint in ["shaft", "axle", "pin"] {
-            for (place, along) in ["x", "y", "z"].into_iter().enumerate() {
-                let sign = if place == letter { -1.0 } else { 1.0 };
+            for (index, along) in ["x", "y", "z"].into_iter().enumerate() {
+                let sign = if index == letter { -1.0 } else { 1.0 };
                 same(&found, &format!("{joint}_{along}_1"), (&found, &format!("{joint}_{along}_2")), sign);
             }
         }

@@ -77,7 +77,7 @@ simulation: { duration: 1 }
 bounds: { chebyshev: { order: 3 } }
 ",
     ];
-    let own = own.iter().enumerate().map(|(place, text)| (format!("own model {place}"), (*text).to_owned()));
+    let own = own.iter().enumerate().map(|(index, text)| (format!("own model {index}"), (*text).to_owned()));
     for (name, text) in examples.chain(own) {
         let instance = as_json(&text).unwrap();
         let errors: Vec<String> =
@@ -166,7 +166,7 @@ fn leaves(value: &serde_json::Value) -> Vec<String> {
                     .map(|(key, value)| (format!("{pointer}/{}", key.replace('~', "~0").replace('/', "~1")), value)),
             ),
             serde_json::Value::Array(items) => {
-                open.extend(items.iter().enumerate().map(|(place, value)| (format!("{pointer}/{place}"), value)));
+                open.extend(items.iter().enumerate().map(|(index, value)| (format!("{pointer}/{index}"), value)));
             }
             _ => found.push(pointer),
         }

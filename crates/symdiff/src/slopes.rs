@@ -21,7 +21,7 @@ pub fn slopes(graph: &Graph, of: &[Expr], by: &[Expr], value_of: impl Fn(Expr) -
         let mut memory = JetMemory::new(&space, lowered.registers, &lowered.constants);
         for (register, &symbol) in symbols.iter().enumerate() {
             match block.iter().position(|&other| other == symbol) {
-                Some(place) => space.variable(place, value_of(symbol), 1.0, memory.jet_mut(register)),
+                Some(index) => space.variable(index, value_of(symbol), 1.0, memory.jet_mut(register)),
                 None => memory.set_constant(register, value_of(symbol)),
             }
         }
@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn they_are_the_derivatives_values() {
         let mut g = Graph::new();
-        let symbols: Vec<Expr> = (0..40).map(|place| g.symbol(&format!("x{place}"))).collect();
+        let symbols: Vec<Expr> = (0..40).map(|index| g.symbol(&format!("x{index}"))).collect();
         let mut of = Vec::new();
         for pair in symbols.windows(2) {
             let sine = g.sin(pair[0]);

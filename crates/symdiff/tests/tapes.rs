@@ -135,7 +135,7 @@ proptest! {
         let mut places = (0..INPUTS).filter(|&i| stages[i] == SHARED);
         let replaced: Vec<(Expr, Option<u32>)> =
             observed.iter().zip(&picks).map(|(&expr, &(_, replace))| {
-                (expr, if replace { places.next().map(|place| place as u32) } else { None })
+                (expr, if replace { places.next().map(|index| index as u32) } else { None })
             }).collect();
         let kernels = [observed.iter().map(|&expr| (expr, None)).collect(), replaced];
         let lowered = lower(&graph, &inputs, SHARED, INPUTS as u32, &kernels);

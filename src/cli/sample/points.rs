@@ -67,7 +67,7 @@ impl Points {
         let table = Table::read(&text);
         let headings = table.lines.first().map_or(&[][..], |line| &line.cells);
         let names: Vec<String> = headings.iter().map(|cell| cell.text.to_owned()).collect();
-        if let Some(twice) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
+        if let Some(twice) = names.iter().enumerate().find(|(index, name)| names[..*index].contains(name)) {
             return Err(wrong(format!("there are two columns `{}`", twice.1)));
         }
         let mut rows = Vec::new();

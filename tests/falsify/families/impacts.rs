@@ -11,8 +11,8 @@ fn contact(random: &mut Random, scale: &Scale) -> f64 {
     PI / (random.scale(0.3, 50.0) * scale.step)
 }
 
-fn ball(place: usize) -> (Vec<String>, Vec<String>) {
-    (vec![named("b#: { mass: m#, coordinates: [y] }", place)], lines(&["b#.y", "b#.vy"], place))
+fn ball(index: usize) -> (Vec<String>, Vec<String>) {
+    (vec![named("b#: { mass: m#, coordinates: [y] }", index)], lines(&["b#.y", "b#.vy"], index))
 }
 
 /// A mass that falls onto a stiff spring, and comes back.

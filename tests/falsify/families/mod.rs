@@ -55,8 +55,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    fn scale(&self, place: usize) -> Scale {
-        Scale { place, step: self.step, duration: self.duration }
+    fn scale(&self, index: usize) -> Scale {
+        Scale { place: index, step: self.step, duration: self.duration }
     }
 }
 
@@ -251,22 +251,22 @@ fn request(random: &mut Random, uncertain: usize, adaptive: f64) -> Bounds {
 }
 
 /// A parameter that may be uncertain by at most so much of its value.
-fn parameter(name: &str, place: usize, value: f64, most: f64) -> Parameter {
-    Parameter { name: format!("{name}{place}"), value, half: 0.0, most, removable: false }
+fn parameter(name: &str, index: usize, value: f64, most: f64) -> Parameter {
+    Parameter { name: format!("{name}{index}"), value, half: 0.0, most, removable: false }
 }
 
 /// One that may be 0 as well.
-fn removable(name: &str, place: usize, value: f64, most: f64) -> Parameter {
-    Parameter { removable: true, ..parameter(name, place, value, most) }
+fn removable(name: &str, index: usize, value: f64, most: f64) -> Parameter {
+    Parameter { removable: true, ..parameter(name, index, value, most) }
 }
 
 /// Formulas with `#` for the place.
-fn named(formula: &str, place: usize) -> String {
-    formula.replace('#', &place.to_string())
+fn named(formula: &str, index: usize) -> String {
+    formula.replace('#', &index.to_string())
 }
 
-fn lines(formulas: &[&str], place: usize) -> Vec<String> {
-    formulas.iter().map(|formula| named(formula, place)).collect()
+fn lines(formulas: &[&str], index: usize) -> Vec<String> {
+    formulas.iter().map(|formula| named(formula, index)).collect()
 }
 
 /// Curves from a closed form of all channels at one time.

@@ -49,14 +49,14 @@ impl Mass {
         Self { m, k, c: crate::random::digits(2.0 * damping * m * omega, 3), x, v }
     }
 
-    fn term(&self, place: usize, origin: f64) -> Term {
+    fn term(&self, index: usize, origin: f64) -> Term {
         let parameters = vec![
-            parameter("m", place, self.m, 0.2),
-            parameter("k", place, self.k, 0.3),
-            removable("c", place, self.c, 0.5),
-            parameter("x", place, self.x, 0.3),
-            removable("v", place, self.v, 0.3),
-            removable("L", place, origin, 0.0),
+            parameter("m", index, self.m, 0.2),
+            parameter("k", index, self.k, 0.3),
+            removable("c", index, self.c, 0.5),
+            parameter("x", index, self.x, 0.3),
+            removable("v", index, self.v, 0.3),
+            removable("L", index, origin, 0.0),
         ];
         let curves = closed_form(|p, t| {
             let [m, k, c, x, v, origin] = p[..6] else { unreachable!() };
@@ -65,12 +65,12 @@ impl Mass {
         });
         Term {
             parameters,
-            bodies: vec![named("b#: { mass: m#, coordinates: [x] }", place)],
+            bodies: vec![named("b#: { mass: m#, coordinates: [x] }", index)],
             joints: vec![],
-            effects: vec![named("s#: { force: { on: b#, value: [\"-k#*(b#.x - L#) - c#*b#.vx\", 0] } }", place)],
-            initial: lines(&["b#.x: L# + x#", "b#.vx: v#"], place),
+            effects: vec![named("s#: { force: { on: b#, value: [\"-k#*(b#.x - L#) - c#*b#.vx\", 0] } }", index)],
+            initial: lines(&["b#.x: L# + x#", "b#.vx: v#"], index),
             guess: vec![],
-            channels: lines(&["b#.x", "b#.vx", "b#.ax"], place),
+            channels: lines(&["b#.x", "b#.vx", "b#.ax"], index),
             curves,
             integrated: false,
             size: origin.abs() + self.x.abs(),

@@ -318,14 +318,14 @@ fn chain(n: usize, steps: f64) {
     let mut text = String::from("bodies:\n");
     let mut joints = String::from("joints:\n");
     let (mut initial, mut guess) = (String::new(), String::new());
-    for place in 0..n {
+    for index in 0..n {
         // From the top; the free end is the last.
-        let displaced = amplitude * shape[n - 1 - place];
-        writeln!(text, "  b{place}: {{ mass: 1, coordinates: [x, y] }}").unwrap();
-        let above = if place == 0 { "ground".to_owned() } else { format!("b{}", place - 1) };
-        writeln!(joints, "  j{place}: {{ distance: {{ between: [{above}, b{place}], length: 1 }} }}").unwrap();
-        write!(initial, "b{place}.x: {displaced:e}, b{place}.vx: 0, ").unwrap();
-        write!(guess, "b{place}.y: -{}, ", place + 1).unwrap();
+        let displaced = amplitude * shape[n - 1 - index];
+        writeln!(text, "  b{index}: {{ mass: 1, coordinates: [x, y] }}").unwrap();
+        let above = if index == 0 { "ground".to_owned() } else { format!("b{}", index - 1) };
+        writeln!(joints, "  j{index}: {{ distance: {{ between: [{above}, b{index}], length: 1 }} }}").unwrap();
+        write!(initial, "b{index}.x: {displaced:e}, b{index}.vx: 0, ").unwrap();
+        write!(guess, "b{index}.y: -{}, ", index + 1).unwrap();
     }
     let duration = 0.25 * std::f64::consts::PI / omega;
     let h = duration / steps;

@@ -58,8 +58,8 @@ fn is_of_second_order(coarse: f64, fine: f64, rounding: f64) -> bool {
 fn power(mechanism: &Mechanism) -> String {
     let spatial = mechanism.kind.spatial;
     let omega = if spatial { "omega.z" } else { "angular_velocity" };
-    let of_body = |(place, body): (usize, &super::mechanism::Body)| {
-        format!("({:?} - {:?}*{{{place}}}.{omega})*{{{place}}}.{omega}", body.torque, body.drag)
+    let of_body = |(index, body): (usize, &super::mechanism::Body)| {
+        format!("({:?} - {:?}*{{{index}}}.{omega})*{{{index}}}.{omega}", body.torque, body.drag)
     };
     let axes: &[&str] = if spatial { &["x", "y", "z"] } else { &["x", "y"] };
     let of_spring = |spring: &super::mechanism::Spring| {
@@ -115,7 +115,7 @@ fn momentum_is_conserved() {
     let floating = |kind: Kind| Kind { floating: true, ..kind };
     holds(&[floating(PLANAR), floating(SPATIAL)], |mechanism| {
         let sum = |term: &dyn Fn(usize, f64) -> String| {
-            let terms = mechanism.bodies.iter().enumerate().map(|(place, body)| term(place, body.mass));
+            let terms = mechanism.bodies.iter().enumerate().map(|(index, body)| term(index, body.mass));
             terms.collect::<Vec<_>>().join(" + ")
         };
         let along = |axis: &str| sum(&|i, m| format!("{m:?}*{{{i}}}.v{axis}"));
@@ -153,10 +153,10 @@ fn joints_stay_closed() {
     holds(&[PLANAR, SPATIAL, looped(PLANAR), looped(SPATIAL)], |mechanism| {
         let axes: &[&str] = if mechanism.kind.spatial { &["x", "y", "z"] } else { &["x", "y"] };
         let mut outputs = Vec::new();
-        for (place, body) in mechanism.bodies.iter().enumerate() {
+        for (index, body) in mechanism.bodies.iter().enumerate() {
             for axis in axes {
-                let before = body.before.map_or("0".to_owned(), |before| format!("{{{before}}}.to{place}.{axis}"));
-                outputs.push(format!("{{{place}}}.joint.{axis} - {before}"));
+                let before = body.before.map_or("0".to_owned(), |before| format!("{{{before}}}.to{index}.{axis}"));
+                outputs.push(format!("{{{index}}}.joint.{axis} - {before}"));
             }
         }
         if let Some(tie) = &mechanism.tie {

@@ -33,8 +33,8 @@ impl Scene {
         Self { turn: Quaternion::ONE, angle: 0.0, shift: [0.0; 3], name: "b", reversed: false, step, duration, outputs }
     }
 
-    pub fn body(&self, place: usize) -> String {
-        format!("{}{place}", self.name)
+    pub fn body(&self, index: usize) -> String {
+        format!("{}{index}", self.name)
     }
 
     fn section(&self, title: &str, mut lines: Vec<String>) -> String {
@@ -52,7 +52,7 @@ impl Scene {
             let components = if kind.spatial { &v[..] } else { &v[..2] };
             format!("[{}]", components.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", "))
         };
-        let name = |place: usize| self.body(place);
+        let name = |index: usize| self.body(index);
         let (mut bodies, mut joints, mut effects) = (Vec::new(), Vec::new(), Vec::new());
         let tie = mechanism.tie.as_ref().map_or([0.0; 3], |tie| tie.point);
         let (root, tie) = (vector(world([0.0; 3])), vector(world(tie)));
@@ -62,37 +62,37 @@ impl Scene {
             false => root,
         };
         bodies.push(format!("ground: {{ points: {{ root: {root}, tie: {tie} }} }}"));
-        for (place, body) in mechanism.bodies.iter().enumerate() {
+        for (index, body) in mechanism.bodies.iter().enumerate() {
             let mut points = format!("joint: {}, end: {}", vector(body.joint[1]), vector(body.end));
-            for (next, other) in mechanism.bodies.iter().enumerate().filter(|(_, other)| other.before == Some(place)) {
+            for (next, other) in mechanism.bodies.iter().enumerate().filter(|(_, other)| other.before == Some(index)) {
                 write!(points, ", to{next}: {}", vector(other.joint[0])).unwrap();
             }
             let inertia = if kind.spatial { vector(body.inertia) } else { format!("{:?}", body.inertia[2]) };
             bodies.push(format!(
                 "{}: {{ mass: {:?}, inertia: {inertia}, points: {{ {points} }} }}",
-                name(place),
+                name(index),
                 body.mass
             ));
             let joint = if body.hinged { "revolute" } else { "spherical" };
             match body.before {
                 Some(before) => {
                     joints.push(format!(
-                        "j{place}: {{ {joint}: [{}.to{place}, {}.joint] }}",
+                        "j{index}: {{ {joint}: [{}.to{index}, {}.joint] }}",
                         name(before),
-                        name(place)
+                        name(index)
                     ));
                 }
                 None if !kind.floating => {
-                    joints.push(format!("j{place}: {{ {joint}: [ground.root, {}.joint] }}", name(place)));
+                    joints.push(format!("j{index}: {{ {joint}: [ground.root, {}.joint] }}", name(index)));
                 }
                 None => (),
             }
             if kind.driven {
-                let value = |omega: &str| format!("{:?} - {:?}*{}.{omega}", body.torque, body.drag, name(place));
+                let value = |omega: &str| format!("{:?} - {:?}*{}.{omega}", body.torque, body.drag, name(index));
                 // In space along the world's z, which is why such scenes are not turned.
                 let value =
                     if kind.spatial { format!("[0, 0, {}]", value("omega.z")) } else { value("angular_velocity") };
-                effects.push(format!("motor{place}: {{ torque: {{ on: {}, value: {value} }} }}", name(place)));
+                effects.push(format!("motor{index}: {{ torque: {{ on: {}, value: {value} }} }}", name(index)));
             }
         }
         if let Some(tie) = &mechanism.tie {
@@ -102,10 +102,10 @@ impl Scene {
                 tie.length
             ));
         }
-        for (place, spring) in mechanism.springs.iter().enumerate() {
+        for (index, spring) in mechanism.springs.iter().enumerate() {
             let [a, b] = spring.between.map(name);
             effects.push(format!(
-                "spring{place}: {{ spring_damper: {{ between: [{a}.end, {b}.end], stiffness: {:?}, damping: {:?}, free_length: {:?} }} }}",
+                "spring{index}: {{ spring_damper: {{ between: [{a}.end, {b}.end], stiffness: {:?}, damping: {:?}, free_length: {:?} }} }}",
                 spring.stiffness, spring.damping, spring.free_length
             ));
         }
@@ -119,10 +119,10 @@ impl Scene {
             .outputs
             .iter()
             .enumerate()
-            .map(|(place, formula)| {
+            .map(|(index, formula)| {
                 let bodies = (0..mechanism.bodies.len()).rev();
                 let formula = bodies.fold(formula.clone(), |text, i| text.replace(&format!("{{{i}}}"), &name(i)));
-                format!("o{place}: {formula}")
+                format!("o{index}: {formula}")
             })
             .collect();
         let mut text = format!("model: drawn\nspace: {}\n", if kind.spatial { "spatial" } else { "planar" });
@@ -149,8 +149,8 @@ impl Scene {
     fn start(&self, mechanism: &Mechanism, guessed: bool) -> Vec<String> {
         let spatial = mechanism.kind.spatial;
         let mut lines = Vec::new();
-        for (place, body) in mechanism.bodies.iter().enumerate() {
-            let name = self.body(place);
+        for (index, body) in mechanism.bodies.iter().enumerate() {
+            let name = self.body(index);
             let [x, y, z] = add(self.shift, self.turn.turn(body.place));
             let [vx, vy, vz] = self.turn.turn(body.velocity);
             // The joints give the places of all bodies but a floating one.

@@ -62,15 +62,15 @@ fn is_shown(block: &str, printed: &str) -> bool {
     let parts: Vec<Vec<&str>> =
         block.lines().collect::<Vec<_>>().split(|line| *line == "…").map(<[_]>::to_vec).collect();
     let last = parts.len() - 1;
-    for (place, part) in parts.iter().enumerate() {
+    for (index, part) in parts.iter().enumerate() {
         let matches = |from: usize| {
             from + part.len() <= rest.len() && part.iter().zip(&rest[from..]).all(|(shown, line)| is_same(shown, line))
         };
         let latest = rest.len().saturating_sub(part.len());
-        let found = match place {
+        let found = match index {
             0 if last == 0 => (rest.len() == part.len() && matches(0)).then_some(0),
             0 => matches(0).then_some(0),
-            _ if place == last => matches(latest).then_some(latest),
+            _ if index == last => matches(latest).then_some(latest),
             _ => (0..=latest).find(|&from| matches(from)),
         };
         let Some(from) = found else { return false };
@@ -153,8 +153,8 @@ fn pieces(word: &str) -> Vec<Piece> {
 pub fn unfounded(page: &str) -> Vec<String> {
     let mut founded: Vec<f64> = Vec::new();
     let mut text = String::new();
-    for (place, part) in page.split("```").enumerate() {
-        match place % 2 {
+    for (index, part) in page.split("```").enumerate() {
+        match index % 2 {
             0 => text += part,
             _ => founded.extend(part.split_whitespace().flat_map(pieces).filter_map(|piece| match piece {
                 Piece::Number(value, _) => Some(value.abs()),

@@ -135,11 +135,11 @@ impl Equations {
     /// Whether all indices are of something, and rows are as many as unknowns.
     pub fn is_sound(&self, parameters: usize) -> bool {
         let (n, m) = (self.coordinates, self.multipliers);
-        let is_sound = |(place, node): (usize, &Node)| match *node {
+        let is_sound = |(own, node): (usize, &Node)| match *node {
             Node::Parameter(index) => index < parameters,
             Node::Position(index) | Node::Velocity(index) | Node::Acceleration(index) => index < n,
             Node::Multiplier(index) => index < m,
-            node => node.children().all(|child| child < place),
+            node => node.children().all(|child| child < own),
         };
         let rows = [&self.motion, &self.start[0], &self.start[1], &self.outputs];
         let lengths = [self.motion.len() == n + m, self.start[0].len() == n, self.start[1].len() == n];
@@ -152,11 +152,11 @@ impl Equations {
     pub fn needed(&self, rows: &[usize]) -> Vec<usize> {
         let mut is_needed = vec![false; self.nodes.len()];
         rows.iter().for_each(|&row| is_needed[row] = true);
-        for place in (0..self.nodes.len()).rev() {
-            if is_needed[place] {
-                self.nodes[place].children().for_each(|child| is_needed[child] = true);
+        for index in (0..self.nodes.len()).rev() {
+            if is_needed[index] {
+                self.nodes[index].children().for_each(|child| is_needed[child] = true);
             }
         }
-        (0..self.nodes.len()).filter(|&place| is_needed[place]).collect()
+        (0..self.nodes.len()).filter(|&index| is_needed[index]).collect()
     }
 }

@@ -116,10 +116,10 @@ fn turn(space: &ModelSpace, directions: &Models, radii: &[f64]) -> Option<Turned
     let sorted = DMatrix::from_fn(size, size, |row, column| centre[(row, order[column])]);
     let triangular = sorted.qr().r();
     let upper = triangular.clone().try_inverse()?;
-    // Columns back in their places: the factors are R Pᵀ and P R⁻¹.
-    let place = |column: usize| order.iter().position(|&own| own == column).unwrap_or(column);
-    let factor = DMatrix::from_fn(size, size, |row, column| triangular[(row, place(column))]);
-    let back = DMatrix::from_fn(size, size, |row, column| upper[(place(row), column)]);
+    // Columns back in their order: the factors are R Pᵀ and P R⁻¹.
+    let index = |column: usize| order.iter().position(|&own| own == column).unwrap_or(column);
+    let factor = DMatrix::from_fn(size, size, |row, column| triangular[(row, index(column))]);
+    let back = DMatrix::from_fn(size, size, |row, column| upper[(index(row), column)]);
     let turned = directions.approximate_times(space, &Models::constant(space, &back)).without_radii();
     // Whatever B' is, B z = B' (R Pᵀ z) + (B − B' R Pᵀ) z.
     let factor_of = Models::constant(space, &factor);

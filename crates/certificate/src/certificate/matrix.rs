@@ -65,9 +65,9 @@ impl Models {
     /// Some rows and columns.
     pub fn part(&self, space: &ModelSpace, rows: Range<usize>, columns: Range<usize>) -> Self {
         let mut part = Self::zero(space, rows.len(), columns.len());
-        for (place, row) in rows.enumerate() {
+        for (index, row) in rows.enumerate() {
             let length = columns.len() * self.size;
-            part.values[place * length..][..length]
+            part.values[index * length..][..length]
                 .copy_from_slice(&self.row(row)[columns.start * self.size..][..length]);
         }
         part
@@ -77,8 +77,8 @@ impl Models {
     pub fn columns_at(&self, space: &ModelSpace, columns: &[usize]) -> Self {
         let mut chosen = Self::zero(space, self.rows, columns.len());
         for row in 0..self.rows {
-            for (place, &column) in columns.iter().enumerate() {
-                chosen.at_mut(row, place).copy_from_slice(self.at(row, column));
+            for (index, &column) in columns.iter().enumerate() {
+                chosen.at_mut(row, index).copy_from_slice(self.at(row, column));
             }
         }
         chosen

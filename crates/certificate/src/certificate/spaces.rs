@@ -146,10 +146,10 @@ impl Space {
             // C(power, j) shift^(power − j) scale^j, from j = power down.
             let (mut to, mut factor) = (Some(r), scale.powi(power as i32));
             for j in (0..=power).rev() {
-                let Some(place) = to else { break };
-                into[place] += model[r] * factor;
+                let Some(index) = to else { break };
+                into[index] += model[r] * factor;
                 factor *= shift / scale * j as f64 / (power - j + 1) as f64;
-                to = self.lowered[place];
+                to = self.lowered[index];
             }
         }
     }

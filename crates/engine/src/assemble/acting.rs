@@ -13,7 +13,7 @@ use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, OwnFunction, P
 pub struct Acting<'m, 'g, 'd> {
     /// The mechanism, in motion.
     pub m: &'m Mechanism<'g, 'd>,
-    /// The effect's place among all.
+    /// Index of the effect among all.
     pub effect: usize,
     /// What acts on it so far.
     pub applied: &'m mut AppliedForces<'g>,
@@ -156,16 +156,16 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
         self.applied.add_potential(self.m, coefficients, energy);
     }
 
-    fn state(&self, place: usize) -> Scalar<'g> {
-        self.m.v[self.m.states[&(self.effect, place)]]
+    fn state(&self, index: usize) -> Scalar<'g> {
+        self.m.v[self.m.states[&(self.effect, index)]]
     }
 
-    fn state_rate(&mut self, place: usize, rate: Scalar<'g>) {
-        self.applied.add_to_coordinate(self.m.states[&(self.effect, place)], rate);
+    fn state_rate(&mut self, index: usize, rate: Scalar<'g>) {
+        self.applied.add_to_coordinate(self.m.states[&(self.effect, index)], rate);
     }
 
-    fn hold(&mut self, place: usize, value: Scalar<'g>) {
-        self.applied.sampled.push(((self.effect, place), value));
+    fn hold(&mut self, index: usize, value: Scalar<'g>) {
+        self.applied.sampled.push(((self.effect, index), value));
     }
 
     fn mode(&self, place: usize) -> [Scalar<'g>; 2] {
@@ -173,8 +173,8 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
         [self.m.q[index], self.m.v[index]]
     }
 
-    fn modal_force(&mut self, place: usize, force: Scalar<'g>) {
-        self.applied.add_to_coordinate(self.m.modes[&(self.effect, place)], force);
+    fn modal_force(&mut self, index: usize, force: Scalar<'g>) {
+        self.applied.add_to_coordinate(self.m.modes[&(self.effect, index)], force);
     }
 
     fn begins_within(&mut self, room: Scalar<'g>) {

@@ -12,7 +12,7 @@ impl System {
     /// The equations for a configuration at rest, in which states rest, too: each is the position of its coordinate in
     /// place of its velocity, and its rate the force on it; a state that changes at instants has its new value.
     pub fn at_rest(&self) -> Cow<'_, Self> {
-        let states: Vec<usize> = (0..self.q.len()).filter(|&place| self.coordinates[place].is_state).collect();
+        let states: Vec<usize> = (0..self.q.len()).filter(|&index| self.coordinates[index].is_state).collect();
         if states.is_empty() {
             return Cow::Borrowed(self);
         }
@@ -22,7 +22,7 @@ impl System {
             let change = graph.sub(sampled.value, system.v[sampled.coordinate]);
             system.force[sampled.coordinate] = graph.add(system.force[sampled.coordinate], change);
         }
-        let positions: FxHashMap<Expr, Expr> = states.iter().map(|&place| (system.v[place], system.q[place])).collect();
+        let positions: FxHashMap<Expr, Expr> = states.iter().map(|&index| (system.v[index], system.q[index])).collect();
         let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
         let condition: Vec<Expr> = system.active_condition.into_iter().collect();
         let lists = [&system.inertia, &system.force, &system.conditional, &outputs, &condition];
@@ -56,8 +56,8 @@ impl System {
     /// open. States are those that their coordinates' positions were there.
     pub fn start_at_equilibrium(&mut self) {
         self.start.leave_positions();
-        for place in (0..self.q.len()).filter(|&place| self.coordinates[place].is_state) {
-            self.start.velocity[place] = Some(self.q[place]);
+        for index in (0..self.q.len()).filter(|&index| self.coordinates[index].is_state) {
+            self.start.velocity[index] = Some(self.q[index]);
         }
     }
 
@@ -67,9 +67,9 @@ impl System {
         let graph = &mut self.graph;
         let mut mass = Vec::with_capacity(self.q.len());
         let mut inertia = Vec::with_capacity(self.q.len());
-        for (place, (coordinate, &w)) in self.coordinates.iter().zip(&self.w).enumerate() {
+        for (index, (coordinate, &w)) in self.coordinates.iter().zip(&self.w).enumerate() {
             let weight = graph.constant(coordinate.scale.powi(-2));
-            mass.push((place, place, weight));
+            mass.push((index, index, weight));
             inertia.push(graph.mul(weight, w));
         }
         let nothing = vec![graph.constant(0.0); self.q.len()];

@@ -42,7 +42,7 @@ pub struct AppliedForces<'g> {
     g: &'g Builder,
     /// On each body, about its frame's origin, in the ground's axes.
     bodies: Vec<Wrench<'g>>,
-    /// Generalised forces on coordinates of joints, modes and states, by their place in q.
+    /// Generalised forces on coordinates of joints, modes and states, by their index in q.
     coordinates: BTreeMap<usize, Scalar<'g>>,
     /// The acceleration that gives children their weight, in the ground's axes, m/s².
     pub field: Vector<'g>,

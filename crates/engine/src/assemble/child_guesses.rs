@@ -40,25 +40,25 @@ impl Mechanism<'_, '_> {
         }
         for joint in self.tree.inboard.iter().flatten().map(|inboard| inboard.joint) {
             for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
-                let Some(&place) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
+                let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
                 let measured = absolute.measured_coordinate(OnJoint { joint, coordinate })?.expr();
                 let value = at_guess.values(&builder.graph(), &[measured])[0];
-                self.child_guesses.push((place, value));
+                self.child_guesses.push((index, value));
             }
         }
-        for (joint, coordinate, place) in unnamed {
+        for (joint, coordinate, index) in unnamed {
             let kind = &self.joints[joint].kind;
             let (Some(between), Some(mobilizer)) = (kind.between(), kind.mobilizer()) else { continue };
             let pair = absolute.pair(between);
             let offset = pair.first.orientation.matrix().transposed() * pair.offset();
             let measured = absolute.relative_coordinate(&mobilizer, coordinate, pair.relative(), offset)?.expr();
-            self.child_guesses.push((place, at_guess.values(&builder.graph(), &[measured])[0]));
+            self.child_guesses.push((index, at_guess.values(&builder.graph(), &[measured])[0]));
         }
         for (body, inboard) in self.tree.inboard.iter().enumerate() {
             if inboard.is_some_and(|inboard| self.has_no_names(inboard.joint)) {
                 let position = Scalar::exprs(&absolute.bodies[body].position);
                 let values = at_guess.values(&builder.graph(), &position);
-                let guess = std::array::from_fn(|place| values[place]);
+                let guess = std::array::from_fn(|index| values[index]);
                 self.body_guesses.insert(body, guess);
             }
         }

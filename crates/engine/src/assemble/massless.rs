@@ -37,18 +37,18 @@ impl<'g> Constraints<'g> {
             return Ok(());
         }
         let constrained: FxHashSet<Expr> = symbols(m, &self.positions.values).into_iter().collect();
-        let is_balanced = |place: &usize| !is_massive[*place] && !constrained.contains(&m.q[*place].expr());
+        let is_balanced = |index: &usize| !is_massive[*index] && !constrained.contains(&m.q[*index].expr());
         let balanced: Vec<usize> = (0..m.q.len()).filter(is_balanced).collect();
-        let unknown: Vec<Scalar<'g>> = balanced.iter().map(|&place| m.q[place]).collect();
+        let unknown: Vec<Scalar<'g>> = balanced.iter().map(|&index| m.q[index]).collect();
         let multipliers = [&self.positions.lambda[..], &self.velocities.lambda].concat();
         let start = AtGuess::of(m, &m.g.graph(), &start.guess);
-        for place in balanced {
-            let balance = Balance { m, place, force: force[place] };
+        for index in balanced {
+            let balance = Balance { m, index, force: force[index] };
             balance.check(&unknown, &multipliers)?;
             let stiffness = balance.stiffness(&start);
-            let unit = if m.coordinates[place].is_length() { ResidualUnit::Length } else { ResidualUnit::Angle };
+            let unit = if m.coordinates[index].is_length() { ResidualUnit::Length } else { ResidualUnit::Angle };
             let info = ConstraintInfo { name: balance.name().to_owned(), joint: balance.owner().to_owned(), unit };
-            self.positions.add(info, stiffness.recip() * force[place]);
+            self.positions.add(info, stiffness.recip() * force[index]);
         }
         Ok(())
     }
@@ -57,7 +57,7 @@ impl<'g> Constraints<'g> {
 /// The force on a coordinate without inertia.
 struct Balance<'m, 'g, 'd> {
     m: &'m Mechanism<'g, 'd>,
-    place: usize,
+    index: usize,
     force: Scalar<'g>,
 }
 
@@ -91,7 +91,7 @@ impl<'g> Balance<'_, 'g, '_> {
     }
 
     fn name(&self) -> &str {
-        &self.m.coordinate_names[self.place]
+        &self.m.coordinate_names[self.index]
     }
 
     fn owner(&self) -> &str {

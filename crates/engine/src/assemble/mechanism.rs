@@ -17,7 +17,7 @@ use crate::grammar::{Coordinate, JointCoordinate, OnJoint, PointRef, Sensor, Tim
 use crate::model::{Joint, LineMass};
 use crate::multibody::{ANGLE, Body, DEGREES_OF_FREEDOM, EULER, Frame, MaterialPoint, Pair, Quaternion, Vector};
 
-/// A coordinate's place in its body's list.
+/// Index of a coordinate in its body's list.
 pub fn dof(coordinate: Coordinate) -> usize {
     match coordinate {
         Coordinate::X => 0,
@@ -133,7 +133,7 @@ pub struct Mechanism<'g, 'd> {
     pub bodies: Vec<Body<'g>>,
     /// Which bodies are children in joint coordinates.
     pub tree: Tree,
-    /// Places in `q` of the coordinates of joints that are coordinates of their own.
+    /// Indices in `q` of the coordinates of joints that are coordinates of their own.
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
     /// Places in the constraints of the normalisations of joints' Euler parameters.
     pub normalisations: BTreeMap<usize, usize>,
@@ -150,9 +150,9 @@ pub struct Mechanism<'g, 'd> {
     pub potentials: Vec<Scalar<'g>>,
     /// Kinetic energy of flexible bodies, J.
     pub kinetic_energy_of_flexible: Scalar<'g>,
-    /// Places in `q` of the coordinates whose velocities are states, by effect and place among its states.
+    /// Indices in `q` of the coordinates whose velocities are states, by effect and index among its states.
     pub states: BTreeMap<(usize, usize), usize>,
-    /// Places in `q` of the modal coordinates, by effect and place among its modes.
+    /// Indices in `q` of the modal coordinates, by effect and index among its modes.
     pub modes: BTreeMap<(usize, usize), usize>,
     /// What the effects built so far measure, and all states.
     pub sensors: BTreeMap<(usize, Sensor), Scalar<'g>>,
@@ -161,7 +161,7 @@ pub struct Mechanism<'g, 'd> {
 }
 
 impl<'g> Mechanism<'g, '_> {
-    /// Symbols for one more coordinate of a body or joint called `name`; its place in q.
+    /// Symbols for one more coordinate of a body or joint called `name`; its index in q.
     pub fn add_coordinate(&mut self, owner: Owner, name: &str) -> usize {
         let name = match owner {
             Owner::Mode | Owner::State => name.to_owned(),
@@ -182,7 +182,7 @@ impl<'g> Mechanism<'g, '_> {
         self.q.len() - 1
     }
 
-    /// Makes a joint's coordinate one of the mechanism's own; its place in q.
+    /// Makes a joint's coordinate one of the mechanism's own; its index in q.
     pub fn add_joint_coordinate(&mut self, joint: usize, coordinate: JointCoordinate) -> usize {
         let index = self.add_coordinate(Owner::Joint(joint, coordinate), &self.joints[joint].name);
         self.joint_coordinates.insert((joint, coordinate), index);

@@ -85,16 +85,16 @@ impl<'g> Mechanism<'g, '_> {
             rates: [self.v[index], self.w[index]],
         });
         let translations: Vec<AxisMotion> = translations.collect();
-        let mut places: Vec<usize> = frames
+        let mut indices: Vec<usize> = frames
             .rotations
             .iter()
             .map(|rotation| rotation.0)
             .chain(frames.translations.iter().map(|one| one.0))
             .collect();
-        places.sort_unstable();
-        places.dedup();
+        indices.sort_unstable();
+        indices.dedup();
         let share = |own: usize, of: usize, factor: Scalar<'g>| if own == of { factor } else { g.number(0.0) };
-        let dofs = places.into_iter().map(|index| DegreeOfFreedom {
+        let dofs = indices.into_iter().map(|index| DegreeOfFreedom {
             index,
             rotation: frames.rotations.iter().map(|rotation| share(rotation.0, index, sign)).collect(),
             translation: frames.translations.iter().map(|one| share(one.0, index, g.number(1.0))).collect(),
@@ -123,9 +123,9 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     fn two_rotations(&mut self, joint: usize, [first, second]: [Vector<'g>; 2]) -> FrameMotion<'g> {
-        let places = [0, 1].map(|axis| self.add_relative_coordinate(joint, RelativeCoordinate::Angle(axis)));
+        let indices = [0, 1].map(|axis| self.add_relative_coordinate(joint, RelativeCoordinate::Angle(axis)));
         let cross = self.perpendicular([first, second]);
-        let [about_first, about_second] = places.map(|place| self.q[place]);
+        let [about_first, about_second] = indices.map(|index| self.q[index]);
         let euler = Quaternion::about(first, about_first) * cross * Quaternion::about(second, about_second);
         let [before, after] = [
             rotation::matrix_about(first, about_first) * constant_matrix(cross),
@@ -133,11 +133,11 @@ impl<'g> Mechanism<'g, '_> {
         ];
         let second_in_first = before * second;
         let first_in_second = after.transposed() * (constant_matrix(cross).transposed() * first);
-        let rates = self.v[places[0]] * self.v[places[1]];
+        let rates = self.v[indices[0]] * self.v[indices[1]];
         FrameMotion {
             euler,
             matrix: before * after,
-            rotations: vec![(places[0], [first, first_in_second]), (places[1], [second_in_first, second])],
+            rotations: vec![(indices[0], [first, first_in_second]), (indices[1], [second_in_first, second])],
             gyration: Some([rates * first.cross(second_in_first), rates * first_in_second.cross(second)]),
             offset: Vector::zero(self.g),
             translations: Vec::new(),
@@ -169,7 +169,7 @@ impl<'g> Mechanism<'g, '_> {
 
     fn planar_motion(&mut self, inboard: InboardJoint, normal: Vector<'g>) -> FrameMotion<'g> {
         let joint = inboard.joint;
-        let places = [0, 1].map(|along| self.add_relative_coordinate(joint, RelativeCoordinate::Displacement(along)));
+        let indices = [0, 1].map(|along| self.add_relative_coordinate(joint, RelativeCoordinate::Displacement(along)));
         let turning = self.add_joint_coordinate(joint, JointCoordinate::Angle);
         let angle = self.q[turning];
         let matrix = rotation::matrix_about(normal, angle);
@@ -179,8 +179,8 @@ impl<'g> Mechanism<'g, '_> {
             matrix,
             rotations: vec![(turning, [normal, normal])],
             gyration: None,
-            offset: self.q[places[0]] * first + self.q[places[1]] * second,
-            translations: vec![(places[0], first), (places[1], second)],
+            offset: self.q[indices[0]] * first + self.q[indices[1]] * second,
+            translations: vec![(indices[0], first), (indices[1], second)],
             drift: None,
         };
         if inboard.reversed {
@@ -188,24 +188,25 @@ impl<'g> Mechanism<'g, '_> {
             // φ̇².
             let back = |direction: Vector<'g>| -(matrix.transposed() * direction);
             let [first, second] = [back(first), back(second)];
-            let [slides, rate] = [places.map(|place| self.v[place]), [self.v[turning]; 2]];
+            let [slides, rate] = [indices.map(|index| self.v[index]), [self.v[turning]; 2]];
             let sliding = slides[0] * first + slides[1] * second;
             motion.offset = back(motion.offset);
-            motion.translations = vec![(places[0], first), (places[1], second), (turning, motion.offset.cross(normal))];
+            motion.translations =
+                vec![(indices[0], first), (indices[1], second), (turning, motion.offset.cross(normal))];
             motion.drift = Some((2.0 * rate[0]) * sliding.cross(normal) - (rate[0] * rate[1]) * motion.offset);
         }
         motion
     }
 
     fn free_rotation(&mut self, joint: usize) -> FrameMotion<'g> {
-        let places: [usize; 4] =
-            std::array::from_fn(|place| self.add_relative_coordinate(joint, RelativeCoordinate::Euler(place)));
-        let euler = Quaternion::from(places.map(|place| self.q[place]));
+        let indices: [usize; 4] =
+            std::array::from_fn(|index| self.add_relative_coordinate(joint, RelativeCoordinate::Euler(index)));
+        let euler = Quaternion::from(indices.map(|index| self.q[index]));
         let (in_first, in_second) = (euler.ground_rates(), euler.body_rates());
-        let rotations = places
+        let rotations = indices
             .into_iter()
             .enumerate()
-            .map(|(column, place)| (place, [2.0 * in_first.column(column), 2.0 * in_second.column(column)]));
+            .map(|(column, index)| (index, [2.0 * in_first.column(column), 2.0 * in_second.column(column)]));
         FrameMotion {
             euler,
             matrix: euler.matrix(),
@@ -217,10 +218,10 @@ impl<'g> Mechanism<'g, '_> {
         }
     }
 
-    /// Coordinates of joints of the trees that formulas have no names for, and their places in q.
+    /// Coordinates of joints of the trees that formulas have no names for, and their indices in q.
     pub(super) fn unnamed_coordinates(&self) -> impl Iterator<Item = (usize, RelativeCoordinate, usize)> {
-        self.coordinates.iter().enumerate().filter_map(|(place, owner)| match *owner {
-            Owner::Relative(joint, coordinate) => Some((joint, coordinate, place)),
+        self.coordinates.iter().enumerate().filter_map(|(index, owner)| match *owner {
+            Owner::Relative(joint, coordinate) => Some((joint, coordinate, index)),
             _ => None,
         })
     }
@@ -234,7 +235,7 @@ impl<'g> Mechanism<'g, '_> {
     pub(super) fn euler_parameters(&self) -> Vec<(usize, Quaternion<'g>)> {
         let first = self.unnamed_coordinates().filter(|(_, coordinate, _)| *coordinate == RelativeCoordinate::Euler(0));
         first
-            .map(|(joint, _, place)| (joint, std::array::from_fn(|component| self.q[place + component]).into()))
+            .map(|(joint, _, index)| (joint, std::array::from_fn(|component| self.q[index + component]).into()))
             .collect()
     }
 
@@ -249,7 +250,7 @@ impl<'g> Mechanism<'g, '_> {
     ) -> Result<Scalar<'g>, BuildError> {
         let zero = self.g.number(0.0);
         Ok(match (*mobilizer, coordinate) {
-            (Mobilizer::FreeRotation, RelativeCoordinate::Euler(place)) => relative[place],
+            (Mobilizer::FreeRotation, RelativeCoordinate::Euler(index)) => relative[index],
             (Mobilizer::PlanarMotion { normal }, RelativeCoordinate::Displacement(along)) => {
                 let normal = self.unit_vector(normal, Context::Parameters)?;
                 self.normals(normal)[along].dot(offset)

@@ -41,7 +41,7 @@ impl NumberFormulas {
     pub fn values(&self, parameters: &[f64], numbers: &[f64]) -> Vec<f64> {
         self.graph.evaluate(&self.roots, |symbol| {
             let of = |symbols: &[Expr], values: &[f64]| {
-                symbols.iter().position(|own| *own == symbol).and_then(|place| values.get(place).copied())
+                symbols.iter().position(|own| *own == symbol).and_then(|index| values.get(index).copied())
             };
             of(&self.numbers, numbers).or_else(|| of(&self.parameters, parameters)).unwrap_or(f64::NAN)
         })

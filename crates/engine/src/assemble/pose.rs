@@ -76,7 +76,7 @@ enum LinkKind {
 pub struct Poses<'m, 'g, 'd> {
     mechanism: &'m Mechanism<'g, 'd>,
     known: Vec<Known>,
-    /// Known values of joints' own coordinates, by their place in q.
+    /// Known values of joints' own coordinates, by their index in q.
     values: Vec<Option<f64>>,
     links: Vec<Vec<Link>>,
     poses: Vec<Option<Pose>>,
@@ -119,12 +119,12 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
             values.push(match owner {
                 Owner::Body(body, coordinate) => {
                     let pose = self.pose(body);
-                    let place = dof(coordinate);
-                    match (place, m.bodies[body].rotation_coordinates) {
-                        (0..3, _) => pose.position[place],
+                    let index = dof(coordinate);
+                    match (index, m.bodies[body].rotation_coordinates) {
+                        (0..3, _) => pose.position[index],
                         (_, RotationCoordinates::Angle) => angle_about(&pose.orientation, &Vector3::z()),
                         // nalgebra keeps the scalar part last.
-                        (_, RotationCoordinates::Euler) => pose.orientation.coords[(place - EULER + 3) % 4],
+                        (_, RotationCoordinates::Euler) => pose.orientation.coords[(index - EULER + 3) % 4],
                     }
                 }
                 Owner::Joint(joint, coordinate) => self.joint(joint, coordinate)?,
@@ -310,10 +310,10 @@ impl Known {
 }
 
 fn known_of<'g>(m: &Mechanism<'g, '_>, body: &Body<'g>, values: &[Option<f64>]) -> Known {
-    let value = |place: usize| match body.index[place] {
+    let value = |index: usize| match body.index[index] {
         Some(index) => values[index],
         None if body.is_child() => None,
-        None => Some(m.nominal([body.position[place]])[0]),
+        None => Some(m.nominal([body.position[index]])[0]),
     };
     let orientation = match body.rotation_coordinates {
         RotationCoordinates::Angle => {

@@ -182,7 +182,7 @@ fn add_along_euler<'g>(
     let arm = body.center - relative.outboard_in_child;
     let inertia = body.inertia.trace() + 2.0 * (body.mass * arm.dot(arm));
     let [r, second_derivative]: [Quaternion; 2] =
-        [&m.q, &m.w].map(|list| std::array::from_fn(|place| list[relative.dofs[place].index]).into());
+        [&m.q, &m.w].map(|list| std::array::from_fn(|index| list[relative.dofs[index].index]).into());
     let along = (4.0 / 3.0 * inertia) * r.dot(second_derivative);
     for (dof, &component) in relative.dofs.iter().zip(&r.components()) {
         generalised[dof.index] += along * component;

@@ -37,9 +37,9 @@ impl<'g> Mechanism<'g, '_> {
         let position = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Position)?;
         let velocity = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Velocity)?;
         let mut guessed = self.values_at_start(description, &description.guess, Named::Guessed, TimeOrder::Position)?;
-        for &(place, value) in &self.child_guesses {
-            let found = guessed[place].filter(|_| !self.starts_assembled);
-            guessed[place] = Some(found.unwrap_or_else(|| self.g.number(value)));
+        for &(index, value) in &self.child_guesses {
+            let found = guessed[index].filter(|_| !self.starts_assembled);
+            guessed[index] = Some(found.unwrap_or_else(|| self.g.number(value)));
         }
         let known: Vec<_> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
         let placed = self.placed(description, &known)?;

@@ -50,9 +50,9 @@ impl<'g> Mechanism<'g, '_> {
         description: &Description,
         sampled: Vec<((usize, usize), Scalar<'g>)>,
     ) -> Vec<SampledState> {
-        let state = |((effect, place), value): ((usize, usize), Scalar)| {
-            let period = description.effects[effect].kind.states()[place].period?;
-            Some(SampledState { coordinate: self.states[&(effect, place)], value: value.expr(), period })
+        let state = |((effect, index), value): ((usize, usize), Scalar)| {
+            let period = description.effects[effect].kind.states()[index].period?;
+            Some(SampledState { coordinate: self.states[&(effect, index)], value: value.expr(), period })
         };
         sampled.into_iter().filter_map(state).collect()
     }
@@ -68,12 +68,12 @@ impl<'g> Mechanism<'g, '_> {
         let velocities: Vec<Expr> = start.velocity.iter().map(|v| v.unwrap_or(zero)).collect();
         let speeds = at_start.values(&graph, &velocities);
         at_start.set(&self.v, speeds.clone());
-        let places: Vec<usize> = self.states.values().copied().collect();
-        let changes: Vec<Expr> = places.iter().map(|&place| rates[place].expr()).collect();
+        let indices: Vec<usize> = self.states.values().copied().collect();
+        let changes: Vec<Expr> = indices.iter().map(|&index| rates[index].expr()).collect();
         let changes = at_start.values(&graph, &changes);
-        for (place, change) in places.into_iter().zip(changes) {
-            let sizes = [speeds[place].abs(), (change * duration).abs()];
-            coordinates[place].scale = sizes.into_iter().filter(|size| size.is_finite()).fold(1.0, f64::max);
+        for (index, change) in indices.into_iter().zip(changes) {
+            let sizes = [speeds[index].abs(), (change * duration).abs()];
+            coordinates[index].scale = sizes.into_iter().filter(|size| size.is_finite()).fold(1.0, f64::max);
         }
     }
 }

@@ -12,8 +12,8 @@ impl<'g> Mechanism<'g, '_> {
     /// One of [`Sensor::THRUSTS`]; `None` where the effect has no such force. Nothing of it is in the graph before it
     /// is asked for.
     pub fn thrust(&self, effect: usize, measure: Sensor) -> Option<Scalar<'g>> {
-        let place = |parts: &[Sensor; 6]| parts.iter().position(|part| *part == measure);
-        let (pair, part) = Sensor::THRUSTS.iter().enumerate().find_map(|(pair, parts)| Some((pair, place(parts)?)))?;
+        let index = |parts: &[Sensor; 6]| parts.iter().position(|part| *part == measure);
+        let (pair, part) = Sensor::THRUSTS.iter().enumerate().find_map(|(pair, parts)| Some((pair, index(parts)?)))?;
         let all = self.thrusts.get(effect)?;
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for thrust in all {

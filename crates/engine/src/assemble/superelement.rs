@@ -5,7 +5,7 @@ use crate::model::{Description, ReducedInertia};
 
 /// A flexible body by its matrices.
 pub struct Superelement<'d> {
-    /// The effect's place among all.
+    /// Index of the effect among all.
     pub effect: usize,
     /// Its nodes and matrices.
     pub inertia: ReducedInertia<'d>,

@@ -70,15 +70,15 @@ impl<'g> Mechanism<'g, '_> {
         let [momenta, growths] = self.momenta(element, &deformation);
 
         let squares = Matrix::from_fn(|i, j| omega[i] * omega[j]);
-        let force = |place: usize| {
-            let (row, growth) = growths[place];
+        let force = |index: usize| {
+            let (row, growth) = growths[index];
             let (a_k, b_k, c_k) = (carried.translation[row], carried.rotation[row], carried.stretch[row]);
             let linear = (0..3).flat_map(|axis| [a_k[axis] * a[axis], b_k[axis] * alpha[axis]]);
             let pulled = (0..3).flat_map(|i| (0..3).map(move |j| -c_k[(i, j)] * squares[i][j]));
-            let turned = match place / OF_NODE {
-                node if node < ends.len() && place % OF_NODE < 3 => {
+            let turned = match index / OF_NODE {
+                node if node < ends.len() && index % OF_NODE < 3 => {
                     let own = std::array::from_fn(|axis| momenta[OF_NODE * node + axis].1);
-                    omega.cross(own.into())[place % OF_NODE]
+                    omega.cross(own.into())[index % OF_NODE]
                 }
                 _ => self.g.number(0.0),
             };
@@ -159,9 +159,9 @@ impl<'g> Mechanism<'g, '_> {
             velocity.dot(omega.cross(moment) + self.moment(element, rates)),
             omega.dot(half * omega + self.vector_sum(&carried.rotation, rates)),
         ];
-        for (place, (&(_, rate), &(_, momentum))) in rates.iter().zip(&momenta).enumerate() {
-            let turned = match place / OF_NODE {
-                node if node < ends.len() && place % OF_NODE < 3 => ends[node].turned[0][place % OF_NODE],
+        for (index, (&(_, rate), &(_, momentum))) in rates.iter().zip(&momenta).enumerate() {
+            let turned = match index / OF_NODE {
+                node if node < ends.len() && index % OF_NODE < 3 => ends[node].turned[0][index % OF_NODE],
                 _ => self.g.number(0.0),
             };
             parts.push(0.5 * (momentum * (rate + turned)));

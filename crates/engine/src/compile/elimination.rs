@@ -86,7 +86,7 @@ impl PivotChoice<'_> {
         for &constraint in self.redundant {
             let row = self.n + constraint.number();
             let weight = TUNING.redundant_weight / (equilibration[row] * equilibration[row]);
-            let place = matrix.rows[..row].iter().map(Vec::len).sum::<usize>() + regular.rows[row].len();
+            let index = matrix.rows[..row].iter().map(Vec::len).sum::<usize>() + regular.rows[row].len();
             let offset = regular.nonzeros() - matrix.nonzeros();
             let value = graph.constant(-weight);
             debug_assert!(
@@ -94,7 +94,7 @@ impl PivotChoice<'_> {
                 "a constraint's row ends before its own multiplier"
             );
             regular.rows[row].push((row, value));
-            numbers.insert(place + offset, [-weight; PIVOT_SAMPLES]);
+            numbers.insert(index + offset, [-weight; PIVOT_SAMPLES]);
         }
         (regular, numbers)
     }

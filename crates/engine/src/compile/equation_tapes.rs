@@ -162,7 +162,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
     let constraint_acceleration_by = std::array::from_fn(|_| of_rates.next().unwrap_or_default());
     let mut given = registers(GIVEN);
     let kept = kept.map(|values| {
-        let places = (0..n).filter(|&place| values[place].is_some());
+        let places = (0..n).filter(|&index| values[index].is_some());
         places.zip(given.by_ref()).collect::<Vec<_>>()
     });
     drop(given);

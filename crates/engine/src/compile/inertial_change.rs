@@ -33,8 +33,8 @@ pub(super) fn by_forces(
 ) -> Vec<Expr> {
     let zero = graph.constant(0.0);
     let (mut changed, mut unchanged) = (at_end.clone(), at_end.clone());
-    for (place, &w) in system.w.iter().enumerate() {
-        changed.insert(w, graph.sub(new[place], old[place]));
+    for (index, &w) in system.w.iter().enumerate() {
+        changed.insert(w, graph.sub(new[index], old[index]));
         unchanged.insert(w, zero);
     }
     let [changed, unchanged] = [changed, unchanged].map(|values| graph.substitute(&system.inertia, &values));

@@ -95,7 +95,7 @@ impl Linked {
             found.extend(values.map(|&value| (value, link)));
         }
         found.sort_unstable();
-        let symbols: Vec<Expr> = (0..found.len()).map(|place| graph.symbol(&format!("link:{place}"))).collect();
+        let symbols: Vec<Expr> = (0..found.len()).map(|index| graph.symbol(&format!("link:{index}"))).collect();
         let symbol_of: FxHashMap<Expr, Expr> = found.iter().map(|found| found.0).zip(symbols.iter().copied()).collect();
         let operands = found.iter().flat_map(|found| graph.node(found.0).children());
         let roots: Vec<Expr> = rows.iter().copied().chain(operands).collect();
@@ -131,11 +131,11 @@ impl Linked {
         let symbols: Vec<Expr> = self.values.iter().map(|value| value.symbol).collect();
         let definitions = self.values.iter().map(|value| value.definition);
         let rows: Vec<Expr> = self.rows.iter().copied().chain(definitions).collect();
-        let place = |row: usize| row.checked_sub(self.rows.len()).map_or(row, |value| size + value);
+        let index = |row: usize| row.checked_sub(self.rows.len()).map_or(row, |value| size + value);
         for &(symbols, first, gain) in by.iter().chain(&[(&symbols[..], size, None)]) {
             for (row, column, value) in graph.jacobian(&rows, symbols).entries() {
                 let value = gain.map_or(value, |gain| graph.mul(gain, value));
-                matrix.add(graph, place(row), first + column, value);
+                matrix.add(graph, index(row), first + column, value);
             }
         }
         let opposite = graph.constant(-1.0);
@@ -152,8 +152,8 @@ impl Linked {
     /// Rows and columns of pivots, links from the leaves on.
     pub fn order(&self, system: &System, size: usize) -> Vec<(usize, usize)> {
         let mut of_link: Vec<Vec<usize>> = vec![Vec::new(); system.links.len()];
-        for (place, value) in self.values.iter().enumerate().rev() {
-            of_link[value.link].push(size + place);
+        for (index, value) in self.values.iter().enumerate().rev() {
+            of_link[value.link].push(size + index);
         }
         let links = system.links.iter().zip(of_link).rev();
         let n = system.q.len();

@@ -92,5 +92,5 @@ fn distances(system: &System, is_open: fn(&Distance) -> bool) -> Vec<&Distance> 
 /// `share` · D.
 fn diagonal(system: &System, graph: &mut Graph, share: f64) -> Vec<(usize, usize, Expr)> {
     let weights = system.coordinates.iter().map(|coordinate| share * coordinate.scale.powi(-2));
-    weights.enumerate().map(|(place, weight)| (place, place, graph.constant(weight))).collect()
+    weights.enumerate().map(|(index, weight)| (index, index, graph.constant(weight))).collect()
 }

@@ -84,7 +84,7 @@ impl Equations {
 fn closure_rows(system: &System, of: ClosureOf) -> impl Iterator<Item = ClosureRow> {
     let conditions = system.start.conditions.iter().enumerate().filter(move |(_, condition)| of.has(condition));
     let constraints = (0..of.constraints(system)).map(ConstraintId::new).map(ClosureRow::Constraint);
-    constraints.chain(conditions.map(|(place, _)| ClosureRow::Condition(ConditionId::new(place))))
+    constraints.chain(conditions.map(|(index, _)| ClosureRow::Condition(ConditionId::new(index))))
 }
 
 /// Their residuals, in these registers.
@@ -116,11 +116,11 @@ fn with_rates(system: &System, graph: &mut Graph, jacobian: &SparseMatrix) -> (V
     let (values, mut all) = with_conditions(system, graph, jacobian, ClosureOf::Velocities);
     let mut rates = time_derivative(system, graph, &values);
     let conditions = system.start.conditions.iter().filter(|condition| ClosureOf::Velocities.has(condition));
-    for (place, condition) in conditions.enumerate() {
+    for (index, condition) in conditions.enumerate() {
         if let Some(rate) = condition.rate {
-            rates[place] = rate;
+            rates[index] = rate;
             let derivatives = graph.jacobian(&[rate], &system.v);
-            let row = ClosureOf::Velocities.constraints(system) + place;
+            let row = ClosureOf::Velocities.constraints(system) + index;
             all.rows.splice(row..=row, derivatives.rows);
         }
     }

@@ -140,8 +140,8 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<(Expr, Vec<u
     found.dedup();
     // What only jumps does so where something else switches.
     found.retain(|&argument| graph.changes_steadily(argument, &moving));
-    let place = |of: Expr| of_floor.get(&of).and_then(|sine| found.binary_search(sine).ok());
-    let jumps_with = |of: Expr| graph.reachable(&[of]).into_iter().filter_map(place).collect();
+    let index = |of: Expr| of_floor.get(&of).and_then(|sine| found.binary_search(sine).ok());
+    let jumps_with = |of: Expr| graph.reachable(&[of]).into_iter().filter_map(index).collect();
     let terms = found.iter().map(|&of| (terms[&of], jumps_with(of))).collect();
     (found, terms)
 }

@@ -48,8 +48,8 @@ impl Asked {
         part.outputs = self.outputs.iter().map(|&output| part.outputs[output].clone()).collect();
         part.reduced = self.reduced.iter().map(|&number| part.reduced[number].clone()).collect();
         part.requirements = self.requirements.iter().map(|&number| part.requirements[number].clone()).collect();
-        let reduced = part.reduced.iter_mut().flat_map(|own| &mut own.places);
-        let required = part.requirements.iter_mut().flat_map(|own| &mut own.places);
+        let reduced = part.reduced.iter_mut().flat_map(|own| &mut own.outputs);
+        let required = part.requirements.iter_mut().flat_map(|own| &mut own.outputs);
         for place in reduced.chain(required) {
             // Questions come with their outputs.
             *place = self.outputs.iter().position(|output| output == place).unwrap_or(*place);

@@ -99,12 +99,12 @@ impl Reduction {
             subsystems.push((movable.first().map(|&part| couplings.set(part)), Asked::default()));
         }
         for (question, places) in questions {
-            let has = |(_, asked): &(_, Asked)| places.first().is_some_and(|place| asked.outputs.contains(place));
+            let has = |(_, asked): &(_, Asked)| places.first().is_some_and(|index| asked.outputs.contains(index));
             // Outputs of parameters alone belong to the first subsystem.
-            let place = subsystems.iter().position(has).unwrap_or(0);
+            let index = subsystems.iter().position(has).unwrap_or(0);
             match question {
-                Question::Reduced(number) => subsystems[place].1.reduced.push(number),
-                Question::Requirement(number) => subsystems[place].1.requirements.push(number),
+                Question::Reduced(number) => subsystems[index].1.reduced.push(number),
+                Question::Requirement(number) => subsystems[index].1.requirements.push(number),
             }
         }
         let kept: HashSet<usize> = subsystems.iter().filter_map(|(set, _)| *set).collect();

@@ -18,12 +18,12 @@ pub enum Question {
 /// that it needs. What a requirement of reduced outputs needs is what these need.
 pub fn questions(description: &Description) -> Vec<(Question, Vec<usize>)> {
     let reduced = description.reduced.iter().enumerate();
-    let reduced = reduced.map(|(number, own)| (Question::Reduced(number), own.places.clone()));
+    let reduced = reduced.map(|(number, own)| (Question::Reduced(number), own.outputs.clone()));
     let of_requirement = |(number, own): (usize, &crate::model::Requirement)| {
         let named: HashSet<&str> = own.slacks.iter().flat_map(|slack| slack.names()).map(|(name, _)| name).collect();
         let of_reduced =
             description.reduced.iter().filter(|known| own.times.is_none() && named.contains(known.name.as_str()));
-        let places = own.places.iter().chain(of_reduced.flat_map(|known| &known.places));
+        let places = own.outputs.iter().chain(of_reduced.flat_map(|known| &known.outputs));
         (Question::Requirement(number), places.copied().collect())
     };
     reduced.chain(description.requirements.iter().enumerate().map(of_requirement)).collect()
@@ -32,7 +32,7 @@ pub fn questions(description: &Description) -> Vec<(Question, Vec<usize>)> {
 /// Has every output of a question refer to all parts that the question needs: these are simulated as one mechanism.
 pub fn tie(questions: &[(Question, Vec<usize>)], outputs: &mut [Vec<Part>]) {
     for (_, places) in questions.iter().filter(|(_, places)| places.len() > 1) {
-        let parts: Vec<Part> = places.iter().flat_map(|&place| outputs[place].clone()).collect();
-        places.iter().for_each(|&place| outputs[place].clone_from(&parts));
+        let parts: Vec<Part> = places.iter().flat_map(|&index| outputs[index].clone()).collect();
+        places.iter().for_each(|&index| outputs[index].clone_from(&parts));
     }
 }

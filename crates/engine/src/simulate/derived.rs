@@ -15,7 +15,7 @@ pub struct Derived {
     /// Places of the results among the outputs, in the formulas' order.
     results: Vec<usize>,
     /// Places of the outputs.
-    places: Vec<usize>,
+    indices: Vec<usize>,
 }
 
 impl Derived {
@@ -24,13 +24,13 @@ impl Derived {
     /// # Errors
     /// Where the analysis has no result of a name.
     pub fn of(system: &System) -> Result<Option<Self>, SimulationError> {
-        let places: Vec<usize> =
-            (0..system.outputs.len()).filter(|&place| system.outputs[place].is_derived()).collect();
+        let indices: Vec<usize> =
+            (0..system.outputs.len()).filter(|&index| system.outputs[index].is_derived()).collect();
         // Those of a black box follow from its answers.
-        if places.is_empty() || system.analysis == Analysis::BlackBox {
+        if indices.is_empty() || system.analysis == Analysis::BlackBox {
             return Ok(None);
         }
-        let formulas: Vec<_> = places.iter().filter_map(|&place| system.outputs[place].of_results.clone()).collect();
+        let formulas: Vec<_> = indices.iter().filter_map(|&index| system.outputs[index].of_results.clone()).collect();
         let parameters = &system.declared_parameters;
         let is_parameter = |name: &str| parameters.iter().any(|parameter| parameter.name == name);
         let place_of = |name: &str| system.outputs.iter().position(|own| own.name == name && !own.is_derived());
@@ -38,22 +38,22 @@ impl Derived {
         for name in formulas.iter().flat_map(symdiff::Formula::names).map(|(name, _)| name) {
             match place_of(name) {
                 _ if names.contains(&name) => {}
-                Some(place) => {
+                Some(index) => {
                     names.push(name);
-                    results.push(place);
+                    results.push(index);
                 }
                 None if is_parameter(name) => {}
                 None => return Err(no_result(system, name)),
             }
         }
-        Ok(Some(Self { formulas: NumberFormulas::of(parameters, &names, &formulas), results, places }))
+        Ok(Some(Self { formulas: NumberFormulas::of(parameters, &names, &formulas), results, indices }))
     }
 
     /// Sets them in the outputs of a row.
     pub fn set(&self, parameters: &[f64], row: &mut [f64]) {
-        let known: Vec<f64> = self.results.iter().map(|&place| row[place]).collect();
-        for (&place, value) in self.places.iter().zip(self.formulas.values(parameters, &known)) {
-            row[place] = value;
+        let known: Vec<f64> = self.results.iter().map(|&index| row[index]).collect();
+        for (&index, value) in self.indices.iter().zip(self.formulas.values(parameters, &known)) {
+            row[index] = value;
         }
     }
 }

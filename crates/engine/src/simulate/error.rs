@@ -291,7 +291,7 @@ pub(super) fn not_driven(system: &System, start: &StartProgram, state: &[f64]) -
         system.coordinates.iter().map(|coordinate| if coordinate.is_angle { 1e-3 } else { 1.0 }).collect();
     let free = free_columns(&matrix, &weight);
     SimulationError::NotDriven {
-        coordinates: free.into_iter().map(|place| system.coordinates[place].name.clone()).collect(),
+        coordinates: free.into_iter().map(|index| system.coordinates[index].name.clone()).collect(),
     }
 }
 

@@ -61,8 +61,8 @@ pub fn excitations(
         }
         for (watch, mode) in watches.iter_mut().zip(modes) {
             let along = |registers: std::ops::Range<usize>, origin: Option<&Vec<f64>>| -> f64 {
-                let value = |(place, register): (usize, usize)| {
-                    stepper.tile().lane(register)[0] - origin.map_or(0.0, |origin| origin[place])
+                let value = |(index, register): (usize, usize)| {
+                    stepper.tile().lane(register)[0] - origin.map_or(0.0, |origin| origin[index])
                 };
                 let values = registers.enumerate().map(value);
                 mode.weighted.iter().zip(values).map(|(weight, value)| weight * value).sum()
@@ -135,9 +135,9 @@ impl Watch {
 
     /// The polynomial through the last forces.
     fn extrapolated(&self, time: f64) -> f64 {
-        let term = |place: usize| -> f64 {
-            let (own, force) = self.forces[place];
-            let others = self.forces.iter().enumerate().filter(|(other, _)| *other != place);
+        let term = |index: usize| -> f64 {
+            let (own, force) = self.forces[index];
+            let others = self.forces.iter().enumerate().filter(|(other, _)| *other != index);
             force * others.map(|(_, &(other, _))| (time - other) / (own - other)).product::<f64>()
         };
         (0..self.forces.len()).map(term).sum()

@@ -132,7 +132,7 @@ impl Linearised {
             velocity: vector(&layout.v),
             acceleration: vector(&layout.w),
             outputs: derivatives(&outputs),
-            states: (0..system.q.len()).filter(|&place| system.coordinates[place].is_state).collect(),
+            states: (0..system.q.len()).filter(|&index| system.coordinates[index].is_state).collect(),
         }
     }
 
@@ -150,14 +150,14 @@ impl Linearised {
         let block = |matrix: &DMatrix<f64>| {
             DMatrix::from_fn(count, count, |row, column| matrix[(self.states[row], self.states[column])])
         };
-        let rates: Vec<f64> = self.states.iter().map(|&place| self.acceleration[place]).collect();
+        let rates: Vec<f64> = self.states.iter().map(|&index| self.acceleration[index]).collect();
         let found = if count > 0 { of_states(block(&self.mass), block(&self.damping), &rates) } else { Vec::new() };
         let size = |value: Complex<f64>| math::hypot(value.re, value.im);
         let [_, by_v, by_w, _] = &self.outputs;
         let of_mode = |mode: StateMode| {
             let of_output = |output: usize| {
-                let by = |(&place, &shape): (&usize, &Complex<f64>)| {
-                    shape * (mode.value * by_w[(output, place)] + by_v[(output, place)])
+                let by = |(&index, &shape): (&usize, &Complex<f64>)| {
+                    shape * (mode.value * by_w[(output, index)] + by_v[(output, index)])
                 };
                 size(self.states.iter().zip(&mode.shape).map(by).sum())
             };
@@ -197,9 +197,9 @@ impl Linearised {
         let constraints =
             (reactions_matter && self.constraint.nrows() > 0).then(|| self.constraint.transpose().svd(true, true));
         let mut modes = Vec::new();
-        for (place, &square) in eigen.eigenvalues.iter().enumerate() {
+        for (index, &square) in eigen.eigenvalues.iter().enumerate() {
             if square.sqrt() * h > SLOWEST {
-                let shape = shapes.column(place).into_owned();
+                let shape = shapes.column(index).into_owned();
                 let of_scheme = (h, simulator.program.coefficients);
                 modes.push(self.mode(&shape, square.sqrt(), of_scheme, constraints.as_ref()));
             }
@@ -245,15 +245,15 @@ impl Linearised {
         }
         let mut normal = self.constraint.transpose() * &self.constraint;
         let held = normal.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
-        self.states.iter().for_each(|&place| normal[(place, place)] += held);
+        self.states.iter().for_each(|&index| normal[(index, index)] += held);
         if normal.iter().any(|value| !value.is_finite()) {
             return None;
         }
         let eigen = SymmetricEigen::new(normal);
         let largest = eigen.eigenvalues.max();
         let columns: Vec<DVector<f64>> = (0..n)
-            .filter(|&place| eigen.eigenvalues[place] <= ALLOWED * largest)
-            .map(|place| eigen.eigenvectors.column(place).into_owned())
+            .filter(|&index| eigen.eigenvalues[index] <= ALLOWED * largest)
+            .map(|index| eigen.eigenvectors.column(index).into_owned())
             .collect();
         (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
     }

@@ -286,20 +286,20 @@ impl Between<'_> {
         }
         let lattice = lattice(&intervals);
         let values = self.values(&lattice, times, motions, &switches);
-        let near = |(place, line): (usize, &[f64])| {
+        let near = |(index, line): (usize, &[f64])| {
             let (low, high) = line.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-            let (distance, size) = if one_sided[place].1 == 0 { (low, high) } else { (-high, -low) };
-            (distance <= NEAR * (high - low) && size > 0.0).then_some((place, size))
+            let (distance, size) = if one_sided[index].1 == 0 { (low, high) } else { (-high, -low) };
+            (distance <= NEAR * (high - low) && size > 0.0).then_some((index, size))
         };
         let near: Vec<(usize, f64)> = values.chunks_exact(lattice.len()).enumerate().filter_map(near).collect();
         if near.is_empty() {
             return Vec::new();
         }
-        let closer: Vec<usize> = near.iter().map(|&(place, _)| switches[place]).collect();
+        let closer: Vec<usize> = near.iter().map(|&(index, _)| switches[index]).collect();
         let least: Vec<f64> = near.iter().map(|(_, size)| ZERO * size).collect();
         let found = extremes(&intervals, &least, |points| self.values(points, times, motions, &closer));
-        let suspect = |(&(place, size), found): (&(usize, f64), &Extent)| {
-            let (switch, side) = one_sided[place];
+        let suspect = |(&(index, size), found): (&(usize, f64), &Extent)| {
+            let (switch, side) = one_sided[index];
             let beyond = if side == 0 { -found.range.lower } else { found.range.upper };
             (beyond > ZERO * size).then(|| Suspect { row, switch, side, beyond, xi: found.places[side][..k].to_vec() })
         };
@@ -336,9 +336,9 @@ impl Between<'_> {
             }
             tile.run(self.program.sample());
             tile.run(self.program.evaluate());
-            for (place, &switch) in switches.iter().enumerate() {
+            for (index, &switch) in switches.iter().enumerate() {
                 let register = self.program.switches[switch].value;
-                let into = &mut values[place * points.len() + first..][..count];
+                let into = &mut values[index * points.len() + first..][..count];
                 into.copy_from_slice(&tile.lane(register)[..count]);
             }
         }
@@ -358,7 +358,7 @@ fn hermite([a, b]: [f64; 2], [slope_a, slope_b]: [f64; 2], h: f64, s: f64) -> [f
 fn lattice(intervals: &[usize]) -> Vec<Vec<f64>> {
     intervals.iter().fold(vec![Vec::new()], |points, &count| {
         let along = |point: Vec<f64>| {
-            let coordinates = (0..=count).map(move |place| 2.0 * place as f64 / count as f64 - 1.0);
+            let coordinates = (0..=count).map(move |index| 2.0 * index as f64 / count as f64 - 1.0);
             coordinates.map(move |xi| [point.as_slice(), &[xi]].concat()).collect::<Vec<_>>()
         };
         points.into_iter().flat_map(along).collect()

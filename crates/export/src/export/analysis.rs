@@ -121,13 +121,13 @@ fn over_frequencies(
 ) -> OutputBounds {
     let column = |pick: &dyn Fn(&OutputBounds) -> f64| points.iter().map(|point| pick(of(point))).collect::<Vec<f64>>();
     let methods = points.first().map_or(&[][..], |point| &of(point).bands);
-    let band = |(place, first): (usize, &Band)| Band {
+    let band = |(index, first): (usize, &Band)| Band {
         method: first.method,
-        lower: column(&|output| output.bands[place].lower[row]),
-        upper: column(&|output| output.bands[place].upper[row]),
+        lower: column(&|output| output.bands[index].lower[row]),
+        upper: column(&|output| output.bands[index].upper[row]),
         error: BandError {
-            total: column(&|output| output.bands[place].error.total[row]),
-            unresolved: points.iter().map(|point| of(point).bands[place].error.unresolved[row]).collect(),
+            total: column(&|output| output.bands[index].error.total[row]),
+            unresolved: points.iter().map(|point| of(point).bands[index].error.unresolved[row]).collect(),
             ..BandError::default()
         },
     };

@@ -84,7 +84,7 @@ pub fn contributions_svg(
     let mut series = Vec::new();
     let (mut drawn, mut legend) = (Vec::new(), group("legend"));
     let mut below = vec![0.0; times.len()];
-    for (place, layer) in layers.iter().enumerate() {
+    for (index, layer) in layers.iter().enumerate() {
         let above: Vec<f64> =
             below.iter().zip(&layer.share).map(|(below, share)| (below + share).clamp(0.0, 1.0)).collect();
         let id = format!("{}-{}", panel.id, layer.group);
@@ -94,7 +94,7 @@ pub fn contributions_svg(
         let (group, label, panel) = (layer.group.clone(), layer.label.clone(), panel.id.clone());
         series.push(SeriesData { id, group, label, kind: "share", panel, time: None, lower, upper });
         // The lowest layer's entry stands lowest.
-        let at = (right + 14.0, TOP + 12.0 + ROW * (layers.len() - 1 - place) as f64);
+        let at = (right + 14.0, TOP + 12.0 + ROW * (layers.len() - 1 - index) as f64);
         let (group, label) = (layer.group.clone(), layer.label.clone());
         legend = legend.add(Entry { group, label, sign: Sign::Area(Hue::Color(layer.color)) }.drawn(at));
         below = above;
@@ -125,9 +125,9 @@ fn layers(contributions: &[Contribution], rows: usize) -> Vec<Layer> {
     };
     let own = if ranked.len() > MOST + 1 { MOST } else { ranked.len() };
     let mut layers = Vec::new();
-    for (place, contribution) in ranked[..own].iter().enumerate() {
-        let (group, label) = (format!("share-{place}"), contribution.parameter.clone());
-        layers.push(Layer { group, label, color: Color::of(place), share: sum(&[contribution]) });
+    for (index, contribution) in ranked[..own].iter().enumerate() {
+        let (group, label) = (format!("share-{index}"), contribution.parameter.clone());
+        layers.push(Layer { group, label, color: Color::of(index), share: sum(&[contribution]) });
     }
     if own < ranked.len() {
         let label = format!("{} others", ranked.len() - own);
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn shares_are_stacked_and_named() {
         let shares: Vec<Contribution> =
-            (0..9).map(|place| contribution(&format!("p{place}"), 0.1)).chain([contribution("l1", 0.05)]).collect();
+            (0..9).map(|index| contribution(&format!("p{index}"), 0.1)).chain([contribution("l1", 0.05)]).collect();
         let caption = Caption { model: "crank", prefix: "c" };
         let svg = contributions_svg(caption, &[0.0, 0.5, 1.0], "x3", &shares).unwrap();
         assert!(!svg.contains("NaN"));

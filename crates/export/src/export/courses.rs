@@ -203,7 +203,7 @@ impl<'a> Figure<'a> {
         let Shown { name, courses, across, .. } = *self.shown;
         let shared = courses.first().map_or(&[][..], |course| course.times);
         let mut series = Vec::new();
-        for (place, course) in courses.iter().enumerate() {
+        for (index, course) in courses.iter().enumerate() {
             let time = (course.times != shared).then(|| times(course.times));
             let mut add = |panel: &Panel, id, group: &str, label: String, kind, [lower, upper]: [&[f64]; 2]| {
                 let [lower, upper] = extremes(lower, upper, panel.y);
@@ -216,7 +216,7 @@ impl<'a> Figure<'a> {
                 add(panel, id, &course.group, nominal_title(course), "nominal", [&nominal, &nominal]);
                 for (entry, of) in course.bands.iter().enumerate() {
                     let is_value = panel.id == value.id;
-                    let band = if is_value { of.band } else { &self.deviations[place][entry] };
+                    let band = if is_value { of.band } else { &self.deviations[index][entry] };
                     let (id, label) = (series_id(panel, &of.group), of.style.label.clone());
                     add(panel, id, &of.group, label, "bounds", [&band.lower, &band.upper]);
                     if of.style.fill > 0.0 {

@@ -27,8 +27,8 @@ pub(super) struct Limit {
 pub(super) fn limits(requirements: &[RequirementSummary], output: &str) -> Vec<Limit> {
     let lines = requirements.iter().flat_map(|own| own.limits.iter().map(move |line| (own, line)));
     let of_output = lines.filter(|(_, line)| line.output == output && line.value.is_finite());
-    let limit = |(place, (own, line)): (usize, (&RequirementSummary, &LimitLine))| Limit {
-        group: format!("limit-{place}"),
+    let limit = |(index, (own, line)): (usize, (&RequirementSummary, &LimitLine))| Limit {
+        group: format!("limit-{index}"),
         label: format!("{}: {}", own.name, own.text),
         value: line.value,
         is_upper: line.is_upper,

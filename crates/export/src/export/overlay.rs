@@ -29,9 +29,9 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
     let found: Vec<(usize, &SceneBounds, &OutputBounds, Option<&Band>)> = scenes
         .iter()
         .enumerate()
-        .filter_map(|(place, scene)| {
+        .filter_map(|(index, scene)| {
             let output = scene.bounds.outputs.iter().find(|output| output.name == name)?;
-            Some((place, scene, output, best(output)))
+            Some((index, scene, output, best(output)))
         })
         .collect();
     let mut methods = found.iter().map(|(.., band)| band.map(|band| band.method));
@@ -39,15 +39,15 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
     let same = methods.all(|method| Some(method) == first);
     let courses: Vec<Course> = found
         .iter()
-        .map(|(place, scene, output, band)| {
+        .map(|(index, scene, output, band)| {
             let bands = band.map(|band| {
                 let method = if same { String::new() } else { format!(" ({})", band.method.name()) };
-                let style = style(*place, format!("{}{method}", scene.name));
-                CourseBand { group: format!("scene-{place}"), band, style }
+                let style = style(*index, format!("{}{method}", scene.name));
+                CourseBand { group: format!("scene-{index}"), band, style }
             });
             // The bands of a scene tell where its nominal course is, and hide it from the others.
             let (label, width) = if bands.is_some() { ("", 0.5) } else { (scene.name, 1.4) };
-            let (group, hue) = (format!("scene-{place}-nominal"), Hue::Color(Color::of(*place)));
+            let (group, hue) = (format!("scene-{index}-nominal"), Hue::Color(Color::of(*index)));
             let bands = bands.into_iter().collect();
             Course { group, label, hue, width, times: &scene.bounds.times, nominal: &output.nominal, bands }
         })
@@ -60,13 +60,13 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
 }
 
 /// The edges of one of several bands.
-pub(super) fn style(place: usize, label: String) -> Style {
-    let dashes = DASHES[place % DASHES.len()];
+pub(super) fn style(index: usize, label: String) -> Style {
+    let dashes = DASHES[index % DASHES.len()];
     let dashes = (!dashes.is_empty()).then(|| dashes.to_vec());
     // Beyond the palette colours are darker; so are the lines' widths.
-    let edge = 1.5 + 0.4 * (place / PALETTE.len()) as f64;
-    let slant = [45.0, -45.0][place % 2];
-    Style { label, color: Color::of(place), edge, fill: 0.0, dashes, slant }
+    let edge = 1.5 + 0.4 * (index / PALETTE.len()) as f64;
+    let slant = [45.0, -45.0][index % 2];
+    Style { label, color: Color::of(index), edge, fill: 0.0, dashes, slant }
 }
 
 fn best(output: &OutputBounds) -> Option<&Band> {
@@ -108,8 +108,8 @@ mod tests {
             names.iter().zip(&all).map(|(name, bounds)| SceneBounds { name, bounds }).collect();
         let svg = overlay_svg(CAPTION, "x3", &scenes).unwrap();
         assert_eq!(svg, overlay_svg(CAPTION, "x3", &scenes).unwrap(), "the same data, the same bytes");
-        for (place, name) in names.iter().enumerate() {
-            assert!(svg.contains(&format!("color=\"{}\"", Color::of(place).hex())), "{name}");
+        for (index, name) in names.iter().enumerate() {
+            assert!(svg.contains(&format!("color=\"{}\"", Color::of(index).hex())), "{name}");
         }
         // Chebyshev is the method of those that have one, the third has none, and the legend says so.
         for text in ["ideal (chebyshev)", "with friction (chebyshev)", "bare", "x3 [m]", "bound − nominal"] {
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn many_scenes_have_a_legend_of_several_rows_and_colours_of_their_own() {
         let bounds = bounds(1.0, 0.1, &[Method::Scan]);
-        let names: Vec<String> = (0..20).map(|place| format!("variant {place}")).collect();
+        let names: Vec<String> = (0..20).map(|index| format!("variant {index}")).collect();
         let scenes: Vec<SceneBounds> = names.iter().map(|name| SceneBounds { name, bounds: &bounds }).collect();
         let svg = overlay_svg(CAPTION, "x3", &scenes).unwrap();
         assert!(svg.contains("height=\"640\""), "{}", &svg[..160]);

@@ -16,8 +16,8 @@ const ROUNDING: f64 = 1e-12;
 
 fn style(method: Method) -> Style {
     let About { label, color, fill, dashes, .. } = *method.about();
-    let place = Method::ALL.iter().position(|known| *known == method).unwrap_or(0);
-    let slant = [45.0, -45.0, 20.0, -20.0][place % 4];
+    let index = Method::ALL.iter().position(|known| *known == method).unwrap_or(0);
+    let slant = [45.0, -45.0, 20.0, -20.0][index % 4];
     let dashes = dashes.map(Vec::from);
     Style { label: label.to_owned(), color: Color(color), edge: 2.0, fill, dashes, slant }
 }

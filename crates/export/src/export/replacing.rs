@@ -157,7 +157,7 @@ pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
     let mut plan: Plan = serde_json::from_slice(&plan)?;
     plan.new.retain(|name| is_within(name));
     plan.gone.retain(|name| is_within(name));
-    let [aside, place] = steps(dir, &plan);
+    let [aside, index] = steps(dir, &plan);
     for (done, step) in aside.iter().enumerate() {
         if let Err(error) = step.run() {
             aside[..done].iter().rev().for_each(Step::back);
@@ -165,7 +165,7 @@ pub(super) fn finish(dir: &Path) -> Result<(), ExportError> {
             return Err(error);
         }
     }
-    place.iter().try_for_each(Step::run)?;
+    index.iter().try_for_each(Step::run)?;
     sync(dir);
     // A scene of which nothing is left.
     for folder in plan.gone.iter().filter_map(|name| Path::new(name).parent()).filter(|path| *path != Path::new("")) {

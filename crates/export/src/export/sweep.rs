@@ -49,7 +49,7 @@ pub fn sweep_svg(
 ) -> Result<String, serde_json::Error> {
     let courses: Vec<Course> = match rows {
         [row] => vec![plot::course(row.values, row.output)],
-        rows => rows.iter().enumerate().map(|(place, row)| edges(place, row)).collect(),
+        rows => rows.iter().enumerate().map(|(index, row)| edges(index, row)).collect(),
     };
     let (name, unit) = rows.first().map_or(("", ShownUnit::from("")), |row| {
         (row.output.name.as_str(), ShownUnit::of(&row.output.display, &row.output.unit))
@@ -60,14 +60,14 @@ pub fn sweep_svg(
 }
 
 /// One of several rows: the edges of its first method that is reliable throughout.
-fn edges<'a>(place: usize, row: &SweptBounds<'a>) -> Course<'a> {
+fn edges<'a>(index: usize, row: &SweptBounds<'a>) -> Course<'a> {
     let band = foremost(&row.output.bands, |band| band.error.unresolved_from().is_none());
-    let of = |band| CourseBand { group: format!("row-{place}"), band, style: style(place, row.label.to_owned()) };
+    let of = |band| CourseBand { group: format!("row-{index}"), band, style: style(index, row.label.to_owned()) };
     let (label, width) = if band.is_some() { ("", 0.5) } else { (row.label, 1.4) };
     Course {
-        group: format!("row-{place}-nominal"),
+        group: format!("row-{index}-nominal"),
         label,
-        hue: Hue::Color(Color::of(place)),
+        hue: Hue::Color(Color::of(index)),
         width,
         times: row.values,
         nominal: &row.output.nominal,
@@ -116,15 +116,15 @@ pub fn trade_svg(
     let hue = Hue::Color(Color::of(0));
     let mut drawn = vec![panel.curve(Named { id: &id, group: "line", title }, &xs, &ys, hue, 1.6)];
     drawn.extend(line.iter().map(|&at| hue.paint(Group::new().add(dot(panel.place(at.0, at.1), 2.6)), "dot")));
-    for (place, mark) in marks.iter().enumerate() {
+    for (index, mark) in marks.iter().enumerate() {
         let at = panel.place(mark.at.0, mark.at.1);
         // To the side where there is room.
         let (beside, anchor) = if at.0 > 0.7 * SIZE.0 { (-10.0, Anchor::End) } else { (10.0, Anchor::Start) };
         // Two that are near are told apart: one above, one below.
-        let height = if place % 2 == 0 { -12.0 } else { 22.0 };
+        let height = if index % 2 == 0 { -12.0 } else { 22.0 };
         let label = text(mark.label, (at.0 + beside, at.1 + height), anchor);
         let marked = Group::new().add(Title::new(mark.label)).add(dot(at, 5.0)).add(label);
-        drawn.push(Hue::Color(Color::of(place + 1)).paint(marked, "mark"));
+        drawn.push(Hue::Color(Color::of(index + 1)).paint(marked, "mark"));
     }
     let title = format!("{}: {}", shortened(caption.model, 60), shortened(title, 60));
     let figure = document(SIZE, &title)

@@ -63,8 +63,8 @@ pub fn write_sweep(dir: &Path, sweep: &Sweep) -> Result<Vec<PathBuf>, ExportErro
     files.add("sweep.csv", &table(sweep)?)?;
     let reduced = sweep.first().map_or(&[][..], |summary| &summary.reduced);
     let stems = unique_stems(reduced.iter().map(|own| own.name.as_str()));
-    for (place, stem) in stems.iter().enumerate() {
-        files.add(&format!("sweep.{stem}.svg"), plot(sweep, place)?.as_bytes())?;
+    for (index, stem) in stems.iter().enumerate() {
+        files.add(&format!("sweep.{stem}.svg"), plot(sweep, index)?.as_bytes())?;
     }
     files.put_in_place()
 }
@@ -130,17 +130,17 @@ fn plot(sweep: &Sweep, reduced: usize) -> Result<String, serde_json::Error> {
         let label = sweep.axes.get(1).map_or_else(String::new, |second| {
             format!("{} = {} {}", second.name, rounded(second.values[row]), second.unit).trim_end().to_owned()
         });
-        let band = |place: usize| {
+        let band = |index: usize| {
             let column = |of: fn(&ReducedBand) -> f64| {
-                points.iter().map(|(_, own)| own.bands.get(place).map_or(f64::NAN, of)).collect()
+                points.iter().map(|(_, own)| own.bands.get(index).map_or(f64::NAN, of)).collect()
             };
-            let unresolved = points.iter().map(|(_, own)| own.bands.get(place).is_none_or(|band| band.unresolved));
+            let unresolved = points.iter().map(|(_, own)| own.bands.get(index).is_none_or(|band| band.unresolved));
             let error = BandError {
                 total: column(|band| band.error),
                 unresolved: unresolved.collect(),
                 ..BandError::default()
             };
-            let method = Method::ALL.into_iter().find(|method| method.name() == first.bands[place].method)?;
+            let method = Method::ALL.into_iter().find(|method| method.name() == first.bands[index].method)?;
             Some(Band { method, lower: column(|band| band.lower), upper: column(|band| band.upper), error })
         };
         let output = OutputBounds {

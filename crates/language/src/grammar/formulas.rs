@@ -222,8 +222,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.mentions_formula(node, offset, formula, &kinds);
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;
-            let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
-            self.error(place, mismatch.message, None);
+            let index = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
+            self.error(index, mismatch.message, None);
         }
         kinds.last().copied().unwrap_or(Kind::Any)
     }
@@ -246,9 +246,9 @@ impl<S: SymbolTable> Reader<'_, S> {
         if let Symbol::Sensor { effect, measure } = symbol {
             let measures = match effect.checked_sub(self.model.effects()) {
                 None => self.model.measures(effect),
-                Some(place) => match self.unread.get(place) {
+                Some(index) => match self.unread.get(index) {
                     Some((_, measures)) => measures.clone(),
-                    None => self.declared.measures_of(place - self.unread.len()).to_vec(),
+                    None => self.declared.measures_of(index - self.unread.len()).to_vec(),
                 },
             };
             let found = measures.into_iter().find(|(known, _)| *known == measure && measure.has_unit());

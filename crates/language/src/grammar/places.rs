@@ -39,17 +39,17 @@ impl<S: SymbolTable> Reader<'_, S> {
         let scalar = self.scalar(node, "`body` or `body.point`")?;
         self.mentions_node(Some(NameKind::Body), node);
         let text = &*scalar.name();
-        if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
-            return Some(place);
+        if let Some(index) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
+            return Some(index);
         }
-        if let Some(place) = self.point_of_body(text) {
-            return Some(place);
+        if let Some(index) = self.point_of_body(text) {
+            return Some(index);
         }
         if let Some(body) = self.model.body(text) {
             return Some(PointRef { body, point: None });
         }
-        if let Some(place) = self.model.port(text).and_then(|_| names::place(&self.model, text)) {
-            return Some(place);
+        if let Some(index) = self.model.port(text).and_then(|_| names::place(&self.model, text)) {
+            return Some(index);
         }
         let (name, point) = self.owner(text);
         if self.is_instance(name) && !point.is_empty() {
@@ -69,8 +69,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         } else {
             suggest::help(point, &format!("points of `{name}`"), points)
         };
-        let place = scalar.place_of_name(&node.span, name.len() + 1..text.len());
-        self.error(place, format!("body `{name}` has no point `{}`", clip(point)), help);
+        let index = scalar.place_of_name(&node.span, name.len() + 1..text.len());
+        self.error(index, format!("body `{name}` has no point `{}`", clip(point)), help);
         None
     }
 

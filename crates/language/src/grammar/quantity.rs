@@ -109,7 +109,7 @@ impl Dimension {
 
     /// Of a mark.
     pub fn of_mark(mark: u64) -> Self {
-        let power = |place: u32| i32::from((mark >> (16 * place)) as u16 as i16);
+        let power = |index: u32| i32::from((mark >> (16 * index)) as u16 as i16);
         Self::of(power(3), power(2), power(1), power(0))
     }
 

@@ -124,8 +124,8 @@ fn body_outputs() -> Vec<OutputDocs> {
                 "angular acceleration about z, counter-clockwise",
             ),
             Coordinate::Euler(0) => "Euler parameter: cosine of half the angle of rotation from the ground".to_owned(),
-            Coordinate::Euler(place) => {
-                format!("Euler parameter: {} of the axis times the sine of half the angle", AXES[place - 1])
+            Coordinate::Euler(index) => {
+                format!("Euler parameter: {} of the axis times the sine of half the angle", AXES[index - 1])
             }
         };
         output("body", format!("BODY.{name}"), motion_dimension(coordinate, order).unit(), meaning)

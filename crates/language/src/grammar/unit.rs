@@ -217,9 +217,9 @@ impl UnitParser<'_> {
     }
 
     /// Whether a formula goes on at this place of the text, before an operator or a word.
-    fn ends_before(&self, place: usize) -> bool {
+    fn ends_before(&self, index: usize) -> bool {
         let Some(is_name) = self.is_name else { return false };
-        let rest = &self.text[place..];
+        let rest = &self.text[index..];
         let Some(first) = rest.chars().next() else { return true };
         let operator = matches!(first, '*' | '·' | '⋅' | '/');
         if !(operator || first.is_alphabetic() || first == '°' || first == '(') {
@@ -234,7 +234,7 @@ impl UnitParser<'_> {
                 UnitParser { text: behind, position: 0, depth: self.depth, minutes: false, is_name: None }.power();
             return !(operator && behind.starts_with('(') && group.is_ok());
         }
-        let spaced = operator && self.text[..place].ends_with(' ');
+        let spaced = operator && self.text[..index].ends_with(' ');
         let is_unit = UNITS.iter().any(|(known, ..)| *known == word);
         let is_word = matches!(word, "and" | "or" | "not") || operator && word == "t";
         is_word

@@ -17,14 +17,14 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// What an effect measures that is not in the model; nothing where the name is of something else.
     pub(super) fn unread_measure(&self, name: &str) -> Option<Result<Symbol, NameError>> {
         if let Some(found) = self.declared.measure(name, Sensor::VALUE.name()) {
-            return found.map(|(place, measure)| Ok(self.unread_sensor(self.unread.len() + place, measure)));
+            return found.map(|(index, measure)| Ok(self.unread_sensor(self.unread.len() + index, measure)));
         }
         let (owner, member) = name.rsplit_once('.')?;
         if self.model.body(owner).is_some() || self.model.joint(owner).is_some() {
             return None;
         }
-        if let Some(Some((place, measure))) = self.declared.measure(owner, member) {
-            return Some(Ok(self.unread_sensor(self.unread.len() + place, measure)));
+        if let Some(Some((index, measure))) = self.declared.measure(owner, member) {
+            return Some(Ok(self.unread_sensor(self.unread.len() + index, measure)));
         }
         let unread = self.unread.iter().position(|(known, _)| known == owner)?;
         let measures = &self.unread[unread].1;
@@ -45,8 +45,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         self.unread_outputs.iter().any(|unread| unread == name)
     }
 
-    fn unread_sensor(&self, place: usize, measure: Sensor) -> Symbol {
-        Symbol::Sensor { effect: self.model.effects() + place, measure }
+    fn unread_sensor(&self, index: usize, measure: Sensor) -> Symbol {
+        Symbol::Sensor { effect: self.model.effects() + index, measure }
     }
 
     /// The dimension of what stands in a field, as far as names are known; nothing is reported.

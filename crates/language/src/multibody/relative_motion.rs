@@ -29,7 +29,7 @@ pub struct AxisMotion<'g> {
 /// A coordinate of a joint that moves a child.
 #[derive(Clone, Debug)]
 pub struct DegreeOfFreedom<'g> {
-    /// Its place in q.
+    /// Index in q.
     pub index: usize,
     /// φᵢ for one of it, by rotation.
     pub rotation: Vec<Scalar<'g>>,
@@ -64,7 +64,7 @@ pub struct RelativeMotion<'g> {
 
 impl<'g> RelativeMotion<'g> {
     /// The generalised force of torques about the rotations' axes and forces along the translations', on each
-    /// coordinate, with its place in q.
+    /// coordinate, with its index in q.
     pub fn generalised(
         &self,
         about: Vec<Scalar<'g>>,

@@ -43,12 +43,12 @@ pub(super) fn help(text: &str, at: usize, kind: &ErrorKind) -> Option<String> {
 
 /// Which lines begin in different columns.
 fn columns(text: &str, at: usize) -> Option<String> {
-    let place = |line: &str| line.chars().take_while(|c| *c == ' ').count() + 1;
+    let column = |line: &str| line.chars().take_while(|c| *c == ' ').count() + 1;
     let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
-    let here = place(text[start..].lines().next()?);
+    let here = column(text[start..].lines().next()?);
     let is_content = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
     let (number, above) = text[..start].lines().enumerate().filter(|(_, line)| is_content(line)).last()?;
-    let (number, above) = (number + 1, place(above));
+    let (number, above) = (number + 1, column(above));
     let told = format!("keys of one mapping begin in the same column: here in {here}, in line {number} in {above}");
     (here != above).then_some(told)
 }
@@ -57,8 +57,8 @@ fn columns(text: &str, at: usize) -> Option<String> {
 fn open_quote(text: &str, at: usize) -> Option<String> {
     let lines: Vec<&str> = text[..at].lines().collect();
     let is_open = |line: &str| line.matches('"').count() % 2 == 1 || line.matches('\'').count() % 2 == 1;
-    let place = lines.iter().position(|line| !line.trim_start().starts_with('#') && is_open(line))?;
-    Some(format!("a quote of line {} is not closed", place + 1))
+    let index = lines.iter().position(|line| !line.trim_start().starts_with('#') && is_open(line))?;
+    Some(format!("a quote of line {} is not closed", index + 1))
 }
 
 /// The name with an index in braces, `leg_{i}`, at which the text stops to be YAML.

@@ -55,7 +55,7 @@ impl Diagnostics {
         for diagnostic in self.iter() {
             let key = Habit::of(diagnostic);
             match first.get(&key) {
-                Some(&place) if counts[&key] >= TUNING.occurrences => distinct[place].1.push(diagnostic),
+                Some(&index) if counts[&key] >= TUNING.occurrences => distinct[index].1.push(diagnostic),
                 _ => {
                     first.entry(key).or_insert(distinct.len());
                     distinct.push((diagnostic, Vec::new()));

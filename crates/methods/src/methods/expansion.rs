@@ -55,9 +55,9 @@ impl Expansion<'_> {
         let count = ways.len() * points.len();
         let mut motion = vec![0.0; self.extent.len() * count];
         for (line, values) in expanded.chunks_exact(points.len().max(1)).enumerate() {
-            for (place, moves) in ways.iter().enumerate() {
+            for (index, moves) in ways.iter().enumerate() {
                 let by: f64 = moves.by.iter().filter(|moved| moved.0 == line).map(|moved| moved.1).sum();
-                let into = &mut motion[line * count + place * points.len()..][..points.len()];
+                let into = &mut motion[line * count + index * points.len()..][..points.len()];
                 into.iter_mut().zip(values).for_each(|(into, value)| *into = value + by);
                 for &(_, time) in moves.ahead.iter().filter(|ahead| ahead.0 == line) {
                     let velocities = &expanded[(n + line) * points.len()..][..points.len()];

@@ -154,15 +154,15 @@ impl KeptSurrogate {
         let mut values = vec![f64::NAN; outputs.len() * samples.len()];
         let mut left: Vec<usize> = (0..samples.len()).collect();
         for part in &self.boxes {
-            let holds = |place: &usize| self.boxes.len() == 1 || part.contains(samples[*place].as_ref());
+            let holds = |index: &usize| self.boxes.len() == 1 || part.contains(samples[*index].as_ref());
             let (inside, outside): (Vec<usize>, Vec<usize>) = left.into_iter().partition(holds);
             left = outside;
-            let points = part.points(inside.iter().map(|&place| samples[place].as_ref()));
+            let points = part.points(inside.iter().map(|&index| samples[index].as_ref()));
             let found = part.values(row, outputs, &points, closures);
             for (of_output, found) in
                 values.chunks_exact_mut(samples.len().max(1)).zip(found.chunks_exact(inside.len().max(1)))
             {
-                inside.iter().zip(found).for_each(|(&place, &value)| of_output[place] = value);
+                inside.iter().zip(found).for_each(|(&index, &value)| of_output[index] = value);
             }
         }
         values

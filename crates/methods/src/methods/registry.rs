@@ -65,20 +65,20 @@ pub struct CostCurve {
 pub struct Curve {
     /// Its method.
     pub method: Method,
-    /// Its place among the method's curves.
-    pub place: usize,
+    /// Index among the method's curves.
+    pub index: usize,
 }
 
 impl Curve {
     /// All curves, method by method.
     pub fn all() -> impl Iterator<Item = Self> {
-        let of = |method: Method| (0..method.about().curves.len()).map(move |place| Self { method, place });
+        let of = |method: Method| (0..method.about().curves.len()).map(move |index| Self { method, index });
         Method::ALL.into_iter().flat_map(of)
     }
 
     /// Description.
     pub fn about(self) -> &'static CostCurve {
-        &self.method.about().curves[self.place]
+        &self.method.about().curves[self.index]
     }
 }
 

@@ -55,10 +55,10 @@ impl ValidationTable {
     }
 
     /// Some of the samples.
-    pub fn pick(&self, places: &[usize]) -> Self {
+    pub fn pick(&self, indices: &[usize]) -> Self {
         let lines = self.values.chunks_exact(self.samples);
-        let values = lines.flat_map(|line| places.iter().map(|&place| line[place])).collect();
-        Self { samples: places.len(), values, ..*self }
+        let values = lines.flat_map(|line| indices.iter().map(|&index| line[index])).collect();
+        Self { samples: indices.len(), values, ..*self }
     }
 
     /// One output's values in one row; NaN where it was not reached.
@@ -133,7 +133,7 @@ impl ValidationTable {
         let all: Vec<usize> = (0..self.samples).collect();
         let of = |output: usize| {
             let least = ensemble.rounding(output);
-            let [own, finer] = [self, halved].map(|table| table.span(output, &odd.places, least));
+            let [own, finer] = [self, halved].map(|table| table.span(output, &odd.indices, least));
             let is_error = |finer: f64| finer < CONSERVED * own;
             if is_error(finer) && is_error(odd.table.span(output, &first, least)) {
                 return 0.0;
@@ -148,7 +148,7 @@ impl ValidationTable {
 #[derive(Clone, Debug)]
 pub struct OddSteps {
     /// Numbers of the samples.
-    places: Vec<usize>,
+    indices: Vec<usize>,
     table: ValidationTable,
     /// Length of these steps over that of the schedule's.
     ratio: f64,
@@ -193,18 +193,18 @@ pub struct Validation {
 impl OddSteps {
     /// Simulates the sample nearest to the middle of the box and two at opposite ends.
     fn run(ensembles: Ensembles, points: &[Vec<f64>], whole: bool) -> Result<(Self, Effort), EnsembleError> {
-        let size = |place: &usize| points[*place].iter().map(|xi| xi.abs()).sum::<f64>();
-        let sum = |place: &usize| points[*place].iter().sum::<f64>();
+        let size = |index: &usize| points[*index].iter().map(|xi| xi.abs()).sum::<f64>();
+        let sum = |index: &usize| points[*index].iter().sum::<f64>();
         let all = || 0..points.len();
-        let mut places: Vec<usize> = all().min_by(|a, b| size(a).total_cmp(&size(b))).into_iter().collect();
-        places.extend(all().min_by(|a, b| sum(a).total_cmp(&sum(b))));
-        places.extend(all().max_by(|a, b| sum(a).total_cmp(&sum(b))));
-        places.sort_unstable();
-        places.dedup();
-        let chosen: Vec<Vec<f64>> = places.iter().map(|&place| points[place].clone()).collect();
+        let mut indices: Vec<usize> = all().min_by(|a, b| size(a).total_cmp(&size(b))).into_iter().collect();
+        indices.extend(all().min_by(|a, b| sum(a).total_cmp(&sum(b))));
+        indices.extend(all().max_by(|a, b| sum(a).total_cmp(&sum(b))));
+        indices.sort_unstable();
+        indices.dedup();
+        let chosen: Vec<Vec<f64>> = indices.iter().map(|&index| points[index].clone()).collect();
         let samples = ensembles.direct.domain().samples(&chosen);
         let (table, simulated) = ValidationTable::of(ensembles.odd, &samples, Observed::Outputs, whole)?;
-        Ok((Self { places, table, ratio: ensembles.ratio }, simulated.effort))
+        Ok((Self { indices, table, ratio: ensembles.ratio }, simulated.effort))
     }
 }
 
@@ -242,7 +242,7 @@ impl Validation {
         let mut effort = simulated.effort;
         effort += with_halved_steps.effort;
         effort += with_odd_steps;
-        let simulations = points.len() + first + odd.places.len();
+        let simulations = points.len() + first + odd.indices.len();
         let spans = direct.spans(&halved, &odd, ensemble);
         Ok(Self { points, spread, direct, halved, odd, simulations, effort, simulated, spans })
     }
@@ -261,7 +261,7 @@ impl Validation {
         let samples = ensemble.domain().samples(&points);
         let (halved, simulated) = ValidationTable::of(halved, &samples, Observed::Outputs, true)?;
         let (odd, with_odd_steps) = OddSteps::run(ensembles, &points, true)?;
-        let simulations = points.len() + odd.places.len();
+        let simulations = points.len() + odd.indices.len();
         let spans = direct.spans(&halved, &odd, ensemble);
         let mut effort = simulated.effort;
         effort += with_odd_steps;
@@ -287,8 +287,8 @@ impl Validation {
             let (direct, halved) = (self.direct.at(row, output), self.halved.at(row, output));
             let odd = self.odd.table.at(row, output);
             let mut found = Differences::default();
-            for (&place, odd) in self.odd.places.iter().zip(odd) {
-                let (direct, halved) = (direct[place], halved[place]);
+            for (&index, odd) in self.odd.indices.iter().zip(odd) {
+                let (direct, halved) = (direct[index], halved[index]);
                 found.halved = largest([found.halved, halved - direct]);
                 found.finer = largest([found.finer, odd - halved]);
                 found.all = largest([found.all, odd - direct]);

@@ -191,26 +191,26 @@ fn trapezoidal<'g>(pieces: &mut Vec<Piece<'g>>, u: Scalar<'g>, r: Option<Scalar<
 /// that are dominant, so that it needs no pivots.
 fn set_spline_rates(knots: &mut [Knot]) {
     let last = knots.len() - 1;
-    let widths: Vec<Scalar> = (0..last).map(|place| knots[place + 1][0] - knots[place][0]).collect();
-    let slope = |place: usize| (knots[place + 1][1] - knots[place][1]) / widths[place];
+    let widths: Vec<Scalar> = (0..last).map(|index| knots[index + 1][0] - knots[index][0]).collect();
+    let slope = |index: usize| (knots[index + 1][1] - knots[index][1]) / widths[index];
     // Of each inner knot, the rest of its row: diagonal and right side.
     let mut rows: Vec<(Scalar, Scalar)> = Vec::with_capacity(last);
-    for place in 1..last {
-        let (before, after) = (widths[place - 1], widths[place]);
+    for index in 1..last {
+        let (before, after) = (widths[index - 1], widths[index]);
         let mut diagonal = 2.0 * (before + after);
-        let mut right = 3.0 * (after * slope(place - 1) + before * slope(place));
+        let mut right = 3.0 * (after * slope(index - 1) + before * slope(index));
         if let Some(&(above, right_above)) = rows.last() {
             let factor = after / above;
             // The entry above the diagonal in the row before is its own width before.
-            diagonal -= factor * widths[place - 2];
+            diagonal -= factor * widths[index - 2];
             right -= factor * right_above;
         }
         rows.push((diagonal, right));
     }
     let mut next = knots[last][2];
-    for place in (1..last).rev() {
-        let (diagonal, right) = rows[place - 1];
-        next = (right - widths[place - 1] * next) / diagonal;
-        knots[place][2] = next;
+    for index in (1..last).rev() {
+        let (diagonal, right) = rows[index - 1];
+        next = (right - widths[index - 1] * next) / diagonal;
+        knots[index][2] = next;
     }
 }

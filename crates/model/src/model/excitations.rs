@@ -263,10 +263,10 @@ pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
         let entry = entries.iter().find(|entry| entry.key == joint.name);
         found.extend(excitation.zip(entry).map(|(excitation, entry)| (entry.key_span.clone(), excitation)));
     }
-    for (place, excitation) in found {
+    for (index, excitation) in found {
         let message =
             format!("a joint cannot follow the excitation `{}`: its acceleration is not known", clip(&excitation));
-        reader.error(place, message, "let a force follow it, or a `servo`".to_owned());
+        reader.error(index, message, "let a force follow it, or a `servo`".to_owned());
     }
 }
 

@@ -11,13 +11,13 @@ use crate::syntax::yaml::Entry;
 /// The formula of one of all outputs, with those of outputs above in place of their names. A name of the model is
 /// unchanged. Reports an output that stands further down, and a formula that gets too long.
 pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], formula: Formula) -> Option<Formula> {
-    let place = |name: &str| all.iter().position(|entry| entry.key == name);
-    let own = place(&entry.key);
+    let index = |name: &str| all.iter().position(|entry| entry.key == name);
+    let own = index(&entry.key);
     let mut named: Vec<(&str, &Formula)> = Vec::new();
     for (name, span) in formula.names().filter(|(name, _)| reader.symbol(name).is_none()) {
         if let Some(known) = above(reader, name) {
             named.push((name, &known.formula));
-        } else if let Some(other) = place(name) {
+        } else if let Some(other) = index(name) {
             // Errors of one above are reported there.
             if Some(other) >= own {
                 let message = match Some(other) == own {
@@ -25,8 +25,8 @@ pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], fo
                     false => format!("`{}` is an output that stands further down", clip(name)),
                 };
                 let node = &entry.value;
-                let place = node.scalar().map_or_else(|| node.span.clone(), |text| text.place(&node.span, span));
-                reader.error(place, message, "an output may name those above it".to_owned());
+                let index = node.scalar().map_or_else(|| node.span.clone(), |text| text.place(&node.span, span));
+                reader.error(index, message, "an output may name those above it".to_owned());
             }
             return None;
         }

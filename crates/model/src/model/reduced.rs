@@ -127,7 +127,7 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
         dimension,
         kind,
         sources,
-        places: Vec::new(),
+        outputs: Vec::new(),
         from,
         to,
         of_results,
@@ -280,8 +280,8 @@ impl Comparison {
 pub(super) fn relation(reader: &mut Reader, node: &Node) -> Option<(usize, usize, bool)> {
     let text = &reader.scalar(node, "a comparison")?.text;
     let signs: Vec<usize> =
-        text.char_indices().filter(|(_, c)| matches!(c, '<' | '>')).map(|(place, _)| place).collect();
-    let [place] = signs.as_slice() else {
+        text.char_indices().filter(|(_, c)| matches!(c, '<' | '>')).map(|(index, _)| index).collect();
+    let [index] = signs.as_slice() else {
         let message = format!("`{}` is not a comparison", clip(text));
         reader.error(
             node.span.clone(),
@@ -290,15 +290,15 @@ pub(super) fn relation(reader: &mut Reader, node: &Node) -> Option<(usize, usize
         );
         return None;
     };
-    let length = if text[place + 1..].starts_with('=') { 2 } else { 1 };
-    Some((*place, length, text[*place..].starts_with('<')))
+    let length = if text[index + 1..].starts_with('=') { 2 } else { 1 };
+    Some((*index, length, text[*index..].starts_with('<')))
 }
 
 /// Reads `door.angle > 1.2`.
 pub(super) fn comparison(reader: &mut Reader, node: &Node) -> Option<Comparison> {
-    let (place, length, is_upper) = relation(reader, node)?;
+    let (index, length, is_upper) = relation(reader, node)?;
     let text = &reader.scalar(node, "a comparison")?.text;
-    let sides = [part(reader, node, 0..place), part(reader, node, place + length..text.len())];
+    let sides = [part(reader, node, 0..index), part(reader, node, index + length..text.len())];
     let [left, right] = sides;
     let sides = [left?, right?];
     if let (Some(first), Some(second)) = (sides[0].dimension, sides[1].dimension) {

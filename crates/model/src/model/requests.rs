@@ -142,8 +142,8 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
         {
             let found = parts(reader, &entry).or_else(|| Some(vec![output(reader, &entry, entries)?]));
             found.into_iter().flatten().for_each(|output| add(reader, &entry, output));
-            for place in known..reader.model.outputs.len() {
-                let Output { name, dimension, .. } = reader.model.outputs[place].clone();
+            for index in known..reader.model.outputs.len() {
+                let Output { name, dimension, .. } = reader.model.outputs[index].clone();
                 unit.iter().for_each(|unit| display::read(reader, unit, &name, dimension));
             }
         }

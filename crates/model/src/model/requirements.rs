@@ -199,7 +199,7 @@ fn required(
     }
     let times = (!of_reduced).then_some(times);
     let name = entry.key.clone();
-    Requirement { name, text, unit, display, slacks, places: Vec::new(), times, limits, of_results }
+    Requirement { name, text, unit, display, slacks, outputs: Vec::new(), times, limits, of_results }
 }
 
 /// Names and numbers of a formula.

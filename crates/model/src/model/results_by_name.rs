@@ -115,10 +115,10 @@ pub(super) fn at_frequencies(model: &Description, formula: &Formula) -> Vec<Form
     };
     let named = model.modes.responses.iter().find(is_named);
     let Some(response) = named else { return vec![formula.clone()] };
-    let at = |place: usize| {
+    let at = |index: usize| {
         formula.with_names(|name| {
             let (_, quantity) = name.split_once('.').filter(|_| names_of(&response.name, name))?;
-            Some(Formula::name(&format!("response.{}.{place}.{quantity}", response.name)))
+            Some(Formula::name(&format!("response.{}.{index}.{quantity}", response.name)))
         })
     };
     (0..response.frequencies.len()).map(at).collect()

@@ -156,8 +156,8 @@ fn chosen_columns(reader: &mut Reader, fields: &Fields, header: Option<&Line>) -
     let Some(node) = fields.get("columns") else { return Some([0, 1]) };
     let [x, y] = reader.two(node, "a list of two columns")?.map(|node| {
         let scalar = reader.scalar(node, "the name of a column")?;
-        if let Some(place) = header.and_then(|header| header.cells.iter().position(|cell| cell.text == scalar.text)) {
-            return Some(place);
+        if let Some(index) = header.and_then(|header| header.cells.iter().position(|cell| cell.text == scalar.text)) {
+            return Some(index);
         }
         if let Some(number) = scalar.text.parse::<usize>().ok().filter(|number| *number > 0) {
             return Some(number - 1);

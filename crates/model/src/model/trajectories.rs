@@ -46,8 +46,8 @@ fn trajectory(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
     let has_rates = matches!(timing, "cubic" | "quintic");
     let mut dimension = None;
     let mut points = Vec::with_capacity(nodes.len());
-    for (place, node) in nodes.iter().enumerate() {
-        let at_end = place == 0 || place + 1 == nodes.len();
+    for (index, node) in nodes.iter().enumerate() {
+        let at_end = index == 0 || index + 1 == nodes.len();
         points.push(point(reader, node, has_rates, at_end, &mut dimension)?);
     }
     ascending(reader, &points, nodes)?;

@@ -5,7 +5,7 @@ pub(super) struct Along<'a> {
     /// Values of the part's samples.
     pub values: &'a [f64],
     /// Its number among these.
-    pub place: usize,
+    pub index: usize,
     /// From one sample of the axis to the next.
     pub stride: usize,
     /// Its number along the axis,
@@ -27,8 +27,8 @@ impl Along<'_> {
     /// The value so many samples further; `None` beyond the axis' ends, and in another part of the scan.
     fn value(&self, away: isize) -> Option<f64> {
         let at = self.at.checked_add_signed(away).filter(|&at| at < self.count)?;
-        let place = (self.place + self.stride * at).checked_sub(self.stride * self.at)?;
-        self.values.get(place).copied()
+        let index = (self.index + self.stride * at).checked_sub(self.stride * self.at)?;
+        self.values.get(index).copied()
     }
 
     /// The second difference so many samples further.

@@ -149,8 +149,8 @@ pub(super) fn halve(orders: &[usize], axis: usize, right: &mut [f64], left: &mut
     for (right, left) in right.chunks_exact_mut(block).zip(left.chunks_exact_mut(block)) {
         for level in 0..=n {
             left[level * inner..][..inner].copy_from_slice(&right[..inner]);
-            for place in 0..(n - level) * inner {
-                right[place] = 0.5 * (right[place] + right[place + inner]);
+            for index in 0..(n - level) * inner {
+                right[index] = 0.5 * (right[index] + right[index + inner]);
             }
         }
     }

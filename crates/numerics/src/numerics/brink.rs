@@ -23,10 +23,10 @@ pub fn to_brinks(extents: &mut [Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f
         }
         let middles: Vec<Vec<f64>> = drops.iter().map(|drop| drop.point(drop.middle())).collect();
         let values = evaluate(&middles);
-        for (place, drop) in drops.iter_mut().enumerate() {
-            drop.halve(values[drop.function * middles.len() + place]);
-            let value = &values[drop.function * middles.len() + place..][..1];
-            include(&mut extents[drop.function], &middles[place..=place], value);
+        for (index, drop) in drops.iter_mut().enumerate() {
+            drop.halve(values[drop.function * middles.len() + index]);
+            let value = &values[drop.function * middles.len() + index..][..1];
+            include(&mut extents[drop.function], &middles[index..=index], value);
         }
     }
 }

@@ -90,15 +90,15 @@ pub fn cheapest(
     let mut multipliers = vec![0.0; constraints.len()];
     for _ in 0..ROUNDS {
         let mut moved = 0.0_f64;
-        for (place, constraint) in constraints.iter().enumerate() {
-            let before = multipliers[place];
+        for (index, constraint) in constraints.iter().enumerate() {
+            let before = multipliers[index];
             let mut with = |multiplier: f64| {
-                multipliers[place] = multiplier;
+                multipliers[index] = multiplier;
                 value(constraint, &sizes(&multipliers))
             };
-            let most = most_of[place];
+            let most = most_of[index];
             let found = if most == 0.0 || with(0.0) >= 0.0 { 0.0 } else { root(&mut with, before, most) };
-            multipliers[place] = found;
+            multipliers[index] = found;
             moved = moved.max((found - before).abs() / found.max(before).max(f64::MIN_POSITIVE));
         }
         if moved < SETTLED {

@@ -56,15 +56,15 @@ pub struct Phase<'c> {
 impl Piece {
     fn new(times: &[f64], values: &[f64], rates: &[f64], row: usize) -> Self {
         let first = (row + 1).saturating_sub(BESIDE).min(times.len() - 2 * BESIDE);
-        let of = |place: usize| first + place / 2;
-        let nodes: [f64; TERMS] = std::array::from_fn(|place| times[of(place)]);
-        let mut differences: [f64; TERMS] = std::array::from_fn(|place| values[of(place)]);
+        let of = |index: usize| first + index / 2;
+        let nodes: [f64; TERMS] = std::array::from_fn(|index| times[of(index)]);
+        let mut differences: [f64; TERMS] = std::array::from_fn(|index| values[of(index)]);
         for order in 1..TERMS {
-            for place in (order..TERMS).rev() {
-                differences[place] = if order == 1 && place % 2 == 1 {
-                    rates[of(place)]
+            for index in (order..TERMS).rev() {
+                differences[index] = if order == 1 && index % 2 == 1 {
+                    rates[of(index)]
                 } else {
-                    (differences[place] - differences[place - 1]) / (nodes[place] - nodes[place - order])
+                    (differences[index] - differences[index - 1]) / (nodes[index] - nodes[index - order])
                 };
             }
         }

@@ -97,14 +97,14 @@ impl Design {
         match self {
             Self::Sobol => {
                 let axes: Vec<[u32; BITS as usize]> = (0..k).map(directions).collect();
-                places.map(|place| axes.iter().map(|axis| sobol(axis, place as u32)).collect()).collect()
+                places.map(|index| axes.iter().map(|axis| sobol(axis, index as u32)).collect()).collect()
             }
             Self::LatinHypercube { seed } => {
-                let point = |place: usize| {
+                let point = |index: usize| {
                     let along = |axis: usize| {
                         let key = mixed(seed ^ mixed(axis as u64 + 1));
-                        let cell = permuted(place as u64, count as u64, key);
-                        (cell as f64 + uniform(mixed(key ^ mixed(place as u64)))) / count as f64
+                        let cell = permuted(index as u64, count as u64, key);
+                        (cell as f64 + uniform(mixed(key ^ mixed(index as u64)))) / count as f64
                     };
                     // Rounding must not reach the end.
                     (0..k).map(|axis| along(axis).min(1.0 - f64::EPSILON / 2.0)).collect()
@@ -118,7 +118,7 @@ impl Design {
 /// Direction numbers of an axis: the digits of the point at each power of two.
 fn directions(axis: usize) -> [u32; BITS as usize] {
     let mut numbers = [0; BITS as usize];
-    let Some(&(polynomial, initial)) = axis.checked_sub(1).and_then(|place| DIRECTIONS.get(place)) else {
+    let Some(&(polynomial, initial)) = axis.checked_sub(1).and_then(|index| DIRECTIONS.get(index)) else {
         // Van der Corput's sequence.
         return std::array::from_fn(|bit| 1 << (BITS - 1 - bit as u32));
     };
@@ -137,8 +137,8 @@ fn directions(axis: usize) -> [u32; BITS as usize] {
 }
 
 /// A coordinate of a point, in the order of Gray's code.
-fn sobol(directions: &[u32; BITS as usize], place: u32) -> f64 {
-    let gray = place ^ place >> 1;
+fn sobol(directions: &[u32; BITS as usize], index: u32) -> f64 {
+    let gray = index ^ index >> 1;
     let digits = (0..BITS).filter(|bit| gray >> bit & 1 == 1).fold(0, |digits, bit| digits ^ directions[bit as usize]);
     f64::from(digits) / 4_294_967_296.0
 }
@@ -183,7 +183,7 @@ mod tests {
     fn points_of_sobol_are_those_of_scipy() {
         // scipy.stats.qmc.Sobol(d, scramble=False).random(n), axes 1, 2, 3, 8 and 64 of points 5 and 1000.
         let points = Design::Sobol.points(64, 1001, 0..1001);
-        let at = |place: usize| [0, 1, 2, 7, 63].map(|axis| points[place][axis]);
+        let at = |index: usize| [0, 1, 2, 7, 63].map(|axis| points[index][axis]);
         assert_eq!(points[0], [0.0; 64]);
         assert_eq!(at(5), [0.875, 0.875, 0.125, 0.375, 0.625]);
         assert_eq!(at(1000), [0.2197265625, 0.0966796875, 0.5185546875, 0.8994140625, 0.4462890625]);

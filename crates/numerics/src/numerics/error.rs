@@ -75,10 +75,10 @@ pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
     let direct = &direct[..halved.len()];
     let reach = CARRIES * range.width();
     let of_end = |end: f64| {
-        let distance = |place: &usize| (direct[*place] - end).abs();
+        let distance = |index: &usize| (direct[*index] - end).abs();
         let nearest = (0..direct.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let carriers = (0..direct.len()).filter(|place| distance(place) <= reach).chain(nearest);
-        largest(carriers.map(|place| RICHARDSON * (halved[place] - direct[place])))
+        let carriers = (0..direct.len()).filter(|index| distance(index) <= reach).chain(nearest);
+        largest(carriers.map(|index| RICHARDSON * (halved[index] - direct[index])))
     };
     if range.lower.is_nan() { f64::NAN } else { of_end(range.lower).max(of_end(range.upper)) }
 }

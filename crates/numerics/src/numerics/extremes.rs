@@ -75,10 +75,10 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
             }
         }
         let mut found: Vec<Extent> = searches.iter().map(|search| search.extent(intervals.len())).collect();
-        let beyond = |place: usize| {
-            let range = &found[place].range;
-            let beyond = lines[place].1.iter().map(|&value| range.distance(value)).fold(0.0, f64::max);
-            beyond > least[place].max(BEYOND * range.width())
+        let beyond = |index: usize| {
+            let range = &found[index].range;
+            let beyond = lines[index].1.iter().map(|&value| range.distance(value)).fold(0.0, f64::max);
+            beyond > least[index].max(BEYOND * range.width())
         };
         let doubled: Vec<usize> = intervals.iter().map(|count| 2 * count).collect();
         if (0..found.len()).any(beyond) && has_room(&doubled) {
@@ -199,7 +199,7 @@ impl Search {
         let mut search = Self { ends: Vec::new(), output, settled, omitted: [Vec::new(), Vec::new()] };
         let limits = [settled, settled.max(LEFT * range.width())];
         let end =
-            |place: usize, sign: f64| End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, limits);
+            |index: usize, sign: f64| End::near(output, (&lattice.point(index), &lattice.spacing(index)), sign, limits);
         for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
             if range.lower.is_nan() {
                 search.ends.push(End { best: f64::NAN, found: true, ..end(0, sign) });
@@ -209,7 +209,7 @@ impl Search {
             let mut peaks = lattice.peaks(values, sign);
             // What cannot reach the best is left out. The best itself stays, and comes first.
             peaks.retain(|&(_, height)| height >= best);
-            let is_best = |place: usize| sign * values[place] == best;
+            let is_best = |index: usize| sign * values[index] == best;
             peaks.sort_by(|a, b| is_best(b.0).cmp(&is_best(a.0)).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
             search.ends.extend(peaks.iter().take(CANDIDATES).map(|peak| end(peak.0, sign)));
             omitted.extend(peaks.into_iter().skip(CANDIDATES).rev());
@@ -228,11 +228,11 @@ impl Search {
         let [below, above] = SIGNS.map(|sign| self.best(sign));
         let matters = self.settled.max(LEFT * (below + above));
         let mut more = false;
-        for (place, best) in [below, above].into_iter().enumerate() {
-            let left = &mut self.omitted[place];
+        for (index, best) in [below, above].into_iter().enumerate() {
+            let left = &mut self.omitted[index];
             if left.last().is_some_and(|&(_, height)| height > best + matters) {
                 let taken = left.split_off(left.len().saturating_sub(CANDIDATES));
-                let sign = SIGNS[place];
+                let sign = SIGNS[index];
                 let end = |(at, _): (usize, f64)| {
                     End::near(self.output, (&lattice.point(at), &lattice.spacing(at)), sign, [self.settled, matters])
                 };

@@ -31,28 +31,28 @@ impl Lattice {
     }
 
     pub(super) fn points(&self) -> Vec<Vec<f64>> {
-        (0..self.grid.len()).map(|place| self.grid.sample(place)).collect()
+        (0..self.grid.len()).map(|index| self.grid.sample(index)).collect()
     }
 
-    pub(super) fn point(&self, place: usize) -> Vec<f64> {
-        self.grid.sample(place)
+    pub(super) fn point(&self, index: usize) -> Vec<f64> {
+        self.grid.sample(index)
     }
 
     /// Distances to the neighbours of a point along each axis, the larger of both; near a face not less than some share
     /// of that in the middle.
-    pub(super) fn spacing(&self, place: usize) -> Vec<f64> {
+    pub(super) fn spacing(&self, index: usize) -> Vec<f64> {
         let of_axis = |axis: usize, at: usize| {
             let points = &self.axes[axis];
             let before = at.checked_sub(1).map_or(0.0, |before| points[at] - points[before]);
             let after = points.get(at + 1).map_or(0.0, |after| after - points[at]);
             before.max(after).max(AT_FACE * PI / self.intervals[axis] as f64)
         };
-        self.indices(place).enumerate().map(|(axis, at)| of_axis(axis, at)).collect()
+        self.indices(index).enumerate().map(|(axis, at)| of_axis(axis, at)).collect()
     }
 
     /// Place along each axis.
-    fn indices(&self, place: usize) -> impl Iterator<Item = usize> {
-        self.strides.iter().zip(&self.intervals).map(move |(stride, count)| place / stride % (count + 1))
+    fn indices(&self, index: usize) -> impl Iterator<Item = usize> {
+        self.strides.iter().zip(&self.intervals).map(move |(stride, count)| index / stride % (count + 1))
     }
 
     /// The values at a point and at those one and two further along an axis, mirrored at the faces: two before, before,
@@ -70,9 +70,9 @@ impl Lattice {
     /// Along each axis, how far at most a value is from what those beside it tell: a sixth of the fourth difference.
     pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let mut residuals = vec![0.0_f64; self.intervals.len()];
-        for place in 0..values.len() {
-            for (axis, at) in self.indices(place).enumerate() {
-                residuals[axis] = residuals[axis].max(residual(self.along(values, place, (axis, at))));
+        for index in 0..values.len() {
+            for (axis, at) in self.indices(index).enumerate() {
+                residuals[axis] = residuals[axis].max(residual(self.along(values, index, (axis, at))));
             }
         }
         residuals
@@ -82,16 +82,16 @@ impl Lattice {
     /// each.
     pub(super) fn peaks(&self, values: &[f64], sign: f64) -> Vec<(usize, f64)> {
         let mut peaks = Vec::new();
-        for place in 0..values.len() {
-            let mut height = sign * values[place];
-            let is_peak = self.indices(place).enumerate().all(|(axis, at)| {
-                let line = self.along(values, place, (axis, at));
+        for index in 0..values.len() {
+            let mut height = sign * values[index];
+            let is_peak = self.indices(index).enumerate().all(|(axis, at)| {
+                let line = self.along(values, index, (axis, at));
                 let [_, before, here, after, _] = line;
                 height += (before - 2.0 * here + after).abs() / 8.0 + residual(line);
                 sign * here >= sign * before && sign * here >= sign * after
             });
             if is_peak {
-                peaks.push((place, height));
+                peaks.push((index, height));
             }
         }
         peaks

@@ -170,7 +170,7 @@ fn along_faces(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
 /// From a place with this pull to the peak of the quadratic along the free axes, or up where it has none.
 fn way_up(free: &[usize], pull: &DVector<f64>, bend: &DMatrix<f64>) -> DVector<f64> {
     let own = DMatrix::from_fn(free.len(), free.len(), |a, b| bend[(free[a], free[b])]);
-    let up = DVector::from_fn(free.len(), |place, _| pull[free[place]]);
+    let up = DVector::from_fn(free.len(), |index, _| pull[free[index]]);
     let mut shift = 0.0;
     let solved = loop {
         let shifted = &own + DMatrix::identity(free.len(), free.len()) * shift;

@@ -28,10 +28,10 @@ impl RowSpace {
         let mut open: Vec<usize> = (0..rows.len()).filter(|&row| sizes[row] > 0.0).collect();
         loop {
             let share = |row: usize| norm(&left[row]) / sizes[row];
-            let Some(place) = (0..open.len()).reduce(|a, b| if share(open[b]) > share(open[a]) { b } else { a }) else {
+            let Some(index) = (0..open.len()).reduce(|a, b| if share(open[b]) > share(open[a]) { b } else { a }) else {
                 break;
             };
-            let row = open.remove(place);
+            let row = open.remove(index);
             let mut vector = rows[row].clone();
             let mut part = vec![0.0; space.basis.len() + 1];
             orthogonalise(&mut vector, &space.basis, &mut part);
@@ -55,7 +55,7 @@ impl RowSpace {
 
     /// Basis of the orthogonal complement of all rows: from the unit vectors with the largest remainders.
     fn complete(&mut self, n: usize) {
-        let unit = |place: usize| (0..n).map(|entry| if entry == place { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
+        let unit = |index: usize| (0..n).map(|entry| if entry == index { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
         let mut left: Vec<Vec<f64>> = (0..n).map(unit).collect();
         for vector in &self.basis {
             left.iter_mut().for_each(|other| subtract(other, vector));
@@ -91,11 +91,11 @@ impl RowSpace {
     pub fn multipliers(&self, right: &[f64], rows: usize) -> Vec<f64> {
         let mut along: Vec<f64> = self.basis.iter().map(|vector| dot(vector, right)).collect();
         let mut found = vec![0.0; rows];
-        for place in (0..along.len()).rev() {
-            along[place] /= self.lower[place][place];
-            let value = along[place];
-            (0..place).for_each(|earlier| along[earlier] -= self.lower[place][earlier] * value);
-            found[self.independent[place]] = value;
+        for index in (0..along.len()).rev() {
+            along[index] /= self.lower[index][index];
+            let value = along[index];
+            (0..index).for_each(|earlier| along[earlier] -= self.lower[index][earlier] * value);
+            found[self.independent[index]] = value;
         }
         found
     }
@@ -128,10 +128,10 @@ fn subtract(from: &mut [f64], along: &[f64]) {
 /// Twice; `parts` get the removed components.
 fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>], parts: &mut [f64]) {
     for _ in 0..2 {
-        for (place, along) in basis.iter().enumerate() {
+        for (index, along) in basis.iter().enumerate() {
             let part = dot(vector, along);
             vector.iter_mut().zip(along).for_each(|(entry, along)| *entry -= part * along);
-            if let Some(total) = parts.get_mut(place) {
+            if let Some(total) = parts.get_mut(index) {
                 *total += part;
             }
         }

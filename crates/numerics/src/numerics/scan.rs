@@ -120,9 +120,9 @@ impl Line<'_> {
         }
         // Few samples are so near to an end that it matters how far the response goes beyond them.
         let most = self.most_beyond();
-        for (place, &value) in self.values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+        for (index, &value) in self.values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
             if value - most <= extremes[0].reach || value + most >= extremes[1].reach {
-                let [below, above] = self.beyond(place);
+                let [below, above] = self.beyond(index);
                 include(extremes, [Extreme { value, reach: value - below }, Extreme { value, reach: value + above }]);
             }
         }
@@ -147,16 +147,16 @@ impl Line<'_> {
         1.001 * (sum + self.points.len() as f64 * largest)
     }
 
-    /// How far the response may go below and above the sample at `place`, between it and its neighbours along each
+    /// How far the response may go below and above the sample at `index`, between it and its neighbours along each
     /// axis. Along an axis whose neighbours are in another part of the scan, as far as along the others.
-    fn beyond(&self, place: usize) -> [f64; 2] {
+    fn beyond(&self, index: usize) -> [f64; 2] {
         let Self { first, values, .. } = *self;
         let (mut known, mut largest, mut unknown) = ([0.0; 2], 0.0_f64, 0.0);
         let mut stride = 1;
         for &count in self.points.iter().rev() {
             if count > 2 {
-                let at = (first + place) / stride % count;
-                let along = Along { values, place, stride, at, count };
+                let at = (first + index) / stride % count;
+                let along = Along { values, index, stride, at, count };
                 let smooth = along.smooth();
                 if smooth.is_none() && at > 0 && at + 1 < count {
                     unknown += 1.0;

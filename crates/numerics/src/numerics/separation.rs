@@ -37,7 +37,7 @@ impl Separation {
     pub fn new(dimension: usize) -> Self {
         let mut scattered = spread(dimension, 3 + TRIED);
         let tried = scattered.split_off(3);
-        let [anchor, a, b]: [Vec<f64>; 3] = std::array::from_fn(|place| scattered[place].clone());
+        let [anchor, a, b]: [Vec<f64>; 3] = std::array::from_fn(|index| scattered[index].clone());
         let moved = |moves: &[(usize, f64)]| {
             let mut point = anchor.clone();
             moves.iter().for_each(|&(axis, xi)| point[axis] = xi);
@@ -74,14 +74,14 @@ impl Separation {
         }
         let none = SHARE * (largest - least) + ROUNDING * least.abs().max(largest.abs());
         let mut group: Vec<usize> = (0..self.dimension).collect();
-        let single = |axis: usize, place: usize| values[1 + 2 * axis + place];
+        let single = |axis: usize, index: usize| values[1 + 2 * axis + index];
         let mut matters: Vec<bool> = (0..self.dimension)
-            .map(|axis| (0..2).any(|place| (single(axis, place) - values[0]).abs() > none))
+            .map(|axis| (0..2).any(|index| (single(axis, index) - values[0]).abs() > none))
             .collect();
         let mixed = values[1 + 2 * self.dimension..].chunks_exact(2);
         for ((i, j), mixed) in pairs(self.dimension).zip(mixed) {
-            let defect = |place: usize| mixed[place] - single(i, place) - single(j, 1 - place) + values[0];
-            if (0..2).any(|place| defect(place).abs() > none) {
+            let defect = |index: usize| mixed[index] - single(i, index) - single(j, 1 - index) + values[0];
+            if (0..2).any(|index| defect(index).abs() > none) {
                 let (from, to) = (group[j], group[i]);
                 group.iter_mut().filter(|group| **group == from).for_each(|group| *group = to);
                 (matters[i], matters[j]) = (true, true);
@@ -109,8 +109,8 @@ impl Separation {
         });
         let parts = evaluate(&parts.collect::<Vec<_>>());
         let whole = &values[values.len() - TRIED..];
-        let of_point = |(place, whole): (usize, &f64)| {
-            let own = &parts[place * groups.len()..][..groups.len()];
+        let of_point = |(index, whole): (usize, &f64)| {
+            let own = &parts[index * groups.len()..][..groups.len()];
             (own.iter().map(|part| part - values[0]).sum::<f64>() + values[0] - whole).abs()
         };
         super::error::largest(whole.iter().enumerate().map(of_point))

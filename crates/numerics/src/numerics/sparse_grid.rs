@@ -10,7 +10,7 @@ use super::leja::{MAX_LEVEL, node};
 /// nowhere higher. Each index brings one node and one term, the product of Chebyshev polynomials of its levels'
 /// degrees.
 ///
-/// Nodes are numbered in the order in which they come, so that values at earlier ones keep their places while the set
+/// Nodes are numbered in the order in which they come, so that values at earlier ones keep their indices while the set
 /// grows. Node 0 is the middle of the box.
 #[derive(Clone, Debug)]
 pub struct SparseGrid {

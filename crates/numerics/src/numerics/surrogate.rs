@@ -101,8 +101,8 @@ mod tests {
             let points = [[0.3, -0.7], [1.0, 1.0]];
             let mut found = [0.0; 4];
             surrogate.basis().values(&points, &coefficients, &mut found, &mut SparseWork::default());
-            for (place, xi) in points.iter().enumerate() {
-                assert!((found[place] - f(xi)).abs() < 1e-14 && (found[2 + place] - 2.0 * f(xi)).abs() < 1e-14);
+            for (index, xi) in points.iter().enumerate() {
+                assert!((found[index] - f(xi)).abs() < 1e-14 && (found[2 + index] - 2.0 * f(xi)).abs() < 1e-14);
             }
         }
     }

@@ -25,7 +25,7 @@ pub struct TaylorRange {
 #[derive(Clone, Debug)]
 struct Tensor {
     /// Where each monomial stands in the tensor of powers.
-    places: Vec<usize>,
+    indices: Vec<usize>,
     powers: Vec<f64>,
     conversion: Separable,
     work: Work,
@@ -39,9 +39,9 @@ impl TaylorRange {
         let even = (0..monomials.len()).map(|r| monomials.exponents(r).iter().all(|e| e % 2 == 0)).collect();
         let size = (0..variables).fold(1_usize, |size, _| size.saturating_mul(order + 1));
         let tensor = (size <= MAX_TENSOR).then(|| {
-            let place = |r| monomials.exponents(r).iter().fold(0, |place, e| place * (order + 1) + e);
+            let index = |r| monomials.exponents(r).iter().fold(0, |index, e| index * (order + 1) + e);
             Tensor {
-                places: (0..monomials.len()).map(place).collect(),
+                indices: (0..monomials.len()).map(index).collect(),
                 powers: vec![0.0; size],
                 conversion: Separable::new(vec![chebyshev_of_powers(order); variables]),
                 work: Work::default(),
@@ -66,8 +66,8 @@ impl TaylorRange {
     pub fn enclose(&mut self, coefficients: &[f64]) -> (Range, f64) {
         let terms = self.term_by_term(coefficients);
         let Some(tensor) = &mut self.tensor else { return (terms, f64::NAN) };
-        for (&place, &c) in tensor.places.iter().zip(coefficients) {
-            tensor.powers[place] = c;
+        for (&index, &c) in tensor.indices.iter().zip(coefficients) {
+            tensor.powers[index] = c;
         }
         let Enclosed { outer, attained } =
             tensor.range.enclose(tensor.conversion.apply(&tensor.powers, &mut tensor.work));

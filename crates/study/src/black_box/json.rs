@@ -46,8 +46,8 @@ impl Column {
 pub(super) fn lines(questions: &Questions, first: u64, points: &[&[f64]]) -> String {
     let times = list(&questions.times);
     let mut text = String::new();
-    for (place, point) in points.iter().enumerate() {
-        let (number, left) = (first + place as u64, points.len() - 1 - place);
+    for (index, point) in points.iter().enumerate() {
+        let (number, left) = (first + index as u64, points.len() - 1 - index);
         let parameters: Vec<String> = questions
             .parameters
             .iter()

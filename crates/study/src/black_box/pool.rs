@@ -88,11 +88,11 @@ impl Pool {
             calls.iter().map(|_| Mutex::new(Err(Unanswered::Interrupted))).collect();
         let work = || {
             loop {
-                let place = next.fetch_add(1, Ordering::Relaxed);
-                let Some(call) = calls.get(place) else { return };
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(call) = calls.get(index) else { return };
                 let answered = self.settled(call, interrupted);
                 let is_over = answered.is_err();
-                *locked(&found[place]) = answered;
+                *locked(&found[index]) = answered;
                 if is_over {
                     next.store(calls.len(), Ordering::Relaxed);
                     return;

@@ -96,7 +96,7 @@ pub fn bounds_of_pieces(pieces: &[Piece]) -> Bounds {
     let rows = longest.rows;
     let reach = |row: usize| pieces.iter().filter(move |piece| row < piece.rows);
     let output = |(output, first): (usize, &OutputBounds)| {
-        let band = |place: usize| of_band(pieces, output, place, rows);
+        let band = |index: usize| of_band(pieces, output, index, rows);
         let bands = (0..first.bands.len()).map(band).collect();
         OutputBounds { nominal: first.nominal[..rows].to_vec(), bands, ..first.clone() }
     };
@@ -116,8 +116,8 @@ pub fn bounds_of_pieces(pieces: &[Piece]) -> Bounds {
 }
 
 /// One band of an output over all pieces that have it.
-fn of_band(pieces: &[Piece], output: usize, place: usize, rows: usize) -> Band {
-    let of = |piece: &Piece| piece.bounds.outputs[output].bands.get(place).cloned();
+fn of_band(pieces: &[Piece], output: usize, index: usize, rows: usize) -> Band {
+    let of = |piece: &Piece| piece.bounds.outputs[output].bands.get(index).cloned();
     let bands: Vec<Option<Band>> = pieces.iter().map(of).collect();
     let known = || bands.iter().flatten();
     // The longest piece has the band: the caller counts its bands.

@@ -131,7 +131,7 @@ mod tests {
             let f = |time: f64| (slow * time + phases[0]).sin() + share * (fast * time + phases[1]).cos();
             let rows = 12;
             let found = peak(1.0, rows, f);
-            let fine = (0..=1000 * (rows - 1)).map(|place| f(1e-3 * place as f64)).fold(f64::NEG_INFINITY, f64::max);
+            let fine = (0..=1000 * (rows - 1)).map(|index| f(1e-3 * index as f64)).fold(f64::NEG_INFINITY, f64::max);
             prop_assert!(fine >= found.value - 1e-12 && fine <= found.value + found.error, "{fine} and {found:?}");
         }
     }

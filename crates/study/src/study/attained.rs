@@ -306,8 +306,8 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         };
         let functions: Vec<Derivatives> = all.iter().enumerate().map(derivatives).collect();
         let surfaces = Surfaces::new(&self.study.domain, points, &functions);
-        let followed = all.iter().enumerate().map(|(place, &(row, output))| {
-            let samples: Vec<&Slope> = found.iter().skip(place).step_by(all.len()).collect();
+        let followed = all.iter().enumerate().map(|(index, &(row, output))| {
+            let samples: Vec<&Slope> = found.iter().skip(index).step_by(all.len()).collect();
             FollowedRow { row, output, surface: surfaces.as_ref().map(|surfaces| surfaces.of(&samples)) }
         });
         let followed = followed.collect();

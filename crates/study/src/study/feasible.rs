@@ -127,11 +127,11 @@ pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
     let pieces = cut(study)?;
     let pieces: Vec<Piece> = pieces.into_iter().filter(|piece| !matches!(piece.found, Found::Nothing)).collect();
     let mut ran: Vec<(Ran, &Piece)> = Vec::new();
-    for (place, piece) in pieces.iter().enumerate() {
+    for (index, piece) in pieces.iter().enumerate() {
         if study.interruption.is_asked() && !ran.is_empty() {
             break;
         }
-        let progress = |fraction: f64| (study.progress)((place as f64 + fraction) / pieces.len() as f64);
+        let progress = |fraction: f64| (study.progress)((index as f64 + fraction) / pieces.len() as f64);
         match single::run(&study.over(&piece.domain, &progress)) {
             Ok(found) if found.whole > 0 => ran.push((found, piece)),
             Ok(_) | Err(RunError::Simulation(SimulationError::Assembly { .. })) => (),

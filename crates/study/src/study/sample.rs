@@ -158,12 +158,12 @@ impl Trajectories<'_> {
         let mut stopped = 0;
         let mut values = Vec::new();
         for first in (0..self.chosen.count).step_by(size) {
-            let places = first..(first + size).min(self.chosen.count);
+            let indices = first..(first + size).min(self.chosen.count);
             values.clear();
-            values.resize(places.len() * self.times.len() * width, f64::NAN);
-            let mut stops = vec![false; places.len()];
+            values.resize(indices.len() * self.times.len() * width, f64::NAN);
+            let mut stops = vec![false; indices.len()];
             for (number, motions) in motions.iter().enumerate() {
-                self.chunk(number, motions, places.clone(), &closed, (&mut values, &mut stops))
+                self.chunk(number, motions, indices.clone(), &closed, (&mut values, &mut stops))
                     .map_err(RunError::from)?;
             }
             if motions.iter().any(Ensemble::is_interrupted) {
@@ -210,15 +210,15 @@ impl Trajectories<'_> {
         if deferred { Err(SimulationError::Deferred) } else { Ok(()) }
     }
 
-    /// Samples of a subsystem that can be assembled, with their places from the first; one where it depends on none.
-    fn own(&self, number: usize, places: Range<usize>, closed: &[bool]) -> (Vec<usize>, Vec<Sample>) {
-        let first = places.start;
-        let all = (self.chosen.at)(places.clone());
-        let going: Vec<usize> = places.filter(|&place| !closed[place]).map(|place| place - first).collect();
+    /// Samples of a subsystem that can be assembled, with their indices from the first; one where it depends on none.
+    fn own(&self, number: usize, indices: Range<usize>, closed: &[bool]) -> (Vec<usize>, Vec<Sample>) {
+        let first = indices.start;
+        let all = (self.chosen.at)(indices.clone());
+        let going: Vec<usize> = indices.filter(|&index| !closed[index]).map(|index| index - first).collect();
         let subsystem = &self.subsystems[number];
         let once = self.studies[number].domain.dimension() == 0;
         let simulated = &going[..if once { going.len().min(1) } else { going.len() }];
-        let samples = simulated.iter().map(|&place| of_subsystem(subsystem, &all[place])).collect();
+        let samples = simulated.iter().map(|&index| of_subsystem(subsystem, &all[index])).collect();
         (going, samples)
     }
 
@@ -227,11 +227,11 @@ impl Trajectories<'_> {
         &self,
         number: usize,
         motions: &Motions,
-        places: Range<usize>,
+        indices: Range<usize>,
         closed: &[bool],
         (values, stops): (&mut [f64], &mut [bool]),
     ) -> Result<(), SimulationError> {
-        let (going, samples) = self.own(number, places, closed);
+        let (going, samples) = self.own(number, indices, closed);
         if samples.is_empty() {
             return Ok(());
         }
@@ -241,14 +241,14 @@ impl Trajectories<'_> {
             let lines = rows.flat_map(|row| columns.iter().map(move |column| (row, *column)));
             for ((row, column), of_line) in lines.zip(block.chunks_exact(samples.len())) {
                 let Some(column) = column else { continue };
-                for (place, value) in going.iter().zip(of_line.iter().cycle()) {
-                    values[(place * rows_of_sample + row) * width + column] = *value;
+                for (index, value) in going.iter().zip(of_line.iter().cycle()) {
+                    values[(index * rows_of_sample + row) * width + column] = *value;
                 }
             }
         });
         let simulated = simulated.map_err(simulation_error)?;
-        for (place, sample) in going.iter().zip((0..samples.len()).cycle()) {
-            stops[*place] |= simulated.stopped.contains(&sample);
+        for (index, sample) in going.iter().zip((0..samples.len()).cycle()) {
+            stops[*index] |= simulated.stopped.contains(&sample);
         }
         Ok(())
     }

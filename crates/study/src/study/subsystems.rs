@@ -139,10 +139,10 @@ impl<'a> Whole<'a> {
         let mut outputs: Vec<Option<OutputBounds>> = vec![None; count];
         let mut contributions = vec![Vec::new(); count];
         for done in &ran {
-            for (place, (&output, bounds)) in done.subsystem.outputs.iter().zip(&done.bounds.outputs).enumerate() {
+            for (index, (&output, bounds)) in done.subsystem.outputs.iter().zip(&done.bounds.outputs).enumerate() {
                 let bounds = bounds.padded(times.len());
                 if known {
-                    contributions[output] = self.contributions(done, place, &bounds);
+                    contributions[output] = self.contributions(done, index, &bounds);
                 }
                 outputs[output] = Some(bounds);
             }
@@ -153,7 +153,7 @@ impl<'a> Whole<'a> {
         if known {
             contributions.extend(ran.iter().flat_map(|done| {
                 let own = done.subsystem.outputs.len()..done.bounds.outputs.len();
-                own.map(|place| self.contributions(done, place, &done.bounds.outputs[place])).collect::<Vec<_>>()
+                own.map(|index| self.contributions(done, index, &done.bounds.outputs[index])).collect::<Vec<_>>()
             }));
         }
         let bounds = Bounds {
@@ -196,10 +196,10 @@ impl<'a> Whole<'a> {
     }
 
     /// Every parameter's contribution to an output; zero for one on which its subsystem does not depend.
-    fn contributions(&self, done: &Done, place: usize, bounds: &OutputBounds) -> Vec<Contribution> {
+    fn contributions(&self, done: &Done, index: usize, bounds: &OutputBounds) -> Vec<Contribution> {
         let rows = bounds.nominal.len();
         let unknown = || vec![f64::NAN; rows];
-        let of_subsystem = done.bounds.contributions.get(place);
+        let of_subsystem = done.bounds.contributions.get(index);
         let band = bounds.bands.iter().find(|band| band.method.about().has_sensitivities);
         let contribution = |(number, parameter): (usize, &ParameterSummary)| {
             let name = parameter.name.clone();

@@ -145,8 +145,8 @@ impl<const W: usize, const C: usize> Vectorise for Reverse<'_, W, C> {
 
     #[inline(always)]
     fn run(mut self) {
-        for &place in self.parts.iter().rev() {
-            let Some(Part::Run(op, operands)) = self.tape.part(&mut { place }) else { continue };
+        for &index in self.parts.iter().rev() {
+            let Some(Part::Run(op, operands)) = self.tape.part(&mut { index }) else { continue };
             match op {
                 Op::Copy => self.each::<2>(operands, |_, _, by| [by, 0.0, 0.0]),
                 Op::MulAdd => self.each::<4>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), by]),

@@ -18,7 +18,7 @@ pub struct Ranges {
 #[derive(Clone, Copy, Debug)]
 enum Operation {
     Constant(f64),
-    /// A symbol, by its place in the box.
+    /// Symbol, by its index in the box.
     Symbol(usize),
     /// A symbol that is not in the box.
     Unknown,
@@ -57,7 +57,7 @@ impl Ranges {
         for &operation in &self.operations {
             let value = match operation {
                 Operation::Constant(value) => Interval::point(value),
-                Operation::Symbol(place) => symbols[place],
+                Operation::Symbol(index) => symbols[index],
                 Operation::Unknown => Interval::ENTIRE,
                 Operation::Unary(function, a) => enclosed::unary(function, values[a]),
                 Operation::Square(a) => values[a].square(),

@@ -41,13 +41,13 @@ impl SparseMatrix {
         }
         let entries = &mut self.rows[row];
         match entries.binary_search_by_key(&column, |entry| entry.0) {
-            Ok(place) => {
-                entries[place].1 = graph.add(entries[place].1, value);
-                if graph.is_zero(entries[place].1) {
-                    entries.remove(place);
+            Ok(index) => {
+                entries[index].1 = graph.add(entries[index].1, value);
+                if graph.is_zero(entries[index].1) {
+                    entries.remove(index);
                 }
             }
-            Err(place) => entries.insert(place, (column, value)),
+            Err(index) => entries.insert(index, (column, value)),
         }
     }
 }

@@ -63,12 +63,12 @@ impl Spline {
         if points.len() < 2 {
             return Err(SplineError::TooFew);
         }
-        for (place, &(x, y)) in points.iter().enumerate() {
+        for (index, &(x, y)) in points.iter().enumerate() {
             if !(x.is_finite() && y.is_finite()) {
-                return Err(SplineError::NotFinite(place));
+                return Err(SplineError::NotFinite(index));
             }
-            if place > 0 && x <= points[place - 1].0 {
-                return Err(SplineError::NotAscending(place));
+            if index > 0 && x <= points[index - 1].0 {
+                return Err(SplineError::NotAscending(index));
             }
         }
         if course == Course::Periodic && points[0].1 != points[points.len() - 1].1 {

@@ -262,12 +262,12 @@ impl Formula {
                     Some(other) => {
                         let first = terms.len();
                         terms.extend(
-                            other.terms.iter().map(|(term, _)| (term.moved(|place| place + first), span.clone())),
+                            other.terms.iter().map(|(term, _)| (term.moved(|index| index + first), span.clone())),
                         );
                     }
                     None => terms.push((term.clone(), span.clone())),
                 },
-                _ => terms.push((term.moved(|place| places[place]), span.clone())),
+                _ => terms.push((term.moved(|index| places[index]), span.clone())),
             }
             places.push(terms.len() - 1);
         }

@@ -17,13 +17,13 @@ impl CWriter {
     /// defines.
     pub fn statements(&mut self, tape: &Tape) -> String {
         let mut text = String::new();
-        let (mut place, mut ends) = (0, Vec::new());
+        let (mut index, mut ends) = (0, Vec::new());
         loop {
-            while ends.last() == Some(&place) {
+            while ends.last() == Some(&index) {
                 ends.pop();
                 text += "    }\n";
             }
-            let Some(part) = tape.part(&mut place) else { return text };
+            let Some(part) = tape.part(&mut index) else { return text };
             match part {
                 Part::Region(region) => {
                     let (not, end) = (if region.is_elsewhere() { "" } else { "!" }, region.end());

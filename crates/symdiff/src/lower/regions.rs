@@ -14,7 +14,7 @@ use crate::expr::{Binary, Expr, Graph, Node, Unary};
 /// Regions of fewer nodes than this are not worth the question.
 const LEAST: usize = 4;
 
-/// A region's place among the regions; 0 is no region at all.
+/// Index of a region; 0 is no region at all.
 pub(crate) type RegionId = usize;
 pub(crate) const OUTSIDE: RegionId = 0;
 
@@ -198,22 +198,22 @@ pub(crate) fn order(
 ) -> Vec<usize> {
     let mut missing = vec![0_usize; count];
     let mut users: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for (place, missing) in missing.iter_mut().enumerate() {
-        for needed in needs(place) {
+    for (index, missing) in missing.iter_mut().enumerate() {
+        for needed in needs(index) {
             *missing += 1;
-            users[needed].push(place);
+            users[needed].push(index);
         }
     }
     let mut ready: BTreeMap<RegionId, BinaryHeap<Reverse<usize>>> = BTreeMap::new();
-    for place in (0..count).filter(|&place| missing[place] == 0) {
-        ready.entry(block_of(place)).or_default().push(Reverse(place));
+    for index in (0..count).filter(|&index| missing[index] == 0) {
+        ready.entry(block_of(index)).or_default().push(Reverse(index));
     }
     let mut ordered = Vec::with_capacity(count);
     let mut current = OUTSIDE;
     loop {
-        if let Some(Reverse(place)) = ready.get_mut(&current).and_then(BinaryHeap::pop) {
-            ordered.push(place);
-            for &user in &users[place] {
+        if let Some(Reverse(index)) = ready.get_mut(&current).and_then(BinaryHeap::pop) {
+            ordered.push(index);
+            for &user in &users[index] {
                 missing[user] -= 1;
                 if missing[user] == 0 {
                     ready.entry(block_of(user)).or_default().push(Reverse(user));

@@ -18,8 +18,8 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
     let may_share = |expr: Expr| computed.contains(expr) && !placed.contains(expr) && !register_of.contains(expr);
     let shared = Shared::new(steps, &last_use, may_share);
     let mut last_use_of = NodeTable::new(nodes);
-    for (place, step) in steps.iter().enumerate() {
-        step.read().for_each(|read| last_use_of.insert(shared.root(read), place as u32));
+    for (index, step) in steps.iter().enumerate() {
+        step.read().for_each(|read| last_use_of.insert(shared.root(read), index as u32));
     }
     let mut registers = Registers {
         register_of,
@@ -40,7 +40,7 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
         }
     }
     let mut items = Vec::with_capacity(steps.len() + copies.len());
-    for (place, step) in steps.iter().enumerate() {
+    for (index, step) in steps.iter().enumerate() {
         let instruction = match step {
             Step::Enter(guard) => {
                 items.push(Item::Enter(registers.of(guard.condition), guard.elsewhere));
@@ -50,12 +50,12 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &No
                 items.push(Item::Leave);
                 continue;
             }
-            Step::Do(_) if shared.is_needless(place) => continue,
+            Step::Do(_) if shared.is_needless(index) => continue,
             Step::Do(instruction) => instruction,
         };
         let [a, b, c] = instruction.reads.map(|read| registers.of(read));
         let read = instruction.read().map(|read| shared.root(read));
-        registers.release(read.filter(|&read| last_use_of.get(read) == Some(place as u32)));
+        registers.release(read.filter(|&read| last_use_of.get(read) == Some(index as u32)));
         let [sine, cosine] = instruction.writes;
         if instruction.op == Op::SinCos {
             // The one that is not wanted takes a register for this operation alone.
@@ -148,9 +148,9 @@ impl Uses {
             read_registers: FxHashSet::default(),
             computed: NodeSet::new(nodes),
         };
-        for (place, step) in steps.iter().enumerate() {
+        for (index, step) in steps.iter().enumerate() {
             for read in step.read() {
-                uses.last_use.insert(read, place as u32);
+                uses.last_use.insert(read, index as u32);
                 uses.read_registers.extend(register_of.get(read));
             }
             if let Step::Do(instruction) = step {
@@ -191,19 +191,19 @@ impl Shared {
     fn new(steps: &[Step], last_use: &NodeTable, may_share: impl Fn(Expr) -> bool) -> Self {
         let mut shared = Self::default();
         let mut put_down: FxHashMap<Expr, (Expr, usize)> = FxHashMap::default();
-        for (place, step) in steps.iter().enumerate() {
+        for (index, step) in steps.iter().enumerate() {
             let Step::Do(instruction) = step else { continue };
             let [_, _, last] = instruction.reads;
             match (instruction.op, instruction.writes[0]) {
                 (Op::Copy, Some(copied)) => {
-                    put_down.insert(copied, (last, place));
+                    put_down.insert(copied, (last, index));
                 }
                 (Op::Select, Some(chosen)) => {
                     let Some(&(value, copied_at)) = put_down.get(&last) else { continue };
                     shared.next.insert(last, chosen);
                     // The choice overwrites the value, which nobody may look for afterwards.
                     if may_share(value)
-                        && last_use.get(value).is_some_and(|last| (last as usize) < place)
+                        && last_use.get(value).is_some_and(|last| (last as usize) < index)
                         && !shared.next.contains_key(&value)
                     {
                         shared.next.insert(value, chosen);
@@ -224,7 +224,7 @@ impl Shared {
         expr
     }
 
-    fn is_needless(&self, place: usize) -> bool {
-        self.needless.contains(&place)
+    fn is_needless(&self, index: usize) -> bool {
+        self.needless.contains(&index)
     }
 }

@@ -67,13 +67,13 @@ pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions)
     }
     let writers = pending.iter().enumerate();
     let writer: FxHashMap<Expr, usize> =
-        writers.flat_map(|(place, one)| one.written().map(move |expr| (expr, place))).collect();
-    let needs = |place: usize| {
-        let one: &Pending = &pending[place];
+        writers.flat_map(|(index, one)| one.written().map(move |expr| (expr, index))).collect();
+    let needs = |index: usize| {
+        let one: &Pending = &pending[index];
         let needed = one.read().chain(regions.conditions(one.region));
         needed.filter_map(|expr| writer.get(&expr).copied()).collect()
     };
-    let order = order(regions, pending.len(), |place| pending[place].region, needs);
+    let order = order(regions, pending.len(), |index| pending[index].region, needs);
     let mut steps = Vec::with_capacity(pending.len());
     let mut current = OUTSIDE;
     let mut go_to = |steps: &mut Vec<Step>, region: RegionId| {
@@ -84,7 +84,7 @@ pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions)
     };
     for together in order.chunk_by(|&a, &b| pending[a].region == pending[b].region) {
         go_to(&mut steps, pending[together[0]].region);
-        let together = together.iter().map(|&place| pending[place].clone()).collect();
+        let together = together.iter().map(|&index| pending[index].clone()).collect();
         steps.extend(grouping.group(together).into_iter().map(Step::Do));
     }
     go_to(&mut steps, OUTSIDE);
@@ -103,34 +103,34 @@ impl Grouping {
     fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
         let mut grouped = Vec::with_capacity(pending.len());
         for window in pending.chunks(WINDOW) {
-            for (place, one) in window.iter().enumerate() {
-                one.written().for_each(|expr| self.writer.insert(expr, place as u32));
+            for (index, one) in window.iter().enumerate() {
+                one.written().for_each(|expr| self.writer.insert(expr, index as u32));
             }
             let mut missing = vec![0_usize; window.len()];
             let mut readers: Vec<Vec<usize>> = vec![Vec::new(); window.len()];
-            for (place, instruction) in window.iter().enumerate() {
+            for (index, instruction) in window.iter().enumerate() {
                 for producer in instruction.read().filter_map(|read| self.writer.get(read)) {
-                    missing[place] += 1;
-                    readers[producer as usize].push(place);
+                    missing[index] += 1;
+                    readers[producer as usize].push(index);
                 }
             }
             window.iter().flat_map(Pending::written).for_each(|expr| self.writer.remove(expr));
             let mut ready: Vec<(Op, Vec<usize>)> = Vec::new();
-            let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, place: usize| {
-                let op = window[place].op;
+            let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, index: usize| {
+                let op = window[index].op;
                 match ready.iter_mut().find(|(known, _)| *known == op) {
-                    Some((_, places)) => places.push(place),
-                    None => ready.push((op, vec![place])),
+                    Some((_, places)) => places.push(index),
+                    None => ready.push((op, vec![index])),
                 }
             };
-            (0..window.len()).filter(|&place| missing[place] == 0).for_each(|place| enqueue(&mut ready, place));
+            (0..window.len()).filter(|&index| missing[index] == 0).for_each(|index| enqueue(&mut ready, index));
             while let Some(most) = (0..ready.len()).max_by_key(|&queue| (ready[queue].1.len(), usize::MAX - queue)) {
                 if ready[most].1.is_empty() {
                     break;
                 }
-                for place in std::mem::take(&mut ready[most].1) {
-                    grouped.push(window[place].clone());
-                    for &reader in &readers[place] {
+                for index in std::mem::take(&mut ready[most].1) {
+                    grouped.push(window[index].clone());
+                    for &reader in &readers[index] {
                         missing[reader] -= 1;
                         if missing[reader] == 0 {
                             enqueue(&mut ready, reader);

@@ -56,7 +56,7 @@ impl Operands {
     #[inline(always)]
     pub(crate) fn of(registers: &[u32]) -> Self {
         let a = registers[1];
-        let or_a = |place: usize| registers.get(place).copied().unwrap_or(a);
+        let or_a = |index: usize| registers.get(index).copied().unwrap_or(a);
         Self { a, b: or_a(2), c: or_a(3), d: registers[0] }
     }
 }
@@ -99,9 +99,9 @@ impl Region {
 
     /// On to its end where nobody wants it.
     #[inline(always)]
-    pub fn skip_unless(&self, wanted: bool, place: &mut usize) {
+    pub fn skip_unless(&self, wanted: bool, index: &mut usize) {
         if !wanted {
-            *place = self.end;
+            *index = self.end;
         }
     }
 }
@@ -194,11 +194,11 @@ impl Tape {
 
     /// Number of instructions that are run where all conditions are positive, or where none is.
     pub fn len_where(&self, positive: bool) -> usize {
-        let (mut place, mut count) = (0, 0);
-        while let Some(part) = self.part(&mut place) {
+        let (mut index, mut count) = (0, 0);
+        while let Some(part) = self.part(&mut index) {
             match part {
                 Part::Run(op, operands) => count += operands.len() / op.arity(),
-                Part::Region(region) => region.skip_unless(region.wants(if positive { 1.0 } else { 0.0 }), &mut place),
+                Part::Region(region) => region.skip_unless(region.wants(if positive { 1.0 } else { 0.0 }), &mut index),
             }
         }
         count
@@ -230,9 +230,9 @@ impl Tape {
 
     /// What stands at a place, which moves on to the next.
     #[inline(always)]
-    pub(crate) fn part(&self, place: &mut usize) -> Option<Part<'_>> {
-        let piece = self.pieces.get(*place)?;
-        *place += 1;
+    pub(crate) fn part(&self, index: &mut usize) -> Option<Part<'_>> {
+        let piece = self.pieces.get(*index)?;
+        *index += 1;
         Some(match piece {
             Piece::Run { op, start, end } => Part::Run(*op, &self.operands[*start..*end]),
             Piece::Region(region) => Part::Region(region),

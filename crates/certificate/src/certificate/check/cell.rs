@@ -12,26 +12,26 @@ use super::super::{Equations, ProvenCell};
 use super::evaluation::{Given, State, evaluate};
 use crate::numerics::larger;
 
-/// Equations among some unknowns: rows of the list, and derivatives' places of the unknowns.
+/// Equations among some unknowns: rows of the list, and indices of the unknowns' derivatives.
 pub(super) struct Unknowns<'u> {
     pub equations: &'u Equations,
     pub rows: &'u [usize],
     pub needed: &'u [usize],
-    pub places: Vec<usize>,
+    pub indices: Vec<usize>,
 }
 
 impl Unknowns<'_> {
     /// Values of the rows over a state, and their derivatives by these places.
-    fn linearised(&self, given: &Given, state: &State, places: &[usize]) -> (Models, Models) {
+    fn linearised(&self, given: &Given, state: &State, indices: &[usize]) -> (Models, Models) {
         let space = given.space;
         let found = evaluate(self.equations, self.needed, given, state, true);
         let (mut values, mut slopes) =
-            (Models::zero(space, self.rows.len(), 1), Models::zero(space, self.rows.len(), places.len()));
+            (Models::zero(space, self.rows.len(), 1), Models::zero(space, self.rows.len(), indices.len()));
         for (row, &node) in self.rows.iter().enumerate() {
             let Some(own) = &found[node] else { continue };
             values.at_mut(row, 0).copy_from_slice(&own.value);
-            for (column, place) in places.iter().enumerate() {
-                if let Some(slope) = own.by.get(place) {
+            for (column, index) in indices.iter().enumerate() {
+                if let Some(slope) = own.by.get(index) {
                     slopes.at_mut(row, column).copy_from_slice(slope);
                 }
             }
@@ -50,7 +50,7 @@ impl Unknowns<'_> {
 
     /// Approximate inverse of the derivatives by the unknowns about a state without radii.
     pub fn inverse(&self, given: &Given, about: &State) -> Option<Models> {
-        let matrix = self.linearised(given, about, &self.places).1.without_radii();
+        let matrix = self.linearised(given, about, &self.indices).1.without_radii();
         let mut inverse = matrix.inverse_at_centre(given.space)?;
         inverse.refine_inverse_of(given.space, &matrix).then(|| inverse.without_radii())
     }
@@ -62,7 +62,7 @@ impl Unknowns<'_> {
         let missed = inverse.bounds(space).times(self.linearised(given, state, &[]).0.bounds(space).entries());
         let spread = krawczyk::enclose(missed.clone(), |y| {
             self.set_radii(space, state, Some(y));
-            let slopes = self.linearised(given, state, &self.places).1;
+            let slopes = self.linearised(given, state, &self.indices).1;
             Image {
                 missed: missed.clone(),
                 contraction: inverse.times(space, &slopes).off_identity(space).bounds(space),
@@ -74,14 +74,14 @@ impl Unknowns<'_> {
 
     fn set_radii(&self, space: &ModelSpace, state: &mut State, radii: Option<&[f64]>) {
         let n = self.equations.coordinates;
-        for (index, &place) in self.places.iter().enumerate() {
-            let (models, row) = match place / n.max(1) {
-                0 => (&mut state.q, place),
-                1 => (&mut state.v, place - n),
-                2 => (&mut state.w, place - 2 * n),
-                _ => (&mut state.lambda, place - 3 * n),
+        for (number, &index) in self.indices.iter().enumerate() {
+            let (models, row) = match index / n.max(1) {
+                0 => (&mut state.q, index),
+                1 => (&mut state.v, index - n),
+                2 => (&mut state.w, index - 2 * n),
+                _ => (&mut state.lambda, index - 3 * n),
             };
-            models.at_mut(row, 0)[space.size() - 1] = radii.map_or(0.0, |radii| radii[index]);
+            models.at_mut(row, 0)[space.size() - 1] = radii.map_or(0.0, |radii| radii[number]);
         }
     }
 }
@@ -119,7 +119,7 @@ pub(super) struct Passed {
 /// Why a cell is not proven.
 pub(super) enum Open {
     Irregular,
-    Leaves { place: usize, reached: f64, tube: f64 },
+    Leaves { index: usize, reached: f64, tube: f64 },
     Transition,
 }
 
@@ -155,10 +155,10 @@ impl Passed {
         let duration = 2.0 * cell.half;
         let reached = bound(&sizes, &entry, duration, &defect).unwrap_or_else(|| vec![f64::INFINITY; 2 * n]);
         // Written so that NaN is no proof.
-        if let Some(place) =
+        if let Some(index) =
             (0..2 * n).find(|&row| reached[row].partial_cmp(&proven.tube[row]) != Some(std::cmp::Ordering::Less))
         {
-            return Err(Open::Leaves { place, reached: reached[place], tube: proven.tube[place] });
+            return Err(Open::Leaves { index, reached: reached[index], tube: proven.tube[index] });
         }
         let flow = Flow::new(coarse, cell, &linear.slopes, &sizes, &jump, &defect).ok_or(Open::Transition)?;
         let end = (matrix_at(fine, &state.q, 1.0), matrix_at(fine, &state.v, 1.0));
@@ -231,9 +231,9 @@ fn over_tube(motion: &Unknowns, given: &Given, fine: &State, tube: &[f64], resid
             *radius = larger(*radius, tails.at(row, 0)[last]);
         }
     }
-    let places: Vec<usize> = motion.places.iter().copied().chain(0..2 * n).collect();
-    let (_, all) = motion.linearised(given, &state, &places);
-    let unknowns = motion.places.len();
+    let indices: Vec<usize> = motion.indices.iter().copied().chain(0..2 * n).collect();
+    let (_, all) = motion.linearised(given, &state, &indices);
+    let unknowns = motion.indices.len();
     let by_unknown = all.part(space, 0..unknowns, 0..unknowns);
     let by_state = all.part(space, 0..unknowns, unknowns..unknowns + 2 * n);
     Accelerations::new(space, &inverse, &by_unknown, &by_state, residual)

@@ -125,7 +125,7 @@ impl Arithmetic<'_> {
             // No derivative shows a jump, and the others have no enclosure.
             _ => return self.unknown(),
         };
-        let by = a.by.iter().map(|(&place, own)| (place, self.binary(Binary::Mul, &slope, own))).collect();
+        let by = a.by.iter().map(|(&index, own)| (index, self.binary(Binary::Mul, &slope, own))).collect();
         Dual { value, by }
     }
 
@@ -138,44 +138,44 @@ impl Arithmetic<'_> {
         match function {
             Binary::Add | Binary::Sub => {
                 by.clone_from(&a.by);
-                for (&place, own) in &b.by {
+                for (&index, own) in &b.by {
                     let signed = if function == Binary::Add { own.clone() } else { self.unary(Unary::Neg, own) };
-                    self.add(&mut by, place, signed);
+                    self.add(&mut by, index, signed);
                 }
             }
             Binary::Mul => {
                 for (from, other) in [(a, b), (b, a)] {
-                    for (&place, own) in &from.by {
+                    for (&index, own) in &from.by {
                         let product = self.binary(Binary::Mul, own, &other.value);
-                        self.add(&mut by, place, product);
+                        self.add(&mut by, index, product);
                     }
                 }
             }
             Binary::Div => {
                 // (a/b)' = (a' − (a/b) b') / b.
                 by.clone_from(&a.by);
-                for (&place, own) in &b.by {
+                for (&index, own) in &b.by {
                     let product = self.binary(Binary::Mul, &value, own);
                     let product = self.unary(Unary::Neg, &product);
-                    self.add(&mut by, place, product);
+                    self.add(&mut by, index, product);
                 }
                 by.values_mut().for_each(|own| *own = self.binary(Binary::Div, own, &b.value));
             }
             // Nothing is known of them where the condition has no sign.
             Binary::Select | Binary::SelectElse => {
-                by.extend(b.by.iter().map(|(&place, own)| (place, self.binary(function, &a.value, own))));
+                by.extend(b.by.iter().map(|(&index, own)| (index, self.binary(function, &a.value, own))));
             }
             _ => return self.unknown(),
         }
         Dual { value, by }
     }
 
-    fn add(&mut self, by: &mut BTreeMap<usize, Vec<f64>>, place: usize, term: Vec<f64>) {
-        let sum = match by.get(&place) {
+    fn add(&mut self, by: &mut BTreeMap<usize, Vec<f64>>, index: usize, term: Vec<f64>) {
+        let sum = match by.get(&index) {
             Some(known) => self.binary(Binary::Add, known, &term),
             None => term,
         };
-        by.insert(place, sum);
+        by.insert(index, sum);
     }
 }
 
@@ -192,16 +192,16 @@ pub(super) fn evaluate(
     let n = equations.coordinates;
     let mut found: Vec<Option<Dual>> = vec![None; equations.nodes.len()];
     let constant = |value: &[f64]| Dual { value: value.to_vec(), by: BTreeMap::new() };
-    let variable = |models: &Models, row: usize, place: usize, arithmetic: &Arithmetic| {
+    let variable = |models: &Models, row: usize, index: usize, arithmetic: &Arithmetic| {
         let mut one = arithmetic.new_model();
         one[0] = 1.0;
-        let by = if derive { BTreeMap::from([(place, one)]) } else { BTreeMap::new() };
+        let by = if derive { BTreeMap::from([(index, one)]) } else { BTreeMap::new() };
         Dual { value: models.at(row, 0).to_vec(), by }
     };
-    for &place in needed {
+    for &index in needed {
         // Children are needed too, and come first.
         let of = |child: usize| found[child].as_ref().map_or_else(|| arithmetic.unknown(), Dual::clone);
-        let value = match equations.nodes[place] {
+        let value = match equations.nodes[index] {
             Node::Number(number) => {
                 let mut value = arithmetic.new_model();
                 value[0] = number;
@@ -223,7 +223,7 @@ pub(super) fn evaluate(
                 arithmetic.of_binary(function, &a, &b)
             }
         };
-        found[place] = Some(value);
+        found[index] = Some(value);
     }
     found
 }

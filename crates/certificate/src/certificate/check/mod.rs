@@ -163,8 +163,8 @@ fn check_piece(own: &Certified, piece: &Piece) -> Result<(), String> {
     let parameters = [parameters(&fine.cell, 1), parameters(&coarse.cell, 1), parameters(&fine.box_of, 0)];
     let shapes = Shapes { fine, coarse, parameters };
     let needed = equations.needed(&equations.motion);
-    let places = (2 * n..3 * n + m).collect();
-    let motion = Unknowns { equations, rows: &equations.motion, needed: &needed, places };
+    let indices = (2 * n..3 * n + m).collect();
+    let motion = Unknowns { equations, rows: &equations.motion, needed: &needed, indices };
     let of_outputs = equations.needed(&equations.outputs);
     let ranges = Ranges::new(&shapes.fine.box_of);
 
@@ -195,8 +195,8 @@ fn said(open: &Open, n: usize) -> String {
     match open {
         Open::Irregular => "no accelerations are proven over the tube".to_owned(),
         Open::Transition => "how distances grow is not proven".to_owned(),
-        Open::Leaves { place, reached, tube } => {
-            let (kind, number) = if *place < n { ("position", place) } else { ("velocity", &(place - n)) };
+        Open::Leaves { index, reached, tube } => {
+            let (kind, number) = if *index < n { ("position", index) } else { ("velocity", &(index - n)) };
             format!("{kind} {number} may be {reached:.3e} from its polynomials, and the radius is {tube:.3e}")
         }
     }
@@ -222,8 +222,8 @@ fn started(own: &Certified, piece: &Piece, shapes: &Shapes) -> Result<((Models, 
     let given = Given { space, time: &time, parameters: &shapes.parameters[2] };
     for (level, rows) in equations.start.iter().enumerate() {
         let needed = equations.needed(rows);
-        let places = (level * n..(level + 1) * n).collect();
-        let unknowns = Unknowns { equations, rows, needed: &needed, places };
+        let indices = (level * n..(level + 1) * n).collect();
+        let unknowns = Unknowns { equations, rows, needed: &needed, indices };
         let proven =
             unknowns.inverse(&given, &state).and_then(|inverse| unknowns.enclose(&given, &mut state, &inverse));
         let what = ["positions", "velocities"][level];

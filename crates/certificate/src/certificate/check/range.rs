@@ -66,10 +66,10 @@ impl<'r> Ranges<'r> {
             // C(power, j) side^(power − j) / 2^power, exact, from j = power down.
             let (mut to, mut factor) = (Some(r), 0.5_f64.powi(power as i32));
             let mut left = power;
-            while let Some(place) = to {
-                half[place] += c * factor;
+            while let Some(index) = to {
+                half[index] += c * factor;
                 factor = factor * side * left as f64 / (power - left + 1) as f64;
-                (to, left) = (self.lowered[axis][place], left.saturating_sub(1));
+                (to, left) = (self.lowered[axis][index], left.saturating_sub(1));
             }
         }
         // A sum of at most order + 1 terms, of which each is rounded once.

@@ -137,10 +137,10 @@ fn inertia_of_beams_of_space_agrees_with_lagrange() {
         }
         let q = state.list(&system.q);
         for body in 0..2 {
-            let place = spatial::SIZE * body;
-            let turning = spatial::torque(&q[place + 3..place + spatial::SIZE], &off[place + 3..place + spatial::SIZE]);
+            let index = spatial::SIZE * body;
+            let turning = spatial::torque(&q[index + 3..index + spatial::SIZE], &off[index + 3..index + spatial::SIZE]);
             let largest =
-                off[place..place + 3].iter().chain(turning.iter()).fold(0.0_f64, |all, one| all.max(one.abs()));
+                off[index..index + 3].iter().chain(turning.iter()).fold(0.0_f64, |all, one| all.max(one.abs()));
             assert!(largest < 1e-10, "body {body} off by {largest:e}");
         }
     }

@@ -45,8 +45,8 @@ fn reactions_are_what_the_multipliers_do() {
         if let JointKind::Revolute(_) | JointKind::Fixed(_) = kind {
             // Points coincide, so that action and reaction do.
             let gap = state.values(&system.graph, &system.constraint[..2]);
-            for (place, gap) in system.q[3..5].iter().zip(gap) {
-                *state.0.get_mut(place).unwrap() += gap;
+            for (index, gap) in system.q[3..5].iter().zip(gap) {
+                *state.0.get_mut(index).unwrap() += gap;
             }
         }
         let pull: Vec<f64> = constraint_forces(&mut system, &state).iter().map(|force| -force).collect();

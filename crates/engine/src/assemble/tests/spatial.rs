@@ -76,7 +76,7 @@ fn velocity_and_acceleration_are_the_derivatives_of_position() {
     let chains = ["x vx", "vx ax", "y vy", "vy ay", "z vz", "vz az"].map(|pair| names("a.P", pair));
     let turning = ["omega.x alpha.x", "omega.y alpha.y", "omega.z alpha.z"].map(|pair| names("a", pair));
     for link in chains.iter().chain(&turning) {
-        let [low, high] = [0, 1].map(|place| output(&system, &link[place]));
+        let [low, high] = [0, 1].map(|index| output(&system, &link[index]));
         let slope = (after.value(&system.graph, low) - before.value(&system.graph, low)) / (2.0 * h);
         assert_close(slope, state.value(&system.graph, high), 1e-8);
     }
@@ -245,9 +245,9 @@ fn reactions_are_what_the_multipliers_do() {
         let force = values(&system, &state, &names("j", "force.x force.y force.z"));
         let turn = values(&system, &state, &names("j", "torque.x torque.y torque.z"));
         let on = |body: usize| {
-            let place = SIZE * body;
-            let force = Vector3::from_column_slice(&pull[place..place + 3]);
-            (force, torque(&q[place + 3..place + 7], &pull[place + 3..place + 7]))
+            let index = SIZE * body;
+            let force = Vector3::from_column_slice(&pull[index..index + 3]);
+            (force, torque(&q[index + 3..index + 7], &pull[index + 3..index + 7]))
         };
         let origin = |body: usize| Vector3::from_column_slice(&q[SIZE * body..SIZE * body + 3]);
         let ((first, first_turn), (second, second_turn)) = (on(0), on(1));
@@ -356,12 +356,12 @@ fn a_bushing_damps_relative_motion_only() {
     let omega = Vector3::new(0.4, -0.9, 1.3);
     let q = state.list(&system.q);
     for body in 0..2 {
-        let place = SIZE * body;
-        let speed = omega.cross(&Vector3::from_column_slice(&q[place..place + 3]));
-        let p = Quaternion::new(q[place + 3], q[place + 4], q[place + 5], q[place + 6]);
+        let index = SIZE * body;
+        let speed = omega.cross(&Vector3::from_column_slice(&q[index..index + 3]));
+        let p = Quaternion::new(q[index + 3], q[index + 4], q[index + 5], q[index + 6]);
         let rate = Quaternion::from_imag(omega) * p * 0.5;
         let rates = speed.iter().copied().chain([rate.w, rate.i, rate.j, rate.k]);
-        for (symbol, value) in system.v[place..place + SIZE].iter().zip(rates) {
+        for (symbol, value) in system.v[index..index + SIZE].iter().zip(rates) {
             state.0.insert(*symbol, value);
         }
     }

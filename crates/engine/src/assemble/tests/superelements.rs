@@ -97,9 +97,9 @@ fn inertia_agrees_with_lagrange() {
             if is_spatial {
                 let q = state.list(&system.q);
                 for body in 0..3 {
-                    let place = spatial::SIZE * body;
-                    let range = place + 3..place + spatial::SIZE;
-                    left.extend(&off[place..place + 3]);
+                    let index = spatial::SIZE * body;
+                    let range = index + 3..index + spatial::SIZE;
+                    left.extend(&off[index..index + 3]);
                     left.extend(spatial::torque(&q[range.clone()], &off[range]).iter());
                 }
             } else {

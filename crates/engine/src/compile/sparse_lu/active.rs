@@ -113,11 +113,11 @@ impl Active {
         if row != column {
             return mirrored;
         }
-        let same = |&place: &usize| upper.get(&lower[place].0).is_some_and(|above| above.value == entries[place].value);
-        let symmetric: Vec<(usize, Expr)> = (0..lower.len()).filter(same).map(|place| lower[place]).collect();
+        let same = |&index: &usize| upper.get(&lower[index].0).is_some_and(|above| above.value == entries[index].value);
+        let symmetric: Vec<(usize, Expr)> = (0..lower.len()).filter(same).map(|index| lower[index]).collect();
         let value = |row: usize, column: usize| self.rows[row].get(&column).map(|entry| entry.value);
-        for (place, &(other, _)) in symmetric.iter().enumerate() {
-            for &(right, of_mirror) in &symmetric[..place] {
+        for (index, &(other, _)) in symmetric.iter().enumerate() {
+            for &(right, of_mirror) in &symmetric[..index] {
                 if value(other, right) == value(right, other) {
                     mirrored.insert((other, right), of_mirror);
                 }

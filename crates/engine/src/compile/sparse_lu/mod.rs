@@ -76,8 +76,8 @@ mod tests {
             assert!((product - b).abs() < 1e-13);
         }
         let pivots: Vec<(usize, usize)> = factors.pivots.iter().map(|pivot| (pivot.row, pivot.column)).collect();
-        let place = pivots.iter().position(|&pivot| pivot == (2, 4)).unwrap();
-        assert_eq!(pivots[place + 1], (4, 2), "{pivots:?}");
+        let index = pivots.iter().position(|&pivot| pivot == (2, 4)).unwrap();
+        assert_eq!(pivots[index + 1], (4, 2), "{pivots:?}");
     }
 
     #[test]

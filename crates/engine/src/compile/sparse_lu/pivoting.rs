@@ -190,14 +190,14 @@ impl<'m> PivotSearch<'m> {
     /// The diagonal entries in the sparsest columns and rows.
     fn diagonals(&self, active: &Active, searched: usize) -> Diagonals {
         let columns = active.sparsest_columns.iter().take(searched);
-        let mut places: Vec<usize> =
+        let mut indices: Vec<usize> =
             columns.chain(active.sparsest_rows.iter().take(searched)).map(|key| key.2).collect();
-        places.sort_unstable();
-        places.dedup();
-        places.retain(|place| active.rows[*place].contains_key(place));
+        indices.sort_unstable();
+        indices.dedup();
+        indices.retain(|index| active.rows[*index].contains_key(index));
         let mut by_cost: Vec<(usize, usize, Option<f64>)> =
-            places.into_iter().map(|place| (self.cost(active, place, place), place, None)).collect();
-        by_cost.sort_unstable_by_key(|&(cost, place, _)| (cost, place));
+            indices.into_iter().map(|index| (self.cost(active, index, index), index, None)).collect();
+        by_cost.sort_unstable_by_key(|&(cost, index, _)| (cost, index));
         Diagonals { by_cost }
     }
 
@@ -289,9 +289,9 @@ struct Diagonals {
 impl Diagonals {
     /// The cheapest that is large enough.
     fn first_of(&mut self, active: &Active, threshold: f64, singular: f64) -> Option<(usize, usize)> {
-        for (_, place, size) in &mut self.by_cost {
-            if *size.get_or_insert_with(|| size_against_column(active, *place, *place, singular)) >= threshold {
-                return Some((*place, *place));
+        for (_, index, size) in &mut self.by_cost {
+            if *size.get_or_insert_with(|| size_against_column(active, *index, *index, singular)) >= threshold {
+                return Some((*index, *index));
             }
         }
         None

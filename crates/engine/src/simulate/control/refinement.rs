@@ -22,10 +22,10 @@ fn divided_between(ends: &[f64], kept: &[usize], others: impl Fn(usize) -> usize
     let mut divisions = Vec::new();
     let mut still = Vec::with_capacity(kept.len());
     let mut times = vec![0.0];
-    for (place, &end) in ends.iter().enumerate() {
+    for (index, &end) in ends.iter().enumerate() {
         times.push(end);
-        let is_kept = kept.binary_search(&place).is_ok();
-        if is_kept || place + 1 == ends.len() {
+        let is_kept = kept.binary_search(&index).is_ok();
+        if is_kept || index + 1 == ends.len() {
             divisions.extend(divided(&times, others(times.len() - 1)));
             if is_kept {
                 still.push(divisions.len() - 1);

@@ -23,20 +23,20 @@ const MOST: usize = 400;
 /// all can hold.
 pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> Option<String> {
     let mut state = near.to_vec();
-    for (place, register) in start.layout.q.clone().enumerate() {
+    for (index, register) in start.layout.q.clone().enumerate() {
         // Additive recurrence: evenly spread, the same on every machine.
-        let direction = 2.0 * ((place + 1) as f64 * 0.618_033_988_749_895).fract() - 1.0;
-        state[register] += APART * system.coordinates[place].scale * direction;
+        let direction = 2.0 * ((index + 1) as f64 * 0.618_033_988_749_895).fract() - 1.0;
+        state[register] += APART * system.coordinates[index].scale * direction;
     }
-    let is_given = |place: usize| system.start.position[place].is_some();
+    let is_given = |index: usize| system.start.position[index].is_some();
     let rows: Vec<Vec<(usize, f64)>> = jacobian_rows(system, start, &state)
         .into_iter()
-        .map(|row| row.into_iter().filter(|(place, _)| !is_given(*place)).collect())
+        .map(|row| row.into_iter().filter(|(index, _)| !is_given(*index)).collect())
         .collect();
     let dependent = dependent_rows(&rows, DEPENDENT);
     let &first = dependent.first()?;
     let (coordinates, constraints) = (system.q.len(), system.lambda.len());
-    let given = match (0..coordinates).filter(|&place| is_given(place)).count() {
+    let given = match (0..coordinates).filter(|&index| is_given(index)).count() {
         0 => String::new(),
         given => format!(" ({given} given by `initial`)"),
     };
@@ -54,7 +54,7 @@ pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> 
 fn who_fixes(system: &System, rows: &[Vec<(usize, f64)>], constraint: usize) -> String {
     let dense = |row: &[(usize, f64)]| {
         let mut vector = DVector::zeros(system.q.len());
-        row.iter().for_each(|&(place, value)| vector[place] += value);
+        row.iter().for_each(|&(index, value)| vector[index] += value);
         vector
     };
     let others: Vec<usize> = (0..constraint).collect();

@@ -36,7 +36,7 @@ pub fn undetermined_outputs(
         derivatives.entries().map(|(output, constraint, derivative)| ((output, constraint), derivative)).unzip();
     let numbers = graph.evaluate(&entries, |symbol| values.get(&symbol).copied().unwrap_or(0.0));
     let mut gradient = DMatrix::zeros(outputs.len(), system.lambda.len());
-    places.into_iter().zip(numbers).for_each(|(place, number)| gradient[place] = number);
+    places.into_iter().zip(numbers).for_each(|(index, number)| gradient[index] = number);
     let along = &gradient * shifts;
     let depends = |output: &usize| along.row(*output).norm() > NEGLIGIBLE * gradient.row(*output).norm();
     (0..outputs.len()).filter(depends).map(OutputId::new).collect()
@@ -60,6 +60,6 @@ fn general_values(system: &System, layout: &Layout, state: &[f64]) -> FxHashMap<
     let mut values = motion_values(system, layout, state, 0.0);
     let free = [&system.v, &system.w, &system.lambda];
     let free = free.into_iter().flatten().copied().enumerate();
-    values.extend(free.map(|(place, symbol)| (symbol, 1.0 + spread(3, place))));
+    values.extend(free.map(|(index, symbol)| (symbol, 1.0 + spread(3, index))));
     values
 }

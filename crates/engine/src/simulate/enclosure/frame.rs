@@ -157,11 +157,11 @@ impl Frame {
         let taken = weights
             .into_iter()
             .flat_map(|(block, weight)| self.independent.iter().map(move |i| (block + i.number(), weight)));
-        for (place, (row, weight)) in taken.enumerate() {
+        for (index, (row, weight)) in taken.enumerate() {
             for column in 0..columns.columns {
-                direct.at_mut(place, column).copy_from_slice(columns.at(row, column));
+                direct.at_mut(index, column).copy_from_slice(columns.at(row, column));
             }
-            direct.scale_row(place, weight);
+            direct.scale_row(index, weight);
         }
         let inverse = direct.inverse_at_centre(space).ok_or(EnclosureError::Unproven)?;
         Ok(columns.approximate_times(space, &inverse))
@@ -270,9 +270,9 @@ fn pivots(slow: &Models, n: usize, f: usize) -> Vec<CoordinateId> {
     let mut matrix = DMatrix::from_fn(n, f, |row, column| slow.at(row, column)[0]);
     let mut chosen = Vec::new();
     for _ in 0..f {
-        let place =
-            matrix.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map_or(0, |(place, _)| place);
-        let (row, column) = (place % n, place / n);
+        let index =
+            matrix.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map_or(0, |(index, _)| index);
+        let (row, column) = (index % n, index / n);
         chosen.push(CoordinateId::new(row));
         let pivot_row = matrix.row(row) / matrix[(row, column)];
         let pivot_column = matrix.column(column).clone_owned();
@@ -296,7 +296,7 @@ fn gap_map(gains: &Gains) -> (Matrix3<f64>, Matrix3<f64>) {
     let columns = [column(1.0, 0.0, 0.0), column(0.0, 1.0 / h, 0.0), column(0.0, 0.0, 1.0 / (h * h))];
     let map = Matrix3::from_fn(|row, column| columns[column][row]);
     let (basis, triangle) = map.schur().unpack();
-    let largest = [(0, 1), (0, 2), (1, 2)].map(|place| triangle[place].abs()).into_iter().fold(0.0, f64::max);
+    let largest = [(0, 1), (0, 2), (1, 2)].map(|index| triangle[index].abs()).into_iter().fold(0.0, f64::max);
     let shrink = (OFF_DIAGONAL / largest).min(1.0);
     (map, basis * Matrix3::from_diagonal(&Vector3::new(1.0, shrink, shrink * shrink)))
 }

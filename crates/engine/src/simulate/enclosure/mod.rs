@@ -79,9 +79,9 @@ impl<'s> Certifier<'s> {
         let at_start = starts.map(|(given, first)| {
             let is_at_nominal =
                 level.next().is_some_and(|level| start::is_at_nominal(self.simulator, &self.program, level));
-            let of = |(place, given): (usize, &Option<symdiff::Expr>)| match given {
+            let of = |(index, given): (usize, &Option<symdiff::Expr>)| match given {
                 Some(value) => AtStart::Given(*value),
-                None if is_at_nominal => AtStart::Number(self.simulator.nominal[first + place]),
+                None if is_at_nominal => AtStart::Number(self.simulator.nominal[first + index]),
                 None => AtStart::Closure,
             };
             given.iter().enumerate().map(of).collect()
@@ -256,8 +256,8 @@ impl<'s> Enclosure<'s> {
     pub fn advance(&mut self, schedule: &Schedule, row: usize) -> Result<(), (f64, EnclosureError)> {
         let lengths = schedule.steps_to(row).chain(schedule.steps_to((row + 1).min(schedule.rows - 1))).skip(1);
         let next: Vec<f64> = lengths.map(|(length, _)| length).collect();
-        for (place, (length, end)) in schedule.steps_to(row).enumerate() {
-            let next = next.get(place).copied().unwrap_or(length);
+        for (index, (length, end)) in schedule.steps_to(row).enumerate() {
+            let next = next.get(index).copied().unwrap_or(length);
             self.step(end, (length, next)).map_err(|lost| (end, lost))?;
         }
         Ok(())

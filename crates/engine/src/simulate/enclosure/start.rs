@@ -40,20 +40,20 @@ pub(super) fn assemble(
     for (level, (kept, start)) in program.kept.iter().zip(starts).enumerate() {
         // Given velocities may be functions of the positions, which are known by then.
         memory.run(program.given());
-        for &(place, given) in kept {
+        for &(index, given) in kept {
             let value = memory.model(given).to_vec();
-            memory.model_mut(start + place).copy_from_slice(&value);
+            memory.model_mut(start + index).copy_from_slice(&value);
         }
         let free = free(program, level);
         if is_at_nominal(simulator, program, level) {
             // The memory has these values.
             continue;
         }
-        let column = |place: usize| free.iter().position(|&known| known == place);
+        let column = |index: usize| free.iter().position(|&known| known == index);
         let slopes = program.closure_by[level].iter();
-        let entries = slopes.filter_map(|&(row, place, register)| Some((row, column(place)?, register))).collect();
+        let entries = slopes.filter_map(|&(row, index, register)| Some((row, column(index)?, register))).collect();
         let equations = Equations {
-            unknowns: free.iter().map(|place| start + place).collect(),
+            unknowns: free.iter().map(|index| start + index).collect(),
             residuals: program.closure[level].clone(),
             residual: vec![program.closure()],
             slopes: program.closure_jacobian(),
@@ -92,7 +92,7 @@ pub(super) fn assemble(
 
 /// Coordinates whose position (level 0), or velocity (1), is not given.
 pub(super) fn free(program: &EquationsProgram, level: usize) -> Vec<usize> {
-    let is_free = |place: &usize| program.kept[level].iter().all(|(known, _)| known != place);
+    let is_free = |index: &usize| program.kept[level].iter().all(|(known, _)| known != index);
     (0..program.layout.q.len()).filter(is_free).collect()
 }
 
@@ -100,7 +100,7 @@ pub(super) fn free(program: &EquationsProgram, level: usize) -> Vec<usize> {
 pub(super) fn is_at_nominal(simulator: &Simulator, program: &EquationsProgram, level: usize) -> bool {
     let free = free(program, level);
     let start = [program.layout.q.start, program.layout.v.start][level];
-    let nominal = |place: usize| simulator.nominal[start + place];
+    let nominal = |index: usize| simulator.nominal[start + index];
     let is_known = match level {
         0 => program.closure[0].is_empty() && free.iter().all(|&q| program.guess[q] == Some(nominal(q))),
         _ => program.can_rest && free.iter().all(|&v| nominal(v) == 0.0),
@@ -122,7 +122,7 @@ pub(super) fn tangent(
     let parameters = &simulator.nominal[layout.parameters.clone()];
     let chosen = choose_independent(simulator, parameters, motion, 0.0);
     let independent: Vec<usize> = chosen.iter().map(|coordinate| coordinate.number()).collect();
-    let dependent: Vec<usize> = (0..n).filter(|place| !independent.contains(place)).collect();
+    let dependent: Vec<usize> = (0..n).filter(|index| !independent.contains(index)).collect();
     if dependent.len() != m {
         return Err(EnclosureError::Undetermined);
     }
@@ -141,8 +141,8 @@ pub(super) fn tangent(
     let follow = inverse(space, &slopes.columns_at(space, &dependent))?;
     let mut follow = follow.approximate_times(space, &slopes.columns_at(space, &independent));
     follow.negate();
-    for (place, &row) in dependent.iter().enumerate() {
-        (0..independent.len()).for_each(|column| tangent.at_mut(row, column).copy_from_slice(follow.at(place, column)));
+    for (index, &row) in dependent.iter().enumerate() {
+        (0..independent.len()).for_each(|column| tangent.at_mut(row, column).copy_from_slice(follow.at(index, column)));
     }
     let push = inverse(space, &mass)?.part(space, 0..n, n..n + m);
     Ok((tangent, push, chosen))
@@ -192,8 +192,8 @@ impl Equations<'_> {
                 return Err(EnclosureError::Unproven);
             }
             let correction = inverse.approximate_times(space, &self.residual(space, memory));
-            for (place, &register) in self.unknowns.iter().enumerate() {
-                let change = correction.at(place, 0);
+            for (index, &register) in self.unknowns.iter().enumerate() {
+                let change = correction.at(index, 0);
                 memory.model_mut(register).iter_mut().zip(change).for_each(|(x, change)| *x -= change);
             }
         }
@@ -222,8 +222,8 @@ impl Equations<'_> {
     }
 
     fn set_radii(&self, space: &ModelSpace, memory: &mut ModelMemory, radii: Option<&[f64]>) {
-        for (place, &register) in self.unknowns.iter().enumerate() {
-            memory.model_mut(register)[space.size() - 1] = radii.map_or(0.0, |radii| radii[place]);
+        for (index, &register) in self.unknowns.iter().enumerate() {
+            memory.model_mut(register)[space.size() - 1] = radii.map_or(0.0, |radii| radii[index]);
         }
     }
 

@@ -231,7 +231,7 @@ impl<'s> Enclosure<'s> {
         let n = self.coordinates();
         let layout = &self.program.layout;
         let radius = self.space.size() - 1;
-        let more = |place: usize| radii.map_or(0.0, |radii| radii[place]);
+        let more = |index: usize| radii.map_or(0.0, |radii| radii[index]);
         let mut set = |register: usize, model: &[f64], more: f64| {
             let target = memory.model_mut(register);
             target.copy_from_slice(model);

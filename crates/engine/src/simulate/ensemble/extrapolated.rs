@@ -148,16 +148,16 @@ impl<'s> Integrator<'s> for ExtrapolatedRun<'s> {
             .closures
             .par_iter_mut()
             .enumerate()
-            .map(|(place, closure)| {
-                let first = place * WIDTH;
+            .map(|(index, closure)| {
+                let first = index * WIDTH;
                 closed(closure, schedule, (rows.clone(), observed, lines), (motion, first, samples))
             })
             .collect();
         into.clear();
         into.resize(rows.len() * lines * samples, 0.0);
-        for (place, values) in parts.iter().enumerate() {
-            let first = place * WIDTH;
-            let width = self.closures[place].tile().width();
+        for (index, values) in parts.iter().enumerate() {
+            let first = index * WIDTH;
+            let width = self.closures[index].tile().width();
             put_lanes(values, width, first..(first + WIDTH).min(samples), into, samples);
         }
         stops
@@ -216,9 +216,9 @@ fn closed(
     let mut state = vec![0.0; of_row / samples.max(1) * width];
     let mut values = vec![0.0; rows.len() * lines * width];
     // A mechanism that is held has no coordinates, but outputs.
-    for (place, row) in rows.enumerate() {
-        let motion = &motion[place * of_row..][..of_row];
-        let values = &mut values[place * lines * width..][..lines * width];
+    for (index, row) in rows.enumerate() {
+        let motion = &motion[index * of_row..][..of_row];
+        let values = &mut values[index * lines * width..][..lines * width];
         for (state, line) in state.chunks_exact_mut(width).zip(motion.chunks_exact(samples)) {
             for (lane, value) in state.iter_mut().enumerate() {
                 *value = line[(first + lane).min(samples - 1)];

@@ -54,8 +54,8 @@ pub(super) fn assembled_jet<'s>(
 
 /// Adds the correction to the unknowns.
 pub(super) fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>, correction: usize) {
-    for (place, register) in unknowns.enumerate() {
-        let change = memory.jet(correction + place).to_vec();
+    for (index, register) in unknowns.enumerate() {
+        let change = memory.jet(correction + index).to_vec();
         memory.jet_mut(register).iter_mut().zip(change).for_each(|(value, change)| *value += change);
     }
 }
@@ -113,9 +113,9 @@ pub(super) fn shift_accelerations(
     let saved: Vec<Vec<f64>> = layout.state().map(|register| memory.jet(register).to_vec()).collect();
     let state = |register: usize| &saved[register - layout.q.start];
     for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
-        for place in 0..state(q).len() {
-            memory.jet_mut(q)[place] += shift * (state(v)[place] + 0.5 * shift * state(w)[place]);
-            memory.jet_mut(v)[place] += shift * state(w)[place];
+        for index in 0..state(q).len() {
+            memory.jet_mut(q)[index] += shift * (state(v)[index] + 0.5 * shift * state(w)[index]);
+            memory.jet_mut(v)[index] += shift * state(w)[index];
         }
     }
     memory.set_constant(layout.time, time + shift);

@@ -242,7 +242,7 @@ impl TileRun<'_> {
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
         let mut taken = 0;
-        for (place, row) in rows.enumerate() {
+        for (index, row) in rows.enumerate() {
             if row == 0 {
                 self.reduce(0.0);
             }
@@ -309,7 +309,7 @@ impl TileRun<'_> {
             if self.beyond.is_none() && self.lanes.as_ref().is_some_and(is_beyond) {
                 self.beyond = Some(row);
             }
-            let values = &mut values[place * outputs * width..][..outputs * width];
+            let values = &mut values[index * outputs * width..][..outputs * width];
             match observed {
                 Observed::Outputs => self.observe(values),
                 Observed::Motion => {

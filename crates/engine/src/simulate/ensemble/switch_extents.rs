@@ -33,8 +33,8 @@ impl<'s> SwitchExtents<'s> {
     pub fn end(&mut self, stepper: &Stepper, h: f64) {
         self.watch.end(stepper.tile());
         let width = self.width;
-        for (place, extent) in self.extents.iter_mut().enumerate() {
-            let [low, high] = self.watch.extent(place / width, place % width, h);
+        for (index, extent) in self.extents.iter_mut().enumerate() {
+            let [low, high] = self.watch.extent(index / width, index % width, h);
             *extent = [extent[0].min(low), extent[1].max(high)];
         }
     }

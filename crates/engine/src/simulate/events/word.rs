@@ -222,8 +222,8 @@ mod tests {
 
     /// Events at these times, with two equal steps in each segment.
     fn followed(times: &[f64]) -> Followed {
-        let event = |place: usize| Event { switch: 0, rises: place.is_multiple_of(2) };
-        let events = times.iter().enumerate().map(|(place, &time)| (event(place), time)).collect();
+        let event = |index: usize| Event { switch: 0, rises: index.is_multiple_of(2) };
+        let events = times.iter().enumerate().map(|(index, &time)| (event(index), time)).collect();
         let begins = std::iter::once(0.0).chain(times.iter().copied());
         let ends = times.iter().copied().chain([REACH]);
         let steps = begins.zip(ends).map(|(begin, end)| vec![0.5 * (begin + end), end]).collect();
@@ -281,7 +281,7 @@ mod tests {
     fn a_budget_of_words_ends_the_time() {
         let of_number = |number: usize| {
             let mut own = followed(&[0.4, 0.5 + 0.01 * number as f64, 0.8]);
-            own.events.iter_mut().enumerate().for_each(|(place, (event, _))| event.switch = number >> place & 1);
+            own.events.iter_mut().enumerate().for_each(|(index, (event, _))| event.switch = number >> index & 1);
             own
         };
         let all: Vec<Followed> = (0..8).map(of_number).collect();

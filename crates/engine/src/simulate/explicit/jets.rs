@@ -86,9 +86,9 @@ impl<'s> JetIntegrator<'s> for ExplicitJets<'s> {
             if self.is_cut {
                 return None;
             }
-            if let Some(place) = state.iter().position(|value| !value.is_finite()) {
-                let place = place * 2 * self.coordinates / state.len() % self.coordinates.max(1);
-                let equation = EquationId::new(place);
+            if let Some(index) = state.iter().position(|value| !value.is_finite()) {
+                let index = index * 2 * self.coordinates / state.len() % self.coordinates.max(1);
+                let equation = EquationId::new(index);
                 return Some(Stop { sample: 0, row, time, equation, open: None, singular: true });
             }
             self.motion.close(time, &mut state);

@@ -25,8 +25,8 @@ impl Movement {
         let kind = |coordinate: &CoordinateInfo| usize::from(coordinate.is_angle);
         let positions = coordinates.iter().map(|coordinate| (!coordinate.is_state).then(|| kind(coordinate)));
         // A state has a unit of its own.
-        let rate = |(place, coordinate): (usize, &CoordinateInfo)| {
-            Some(if coordinate.is_state { 4 + place } else { 2 + kind(coordinate) })
+        let rate = |(index, coordinate): (usize, &CoordinateInfo)| {
+            Some(if coordinate.is_state { 4 + index } else { 2 + kind(coordinate) })
         };
         let kinds = positions.chain(coordinates.iter().enumerate().map(rate)).collect();
         let least = coordinates.iter().map(|coordinate| REST * coordinate.scale);

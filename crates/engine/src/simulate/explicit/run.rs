@@ -67,7 +67,7 @@ pub(super) fn tiles<'s>(
 ) -> Result<Vec<Tile<'s>>, SimulationError> {
     let at_once = samples.len().div_ceil(threads.max(1)).clamp(1, WIDTH);
     let at_once = WIDTHS.into_iter().find(|&width| width >= at_once).unwrap_or(WIDTH);
-    let of_tile = |(place, samples): (usize, &[Sample])| {
+    let of_tile = |(index, samples): (usize, &[Sample])| {
         let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
         let start = simulator.assemble(width, 0.0, |lane| samples[lane.min(samples.len() - 1)].clone())?;
         let mut motion = RowClosure::new(simulator, &start)?;
@@ -81,7 +81,7 @@ pub(super) fn tiles<'s>(
             rows,
             run,
             start: state,
-            first: place * at_once,
+            first: index * at_once,
             count: samples.len(),
             steps: 0,
             alive,

@@ -111,12 +111,12 @@ impl RungeKutta {
 
     /// The state at a share of the step that dense output was made of.
     pub fn interpolate(&self, share: f64, into: &mut [f64]) {
-        for (place, into) in into.iter_mut().enumerate() {
+        for (index, into) in into.iter_mut().enumerate() {
             let mut value = 0.0;
             for (number, term) in self.dense.iter().rev().enumerate() {
-                value = (value + term[place]) * if number % 2 == 0 { share } else { 1.0 - share };
+                value = (value + term[index]) * if number % 2 == 0 { share } else { 1.0 - share };
             }
-            *into = self.state[place] + value;
+            *into = self.state[index] + value;
         }
     }
 
@@ -124,18 +124,18 @@ impl RungeKutta {
     /// the share of it that a step may err by.
     pub fn errors(&self, end: f64, sizes: &[f64], tolerance: f64, width: usize) -> Vec<StepError> {
         let h = end - self.time;
-        let error_of = |weights: Row, place: usize| -> f64 {
-            weights.iter().map(|&(stage, weight)| weight * self.rates[stage][place]).sum::<f64>()
+        let error_of = |weights: Row, index: usize| -> f64 {
+            weights.iter().map(|&(stage, weight)| weight * self.rates[stage][index]).sum::<f64>()
         };
         let of_lane = |lane: usize| {
             let (mut fifth, mut third, mut rates, mut states) = (0.0, 0.0, 0.0, 0.0);
             for (line, size) in sizes.iter().enumerate() {
-                let place = line * width + lane;
+                let index = line * width + lane;
                 let allowed = tolerance * size;
-                fifth = larger(fifth, error_of(FIFTH, place) / allowed);
-                third = larger(third, error_of(THIRD, place) / allowed);
-                let rate = (self.rates[STAGES - 1][place] - self.rates[STAGES - 2][place]) / size;
-                let state = (self.next[place] - self.last[place]) / size;
+                fifth = larger(fifth, error_of(FIFTH, index) / allowed);
+                third = larger(third, error_of(THIRD, index) / allowed);
+                let rate = (self.rates[STAGES - 1][index] - self.rates[STAGES - 2][index]) / size;
+                let state = (self.next[index] - self.last[index]) / size;
                 rates += rate * rate;
                 states += state * state;
             }
@@ -220,7 +220,7 @@ mod tests {
             run.interpolate(0.37, &mut middle);
             [(run.next[0] - math::cos(h)).abs(), (middle[0] - math::cos(0.37 * h)).abs()]
         });
-        let order = |place: usize| math::log2(errors[0][place] / errors[1][place]);
+        let order = |index: usize| math::log2(errors[0][index] / errors[1][index]);
         assert!(order(0) > 8.5 && order(1) > 7.5, "{errors:?}");
     }
 }

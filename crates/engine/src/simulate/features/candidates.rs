@@ -61,7 +61,7 @@ pub(super) fn candidates(system: &System, graph: &mut Graph) -> Vec<Candidate> {
     let conditions = conditions(graph, &system.force, &reachable, is_known);
     let with_conditions = |uses: &[(Expr, Expr)]| Candidate {
         of: uses[0].0,
-        conditions: uses.iter().map(|(_, place)| conditions[place].clone()).reduce(common).unwrap_or_default(),
+        conditions: uses.iter().map(|(_, index)| conditions[index].clone()).reduce(common).unwrap_or_default(),
     };
     found.chunk_by(|a, b| a.0 == b.0).map(with_conditions).collect()
 }

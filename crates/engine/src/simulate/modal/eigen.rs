@@ -94,10 +94,10 @@ impl Reduced {
         let eigen = SymmetricEigen::new(scaled);
         let shapes = root.tr_solve_lower_triangular(&eigen.eigenvectors)?;
         let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let mode = |place: usize| {
-            let square = eigen.eigenvalues[place];
+        let mode = |index: usize| {
+            let square = eigen.eigenvalues[index];
             let is_still = square.abs() <= STILL * STILL * largest;
-            let part: Vec<f64> = shapes.column(place).iter().copied().collect();
+            let part: Vec<f64> = shapes.column(index).iter().copied().collect();
             Mode {
                 frequency: if is_still { 0.0 } else { signed_root(square) },
                 damping: if is_still { f64::NAN } else { 0.0 },
@@ -139,9 +139,9 @@ impl Reduced {
         pairs.sort_by(|a, b| (a[1], a[0]).partial_cmp(&(b[1], b[0])).unwrap_or(std::cmp::Ordering::Equal));
         real.sort_by(f64::total_cmp);
         let mut modes = Vec::with_capacity(k);
-        for (place, &[re, im]) in pairs.iter().enumerate() {
+        for (index, &[re, im]) in pairs.iter().enumerate() {
             let frequency = (re * re + im * im).sqrt();
-            let shape = self.shape([re, im], &undamped[place % undamped.len()])?;
+            let shape = self.shape([re, im], &undamped[index % undamped.len()])?;
             modes.push(Mode { frequency, damping: -re / frequency, shape });
         }
         modes.extend(self.of_real(&real, rate, undamped)?);
@@ -151,8 +151,8 @@ impl Reduced {
     /// Real eigenvalues, two by two: the fastest with the slowest decay that has the most similar shape.
     fn of_real(&self, values: &[f64], rate: f64, undamped: &[Mode]) -> Option<Vec<Mode>> {
         let mut open: Vec<(f64, [Vec<f64>; 2])> = Vec::with_capacity(values.len());
-        for (place, &value) in values.iter().enumerate() {
-            open.push((value, self.shape([value, 0.0], &undamped[place % undamped.len()])?));
+        for (index, &value) in values.iter().enumerate() {
+            open.push((value, self.shape([value, 0.0], &undamped[index % undamped.len()])?));
         }
         let mut modes = Vec::new();
         while open.len() > 1 {
@@ -187,8 +187,8 @@ impl Reduced {
         }
         let factors = matrix.lu();
         let mut shape = DVector::zeros(2 * k);
-        for (place, vector) in self.basis.iter().enumerate() {
-            shape[place] = crate::numerics::dot(vector, &begin.shape[0]) + 1e-3 / (1.0 + place as f64);
+        for (index, vector) in self.basis.iter().enumerate() {
+            shape[index] = crate::numerics::dot(vector, &begin.shape[0]) + 1e-3 / (1.0 + index as f64);
         }
         for _ in 0..3 {
             factors.solve_mut(&mut shape).then_some(())?;

@@ -101,7 +101,7 @@ struct FirstOrder {
 impl FirstOrder {
     fn of(linear: &Linearised, states: &[usize]) -> Option<Self> {
         let n = linear.motion.len();
-        let is_of_state = |vector: &Vec<f64>| states.iter().any(|&place| vector[place] != 0.0);
+        let is_of_state = |vector: &Vec<f64>| states.iter().any(|&index| vector[index] != 0.0);
         let (of_states, mut basis): (Vec<_>, Vec<_>) =
             RowSpace::of(&linear.jacobian, n).null.into_iter().partition(is_of_state);
         let k = basis.len();
@@ -110,7 +110,7 @@ impl FirstOrder {
         let [mut mass, damping, stiffness] =
             [&linear.mass, &linear.damping, &linear.stiffness].map(|matrix| reduced(matrix, &basis));
         let least = LEAST_MASS * mass.view((0, 0), (k, k)).trace();
-        (0..k).for_each(|place| mass[(place, place)] += least);
+        (0..k).for_each(|index| mass[(index, index)] += least);
         let factors = mass.lu();
         let [damping, stiffness] = [factors.solve(&damping)?, factors.solve(&stiffness)?];
         let mut matrix = DMatrix::zeros(k + all, k + all);
@@ -149,9 +149,9 @@ fn blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
             own.iter_mut().zip(&further).for_each(|(own, further)| *own |= further);
         }
     }
-    let with = |place: usize| (0..size).filter(|&other| reaches[place][other] && reaches[other][place]).collect();
+    let with = |index: usize| (0..size).filter(|&other| reaches[index][other] && reaches[other][index]).collect();
     let sets = (0..size).map(with);
-    sets.enumerate().filter(|(place, set): &(usize, Vec<usize>)| set[0] == *place).map(|(_, set)| set).collect()
+    sets.enumerate().filter(|(index, set): &(usize, Vec<usize>)| set[0] == *index).map(|(_, set)| set).collect()
 }
 
 /// Eigenvalues of a block, one for each pair; what rounding leaves of zero is zero.
@@ -163,14 +163,14 @@ fn values_of_block(matrix: &DMatrix<f64>, block: &[usize]) -> Option<Vec<Complex
     balance_parlett_reinsch(&mut own);
     let found = Schur::try_new(own, f64::EPSILON, 10_000)?.complex_eigenvalues();
     let largest = found.iter().fold(0.0_f64, |largest, &value| largest.max(size(value)));
-    let is_still = |place: usize| {
-        let value = found[place];
-        let others = (0..found.len()).filter(|&other| other != place);
+    let is_still = |index: usize| {
+        let value = found[index];
+        let others = (0..found.len()).filter(|&other| other != index);
         let is_opposite = |other: usize| size(found[other] + value) <= NOTHING * largest;
         size(value) <= NOTHING * largest || size(value) <= STILL * largest && others.into_iter().any(is_opposite)
     };
-    let value = |place: usize| match found[place] {
-        _ if is_still(place) => Some(Complex::new(0.0, 0.0)),
+    let value = |index: usize| match found[index] {
+        _ if is_still(index) => Some(Complex::new(0.0, 0.0)),
         value if value.im.abs() <= REAL * largest => Some(Complex::new(value.re, 0.0)),
         value => (value.im > 0.0).then_some(value),
     };
@@ -197,7 +197,7 @@ impl Balanced {
         let off = BESIDE * size(value).max(BESIDE * self.rate);
         let beside = value + Complex::new(off, 0.0);
         let mut begin = vec![1e-3; self.factors.len()];
-        block.iter().zip(1..).for_each(|(&place, number)| begin[place] = 1.0 + 1.0 / f64::from(number));
+        block.iter().zip(1..).for_each(|(&index, number)| begin[index] = 1.0 + 1.0 / f64::from(number));
         let right = inverse_iteration(&self.matrix, beside, &begin)?;
         let left = inverse_iteration(&self.matrix.transpose(), beside, &begin)?;
         let right = right.iter().zip(self.factors.iter()).map(|(entry, factor)| entry * *factor).collect();
@@ -214,11 +214,11 @@ fn inverse_iteration(matrix: &DMatrix<f64>, near: Complex<f64>, begin: &[f64]) -
     let mut shifted = DMatrix::zeros(parts * size, parts * size);
     for part in 0..parts {
         shifted.view_mut((part * size, part * size), (size, size)).copy_from(matrix);
-        for place in 0..size {
-            let row = part * size + place;
+        for index in 0..size {
+            let row = part * size + index;
             shifted[(row, row)] -= near.re;
             if parts == 2 {
-                shifted[(row, (1 - part) * size + place)] = if part == 0 { near.im } else { -near.im };
+                shifted[(row, (1 - part) * size + index)] = if part == 0 { near.im } else { -near.im };
             }
         }
     }
@@ -233,6 +233,6 @@ fn inverse_iteration(matrix: &DMatrix<f64>, near: Complex<f64>, begin: &[f64]) -
         }
         vector /= longest;
     }
-    let imaginary = |place: usize| if parts == 2 { vector[size + place] } else { 0.0 };
-    Some((0..size).map(|place| Complex::new(vector[place], imaginary(place))).collect())
+    let imaginary = |index: usize| if parts == 2 { vector[size + index] } else { 0.0 };
+    Some((0..size).map(|index| Complex::new(vector[index], imaginary(index))).collect())
 }

@@ -43,9 +43,9 @@ pub fn further_outputs(system: &mut System, vibrations: &Vibrations) {
         let force = if force { "(N*m)" } else { "N" };
         let unit = unit_of(&response.output).map_or("", |output| output.unit.as_str());
         let unit = format!("{}/{force}", if unit.is_empty() { "1" } else { unit });
-        for (place, _) in response.frequencies.iter().enumerate() {
-            add(format!("response.{}.{place}.amplitude", response.name), unit.clone());
-            add(format!("response.{}.{place}.phase", response.name), "rad".to_owned());
+        for (index, _) in response.frequencies.iter().enumerate() {
+            add(format!("response.{}.{index}.amplitude", response.name), unit.clone());
+            add(format!("response.{}.{index}.phase", response.name), "rad".to_owned());
         }
     }
     if is_random {

@@ -60,9 +60,9 @@ impl<'l> Response<'l> {
             matrix[(k + row, column)] = imaginary;
         }
         let mut right = DVector::zeros(2 * k);
-        for (place, vector) in self.space.null.iter().enumerate() {
-            right[place] = dot(vector, &load.re);
-            right[k + place] = dot(vector, &load.im);
+        for (index, vector) in self.space.null.iter().enumerate() {
+            right[index] = dot(vector, &load.re);
+            right[k + index] = dot(vector, &load.im);
         }
         if k > 0 && !matrix.lu().solve_mut(&mut right) {
             return None;

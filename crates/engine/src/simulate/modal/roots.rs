@@ -145,9 +145,9 @@ pub fn followed(known: &[Root], found: &[Eigenvalue]) -> (Vec<Root>, f64) {
     let mut taken = vec![false; found.len()];
     let mut least = 1.0_f64;
     for Match { likeness, known, found: own } in matches {
-        if known.iter().all(|&mode| modes[mode].of.is_empty()) && !own.iter().any(|&place| taken[place]) {
-            known.iter().for_each(|&mode| modes[mode].of = own.iter().map(|&place| found[place].clone()).collect());
-            own.iter().for_each(|&place| taken[place] = true);
+        if known.iter().all(|&mode| modes[mode].of.is_empty()) && !own.iter().any(|&index| taken[index]) {
+            known.iter().for_each(|&mode| modes[mode].of = own.iter().map(|&index| found[index].clone()).collect());
+            own.iter().for_each(|&index| taken[index] = true);
             least = least.min(likeness);
         }
     }
@@ -158,9 +158,9 @@ pub fn followed(known: &[Root], found: &[Eigenvalue]) -> (Vec<Root>, f64) {
 /// A vibration may be a pair or two real eigenvalues, a lag a real one, two lags a pair.
 fn matches(known: &[Root], found: &[Eigenvalue]) -> Vec<Match> {
     let shared: Vec<Vec<f64>> = known.iter().map(|root| found.iter().map(|own| root.shared(own)).collect()).collect();
-    let (pairs, real): (Vec<usize>, Vec<usize>) = (0..found.len()).partition(|&place| found[place].is_pair());
+    let (pairs, real): (Vec<usize>, Vec<usize>) = (0..found.len()).partition(|&index| found[index].is_pair());
     let two = |places: &[usize]| -> Vec<[usize; 2]> {
-        (0..places.len()).flat_map(|b| (0..b).map(move |a| [a, b])).map(|two| two.map(|place| places[place])).collect()
+        (0..places.len()).flat_map(|b| (0..b).map(move |a| [a, b])).map(|two| two.map(|index| places[index])).collect()
     };
     let of_kind = |kind: Kind| (0..known.len()).filter(move |&mode| known[mode].kind == kind);
     let mut matches = Vec::new();

@@ -91,7 +91,7 @@ impl Vibrations {
             program: compile_equations(system),
             scale: system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
             redundant: redundant.to_vec(),
-            states: (0..system.q.len()).filter(|&place| system.coordinates[place].is_state).collect(),
+            states: (0..system.q.len()).filter(|&index| system.coordinates[index].is_state).collect(),
             gradients: Gradients::new(system, outputs),
             random: RandomLoads::new(system, outputs),
             outputs,
@@ -102,7 +102,7 @@ impl Vibrations {
             nominal: OnceLock::new(),
         };
         if system.has_states() {
-            vibrations.first = vibrations.place(nominal, None).map(|(place, _)| place);
+            vibrations.first = vibrations.place(nominal, None).map(|(index, _)| index);
             vibrations.number = vibrations.kinds().len().min(*number);
         }
         vibrations
@@ -139,7 +139,7 @@ impl Vibrations {
         let outputs = at.outputs();
         let (n, m) = (layout.q.len(), layout.lambda.len());
         at.set(layout.v.start..layout.w.end, &vec![0.0; layout.w.end - layout.v.start]);
-        for register in self.states.iter().map(|place| layout.v.start + place) {
+        for register in self.states.iter().map(|index| layout.v.start + index) {
             at.set(register..register + 1, &state[register..register + 1]);
         }
         at.set(layout.lambda.clone(), &vec![0.0; m]);

@@ -130,10 +130,10 @@ impl<'p> Assembly<'p> {
         for guess in 0..GUESSES {
             self.tile.run(self.program.guess());
             let spread = 3.0 * guess as f64 / GUESSES as f64;
-            for (place, register) in self.program.layout.q.clone().enumerate() {
+            for (index, register) in self.program.layout.q.clone().enumerate() {
                 // Additive recurrence: evenly spread, the same on every machine.
-                let direction = 2.0 * ((guess * (2 * place + 1)) as f64 * 0.618_033_988_749_895).fract() - 1.0;
-                self.tile.lane_mut(register)[0] += spread * self.scale[place] * direction;
+                let direction = 2.0 * ((guess * (2 * index + 1)) as f64 * 0.618_033_988_749_895).fract() - 1.0;
+                self.tile.lane_mut(register)[0] += spread * self.scale[index] * direction;
             }
             self.tile.run(self.program.given());
             match self.descend() {

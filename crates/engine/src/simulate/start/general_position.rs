@@ -15,8 +15,8 @@ const APART: f64 = 0.05;
 const CORRECTIONS: usize = 30;
 
 /// Evenly spread numbers in [−1, 1) by an additive recurrence, the same on every machine.
-pub fn spread(series: usize, place: usize) -> f64 {
-    2.0 * ((place + 1) as f64 * 0.618_033_988_749_895 + series as f64 * 0.414_213_562_373_095).fract() - 1.0
+pub fn spread(series: usize, index: usize) -> f64 {
+    2.0 * ((index + 1) as f64 * 0.618_033_988_749_895 + series as f64 * 0.414_213_562_373_095).fract() - 1.0
 }
 
 /// A state in general position near the model's guess: values of the layout's registers.
@@ -26,11 +26,11 @@ pub fn guess_state(system: &System, layout: &Layout, parameters: &[f64]) -> Vec<
     let value_of = |symbol| system.parameters.iter().position(|parameter| parameter.symbol == symbol);
     let guess =
         system.graph.evaluate(&system.start.guess, |symbol| value_of(symbol).map_or(f64::NAN, |k| parameters[k]));
-    for (place, register) in layout.q.clone().enumerate() {
-        values[register] = guess[place] + 0.1 * system.coordinates[place].scale * spread(0, place);
+    for (index, register) in layout.q.clone().enumerate() {
+        values[register] = guess[index] + 0.1 * system.coordinates[index].scale * spread(0, index);
     }
-    for (place, register) in (layout.v.start..layout.correction.end).enumerate() {
-        values[register] = spread(1, place);
+    for (index, register) in (layout.v.start..layout.correction.end).enumerate() {
+        values[register] = spread(1, index);
     }
     values
 }
@@ -41,12 +41,12 @@ pub fn pivot_samples(system: &System, layout: &Layout, nominal: &[f64], h: f64) 
     std::array::from_fn(|series| {
         let mut values = nominal.to_vec();
         values[layout.step] = h;
-        for (place, (w, x)) in layout.w.clone().zip(layout.iterate.clone()).enumerate() {
+        for (index, (w, x)) in layout.w.clone().zip(layout.iterate.clone()).enumerate() {
             values[x] = values[w];
             if series > 0 {
-                let scale = system.coordinates[place].scale;
-                values[layout.q.start + place] += PIVOT_SAMPLE_SPREAD * scale * spread(series, place);
-                values[layout.v.start + place] += PIVOT_SAMPLE_SPREAD * scale * spread(series + PIVOT_SAMPLES, place);
+                let scale = system.coordinates[index].scale;
+                values[layout.q.start + index] += PIVOT_SAMPLE_SPREAD * scale * spread(series, index);
+                values[layout.v.start + index] += PIVOT_SAMPLE_SPREAD * scale * spread(series + PIVOT_SAMPLES, index);
             }
         }
         PivotSample { values }
@@ -63,8 +63,8 @@ pub fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
     let mut tile = Tile::new(1, start.registers(), start.constants());
     tile.values_mut()[..state.len()].copy_from_slice(state);
     tile.run(start.sample());
-    for (place, register) in start.layout.q.clone().enumerate() {
-        tile.lane_mut(register)[0] += APART * system.coordinates[place].scale * spread(7, place);
+    for (index, register) in start.layout.q.clone().enumerate() {
+        tile.lane_mut(register)[0] += APART * system.coordinates[index].scale * spread(7, index);
     }
     for _ in 0..CORRECTIONS {
         tile.run(start.position());

@@ -38,7 +38,7 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], sample
     let mut rows = None;
     let mut is_free = |given: &[Option<Expr>], constraints: usize, conditions: usize| {
         let rows = &rows.get_or_insert_with(|| jacobian_rows(system, start, nominal))[..constraints];
-        let open = |row: &Vec<(usize, f64)>| row.iter().copied().filter(|(place, _)| given[*place].is_none()).collect();
+        let open = |row: &Vec<(usize, f64)>| row.iter().copied().filter(|(index, _)| given[*index].is_none()).collect();
         let rows: Vec<Vec<(usize, f64)>> = rows.iter().map(open).collect();
         let rank = rows.len() - dependent_rows(&rows, DEPENDENT).len();
         given.iter().filter(|given| given.is_none()).count() > rank + conditions
@@ -102,10 +102,10 @@ fn open_of<'s>(
         let mut graph = graph.clone();
         let mut add = |value: Expr, by: &[Expr]| {
             let (places, slopes): (Vec<usize>, Vec<Expr>) =
-                graph.jacobian(&[value], by).entries().map(|(_, place, slope)| (place, slope)).unzip();
+                graph.jacobian(&[value], by).entries().map(|(_, index, slope)| (index, slope)).unzip();
             let slopes = graph.evaluate(&slopes, values_at(system, &start.layout, nominal));
             let scaled = places.into_iter().zip(slopes);
-            rows.push(scaled.map(|(place, slope)| (place, slope * system.coordinates[place].scale)).collect());
+            rows.push(scaled.map(|(index, slope)| (index, slope * system.coordinates[index].scale)).collect());
         };
         for condition in conditions {
             match condition.rate {
@@ -114,14 +114,14 @@ fn open_of<'s>(
             }
         }
         distances.iter().for_each(|distance| add(distance.value, &system.q));
-        rows.iter_mut().for_each(|row| row.retain(|&(place, _)| given[place].is_none()));
+        rows.iter_mut().for_each(|row| row.retain(|&(index, _)| given[index].is_none()));
     }
     let known = rows.len() - distances.len();
-    let is_determined = move |place: usize| {
-        let with_known: Vec<Vec<(usize, f64)>> = rows[..known].iter().chain([&rows[known + place]]).cloned().collect();
+    let is_determined = move |index: usize| {
+        let with_known: Vec<Vec<(usize, f64)>> = rows[..known].iter().chain([&rows[known + index]]).cloned().collect();
         dependent_rows(&with_known, DEPENDENT).contains(&known)
     };
-    distances.into_iter().enumerate().filter(move |&(place, _)| !is_determined(place)).map(|(_, distance)| distance)
+    distances.into_iter().enumerate().filter(move |&(index, _)| !is_determined(index)).map(|(_, distance)| distance)
 }
 
 /// Whether a velocity is given that may not be zero, or a constraint depends on t: else all velocities are zero.

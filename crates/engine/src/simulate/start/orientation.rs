@@ -108,8 +108,8 @@ mod tests {
         let n = 5;
         let mut seen = [0; 2];
         for trial in 0..40_usize {
-            let entry = |place: usize| ((trial * 31 + place * 17 + 1) as f64 * 0.618_033_988_749_895).fract() - 0.4;
-            let matrix: Vec<f64> = (0..n * n).map(|place| if place % 7 == 3 { 0.0 } else { entry(place) }).collect();
+            let entry = |index: usize| ((trial * 31 + index * 17 + 1) as f64 * 0.618_033_988_749_895).fract() - 0.4;
+            let matrix: Vec<f64> = (0..n * n).map(|index| if index % 7 == 3 { 0.0 } else { entry(index) }).collect();
             let determinant = DMatrix::from_row_slice(n, n, &matrix).determinant();
             let rows = (0..n).map(Some).collect();
             let (scale, is_pivot) = (vec![1.0; n], vec![false; n]);

@@ -56,8 +56,8 @@ pub struct Equilibrium {
 /// A state, whose coordinate's position it is here.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
-    /// The coordinate's place in q.
-    place: usize,
+    /// Index of the coordinate in q.
+    index: usize,
     /// Registers of the coordinate, and of the state elsewhere.
     position: usize,
     value: usize,
@@ -80,8 +80,8 @@ impl Equilibrium {
         let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
         let program = compile_equations(&system.at_rest());
         let Layout { q, v, .. } = &program.layout;
-        let places = (0..q.len()).filter(|&place| system.coordinates[place].is_state);
-        let states = places.map(|place| State { place, position: q.start + place, value: v.start + place }).collect();
+        let indices = (0..q.len()).filter(|&index| system.coordinates[index].is_state);
+        let states = indices.map(|index| State { index, position: q.start + index, value: v.start + index }).collect();
         Self { program, scale, redundant: redundant.to_vec(), states }
     }
 
@@ -161,8 +161,8 @@ impl Equilibrium {
     /// The largest change of a step from these positions, per scale; of states relative to their values.
     fn size(&self, step: &Step, before: &[f64]) -> f64 {
         let mut sizes: Vec<f64> = step.all.iter().map(|change| change.abs()).collect();
-        for &State { place, .. } in &self.states {
-            sizes[place] /= (before[place] / self.scale[place]).abs().max(1.0);
+        for &State { index, .. } in &self.states {
+            sizes[index] /= (before[index] / self.scale[index]).abs().max(1.0);
         }
         sizes.into_iter().fold(0.0, f64::max)
     }
@@ -243,7 +243,7 @@ impl Balance {
         let leads_downhill = states.is_empty();
         let longest = |parts: &[f64]| {
             let mut sizes: Vec<f64> = parts.iter().map(|part| part.abs()).collect();
-            states.iter().for_each(|state| sizes[state.place] = 0.0);
+            states.iter().for_each(|state| sizes[state.index] = 0.0);
             sizes.into_iter().fold(0.0, f64::max)
         };
         let nothing = NOTHING * self.applied.max(longest_of(stiffness));
@@ -272,10 +272,10 @@ impl Balance {
         let pushed = combined(basis, &forces, n);
         let nothing = NOTHING * longest_of(&self.linear.stiffness).max(1e-300);
         let by_push = |a: &usize, b: &usize| pushed[*a].abs().total_cmp(&pushed[*b].abs());
-        let is_alone = |place: &usize| self.linear.stiffness.column(*place).iter().all(|entry| entry.abs() <= nothing);
+        let is_alone = |index: &usize| self.linear.stiffness.column(*index).iter().all(|entry| entry.abs() <= nothing);
         // A state that nothing depends on cannot be brought to rest, and what else is not in balance gives way to it.
         let least = NOTHING * pushed.iter().fold(0.0_f64, |most, push| most.max(push.abs()));
-        let states = states.iter().map(|state| state.place).filter(|&place| pushed[place].abs() > least);
+        let states = states.iter().map(|state| state.index).filter(|&index| pushed[index].abs() > least);
         let open = states.filter(is_alone).max_by(by_push);
         let coordinate = open.or_else(|| (0..n).max_by(by_push)).unwrap_or(0);
         let yields = times(&reduced(&self.linear.stiffness, basis), &forces);
@@ -306,8 +306,8 @@ fn newton(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool
     let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut is_regular = true;
     let mut found = vec![0.0; forces.len()];
-    for (place, value) in eigen.eigenvalues.iter().enumerate() {
-        let vector = eigen.eigenvectors.column(place);
+    for (index, value) in eigen.eigenvalues.iter().enumerate() {
+        let vector = eigen.eigenvectors.column(index);
         let force: f64 = vector.iter().zip(forces).map(|(a, b)| a * b).sum();
         if value.abs() > NOTHING * largest {
             found.iter_mut().zip(vector.iter()).for_each(|(sum, part)| *sum += force / value * part);
@@ -348,8 +348,8 @@ fn downhill(small: &DMatrix<f64>, forces: &[f64]) -> Vec<f64> {
     // Nothing is softer than what the force moves by a scale.
     let least = (NOTHING * largest).max(size);
     let mut found = vec![0.0; forces.len()];
-    for (place, value) in eigen.eigenvalues.iter().enumerate() {
-        let vector = eigen.eigenvectors.column(place);
+    for (index, value) in eigen.eigenvalues.iter().enumerate() {
+        let vector = eigen.eigenvectors.column(index);
         let force: f64 = vector.iter().zip(forces).map(|(a, b)| a * b).sum();
         found.iter_mut().zip(vector.iter()).for_each(|(sum, part)| *sum += force / value.abs().max(least) * part);
     }

@@ -64,7 +64,7 @@ impl Equilibrium {
         let (n, m) = (self.scale.len(), self.program.layout.lambda.len());
         let linear = self.at(state, parameters).linearise();
         let kept: Vec<usize> =
-            (0..n + m).filter(|&place| place < n || !self.redundant.contains(&ConstraintId::new(place - n))).collect();
+            (0..n + m).filter(|&index| index < n || !self.redundant.contains(&ConstraintId::new(index - n))).collect();
         let entry = |row: usize, column: usize| match (row < n, column < n) {
             (true, true) => linear.stiffness[(row, column)],
             (false, true) => linear.jacobian[row - n][column],
@@ -80,11 +80,11 @@ impl Equilibrium {
         if least.is_nan() || most.is_nan() || least <= SINGULAR * most {
             return None;
         }
-        let scale = |place: usize| if place < n { self.scale[place] } else { 1.0 };
+        let scale = |index: usize| if index < n { self.scale[index] } else { 1.0 };
         let mut inverse = DMatrix::zeros(n + m, n + m);
-        for (place, &column) in kept.iter().enumerate() {
+        for (index, &column) in kept.iter().enumerate() {
             let mut unit = DVector::zeros(size);
-            unit[place] = scaled.rows[place];
+            unit[index] = scaled.rows[index];
             let solution = factors.solve(&unit)?;
             for ((value, factor), &row) in solution.iter().zip(&scaled.columns).zip(&kept) {
                 inverse[(row, column)] = value * factor * scale(row) * scale(column);

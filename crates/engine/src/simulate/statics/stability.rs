@@ -35,9 +35,9 @@ impl Stability {
         let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let is_none = |value: &f64| value.abs() <= INDIFFERENT * largest;
         let mut indifferent: Vec<CoordinateId> = (0..values.len())
-            .filter(|&place| is_none(&values[place]))
-            .filter_map(|place| {
-                let shape = &vectors[place];
+            .filter(|&index| is_none(&values[index]))
+            .filter_map(|index| {
+                let shape = &vectors[index];
                 (0..shape.len()).max_by(|&a, &b| shape[a].abs().total_cmp(&shape[b].abs()))
             })
             .map(CoordinateId::new)
@@ -54,7 +54,7 @@ fn eigen(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, basis: &[Vec<f64>]) -> O
     let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
     let (stiffness, mut mass) = (symmetric(reduced(stiffness, basis)), symmetric(reduced(mass, basis)));
     let least = LEAST_MASS * mass.trace();
-    (0..basis.len()).for_each(|place| mass[(place, place)] += least);
+    (0..basis.len()).for_each(|index| mass[(index, index)] += least);
     let root = mass.cholesky()?.unpack();
     let half = root.solve_lower_triangular(&stiffness)?;
     let scaled = symmetric(root.solve_lower_triangular(&half.transpose())?);

@@ -266,8 +266,8 @@ impl Newton {
             let right: Vec<f64> =
                 residuals.map(|(&register, rounding)| uncertain(value(register), *rounding)).collect();
             let solution = solve_rank_deficient(&entries, &right, &program.equilibration);
-            for (place, register) in program.layout.correction.clone().enumerate() {
-                tile.lane_mut(register)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
+            for (index, register) in program.layout.correction.clone().enumerate() {
+                tile.lane_mut(register)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[index]);
             }
         }
     }

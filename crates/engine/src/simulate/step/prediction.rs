@@ -22,8 +22,8 @@ impl Vectorise for Predict<'_> {
         let width = self.tile.width();
         let ([a, b, c], [now, last, second_last]) = (self.weights, self.values);
         let targets = layout.iterate.clone().chain(layout.lambda.clone());
-        for (place, register) in targets.enumerate() {
-            let [now, last, second_last] = [now, last, second_last].map(|values| &values[place * width..][..width]);
+        for (index, register) in targets.enumerate() {
+            let [now, last, second_last] = [now, last, second_last].map(|values| &values[index * width..][..width]);
             let values = self.tile.lane_mut(register);
             for lane in 0..width {
                 let predicted = a * now[lane] + (b * last[lane] + c * second_last[lane]);

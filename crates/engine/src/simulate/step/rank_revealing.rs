@@ -84,9 +84,9 @@ impl Remainder {
         for other in std::mem::take(&mut self.columns[column]) {
             self.sparsest.remove(&(self.rows[other].len(), other));
             let ratio = self.rows[other].remove(&column).expect("columns list the rows with an entry there") / pivot;
-            for (&place, value) in &entries {
-                *self.rows[other].entry(place).or_insert(0.0) -= ratio * value;
-                self.columns[place].insert(other);
+            for (&index, value) in &entries {
+                *self.rows[other].entry(index).or_insert(0.0) -= ratio * value;
+                self.columns[index].insert(other);
             }
             self.right[other] -= ratio * self.right[row];
             self.sparsest.insert((self.rows[other].len(), other));

@@ -333,16 +333,16 @@ impl<'p> Stepper<'p> {
         for (lane, worst) in errors.iter_mut().enumerate() {
             *worst = LocalError::default();
             let value = |register: usize| self.tile.lane(register)[lane];
-            for (place, scale) in self.program.scale.iter().enumerate() {
-                let [w, a, x] = [&layout.w, &layout.a, &layout.iterate].map(|block| value(block.start + place));
+            for (index, scale) in self.program.scale.iter().enumerate() {
+                let [w, a, x] = [&layout.w, &layout.a, &layout.iterate].map(|block| value(block.start + index));
                 let whole = numbers.of_new() * x + numbers.of_old() * w - (1.0 + numbers.of_algorithmic()) * a;
                 // Where the step was singular there are no factors.
-                let moving = value(layout.correction.start + place);
+                let moving = value(layout.correction.start + index);
                 let change = if self.newton.is_singular(lane) { whole } else { moving };
-                let unit = gain / scale.max(value(layout.q.start + place).abs());
+                let unit = gain / scale.max(value(layout.q.start + index).abs());
                 // Written so that NaN wins and stays.
                 if !(unit * change.abs() <= worst.size || worst.size.is_nan()) {
-                    let coordinate = CoordinateId::new(place);
+                    let coordinate = CoordinateId::new(index);
                     *worst = LocalError { size: unit * change.abs(), coordinate, change, ..*worst };
                 }
                 if !(unit * whole.abs() <= worst.whole || worst.whole.is_nan()) {

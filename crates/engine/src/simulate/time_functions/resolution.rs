@@ -222,17 +222,17 @@ impl TimeFunctions {
             seen += 1;
             let widest = (1..symbols.len()).max_by(|&i, &j| {
                 let share =
-                    |place: usize| (symbols[place].upper() - symbols[place].lower()) / symbols[place].magnitude();
+                    |index: usize| (symbols[index].upper() - symbols[index].lower()) / symbols[index].magnitude();
                 share(i).total_cmp(&share(j))
             });
             let splits = widest.filter(|_| sure < 2 && depth < DEEPEST && seen < MOST_PARTS);
-            let Some(place) = splits.filter(|&place| symbols[place].upper() > symbols[place].lower()) else {
+            let Some(index) = splits.filter(|&index| symbols[index].upper() > symbols[index].lower()) else {
                 return false;
             };
-            let (range, middle) = (symbols[place], symbols[place].middle());
+            let (range, middle) = (symbols[index], symbols[index].middle());
             for half in [Interval::new(range.lower(), middle), Interval::new(middle, range.upper())] {
                 let mut symbols = symbols.clone();
-                symbols[place] = half;
+                symbols[index] = half;
                 boxes.push((symbols, depth + 1));
             }
         }
@@ -260,8 +260,8 @@ impl Term {
         let beyond = share * self.size;
         let (least, most) = (first.lower().min(last.lower()) - beyond, first.upper().max(last.upper()) + beyond);
         let part = |part: usize| a + (b - a) * part as f64 / PARTS as f64;
-        let within = (0..PARTS).all(|place| {
-            let (value, _) = self.over(&all.over(part(place), part(place + 1)), work);
+        let within = (0..PARTS).all(|index| {
+            let (value, _) = self.over(&all.over(part(index), part(index + 1)), work);
             least <= value.lower() && value.upper() <= most
         });
         // Elsewhere in the state it may have one.
@@ -345,8 +345,8 @@ fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64
     while pieces.len() < PIECES {
         let extreme = |sign: f64| {
             let end = |piece: &(f64, f64, Interval)| if sign > 0.0 { piece.2.upper() } else { -piece.2.lower() };
-            let place = (0..pieces.len()).max_by(|&i, &j| end(&pieces[i]).total_cmp(&end(&pieces[j])));
-            place.map(|place| (place, end(&pieces[place])))
+            let index = (0..pieces.len()).max_by(|&i, &j| end(&pieces[i]).total_cmp(&end(&pieces[j])));
+            index.map(|index| (index, end(&pieces[index])))
         };
         let (Some((lowest, lower)), Some((highest, upper))) = (extreme(-1.0), extreme(1.0)) else { break };
         width = upper + lower;
@@ -354,8 +354,8 @@ fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64
             break;
         }
         // The piece that may go furthest beyond the values known to be reached.
-        let place = if upper - most > least + lower { highest } else { lowest };
-        let (a, b, _) = pieces.swap_remove(place);
+        let index = if upper - most > least + lower { highest } else { lowest };
+        let (a, b, _) = pieces.swap_remove(index);
         let middle = 0.5 * (a + b);
         (least, most) = (least.min(at(middle)), most.max(at(middle)));
         pieces.extend([(a, middle, over(a, middle)), (middle, b, over(middle, b))]);

@@ -52,7 +52,7 @@ impl ResolvingSteps {
         // Times that no period of a function is a multiple of.
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let mut steps: Vec<(f64, f64)> = (1..=PLACES)
-            .map(|place| (1.0 - share / duration) * duration * (golden * place as f64).fract())
+            .map(|index| (1.0 - share / duration) * duration * (golden * index as f64).fract())
             .map(|from| (from, self.resolved_step(from, share, (share, HALVINGS))))
             .collect();
         steps.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));

@@ -170,7 +170,7 @@ fn conditions(graph: &mut Graph, time: Expr, terms: &[Expr]) -> Vec<Condition> {
         }
     }
     let steady: Vec<Expr> = found.into_iter().filter(|&of| graph.changes_steadily(of, &[time])).collect();
-    let place = |of: Expr| of_floor.get(&of).and_then(|sine| steady.binary_search(sine).ok());
-    let jumps_with = |of: Expr| graph.reachable(&[of]).into_iter().filter_map(place).collect();
+    let index = |of: Expr| of_floor.get(&of).and_then(|sine| steady.binary_search(sine).ok());
+    let jumps_with = |of: Expr| graph.reachable(&[of]).into_iter().filter_map(index).collect();
     steady.iter().map(|&of| Condition { of, jumps_with: jumps_with(of) }).collect()
 }

@@ -109,9 +109,9 @@ fn consistent(start: &StartProgram, memory: &mut JetMemory, order: usize) {
     for (tape, first, count) in stages {
         for _ in 0..(order + 1).ilog2() + 2 {
             memory.run(tape);
-            for place in 0..count {
-                let change = memory.jet(layout.correction.start + place).to_vec();
-                memory.jet_mut(first + place).iter_mut().zip(change).for_each(|(value, change)| *value += change);
+            for index in 0..count {
+                let change = memory.jet(layout.correction.start + index).to_vec();
+                memory.jet_mut(first + index).iter_mut().zip(change).for_each(|(value, change)| *value += change);
             }
         }
     }

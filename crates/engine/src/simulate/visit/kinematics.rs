@@ -49,18 +49,18 @@ impl Simulator {
             times.push(schedule.time(row));
         }
         let mut reduction = Reduction::new(channels, self.start.outputs.len(), 1);
-        let mut place = 0;
+        let mut index = 0;
         let way = self.walk(sample, &times, interruption, &mut |assembly| {
             let outputs = self.start.outputs.iter().map(|&register| assembly.tile().lane(register)[0]);
             if !channels.is_empty() {
                 let mut values = reduction.buffer();
                 values.iter_mut().zip(outputs.clone()).for_each(|(value, output)| *value = output);
-                reduction.push(times[place], values, &[true]);
+                reduction.push(times[index], values, &[true]);
             }
-            if rows.binary_search(&place).is_ok() {
+            if rows.binary_search(&index).is_ok() {
                 visit.values.extend(outputs);
             }
-            place += 1;
+            index += 1;
         })?;
         visit.reduced = reduction.finish();
         visit.singular = way.singular;
@@ -83,8 +83,8 @@ impl Simulator {
         let mut assembly = self.assembly_on_branch(sample, &mut branch)?;
         let mut way = Way::default();
         let mut now = 0.0;
-        for (place, &time) in times.iter().enumerate() {
-            if interruption.is_asked_in(place) {
+        for (index, &time) in times.iter().enumerate() {
+            if interruption.is_asked_in(index) {
                 return Err(SimulationError::Interrupted);
             }
             while now < time {
@@ -112,7 +112,7 @@ impl Simulator {
                 }
                 let crossed = across.map(|(end, step)| (end, assembly.advance_to(end, step, &mut branch)));
                 let Some((end, Advance::Crossed(oriented))) = crossed else {
-                    way.stop = Some(self.stopped(&assembly, place, now, step));
+                    way.stop = Some(self.stopped(&assembly, index, now, step));
                     return Ok(way);
                 };
                 now = end;
@@ -295,10 +295,10 @@ impl Assembly<'_> {
         let layout = &program.layout;
         self.tile_mut().run(program.position());
         let mut size = 0.0_f64;
-        for (place, register) in layout.q.clone().enumerate() {
-            let change = self.tile().lane(layout.correction.start + place)[0];
+        for (index, register) in layout.q.clone().enumerate() {
+            let change = self.tile().lane(layout.correction.start + index)[0];
             self.tile_mut().lane_mut(register)[0] += change;
-            size = size.max((change / self.scale()[place]).abs());
+            size = size.max((change / self.scale()[index]).abs());
         }
         size
     }

@@ -43,7 +43,7 @@ impl Simulator {
                 return Err(SimulationError::Interrupted);
             }
             let mut told = match self.followed(vibrations, state, nominal, sample, states.len() == 1) {
-                Some(place) => vibrations.tell(state, &place, nominal),
+                Some(index) => vibrations.tell(state, &index, nominal),
                 None => vec![f64::NAN; lines],
             };
             self.derived.iter().for_each(|derived| derived.set(sample, &mut told));

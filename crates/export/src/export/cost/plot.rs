@@ -70,8 +70,8 @@ pub fn cost_svg(study: &CostStudy) -> String {
     let what = format!("{}: error against computing time", study.model);
     let mut figure = document(SIZE, &what).add(heading(&what, (LEFT, 15.0)));
     let shown = panels.into_iter().filter(|(_, points, _)| !points.is_empty());
-    for (place, (title, points, reference)) in shown.enumerate() {
-        let left = place as f64 * half;
+    for (index, (title, points, reference)) in shown.enumerate() {
+        let left = index as f64 * half;
         let shown = || points.iter().filter(|point| is_shown(point));
         let errors = shown().map(|point| point.deviation.largest()).chain([study.tolerance]);
         let panel = Panel {
@@ -171,8 +171,8 @@ impl Panel {
             let places: Vec<Point> = own().map(|point| point.place(reference)).collect();
             let series = Group::new().set("data-series", method.label()).add(Title::new(method.label()));
             let series = Hue::Color(color(method)).paint(series, "series").add(self.front(&places, 1.6));
-            drawn.add(own().zip(&places).fold(series, |series, (point, place)| {
-                series.add(mark(self.place(*place), entry, point.deviation.is_narrow()))
+            drawn.add(own().zip(&places).fold(series, |series, (point, index)| {
+                series.add(mark(self.place(*index), entry, point.deviation.is_narrow()))
             }))
         })
     }
@@ -205,7 +205,7 @@ impl Panel {
 
     /// A line through the points on the Pareto front.
     fn front(&self, points: &[Point], width: f64) -> Path {
-        let line: Vec<Point> = pareto(points).into_iter().map(|place| self.place(points[place])).collect();
+        let line: Vec<Point> = pareto(points).into_iter().map(|index| self.place(points[index])).collect();
         Path::new().set("class", "line").set("d", line_data(&line)).set("stroke-width", width)
     }
 }

@@ -74,8 +74,8 @@ mod tests {
         assert!((3..=16).contains(&placed), "{placed}");
         assert!(labels.beside(Px::new(1.0, 0.0), Px::new(1.0, 0.0), "crank0", 12.0, "name").is_none());
         let overlap = |a: &[Px; 2], b: &[Px; 2]| a[0] < b[1] && b[0] < a[1];
-        for (place, label) in labels.taken.iter().enumerate() {
-            assert!(labels.taken[..place].iter().all(|other| !overlap(label, other)));
+        for (index, label) in labels.taken.iter().enumerate() {
+            assert!(labels.taken[..index].iter().all(|other| !overlap(label, other)));
         }
     }
 }

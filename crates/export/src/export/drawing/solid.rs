@@ -93,7 +93,7 @@ fn closed(corners: &[Px]) -> Path {
 
 /// The points within a radius of a convex polygon, whose corners turn one way.
 fn rounded(corners: &[Px], radius: f64) -> Path {
-    let next = |place: usize| corners[(place + 1) % corners.len()];
+    let next = |index: usize| corners[(index + 1) % corners.len()];
     if radius < 0.05 {
         return closed(corners);
     }
@@ -105,15 +105,15 @@ fn rounded(corners: &[Px], radius: f64) -> Path {
         return Path::new().set("d", data);
     }
     // Of the hull the inside is on the side of `across`.
-    let outward = |place: usize| -radius * across((next(place) - corners[place]).normalize());
+    let outward = |index: usize| -radius * across((next(index) - corners[index]).normalize());
     let mut data = Data::new();
-    for (place, &corner) in corners.iter().enumerate() {
-        let (from, to) = (corner + outward(place), next(place) + outward(place));
-        data = match place {
+    for (index, &corner) in corners.iter().enumerate() {
+        let (from, to) = (corner + outward(index), next(index) + outward(index));
+        data = match index {
             0 => data.move_to(pair(from)),
             _ => data,
         };
-        let end = next(place) + outward((place + 1) % corners.len());
+        let end = next(index) + outward((index + 1) % corners.len());
         data = data.line_to(pair(to)).elliptical_arc_to((px(radius), px(radius), 0, 0, 1, px(end.x), px(end.y)));
     }
     Path::new().set("d", data.close())
@@ -129,10 +129,10 @@ fn polyhedron(faces: &[Face], frame: &SolidFrame, view: &View) -> Vec<Path> {
     let mut edges: BTreeMap<[[i64; 2]; 2], Vec<Vector3<f64>>> = BTreeMap::new();
     for (face, normal) in &shown {
         let corners: Vec<[i64; 2]> = face.iter().map(|&corner| tenths(view.px(corner))).collect();
-        for (place, &corner) in corners.iter().enumerate() {
+        for (index, &corner) in corners.iter().enumerate() {
             let at = (corner[0] as f64 / 10.0, corner[1] as f64 / 10.0);
-            fill = if place == 0 { fill.move_to(at) } else { fill.line_to(at) };
-            let mut ends = [corner, corners[(place + 1) % corners.len()]];
+            fill = if index == 0 { fill.move_to(at) } else { fill.line_to(at) };
+            let mut ends = [corner, corners[(index + 1) % corners.len()]];
             ends.sort_unstable();
             if ends[0] != ends[1] {
                 edges.entry(ends).or_default().push(normal.normalize());

@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn entries_wrap_into_rows() {
         let entry = |label: &str| Entry { group: "g".into(), label: label.into(), sign: Sign::Line(Hue::Ink) };
-        let legend = Legend::new((0..9).map(|place| entry(&format!("scene {place}"))).collect(), 400.0);
+        let legend = Legend::new((0..9).map(|index| entry(&format!("scene {index}"))).collect(), 400.0);
         assert_eq!(legend.0.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3, 3]);
         assert_eq!(legend.more(), 2.0 * ROW);
         assert_eq!(Legend::new(vec![], 400.0).more(), 0.0);

@@ -50,13 +50,13 @@ fn flush(column: &mut Vec<Point>, kept: &mut Vec<Point>) {
         return;
     }
     let (mut low, mut high) = (0, 0);
-    for (place, point) in column.iter().enumerate() {
-        low = if point.1 < column[low].1 { place } else { low };
-        high = if point.1 > column[high].1 { place } else { high };
+    for (index, point) in column.iter().enumerate() {
+        low = if point.1 < column[low].1 { index } else { low };
+        high = if point.1 > column[high].1 { index } else { high };
     }
     let mut places = [0, low.min(high), low.max(high), column.len() - 1].to_vec();
     places.dedup();
-    kept.extend(places.into_iter().map(|place| column[place]));
+    kept.extend(places.into_iter().map(|index| column[index]));
     column.clear();
 }
 
@@ -74,11 +74,11 @@ fn simplified(points: &[Point]) -> Vec<Point> {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = (dx * dx + dy * dy).sqrt().max(f64::MIN_POSITIVE);
         let distance = |at: Point| ((at.0 - from.0) * dy - (at.1 - from.1) * dx).abs() / length;
-        let farthest = (first + 1..last).map(|place| (place, distance(points[place])));
+        let farthest = (first + 1..last).map(|index| (index, distance(points[index])));
         let farthest = farthest.reduce(|most, next| if next.1 > most.1 { next } else { most });
-        if let Some((place, _)) = farthest.filter(|(_, distance)| *distance > TOLERANCE) {
-            stays[place] = true;
-            open.extend([(first, place), (place, last)]);
+        if let Some((index, _)) = farthest.filter(|(_, distance)| *distance > TOLERANCE) {
+            stays[index] = true;
+            open.extend([(first, index), (index, last)]);
         }
     }
     points.iter().zip(&stays).filter(|(_, stays)| **stays).map(|(point, _)| *point).collect()

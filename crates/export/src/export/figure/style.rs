@@ -48,10 +48,10 @@ const DARKER: f64 = 0.6;
 const BRIGHT: f64 = 0.3;
 
 impl Color {
-    /// The colour of the `place`-th of many.
-    pub fn of(place: usize) -> Self {
-        let scale = DARKER.powi((place / PALETTE.len()) as i32);
-        Self(PALETTE[place % PALETTE.len()].0.map(|part| (f64::from(part) * scale) as u8))
+    /// The colour of the `index`-th of many.
+    pub fn of(index: usize) -> Self {
+        let scale = DARKER.powi((index / PALETTE.len()) as i32);
+        Self(PALETTE[index % PALETTE.len()].0.map(|part| (f64::from(part) * scale) as u8))
     }
 
     /// As SVG has it: `#0072b2`.
@@ -107,8 +107,8 @@ mod tests {
     #[test]
     fn colours_of_the_palette_stay_apart_in_grey_and_on_dark_paper() {
         let all: Vec<Color> = (0..20).map(Color::of).collect();
-        for (place, color) in all.iter().enumerate() {
-            assert!(!all[..place].contains(color), "{place}");
+        for (index, color) in all.iter().enumerate() {
+            assert!(!all[..index].contains(color), "{index}");
             assert!(color.on_dark().luminance() >= BRIGHT);
         }
         assert_eq!(Color([0, 114, 178]).hex(), "#0072b2");

@@ -21,13 +21,13 @@ impl Packed {
     /// Number i has scale i modulo `places`.
     pub fn new(values: &[f64], places: usize) -> Self {
         let mut largest = vec![0.0_f64; places.max(1)];
-        for (place, value) in values.iter().enumerate() {
-            let largest = &mut largest[place % places];
+        for (index, value) in values.iter().enumerate() {
+            let largest = &mut largest[index % places];
             *largest = largest.max(value.abs());
         }
         // Rounded up, so that the largest does not leave the range.
         let scales: Vec<f32> = largest.iter().map(|largest| (largest / 32766.0) as f32).collect();
-        let whole = |(place, value): (usize, &f64)| match f64::from(scales[place % places]) {
+        let whole = |(index, value): (usize, &f64)| match f64::from(scales[index % places]) {
             0.0 => 0,
             scale => (value / scale).round() as i16,
         };
@@ -45,10 +45,10 @@ mod tests {
         let values: Vec<f64> = (0..300).map(|i| if i % 3 == 0 { 1e-7 } else { 5.0 } * f64::from(i - 150)).collect();
         let packed = Packed::new(&values, 3);
         let bytes = BASE64.decode(packed.data.as_bytes()).unwrap();
-        for (place, (pair, value)) in bytes.chunks_exact(2).zip(&values).enumerate() {
-            let scale = f64::from(packed.scales[place % 3]);
+        for (index, (pair, value)) in bytes.chunks_exact(2).zip(&values).enumerate() {
+            let scale = f64::from(packed.scales[index % 3]);
             let found = scale * f64::from(i16::from_le_bytes([pair[0], pair[1]]));
-            assert!((found - value).abs() <= 0.501 * scale, "{place}: {found} {value}");
+            assert!((found - value).abs() <= 0.501 * scale, "{index}: {found} {value}");
         }
         assert_eq!(floats(&[1.0]), "AACAPw==");
     }

@@ -35,7 +35,7 @@ pub(in crate::export) struct PageFigure {
 pub(in crate::export) fn page(model: &str, scenes: &[PageScene]) -> String {
     let data: Vec<Value> = scenes.iter().map(data).collect();
     let contents: String =
-        scenes.iter().enumerate().map(|(place, scene)| content(place, scene, scenes.len())).collect();
+        scenes.iter().enumerate().map(|(index, scene)| content(index, scene, scenes.len())).collect();
     let description = scenes.iter().map(|scene| text(&scene.motion, "description")).find(|text| !text.is_empty());
     let description = description.map(|text| format!("<p class=\"description\">{}</p>", escaped(text)));
     let title = escaped(model);
@@ -82,7 +82,7 @@ fn data(scene: &PageScene) -> Value {
     })
 }
 
-fn content(place: usize, scene: &PageScene, scenes: usize) -> String {
+fn content(index: usize, scene: &PageScene, scenes: usize) -> String {
     let PageScene { name, summary, motion, figures } = scene;
     let heading = if scenes > 1 { format!("<h2>{}</h2>", escaped(name)) } else { String::new() };
     let warnings = tables::warnings(summary, motion);
@@ -98,7 +98,7 @@ fn content(place: usize, scene: &PageScene, scenes: usize) -> String {
         .iter()
         .enumerate()
         .map(|(number, figure)| {
-            let prefix = |kind: usize| format!("s{place}p{number}k{kind}-");
+            let prefix = |kind: usize| format!("s{index}p{number}k{kind}-");
             let svgs = figure.plots.iter().enumerate();
             let output = escaped(&figure.output);
             // Figures of other programs are pictures, in which nothing acts.
@@ -111,7 +111,7 @@ fn content(place: usize, scene: &PageScene, scenes: usize) -> String {
         })
         .collect();
     [
-        format!("<article class=\"scene\" data-scene=\"{place}\">{heading}\n"),
+        format!("<article class=\"scene\" data-scene=\"{index}\">{heading}\n"),
         tables::warning_list(&warnings),
         tables::requirements(summary),
         picture,

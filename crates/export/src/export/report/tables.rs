@@ -20,7 +20,7 @@ pub(super) fn table(headings: &[&str], rows: impl Iterator<Item = Vec<String>>) 
     let head: String = headings.iter().map(|heading| format!("<th scope=\"col\">{heading}</th>")).collect();
     let body: String = rows
         .map(|cells| {
-            let cells = cells.into_iter().enumerate().map(|(place, cell)| match place {
+            let cells = cells.into_iter().enumerate().map(|(index, cell)| match index {
                 0 => format!("<th scope=\"row\">{cell}</th>"),
                 _ => format!("<td>{cell}</td>"),
             });

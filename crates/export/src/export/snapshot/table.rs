@@ -68,7 +68,7 @@ pub fn write_snapshot(folder: &Path, name: &str, file: &str) -> Result<Vec<PathB
 /// The rows that are shown.
 fn rows(count: usize) -> Vec<usize> {
     let Some(last) = count.checked_sub(1) else { return Vec::new() };
-    let mut rows: Vec<usize> = (1..=TIMES).map(|place| place * last / TIMES).collect();
+    let mut rows: Vec<usize> = (1..=TIMES).map(|index| index * last / TIMES).collect();
     rows.dedup();
     rows
 }

@@ -87,10 +87,10 @@ fn prism(outline: &[[f64; 3]], thickness: f64) -> Vec<Face> {
 fn wall(radius: f64) -> Vec<Face> {
     let (inner, outer) = (ring(radius), ring(1.1 * radius));
     let half = 0.1 * radius;
-    let at = |ring: &Face, place: usize, z: f64| [ring[place % AROUND][0], ring[place % AROUND][1], z];
-    let pieces = (0..AROUND).flat_map(|place| {
+    let at = |ring: &Face, index: usize, z: f64| [ring[index % AROUND][0], ring[index % AROUND][1], z];
+    let pieces = (0..AROUND).flat_map(|index| {
         let quad = |a: (&Face, f64), b: (&Face, f64)| {
-            vec![at(a.0, place, a.1), at(a.0, place + 1, a.1), at(b.0, place + 1, b.1), at(b.0, place, b.1)]
+            vec![at(a.0, index, a.1), at(a.0, index + 1, a.1), at(b.0, index + 1, b.1), at(b.0, index, b.1)]
         };
         [
             quad((&inner, half), (&inner, -half)),

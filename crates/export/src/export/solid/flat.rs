@@ -11,8 +11,8 @@ pub(super) const AROUND: usize = 72;
 /// The points of a line with arcs as short straight pieces, closed by itself where it is so.
 pub(in crate::export) fn polyline(bends: &[Bend<f64>], is_closed: bool) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
-    for (place, bend) in bends.iter().enumerate() {
-        let before = if place > 0 { bends.get(place - 1) } else { bends.last().filter(|_| is_closed) };
+    for (index, bend) in bends.iter().enumerate() {
+        let before = if index > 0 { bends.get(index - 1) } else { bends.last().filter(|_| is_closed) };
         if let Some((radius, before)) = bend.radius.zip(before) {
             points.extend(arc(before.to, bend.to, radius));
         }
@@ -46,19 +46,19 @@ pub(in crate::export) fn triangulated(corners: &[[f64; 3]]) -> Vec<[[f64; 3]; 3]
     let mut found = Vec::with_capacity(corners.len().saturating_sub(2));
     while left.len() > 2 {
         let count = left.len();
-        let ear = |place: usize| [left[(place + count - 1) % count], left[place], left[(place + 1) % count]];
+        let ear = |index: usize| [left[(index + count - 1) % count], left[index], left[(index + 1) % count]];
         let side = |a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>| (b - a).cross(&(c - b)).dot(&normal);
-        let is_ear = |&place: &usize| {
-            let [a, b, c] = ear(place);
+        let is_ear = |&index: &usize| {
+            let [a, b, c] = ear(index);
             let within = |p: &Vector3<f64>| {
                 ![a, b, c].contains(p) && side(a, b, *p) >= 0.0 && side(b, c, *p) >= 0.0 && side(c, a, *p) >= 0.0
             };
             side(a, b, c) > 0.0 && !left.iter().any(within)
         };
         // A line that crosses itself has none; any corner will do then.
-        let place = (0..count).find(is_ear).unwrap_or(0);
-        found.push(ear(place).map(Into::into));
-        left.remove(place);
+        let index = (0..count).find(is_ear).unwrap_or(0);
+        found.push(ear(index).map(Into::into));
+        left.remove(index);
     }
     found
 }

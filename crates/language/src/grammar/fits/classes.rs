@@ -90,11 +90,11 @@ impl FitClass {
         if size > LARGEST {
             return self.of_large(size);
         }
-        let Some(place) = range(&RANGES, size) else { return none("above 0 mm, to 3150 mm") };
+        let Some(index) = range(&RANGES, size) else { return none("above 0 mm, to 3150 mm") };
         if size <= 1.0 && (matches!(self.letters, "a" | "b") || self.grade >= grade(14)) {
             return none("above 1 mm, to 3150 mm");
         }
-        let tolerance = f64::from(GRADES[self.grade][place]) / 10.0;
+        let tolerance = f64::from(GRADES[self.grade][index]) / 10.0;
         let from_lower = |lower: f64| [lower, lower + tolerance];
         let from_upper = |upper: f64| [upper - tolerance, upper];
         if self.letters == "js" {
@@ -103,11 +103,11 @@ impl FitClass {
         let is_hole = self.feature == Feature::Hole;
         let found = match (self.letters, is_hole) {
             ("h", _) => Some(0),
-            ("j", true) => self.j_of_holes(place),
-            ("j", false) => self.j(place),
+            ("j", true) => self.j_of_holes(index),
+            ("j", false) => self.j(index),
             ("k", true) if self.grade > grade(8) && size > 3.0 => None,
-            ("k", true) => Some(K[place]),
-            ("k", false) => Some(if (grade(4)..=grade(7)).contains(&self.grade) { K[place] } else { 0 }),
+            ("k", true) => Some(K[index]),
+            ("k", false) => Some(if (grade(4)..=grade(7)).contains(&self.grade) { K[index] } else { 0 }),
             (letters, _) => fundamental(letters, size),
         };
         let Some(deviation) = found.map(f64::from) else { return none(&self.sizes()) };
@@ -117,7 +117,7 @@ impl FitClass {
             (true, true) => from_lower(-deviation),
             (false, false) => from_lower(deviation),
             (true, false) if self.letters == "j" => from_upper(deviation),
-            (true, false) => from_upper(self.of_tight_hole(deviation, place, size)),
+            (true, false) => from_upper(self.of_tight_hole(deviation, index, size)),
         })
     }
 
@@ -141,31 +141,31 @@ impl FitClass {
     }
 
     /// ES of a hole K to ZC, by the deviation of the shaft with the same letters (ISO 286-1:2010, 4.3.2).
-    fn of_tight_hole(self, deviation: f64, place: usize, size: f64) -> f64 {
+    fn of_tight_hole(self, deviation: f64, index: usize, size: f64) -> f64 {
         let finest = if matches!(self.letters, "k" | "m" | "n") { grade(8) } else { grade(7) };
         if self.grade > finest {
             return if self.letters == "n" && size > 3.0 { 0.0 } else { -deviation };
         }
         let has_delta = size > 3.0 && self.grade > grade(2);
-        let delta = if has_delta { GRADES[self.grade][place] - GRADES[self.grade - 1][place] } else { 0 };
+        let delta = if has_delta { GRADES[self.grade][index] - GRADES[self.grade - 1][index] } else { 0 };
         // The table's only exception.
-        let is_m6 = self.letters == "m" && self.grade == grade(6) && RANGES[place] == 315.0;
+        let is_m6 = self.letters == "m" && self.grade == grade(6) && RANGES[index] == 315.0;
         -deviation + f64::from(delta) / 10.0 + if is_m6 { 2.0 } else { 0.0 }
     }
 
     /// ei of a shaft j.
-    fn j(self, place: usize) -> Option<i16> {
+    fn j(self, index: usize) -> Option<i16> {
         match self.grade {
-            own if own == grade(5) || own == grade(6) => Some(J[0][place]),
-            own if own == grade(7) => Some(J[1][place]),
-            own if own == grade(8) && place == 0 => Some(-6),
+            own if own == grade(5) || own == grade(6) => Some(J[0][index]),
+            own if own == grade(7) => Some(J[1][index]),
+            own if own == grade(8) && index == 0 => Some(-6),
             _ => None,
         }
     }
 
     /// ES of a hole J.
-    fn j_of_holes(self, place: usize) -> Option<i16> {
-        Some(J_OF_HOLES.get(self.grade.checked_sub(grade(6))?)?[place])
+    fn j_of_holes(self, index: usize) -> Option<i16> {
+        Some(J_OF_HOLES.get(self.grade.checked_sub(grade(6))?)?[index])
     }
 
     /// Sizes that the class has limits for, in words.

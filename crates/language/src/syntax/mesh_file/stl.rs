@@ -10,12 +10,12 @@ pub fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     if count.checked_mul(50)? != triangles.len() {
         return None;
     }
-    let number = |bytes: &[u8], place: usize| {
-        let four = bytes.get(4 * place..4 * place + 4)?.try_into().ok()?;
+    let number = |bytes: &[u8], index: usize| {
+        let four = bytes.get(4 * index..4 * index + 4)?.try_into().ok()?;
         Some(f64::from(f32::from_le_bytes(four)))
     };
-    let corner = |bytes: &[u8], place: usize| {
-        let first = 3 + 3 * place;
+    let corner = |bytes: &[u8], index: usize| {
+        let first = 3 + 3 * index;
         Some([number(bytes, first)?, number(bytes, first + 1)?, number(bytes, first + 2)?])
     };
     let triangle = |bytes: &[u8]| Some([corner(bytes, 0)?, corner(bytes, 1)?, corner(bytes, 2)?]);

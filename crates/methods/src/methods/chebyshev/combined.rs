@@ -305,7 +305,7 @@ impl Closure for AlongLines<'_> {
         for point in 0..count {
             let along: Vec<f64> = parameters.iter().skip(point).step_by(count).copied().collect();
             let values = self.combined.embed(&along);
-            values.into_iter().enumerate().for_each(|(place, value)| embedded[place * count + point] = value);
+            values.into_iter().enumerate().for_each(|(index, value)| embedded[index * count + point] = value);
         }
         self.closure.outputs(time, count, embedded, motion)
     }

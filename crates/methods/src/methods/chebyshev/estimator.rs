@@ -19,12 +19,12 @@ pub(super) struct RangeEstimator<'a> {
 }
 
 impl RangeEstimator<'_> {
-    /// Estimates of every output in a row, whose number among all is `place`.
-    pub fn estimate(&self, row: &Row, place: usize, previous: &mut Previous) -> Vec<Estimate> {
+    /// Estimates of every output in a row, whose index among all is `index`.
+    pub fn estimate(&self, row: &Row, index: usize, previous: &mut Previous) -> Vec<Estimate> {
         let found = row.range(self.search, previous);
-        let errors = row.errors(self.search, self.validation, place, &found);
+        let errors = row.errors(self.search, self.validation, index, &found);
         let step_errors = match self.halved {
-            Some(halved) => row.step_errors(self.search, halved, place, &found),
+            Some(halved) => row.step_errors(self.search, halved, index, &found),
             None => vec![f64::NAN; errors.len()],
         };
         let sensitivities: Vec<Option<Sensitivity>> = match &self.sensitivity {

@@ -341,8 +341,8 @@ fn adapted(
     let adapted = adaptive::search(ensemble, goal, validation, request.keep)?;
     let outputs = ensemble.outputs();
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
-    for (place, estimate) in adapted.found.into_iter().enumerate() {
-        bands.set_estimate(place / outputs, place % outputs, estimate);
+    for (index, estimate) in adapted.found.into_iter().enumerate() {
+        bands.set_estimate(index / outputs, index % outputs, estimate);
     }
     let result = bands.finish(adapted.simulations - spent, adapted.simulated);
     Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), kept: adapted.kept, ..result })
@@ -374,8 +374,8 @@ fn composed(
         let times: Vec<f64> = rows.clone().map(|row| ensemble.time(row)).collect();
         let first = rows.start;
         let keeps = kept.is_some();
-        let look = |place: usize, row: &Row, previous: &mut Previous| {
-            let found = estimator.estimate(row, first + place, previous);
+        let look = |index: usize, row: &Row, previous: &mut Previous| {
+            let found = estimator.estimate(row, first + index, previous);
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };

@@ -66,8 +66,8 @@ impl Polynomials<'_> {
         let every: Vec<usize> = (0..self.outputs()).collect();
         let of_line = |line: &[f64]| {
             let end = |sign: f64| (0..line.len()).max_by(|&a, &b| (sign * line[a]).total_cmp(&(sign * line[b])));
-            let place = |sign: f64| end(sign).map_or_else(|| vec![0.0; k], |place| points[place].clone());
-            Extent::at(Range::of(line), 0.0, [place(-1.0), place(1.0)])
+            let index = |sign: f64| end(sign).map_or_else(|| vec![0.0; k], |index| points[index].clone());
+            Extent::at(Range::of(line), 0.0, [index(-1.0), index(1.0)])
         };
         self.values(&every, &points).chunks_exact(points.len()).map(of_line).collect()
     }

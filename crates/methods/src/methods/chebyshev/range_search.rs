@@ -98,29 +98,29 @@ impl RangeSearch {
         // Outputs that come apart in the same way are searched together.
         let mut alike: Vec<(Vec<Vec<usize>>, Vec<usize>)> = Vec::new();
         let mut defects = Vec::with_capacity(values.len());
-        for (place, values) in values.iter().enumerate() {
-            let of_output = |points: &[Vec<f64>]| (functions.evaluate)(&functions.outputs[place..=place], points);
+        for (index, values) in values.iter().enumerate() {
+            let of_output = |points: &[Vec<f64>]| (functions.evaluate)(&functions.outputs[index..=index], points);
             let separated = self.separation.of(values, of_output);
             defects.push(separated.defect);
             match alike.iter_mut().find(|(groups, _)| *groups == separated.groups) {
-                Some((_, places)) => places.push(place),
-                None => alike.push((separated.groups, vec![place])),
+                Some((_, places)) => places.push(index),
+                None => alike.push((separated.groups, vec![index])),
             }
         }
         let mut found = vec![Extent::unknown(k); values.len()];
         for (groups, places) in &alike {
-            let outputs: Vec<usize> = places.iter().map(|&place| functions.outputs[place]).collect();
+            let outputs: Vec<usize> = places.iter().map(|&index| functions.outputs[index]).collect();
             let extents = if groups.len() == 1 && groups[0].len() == k {
                 self.together(functions, &outputs, previous)
             } else {
-                let anchored: Vec<f64> = places.iter().map(|&place| values[place][0]).collect();
+                let anchored: Vec<f64> = places.iter().map(|&index| values[index][0]).collect();
                 let mut sums = self.apart(functions, &outputs, groups, &anchored);
                 self.hold_sums(functions, &outputs, &mut sums, previous);
                 sums
             };
-            for (&place, mut extent) in places.iter().zip(extents) {
-                extent.gap += defects[place];
-                found[place] = extent;
+            for (&index, mut extent) in places.iter().zip(extents) {
+                extent.gap += defects[index];
+                found[index] = extent;
             }
         }
         found
@@ -181,9 +181,9 @@ impl RangeSearch {
                 sum.range.upper += part.range.upper - anchored;
                 sum.gap += part.gap;
                 for end in 0..2 {
-                    for (place, &axis) in group.iter().enumerate() {
-                        sum.places[end][axis] = part.places[end][place];
-                        sum.spacing[end][axis] = part.spacing[end][place];
+                    for (index, &axis) in group.iter().enumerate() {
+                        sum.places[end][axis] = part.places[end][index];
+                        sum.spacing[end][axis] = part.spacing[end][index];
                     }
                 }
             }
@@ -198,17 +198,17 @@ impl RangeSearch {
     fn hold_sums(&self, functions: &Functions, outputs: &[usize], sums: &mut [Extent], previous: &mut Previous) {
         let places: Vec<Vec<f64>> = sums.iter().flat_map(|sum| sum.places.iter().cloned()).collect();
         let values = (functions.evaluate)(outputs, &places);
-        let is_sum = |&place: &usize| {
-            let (at_ends, range) = (&values[place * places.len() + 2 * place..][..2], sums[place].range);
+        let is_sum = |&index: &usize| {
+            let (at_ends, range) = (&values[index * places.len() + 2 * index..][..2], sums[index].range);
             let apart = largest([at_ends[0] - range.lower, at_ends[1] - range.upper]);
             // Written so that NaN is no sum.
-            apart <= SUM * range.width() + functions.rounding[outputs[place]]
+            apart <= SUM * range.width() + functions.rounding[outputs[index]]
         };
-        let others: Vec<usize> = (0..outputs.len()).filter(|place| !is_sum(place)).collect();
+        let others: Vec<usize> = (0..outputs.len()).filter(|index| !is_sum(index)).collect();
         if !others.is_empty() {
-            let wanted: Vec<usize> = others.iter().map(|&place| outputs[place]).collect();
+            let wanted: Vec<usize> = others.iter().map(|&index| outputs[index]).collect();
             let found = self.together(functions, &wanted, previous);
-            others.into_iter().zip(found).for_each(|(place, found)| sums[place] = found);
+            others.into_iter().zip(found).for_each(|(index, found)| sums[index] = found);
         }
     }
 }
@@ -225,9 +225,9 @@ impl Functions<'_> {
 
 /// Intervals of the first lattice along some axes, for polynomials or compositions of them.
 fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
-    let place = axes.len().clamp(1, MOST_PARAMETERS) - 1;
-    let each = if are_polynomials { POLYNOMIAL[place] } else { COMPOSED[place] };
-    let along = |&axis: &usize| LEAST_INTERVALS[place].max(each * usize::from(degrees[axis])).next_multiple_of(2);
+    let index = axes.len().clamp(1, MOST_PARAMETERS) - 1;
+    let each = if are_polynomials { POLYNOMIAL[index] } else { COMPOSED[index] };
+    let along = |&axis: &usize| LEAST_INTERVALS[index].max(each * usize::from(degrees[axis])).next_multiple_of(2);
     axes.iter().map(along).collect()
 }
 

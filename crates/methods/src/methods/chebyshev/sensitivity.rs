@@ -89,7 +89,7 @@ impl<'a> SensitivityAnalysis<'a> {
         let k = domain.dimension();
         let nominal: Vec<f64> = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
         // Fine polynomials hold one parameter at a time.
-        let degree = k.checked_sub(1).and_then(|place| DEGREES.get(place)).filter(|_| domain.zones.is_empty());
+        let degree = k.checked_sub(1).and_then(|index| DEGREES.get(index)).filter(|_| domain.zones.is_empty());
         let fine = degree.map(|&degree| Fine::new(degree, &nominal));
         let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
         let causes = (0..k).map(|axis| domain.cause(axis)).collect();
@@ -192,7 +192,7 @@ impl Fine {
             decomposition,
             nominal: nominal.iter().map(|&xi| chebyshev(xi)).collect(),
             without: SparseBasis::tensor(&vec![degree; k - 1]),
-            lattice: (0..lattice.len()).map(|place| lattice.sample(place)).collect(),
+            lattice: (0..lattice.len()).map(|index| lattice.sample(index)).collect(),
         }
     }
 
@@ -203,8 +203,8 @@ impl Fine {
         let terms = coefficients.len() / values_at.len();
         let mut held = Vec::with_capacity(terms);
         for block in coefficients.chunks_exact(stride * values_at.len()) {
-            let at = |place: usize| -> f64 {
-                block[place..].iter().step_by(stride).zip(values_at).map(|(c, value)| c * value).sum()
+            let at = |index: usize| -> f64 {
+                block[index..].iter().step_by(stride).zip(values_at).map(|(c, value)| c * value).sum()
             };
             held.extend((0..stride).map(at));
         }
@@ -224,14 +224,14 @@ impl Fine {
 
     /// The extreme beside the lattice's: along each axis a parabola through its neighbours, in the angle whose cosine ξ
     /// is, in which they are equally far. At the ends of an axis the function is even in it.
-    fn peak(&self, line: &[f64], place: usize, sign: f64) -> f64 {
+    fn peak(&self, line: &[f64], index: usize, sign: f64) -> f64 {
         let points = DENSITY * (self.nominal[0].len() - 1) + 1;
-        let mut peak = line[place];
+        let mut peak = line[index];
         let mut stride = 1;
         while stride < line.len() {
-            if (1..points - 1).contains(&(place / stride % points)) {
-                let (before, after) = (line[place - stride], line[place + stride]);
-                let bend = 2.0 * line[place] - before - after;
+            if (1..points - 1).contains(&(index / stride % points)) {
+                let (before, after) = (line[index - stride], line[index + stride]);
+                let bend = 2.0 * line[index] - before - after;
                 if sign * bend > 0.0 {
                     peak += (after - before) * (after - before) / (8.0 * bend);
                 }

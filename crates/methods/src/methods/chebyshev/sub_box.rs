@@ -31,7 +31,7 @@ const MET: f64 = 0.5;
 
 /// Highest degree in a parameter for k of them; then a box is split.
 pub(super) fn highest(k: usize) -> u8 {
-    k.checked_sub(1).and_then(|place| HIGHEST.get(place)).copied().unwrap_or(HIGHEST_OF_MANY)
+    k.checked_sub(1).and_then(|index| HIGHEST.get(index)).copied().unwrap_or(HIGHEST_OF_MANY)
 }
 
 /// A surplus for each index.
@@ -87,14 +87,14 @@ impl SubBox<'_> {
     /// sign: ξ there, and values.
     pub fn validation_in_half(&self, axis: usize, side: f64) -> (Vec<Vec<f64>>, ValidationTable) {
         let common = step_validation(self.grid.dimension()).len();
-        let places: Vec<usize> =
-            (common..self.points.len()).filter(|&place| side * self.points[place][axis] > 0.0).collect();
-        let in_half = |&place: &usize| {
-            let mut xi = self.points[place].clone();
+        let indices: Vec<usize> =
+            (common..self.points.len()).filter(|&index| side * self.points[index][axis] > 0.0).collect();
+        let in_half = |&index: &usize| {
+            let mut xi = self.points[index].clone();
             xi[axis] = 2.0 * xi[axis] - side;
             xi
         };
-        (places.iter().map(in_half).collect(), self.direct.pick(&places))
+        (indices.iter().map(in_half).collect(), self.direct.pick(&indices))
     }
 
     /// Rows that all nodes have reached.

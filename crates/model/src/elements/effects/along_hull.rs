@@ -91,10 +91,10 @@ impl<'g> Line<'g> {
             let heights = self.ends.map(|(end, ..)| normal.dot(end) - face.height);
             let lowest = heights[0].min(heights[1]);
             let sides = || hull.edges.iter().filter_map(|edge| Some((edge, edge.inward_of(number)?)));
-            for ((end, place, _), height) in self.ends.into_iter().zip(heights) {
+            for ((end, index, _), height) in self.ends.into_iter().zip(heights) {
                 let inside =
                     sides().map(|(edge, inward)| constant(g, inward).dot(end - constant(g, hull.points[edge.ends[0]])));
-                into.push((self.only_where(inside, 2.0 * lowest - height), place));
+                into.push((self.only_where(inside, 2.0 * lowest - height), index));
             }
         }
     }
@@ -143,14 +143,14 @@ impl<'g> Line<'g> {
             let point = constant(g, point);
             let beside = |way: Vector<'g>| edges.iter().map(move |edge| -edge.dot(way)).collect::<Vec<_>>();
             let offset = start - point;
-            let place = -self.along.dot(offset);
-            let way = offset + place * self.along;
-            let conditions = beside(way).into_iter().chain([place, self.length - place]);
-            into.push((self.only_where(conditions, Self::size(way)), place));
-            for (end, place, ahead) in self.ends {
+            let index = -self.along.dot(offset);
+            let way = offset + index * self.along;
+            let conditions = beside(way).into_iter().chain([index, self.length - index]);
+            into.push((self.only_where(conditions, Self::size(way)), index));
+            for (end, index, ahead) in self.ends {
                 let way = end - point;
                 let conditions = beside(way).into_iter().chain([ahead.dot(way)]);
-                into.push((self.only_where(conditions, Self::size(way)), place));
+                into.push((self.only_where(conditions, Self::size(way)), index));
             }
         }
     }

@@ -108,11 +108,11 @@ impl ForceElement for Filter {
             forces.sensor(self.sensors()[0].0, output);
             output
         };
-        for place in 0..order {
-            let next = if place + 1 < order { forces.state(place + 1) } else { zero };
-            let change = next + (numerator[place + 1] * input - denominator[place + 1] * output) / leading;
-            forces.state_rate(place, change);
-            if place == 0 && self.lags() {
+        for index in 0..order {
+            let next = if index + 1 < order { forces.state(index + 1) } else { zero };
+            let change = next + (numerator[index + 1] * input - denominator[index + 1] * output) / leading;
+            forces.state_rate(index, change);
+            if index == 0 && self.lags() {
                 forces.sensor(self.sensors()[1].0, change);
             }
         }
@@ -269,9 +269,9 @@ impl Coefficients {
         let read: Vec<_> = nodes.iter().map(|node| reader.any_unit(node, Context::Constant)).collect();
         let (formulas, known): (Vec<_>, Vec<_>) = read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
         let dimension = of_list(&known, nodes.iter().all(is_literal));
-        for (place, (node, own)) in nodes.iter().zip(known).enumerate() {
+        for (index, (node, own)) in nodes.iter().zip(known).enumerate() {
             if let (Some(own), Some(last)) = (own, dimension) {
-                let power = nodes.len() - 1 - place;
+                let power = nodes.len() - 1 - index;
                 let wanted = (0..power).fold(last, |dimension, _| dimension.times(Dimension::TIME));
                 reader.check_fits(&node.span, own, wanted);
             }

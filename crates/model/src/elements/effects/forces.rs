@@ -75,16 +75,16 @@ pub trait Forces<'g> {
     fn weight(&mut self, field: Vector<'g>) -> Result<(), BuildError>;
     /// A potential energy, J, if it is one: where a coefficient depends on the motion, its gradient is not the force.
     fn potential(&mut self, coefficients: &[Scalar<'g>], energy: Scalar<'g>);
-    /// A state of the effect, by its place among them.
-    fn state(&self, place: usize) -> Scalar<'g>;
-    /// How fast a state of the effect changes, by its place among them.
-    fn state_rate(&mut self, place: usize, rate: Scalar<'g>);
-    /// Sets the value that sampled state `place` takes at its next sampling instant, from values just before it.
-    fn hold(&mut self, place: usize, value: Scalar<'g>);
-    /// A modal coordinate of the effect and its rate, by its place among them.
-    fn mode(&self, place: usize) -> [Scalar<'g>; 2];
-    /// A force on a modal coordinate of the effect, by its place among them.
-    fn modal_force(&mut self, place: usize, force: Scalar<'g>);
+    /// State of the effect, by its index among them.
+    fn state(&self, index: usize) -> Scalar<'g>;
+    /// How fast a state of the effect changes, by its index among them.
+    fn state_rate(&mut self, index: usize, rate: Scalar<'g>);
+    /// Sets the value that sampled state `index` takes at its next sampling instant, from values just before it.
+    fn hold(&mut self, index: usize, value: Scalar<'g>);
+    /// A modal coordinate of the effect and its rate, by its index among them.
+    fn mode(&self, index: usize) -> [Scalar<'g>; 2];
+    /// A force on a modal coordinate of the effect, by its index among them.
+    fn modal_force(&mut self, index: usize, force: Scalar<'g>);
     /// How much room there is where the effect begins: a start without any is refused, m.
     fn begins_within(&mut self, room: Scalar<'g>);
     /// The gap of two surfaces, m, and how deep they may overlap: where the gap is less than −`deepest`, they have no

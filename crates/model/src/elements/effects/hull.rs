@@ -106,7 +106,7 @@ impl Hull {
                         let above = |point: &Point| dot(normal, *point) - height;
                         let is_known = faces.iter().any(|face| dot(face.normal, normal) > 1.0 - FLAT);
                         if !is_known && points.iter().all(|point| above(point) <= FLAT * size) {
-                            let corners = (0..points.len()).filter(|&place| above(&points[place]) >= -FLAT * size);
+                            let corners = (0..points.len()).filter(|&index| above(&points[index]) >= -FLAT * size);
                             faces.push(Face { normal, height, corners: corners.collect() });
                         }
                     }
@@ -114,8 +114,8 @@ impl Hull {
             }
         }
         let mut edges = Vec::new();
-        for (place, first) in faces.iter().enumerate() {
-            for (other, second) in faces.iter().enumerate().skip(place + 1) {
+        for (index, first) in faces.iter().enumerate() {
+            for (other, second) in faces.iter().enumerate().skip(index + 1) {
                 let both: Vec<usize> =
                     first.corners.iter().copied().filter(|corner| second.corners.contains(corner)).collect();
                 let Some(ends) = farthest(&points, &both) else { continue };
@@ -126,7 +126,7 @@ impl Hull {
                         face.corners.iter().map(|&corner| dot(across, minus(points[corner], points[ends[0]]))).sum();
                     scaled(across, side.signum())
                 });
-                edges.push(Edge { ends, along, faces: [place, other], inward });
+                edges.push(Edge { ends, along, faces: [index, other], inward });
             }
         }
         (faces.len() >= 4).then_some(Self { points, faces, edges })
@@ -221,10 +221,10 @@ impl Hull {
 /// a plane.
 pub fn faces_of_hull(points: Vec<[f64; 3]>) -> Option<Vec<Vec<[f64; 3]>>> {
     let hull = Hull::of(points)?;
-    let corners = |(place, face): (usize, &Face)| {
+    let corners = |(index, face): (usize, &Face)| {
         // Edges of the face one after the other, each on from the end of the one before.
         let mut edges: Vec<[usize; 2]> =
-            hull.edges.iter().filter(|edge| edge.faces.contains(&place)).map(|edge| edge.ends).collect();
+            hull.edges.iter().filter(|edge| edge.faces.contains(&index)).map(|edge| edge.ends).collect();
         let mut ring = vec![edges.first()?[0]];
         while let Some(next) = edges.iter().position(|ends| ends.contains(&ring[ring.len() - 1])) {
             let [one, other] = edges.swap_remove(next);
@@ -249,8 +249,8 @@ pub(super) fn constant(g: &Builder, point: Point) -> Vector<'_> {
 /// The two of some points that are farthest apart, if there are two.
 fn farthest(points: &[Point], some: &[usize]) -> Option<[usize; 2]> {
     let mut best: Option<([usize; 2], f64)> = None;
-    for (place, &first) in some.iter().enumerate() {
-        for &second in &some[place + 1..] {
+    for (index, &first) in some.iter().enumerate() {
+        for &second in &some[index + 1..] {
             let way = minus(points[second], points[first]);
             if best.is_none_or(|(_, square)| dot(way, way) > square) {
                 best = Some(([first, second], dot(way, way)));

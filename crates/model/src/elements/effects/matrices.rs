@@ -184,7 +184,7 @@ impl Places {
             reader.error(node.span.clone(), message, help);
             return None;
         };
-        let place = |row: usize| match plane {
+        let index = |row: usize| match plane {
             0 => row,
             _ if row < OF_PLANE.len() * self.nodes => OF_NODE * (row / OF_PLANE.len()) + OF_PLANE[row % OF_PLANE.len()],
             _ => OF_NODE * self.nodes + row - OF_PLANE.len() * self.nodes,
@@ -203,7 +203,7 @@ impl Places {
                 return None;
             }
             for (column, value) in values.into_iter().enumerate() {
-                let (i, j) = (place(row), place(column));
+                let (i, j) = (index(row), index(column));
                 if column < row && full {
                     let above: f64 = matrix[(j, i)];
                     let size = above.abs().max(value.abs());

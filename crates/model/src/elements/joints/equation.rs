@@ -116,8 +116,8 @@ impl Element for Equation {
 
 /// The place of the `=` between the sides, which is none of a comparison.
 fn equals_sign(text: &str) -> Option<usize> {
-    let compares = |place: usize| text[..place].ends_with(['<', '>', '!', '=']) || text[place + 1..].starts_with('=');
-    text.match_indices('=').map(|(place, _)| place).find(|&place| !compares(place))
+    let compares = |index: usize| text[..index].ends_with(['<', '>', '!', '=']) || text[index + 1..].starts_with('=');
+    text.match_indices('=').map(|(index, _)| index).find(|&index| !compares(index))
 }
 
 impl JsonSchema for Equation {

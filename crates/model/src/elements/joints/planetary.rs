@@ -133,8 +133,8 @@ impl Joint for Planetary {
         let members = self.members();
         let carrier = members[2].map(|on| (Member::Joint(on), senses[2]));
         // Of sun and ring against the carrier.
-        let rim = |place: usize, radius: Scalar<'g>| -> Rim<'g> {
-            let wheel = members[place].map(|on| (Member::Joint(on), senses[place] * radius));
+        let rim = |index: usize, radius: Scalar<'g>| -> Rim<'g> {
+            let wheel = members[index].map(|on| (Member::Joint(on), senses[index] * radius));
             let carrier = carrier.map(|(member, sense)| (member, -(sense * radius)));
             wheel.into_iter().chain(carrier).collect()
         };
@@ -148,8 +148,8 @@ impl Joint for Planetary {
     fn rows<'g>(&self, own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {
         let (ratio, offset) = (k.number(&self.ratio)?, k.number(&self.offset)?);
         let senses = self.senses(own, k)?;
-        let angle = |place: usize, on: Option<OnJoint>| match on {
-            Some(on) => senses[place] * k.coordinate(on),
+        let angle = |index: usize, on: Option<OnJoint>| match on {
+            Some(on) => senses[index] * k.coordinate(on),
             None => k.graph().number(0.0),
         };
         let [sun, ring, carrier] = self.members();

@@ -32,7 +32,7 @@ pub struct Capsule {
 impl ShapeElement for Capsule {
     fn form(&self) -> Form<Formula> {
         // The reader has let two points through, no more and no less.
-        let end = |place: usize| self.ends.get(place).cloned().unwrap_or([0.0; 3].map(Formula::number));
+        let end = |index: usize| self.ends.get(index).cloned().unwrap_or([0.0; 3].map(Formula::number));
         Form::Capsule { ends: [end(0), end(1)], radius: self.radius.clone() }
     }
 }

@@ -143,7 +143,7 @@ fn add(points: &mut Vec<(String, Node)>, name: &str, node: Node) -> String {
 fn ground(sections: &mut Sections, span: &Span, points: Vec<(String, Node)>) {
     let Some(bodies) = sections.of("bodies", span) else { return };
     let mut own = Sections(match bodies.iter().position(|entry| entry.key == "ground") {
-        Some(place) => match bodies.remove(place).value.value {
+        Some(index) => match bodies.remove(index).value.value {
             crate::syntax::yaml::Value::Mapping(entries) => entries,
             _ => Vec::new(),
         },

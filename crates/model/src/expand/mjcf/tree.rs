@@ -49,12 +49,12 @@ impl Sections {
     /// The entries of a section, which is made where it is not there; none where what stands there is no mapping.
     pub fn of(&mut self, section: &str, span: &Span) -> Option<&mut Vec<Entry>> {
         let known = self.0.iter().position(|entry| entry.key == section && !entry.value.is_null());
-        let place = known.unwrap_or_else(|| {
+        let index = known.unwrap_or_else(|| {
             self.0.retain(|entry| entry.key != section);
             self.0.push(Entry { key: section.to_owned(), key_span: span.clone(), value: map(span, []) });
             self.0.len() - 1
         });
-        match &mut self.0[place].value.value {
+        match &mut self.0[index].value.value {
             Tree::Mapping(entries) => Some(entries),
             _ => None,
         }

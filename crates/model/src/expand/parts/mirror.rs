@@ -174,7 +174,7 @@ fn image_of_value(value: &mut Node, image: Image, axis: usize, is_turning: Optio
 
 /// Forces and displacements are polar, torques and rotations axial.
 fn six_rows(node: &mut Node, axis: usize) {
-    let counts_back = |place: usize| (place % 3 == axis) == (place < 3);
+    let counts_back = |index: usize| (index % 3 == axis) == (index < 3);
     let Value::Sequence(rows) = &mut node.value else { return };
     for (row, entries) in rows.iter_mut().enumerate() {
         let Value::Sequence(entries) = &mut entries.value else { continue };
@@ -212,7 +212,7 @@ pub(super) fn rotation(node: &mut Node, axis: usize) {
                     .iter_mut()
                     .skip(1)
                     .enumerate()
-                    .filter(|(place, _)| *place != axis)
+                    .filter(|(index, _)| *index != axis)
                     .for_each(|(_, item)| negate(item));
             }
             _ => {}
@@ -233,7 +233,7 @@ pub(super) fn axial(node: &mut Node, axis: usize) {
     written_out(node);
     match &mut node.value {
         Value::Sequence(items) => {
-            items.iter_mut().enumerate().filter(|(place, _)| *place != axis).for_each(|(_, item)| negate(item));
+            items.iter_mut().enumerate().filter(|(index, _)| *index != axis).for_each(|(_, item)| negate(item));
         }
         _ if axis != 2 => negate(node),
         _ => {}
@@ -242,15 +242,15 @@ pub(super) fn axial(node: &mut Node, axis: usize) {
 
 /// An axis by its letter as a list.
 pub(super) fn written_out(node: &mut Node) {
-    let Some(place) = node.scalar().and_then(|scalar| ["x", "y", "z"].iter().position(|axis| *axis == scalar.text))
+    let Some(index) = node.scalar().and_then(|scalar| ["x", "y", "z"].iter().position(|axis| *axis == scalar.text))
     else {
         return;
     };
     let one = |axis: usize| {
-        let text = if axis == place { "1" } else { "0" };
+        let text = if axis == index { "1" } else { "0" };
         Node { span: node.span.clone(), value: Value::Scalar(Scalar::plain(text, None)) }
     };
-    let last = if place == 2 { 3 } else { 2 };
+    let last = if index == 2 { 3 } else { 2 };
     node.value = Value::Sequence((0..last).map(one).collect());
 }
 

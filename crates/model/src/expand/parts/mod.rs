@@ -153,7 +153,7 @@ impl Writer<'_, '_> {
     /// Puts entries in the places of others.
     fn put(&mut self, section: &str, range: &Range<usize>, entries: Vec<Entry>) {
         if let Some(found) = self.section(section, &(0..0)).and_then(|found| found.get_mut(range.clone())) {
-            found.iter_mut().zip(entries).for_each(|(place, entry)| *place = entry);
+            found.iter_mut().zip(entries).for_each(|(index, entry)| *index = entry);
         }
     }
 

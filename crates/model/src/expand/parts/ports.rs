@@ -68,12 +68,12 @@ impl Writer<'_, '_> {
         };
         let Value::Mapping(keys) = &mut found.value.value else { return None };
         let at = entry.key_span.clone();
-        let place = keys.iter().position(|key| key.key == "points").unwrap_or_else(|| {
+        let index = keys.iter().position(|key| key.key == "points").unwrap_or_else(|| {
             let value = Node { span: at.clone(), value: Value::Mapping(Vec::new()) };
             keys.push(Entry { key: "points".to_owned(), key_span: at.clone(), value });
             keys.len() - 1
         });
-        let Value::Mapping(points) = &mut keys[place].value.value else { return None };
+        let Value::Mapping(points) = &mut keys[index].value.value else { return None };
         if let Some(first) = points.iter().find(|known| known.key == point.key).map(|known| known.key_span.clone()) {
             self.twice(&point.key, &point.key_span, &first);
             return None;

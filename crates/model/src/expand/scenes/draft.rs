@@ -88,13 +88,13 @@ impl Draft {
     fn section(&mut self, key: &str, key_span: Span, like: &Node) -> Option<&mut Vec<Entry>> {
         let is_word = |entry: &Entry| key == "initial" && entry.value.scalar().is_some();
         let found = self.entries.iter().position(|e| e.key == key && !e.value.is_null() && !is_word(e));
-        let place = found.unwrap_or_else(|| {
+        let index = found.unwrap_or_else(|| {
             let value = Node { span: like.span.clone(), value: Value::Mapping(Vec::new()) };
             self.entries.retain(|entry| entry.key != key);
             self.entries.push(Entry { key: key.to_owned(), key_span, value });
             self.entries.len() - 1
         });
-        match &mut self.entries[place].value.value {
+        match &mut self.entries[index].value.value {
             Value::Mapping(entries) => Some(entries),
             _ => None,
         }
@@ -210,7 +210,7 @@ impl Draft {
             match known {
                 // A number of the URDF is there without being named.
                 _ if has_robot && urdf::is_number(&entry.key) => replace(parameters, entry.clone()),
-                Some(place) => parameters[place] = overridden(&parameters[place], entry),
+                Some(index) => parameters[index] = overridden(&parameters[index], entry),
                 None => {
                     let names = parameters.iter().map(|known| known.key.as_str());
                     let help = suggest::help(&entry.key, "parameters", names);

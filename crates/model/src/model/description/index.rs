@@ -11,32 +11,32 @@ pub struct NameIndex(Mutex<Known>);
 
 #[derive(Default)]
 struct Known {
-    places: HashMap<String, usize>,
+    indices: HashMap<String, usize>,
     /// Names of the list that were entered.
     entered: usize,
 }
 
 impl NameIndex {
-    /// The first place of a name in a list of this length.
+    /// Index of the first entry with a name in a list of this length.
     pub fn find<'n>(&self, name: &str, length: usize, name_at: impl Fn(usize) -> &'n str) -> Option<usize> {
         // What a panic left is compared with the list as everything is.
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let Known { places, entered } = &mut *known;
-        let is_same = |last: &usize| *entered <= length && places.get(name_at(*last)) == Some(last);
+        let Known { indices, entered } = &mut *known;
+        let is_same = |last: &usize| *entered <= length && indices.get(name_at(*last)) == Some(last);
         if entered.checked_sub(1).is_some_and(|last| !is_same(&last)) {
-            (*places, *entered) = (HashMap::new(), 0);
+            (*indices, *entered) = (HashMap::new(), 0);
         }
-        for place in *entered..length {
-            places.entry(name_at(place).to_owned()).or_insert(place);
+        for index in *entered..length {
+            indices.entry(name_at(index).to_owned()).or_insert(index);
         }
         *entered = length;
-        match places.get(name) {
-            Some(&place) if name_at(place) == name => Some(place),
+        match indices.get(name) {
+            Some(&index) if name_at(index) == name => Some(index),
             None => None,
             // The list has changed.
             Some(_) => {
-                (*places, *entered) = (HashMap::new(), 0);
-                (0..length).find(|&place| name_at(place) == name)
+                (*indices, *entered) = (HashMap::new(), 0);
+                (0..length).find(|&index| name_at(index) == name)
             }
         }
     }

@@ -20,8 +20,8 @@ pub struct ReducedOutput {
     pub kind: ReducedKind,
     /// The reduced formula, over names of [`Description::symbol`](super::Description::symbol).
     pub sources: Vec<Formula>,
-    /// Places of these among the outputs, once they are there.
-    pub places: Vec<usize>,
+    /// Indices of these among the outputs, once they are there.
+    pub outputs: Vec<usize>,
     /// From when, s.
     pub from: f64,
     /// Until when, s.
@@ -79,8 +79,8 @@ pub struct Requirement {
     pub display: Option<DisplayUnit>,
     /// Distance of the limits from the limited quantity.
     pub slacks: Vec<Formula>,
-    /// Places of these among the outputs, once they are there.
-    pub places: Vec<usize>,
+    /// Indices of these among the outputs, once they are there.
+    pub outputs: Vec<usize>,
     /// When they count; `None` where they are of reduced outputs and parameters, by their names.
     pub times: Option<(f64, f64)>,
     /// Constant limits.

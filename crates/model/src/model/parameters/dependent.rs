@@ -25,7 +25,7 @@ pub fn seed_of(name: &str) -> String {
     format!("{name}{SEED}")
 }
 
-/// The place of the parameter whose deviation has this name.
+/// Index of the parameter whose deviation has this name.
 pub fn owner(entries: &[Entry], name: &str) -> Option<usize> {
     let name = name.strip_suffix(DEVIATION)?;
     entries.iter().position(|entry| entry.key == name)

@@ -114,8 +114,8 @@ impl Urdf {
 
     /// The entries of `bodies:` that name links, with the links.
     fn entries_of_links(&self) -> impl Iterator<Item = (usize, &Entry)> {
-        let place = |name: &str| self.robot.links.iter().position(|link| link.name == name);
-        self.of_links.iter().filter_map(move |entry| Some((place(&entry.key)?, entry)))
+        let index = |name: &str| self.robot.links.iter().position(|link| link.name == name);
+        self.of_links.iter().filter_map(move |entry| Some((index(&entry.key)?, entry)))
     }
 
     /// Adds the robot's bodies and joints to the model, behind those that it has.

@@ -1,11 +1,11 @@
 //! Triangles of MuJoCo's MSH files: numbers of corners, normals, points of textures and triangles as 32-bit integers;
-//! then corners, normals and points of textures as 32-bit floats, and three places of corners a triangle.
+//! then corners, normals and points of textures as 32-bit floats, and three indices of corners a triangle.
 
 use super::{Triangle, indexed};
 
 pub fn triangles(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let (words, []) = bytes.as_chunks::<4>() else { return None };
-    let count = |place: usize| usize::try_from(i32::from_le_bytes(*words.get(place)?)).ok();
+    let count = |index: usize| usize::try_from(i32::from_le_bytes(*words.get(index)?)).ok();
     let [corners, normals, textures, faces] = [count(0)?, count(1)?, count(2)?, count(3)?];
     let floats = [corners.checked_mul(3)?, normals.checked_mul(3)?, textures.checked_mul(2)?];
     let first_face = floats.iter().try_fold(4_usize, |sum, more| sum.checked_add(*more))?;
@@ -16,9 +16,9 @@ pub fn triangles(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let corners: Vec<[f64; 3]> =
         corners.iter().map(|corner| corner.map(|word| f64::from(f32::from_le_bytes(word)))).collect();
     let (faces, _) = words[first_face..].as_chunks::<3>();
-    // A negative place is past every corner.
-    let place = |word: [u8; 4]| u32::from_le_bytes(word) as usize;
-    indexed(&corners, faces.iter().map(|face| face.map(place)))
+    // A negative index is past every corner.
+    let index = |word: [u8; 4]| u32::from_le_bytes(word) as usize;
+    indexed(&corners, faces.iter().map(|face| face.map(index)))
 }
 
 #[cfg(test)]

@@ -138,8 +138,8 @@ mod tests {
     /// A prism over the polygon (0,0) (2,0) (2,1) (1,1) (1,2) (0,2), of height 1: three unit cubes, moved.
     fn prism(moved: [f64; 3]) -> Vec<Triangle> {
         const OUTLINE: [[f64; 2]; 6] = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
-        let at = |place: usize, height: f64| {
-            let [x, y] = OUTLINE[place % 6];
+        let at = |index: usize, height: f64| {
+            let [x, y] = OUTLINE[index % 6];
             [x + moved[0], y + moved[1], height + moved[2]]
         };
         let mut triangles = Vec::new();

@@ -73,7 +73,7 @@ impl Reader<'_, '_, '_> {
                 let of_diameter = |diameter: f64| std::f64::consts::FRAC_PI_4 * diameter * diameter;
                 let gain = get(values, "diameter").map_or(area, |_| of_diameter(list(values, "diameter", 0.0)[0]));
                 let bias = list(values, "bias", 0.0);
-                Law::Affine { gain, bias: [0, 1, 2].map(|place| bias.get(place).copied().unwrap_or(0.0)) }
+                Law::Affine { gain, bias: [0, 1, 2].map(|index| bias.get(index).copied().unwrap_or(0.0)) }
             }
             _ => {
                 let mut plain = |key: &str, words: &[(&str, bool)]| match get(values, key) {
@@ -83,7 +83,7 @@ impl Reader<'_, '_, '_> {
                 plain("gaintype", &[("fixed", false)])?;
                 let is_affine = plain("biastype", &[("none", false), ("affine", true)])?;
                 let (gain, bias) = (list(values, "gainprm", 1.0)[0], list(values, "biasprm", 0.0));
-                let at = |place: usize| bias.get(place).copied().filter(|_| is_affine).unwrap_or(0.0);
+                let at = |index: usize| bias.get(index).copied().filter(|_| is_affine).unwrap_or(0.0);
                 Law::Affine { gain, bias: [at(0), at(1), at(2)] }
             }
         })

@@ -32,11 +32,11 @@ impl<'i> Reader<'_, 'i, '_> {
         let (count, digits) = (count as usize, format!("{}", count as usize - 1).len());
         let mut pose = around.pose.clone();
         let outer = self.suffix.clone();
-        for place in 0..count {
+        for index in 0..count {
             if self.is_too_many(item) {
                 break;
             }
-            self.suffix = format!("{separator}{place:0digits$}{outer}");
+            self.suffix = format!("{separator}{index:0digits$}{outer}");
             self.inside(item, body, &Around { pose: pose.clone(), class: around.class }, contents);
             pose = pose.then(&algebra::vector(offset), &turn);
         }

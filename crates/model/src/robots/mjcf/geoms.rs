@@ -200,7 +200,7 @@ pub fn bounded(values: &Values, mut solid: Solid) -> Solid {
     if own.eigenvalues.min() < least {
         own.eigenvalues.apply(|moment| *moment = moment.max(least));
         let tensor = own.recompose();
-        solid.inertia = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|place| tensor[place]);
+        solid.inertia = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|index| tensor[index]);
     }
     let moments = own.eigenvalues;
     if values.settings.balance && 2.0 * moments.max() > moments.sum() {

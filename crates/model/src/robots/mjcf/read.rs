@@ -197,8 +197,8 @@ impl<'i> Reader<'_, 'i, '_> {
         let (position, rotation) = self.values.frame(item, class, &["site"]);
         let pose = around.pose.then(&algebra::vector(position), &rotation);
         let name = names::in_formulas(&written, self.whole.names.taken_by_sites.entry(body).or_default());
-        let place = self.whole.robot.bodies[body].sites.len();
-        if self.whole.names.sites.insert(written.clone(), (body, place)).is_some() {
+        let index = self.whole.robot.bodies[body].sites.len();
+        if self.whole.names.sites.insert(written.clone(), (body, index)).is_some() {
             self.values.error(named.span.clone(), format!("a second site is called `{}`", clip(&written)), None);
         }
         let position = algebra::numbers(&pose.position).unwrap_or_default();

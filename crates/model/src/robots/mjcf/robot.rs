@@ -186,7 +186,7 @@ pub struct Names {
     pub taken_by_sites: HashMap<usize, HashSet<String>>,
     pub bodies: HashMap<String, usize>,
     pub joints: HashMap<String, usize>,
-    /// Body and place among its sites.
+    /// Body, and index among its sites.
     pub sites: HashMap<String, (usize, usize)>,
 }
 

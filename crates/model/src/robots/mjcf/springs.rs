@@ -37,10 +37,10 @@ pub fn set(robot: &mut Robot, flags: Flags) {
     let degrees = degrees(robot, &poses);
     // Where it is singular the start of the motion says so.
     let Some(inverse) = mass_matrix(robot, &poses, &degrees).try_inverse() else { return };
-    for (place, degree) in degrees.iter().enumerate() {
+    for (index, degree) in degrees.iter().enumerate() {
         let joint = &mut robot.joints[degree.joint];
         let Some([time, ratio]) = joint.spring_damper.filter(|_| joint.is_single()) else { continue };
-        let moved = 1.0 / inverse[(place, place)];
+        let moved = 1.0 / inverse[(index, index)];
         joint.stiffness.value = on(flags.springs) * moved / (time * time * ratio * ratio);
         joint.damping.value = on(flags.dampers) * 2.0 * moved / time;
     }
@@ -58,8 +58,8 @@ pub fn damp_actuators(robot: &mut Robot) {
         let Some(ratio) = actuator.damping_ratio else { continue };
         let mut gradient = DVector::zeros(degrees.len());
         for &(joint, by) in &actuator.on.terms {
-            if let Some(place) = degrees.iter().position(|degree| degree.joint == joint) {
-                gradient[place] += actuator.gear.value * by;
+            if let Some(index) = degrees.iter().position(|degree| degree.joint == joint) {
+                gradient[index] += actuator.gear.value * by;
             }
         }
         let mass = 1.0 / gradient.dot(&(&inverse * &gradient));

@@ -165,6 +165,6 @@ fn prefixes_that_are_not_declared_are_other_programs() {
     let spans: Vec<_> = diagnostics.iter().map(|found| found.span.clone().unwrap()).collect();
     assert_eq!(spans.iter().map(|span| &text[span.clone()]).collect::<Vec<_>>(), ["x"]);
     assert!(messages(&hinge("a:b='1'", "<link"))[0].starts_with("this is not XML"));
-    let many: String = (0..30).map(|place| format!("p{place}:x='1' ")).collect();
+    let many: String = (0..30).map(|index| format!("p{index}:x='1' ")).collect();
     assert!(messages(&hinge(&many, ""))[0].contains("an unknown namespace prefix"));
 }

@@ -98,8 +98,8 @@ impl Climb {
     }
 
     fn keep_best(&mut self, seen: &Evaluations) {
-        let better = |best, &place: &usize| {
-            if seen.value(self.goal, place) > seen.value(self.goal, best) { place } else { best }
+        let better = |best, &index: &usize| {
+            if seen.value(self.goal, index) > seen.value(self.goal, best) { index } else { best }
         };
         self.best = self.last.iter().fold(self.best, better);
     }

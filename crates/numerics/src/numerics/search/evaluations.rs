@@ -29,7 +29,7 @@ pub(super) struct Evaluations {
     pub(super) points: Vec<Vec<f64>>,
     /// Of each function, in the order of the points.
     pub(super) values: Vec<Vec<f64>>,
-    pub(super) places: FxHashMap<Vec<u64>, usize>,
+    pub(super) indices: FxHashMap<Vec<u64>, usize>,
 }
 
 /// What tells points apart.
@@ -45,9 +45,9 @@ impl Evaluations {
         evaluate: &mut impl FnMut(&[Vec<f64>], &mut [f64]) -> Result<(), E>,
     ) -> Result<Vec<usize>, E> {
         let first = self.points.len();
-        let mut places = Vec::with_capacity(wanted.len());
+        let mut indices = Vec::with_capacity(wanted.len());
         for point in wanted {
-            places.push(match self.places.entry(bits(&point)) {
+            indices.push(match self.indices.entry(bits(&point)) {
                 Entry::Occupied(known) => *known.get(),
                 Entry::Vacant(new) => {
                     self.points.push(point);
@@ -63,12 +63,12 @@ impl Evaluations {
                 line.extend_from_slice(values);
             }
         }
-        Ok(places)
+        Ok(indices)
     }
 
     /// What a goal wants to be large; NaN is the least of all.
-    pub(super) fn value(&self, goal: Goal, place: usize) -> f64 {
-        let value = goal.sign * self.values[goal.output][place];
+    pub(super) fn value(&self, goal: Goal, index: usize) -> f64 {
+        let value = goal.sign * self.values[goal.output][index];
         if value.is_nan() { f64::NEG_INFINITY } else { value }
     }
 
@@ -94,12 +94,12 @@ impl Evaluations {
     }
 
     /// Adds places that are apart from all before them, up to `most`.
-    fn spread(&self, places: impl Iterator<Item = usize>, most: usize, chosen: &mut Vec<usize>) {
-        for place in places {
+    fn spread(&self, indices: impl Iterator<Item = usize>, most: usize, chosen: &mut Vec<usize>) {
+        for index in indices {
             let apart =
-                |&other: &usize| self.points[other].iter().zip(&self.points[place]).any(|(a, b)| (a - b).abs() > APART);
+                |&other: &usize| self.points[other].iter().zip(&self.points[index]).any(|(a, b)| (a - b).abs() > APART);
             if chosen.len() < most && chosen.iter().all(apart) {
-                chosen.push(place);
+                chosen.push(index);
             }
         }
     }
@@ -111,7 +111,7 @@ impl Evaluations {
     pub(super) fn extremes(&self, output: usize, ends: &[(Goal, usize)]) -> Extremes {
         let best = |sign| {
             let goal = Goal { output, sign };
-            let better = |best, place| if self.value(goal, place) > self.value(goal, best) { place } else { best };
+            let better = |best, index| if self.value(goal, index) > self.value(goal, best) { index } else { best };
             (0..self.points.len()).fold(0, better)
         };
         let (lowest, highest) = (best(-1.0), best(1.0));
@@ -126,7 +126,7 @@ impl Evaluations {
             self.spread(order.into_iter(), OTHERS + 1, &mut others);
             others.into_iter().skip(1)
         });
-        let others = others.map(|place| self.points[place].clone()).collect();
+        let others = others.map(|index| self.points[index].clone()).collect();
         Extremes { range, lowest: self.points[lowest].clone(), highest: self.points[highest].clone(), others }
     }
 }

@@ -91,7 +91,7 @@ impl ExtremeSearch {
             .flat_map(|goal| {
                 let neighbour = neighbours.get(goal.output);
                 let place = neighbour.map(|n| if goal.sign > 0.0 { &n.highest } else { &n.lowest });
-                let starts = seen.starts(goal, place.map(|place| seen.places[&bits(place)]));
+                let starts = seen.starts(goal, place.map(|place| seen.indices[&bits(place)]));
                 starts.into_iter().map(move |at| Climb::new(goal, at, self.dimension))
             })
             .collect();
@@ -99,7 +99,7 @@ impl ExtremeSearch {
         let mut ends: Vec<(Goal, usize)> = goals()
             .flat_map(|goal| {
                 let others = neighbours.get(goal.output).into_iter().flat_map(|known| &known.others);
-                others.map(|place| (goal, seen.places[&bits(place)])).collect::<Vec<_>>()
+                others.map(|place| (goal, seen.indices[&bits(place)])).collect::<Vec<_>>()
             })
             .collect();
         for _ in 0..ROUNDS {

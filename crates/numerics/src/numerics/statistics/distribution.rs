@@ -261,9 +261,9 @@ fn table_below(points: &[(f64, f64)], x: f64) -> f64 {
 /// The value below which a share p lies, of a table with this mass up to each point.
 pub(super) fn table_quantile(points: &[(f64, f64)], mass: &[f64], p: f64) -> f64 {
     let wanted = p * mass[mass.len() - 1];
-    let place = mass.partition_point(|&below| below < wanted).clamp(1, points.len() - 1);
-    let [(from, low), (to, high)] = [points[place - 1], points[place]];
-    let rest = (wanted - mass[place - 1]).max(0.0) / (to - from);
+    let index = mass.partition_point(|&below| below < wanted).clamp(1, points.len() - 1);
+    let [(from, low), (to, high)] = [points[index - 1], points[index]];
+    let rest = (wanted - mass[index - 1]).max(0.0) / (to - from);
     // low t + (high − low) t²/2 = rest, without loss of digits where the density is nearly even.
     let root = (low * low + 2.0 * (high - low) * rest).max(0.0).sqrt();
     let t = if low + root > 0.0 { 2.0 * rest / (low + root) } else { 1.0 };

@@ -146,7 +146,7 @@ pub fn weighted_quantile(values: &[f64], weights: &[f64], share: f64) -> f64 {
     }
     let shares = shares_below(values, weights);
     let above = shares.partition_point(|(_, below)| *below < share);
-    match (above.checked_sub(1).map(|place| shares[place]), shares.get(above)) {
+    match (above.checked_sub(1).map(|index| shares[index]), shares.get(above)) {
         (Some((low, a)), Some(&(high, b))) => values[low] + (share - a) / (b - a) * (values[high] - values[low]),
         (Some((only, _)), None) | (None, Some(&(only, _))) => values[only],
         (None, None) => f64::NAN,

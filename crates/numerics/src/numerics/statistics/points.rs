@@ -28,11 +28,11 @@ pub fn replicate(number: usize, k: usize, count: usize) -> Vec<f64> {
     let mut points = Vec::with_capacity(k * count);
     let shifts: Vec<u64> = (0..k).map(|axis| mixed((number * 0x1_0000 + axis) as u64)).collect();
     let step = (1_u64 << 53) / count as u64;
-    for place in 0..count as u64 {
+    for index in 0..count as u64 {
         for (axis, shift) in shifts.iter().enumerate() {
             let along = match GENERATOR.get(axis) {
-                Some(generator) => (place * generator % count as u64 * step + shift) % (1 << 53),
-                None => mixed(shift.wrapping_mul(31) ^ (place << 20)),
+                Some(generator) => (index * generator % count as u64 * step + shift) % (1 << 53),
+                None => mixed(shift.wrapping_mul(31) ^ (index << 20)),
             };
             // The middle of a cell of 2⁻⁵³, never an end.
             points.push((along as f64 + 0.5) * UNIT);

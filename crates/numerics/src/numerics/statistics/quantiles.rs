@@ -69,9 +69,9 @@ impl Quantiles {
         };
         let end = f64::from(FARTHEST);
         let along = (score.clamp(-end, end) + end) * f64::from(PER_SCORE);
-        let place = (along as usize).min(points.len() - 2);
-        let t = along - place as f64;
-        let [(from, rise), (to, fall)] = [points[place], points[place + 1]];
+        let index = (along as usize).min(points.len() - 2);
+        let t = along - index as f64;
+        let [(from, rise), (to, fall)] = [points[index], points[index + 1]];
         let [rise, fall] = [rise, fall].map(|slope| slope / f64::from(PER_SCORE));
         let change = to - from;
         from + t * (rise + t * (3.0 * change - 2.0 * rise - fall + t * (rise + fall - 2.0 * change)))

@@ -210,14 +210,14 @@ fn cover(mixture: &mut Mixture, seen: &Subset, share: f64, slack: &dyn Fn(&[Vec<
     let mut skipped = vec![false; seen.failing.len()];
     for _ in 0..2 * MOST_PLACES {
         let weights = seen.failing.iter().map(|point| mixture.weight(point));
-        let left = weights.enumerate().filter(|(place, _)| !skipped[*place]);
+        let left = weights.enumerate().filter(|(index, _)| !skipped[*index]);
         let Some((far, weight)) = left.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         if weight < UNCOVERED * share || mixture.count() >= MOST_PLACES {
             break;
         }
         skipped[far] = true;
-        if let Some(place) = likeliest(&seen.failing[far], slack) {
-            mixture.add(place, MOST_PLACES);
+        if let Some(index) = likeliest(&seen.failing[far], slack) {
+            mixture.add(index, MOST_PLACES);
         }
     }
     mixture.count() > before

@@ -47,16 +47,16 @@ fn replicate(number: usize, k: usize, slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
         let next = values[order[SEEDS - 1]];
         if next < 0.0 {
-            let failing: Vec<usize> = order.into_iter().take_while(|&place| values[place] < 0.0).collect();
+            let failing: Vec<usize> = order.into_iter().take_while(|&index| values[index] < 0.0).collect();
             share *= failing.len() as f64 / SAMPLES as f64;
-            return (share, failing.into_iter().map(|place| std::mem::take(&mut points[place])).collect());
+            return (share, failing.into_iter().map(|index| std::mem::take(&mut points[index])).collect());
         }
         if next >= level {
             break;
         }
         level = next;
         share *= SEEDS as f64 / SAMPLES as f64;
-        let seeds = order[..SEEDS].iter().map(|&place| (std::mem::take(&mut points[place]), values[place])).collect();
+        let seeds = order[..SEEDS].iter().map(|&index| (std::mem::take(&mut points[index]), values[index])).collect();
         (points, values) = chains(seeds, level, &mut normals, slack);
     }
     (0.0, Vec::new())
@@ -80,9 +80,9 @@ fn chains(
         let tried: Vec<Vec<f64>> = at.iter().map(moved).collect();
         let found = known(slack(&tried));
         let mut accepted = 0;
-        for (place, (point, value)) in tried.into_iter().zip(found).enumerate() {
+        for (index, (point, value)) in tried.into_iter().zip(found).enumerate() {
             if value <= level {
-                (at[place], of[place]) = (point, value);
+                (at[index], of[index]) = (point, value);
                 accepted += 1;
             }
         }

@@ -6,15 +6,15 @@ use crate::methods::{Curve, Method};
 use crate::model::Stepping;
 
 /// Chebyshev at the first curve.
-pub const COMPOSED: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 0 });
+pub const COMPOSED: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, index: 0 });
 /// Chebyshev at the second curve.
-pub const TIGHT: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 1 });
+pub const TIGHT: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, index: 1 });
 /// Chebyshev at the third curve.
-pub const INTERVAL: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 2 });
+pub const INTERVAL: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, index: 2 });
 /// Taylor.
-pub const TAYLOR: CostMethod = CostMethod::Bounds(Curve { method: Method::Taylor, place: 0 });
+pub const TAYLOR: CostMethod = CostMethod::Bounds(Curve { method: Method::Taylor, index: 0 });
 /// Scan.
-pub const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, place: 0 });
+pub const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, index: 0 });
 
 /// A point with bounds of such deviations.
 pub fn point(method: CostMethod, seconds: f64, over_width: f64, under_coverage: f64) -> CostPoint {

@@ -1,22 +1,22 @@
 //! Pareto's front: what nothing else betters.
 
-/// The places of those (error, seconds) that no other is as good as in both and better than in one, by rising error. Of
+/// Indices of those (error, seconds) that no other is as good as in both and better than in one, by rising error. Of
 /// equals the first is kept; points that are not finite are on no front.
 pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
-    let mut places: Vec<usize> = (0..points.len()).collect();
-    places.retain(|&place| points[place].0.is_finite() && points[place].1.is_finite());
-    places.sort_by(|&a, &b| {
+    let mut indices: Vec<usize> = (0..points.len()).collect();
+    indices.retain(|&index| points[index].0.is_finite() && points[index].1.is_finite());
+    indices.sort_by(|&a, &b| {
         let ((error, seconds), (other_error, other_seconds)) = (points[a], points[b]);
         error.total_cmp(&other_error).then(seconds.total_cmp(&other_seconds))
     });
     // By rising error, only points cheaper than all before them are worth their error.
     let mut cheapest = f64::INFINITY;
-    places.retain(|&place| {
-        let better = points[place].1 < cheapest;
-        cheapest = cheapest.min(points[place].1);
+    indices.retain(|&index| {
+        let better = points[index].1 < cheapest;
+        cheapest = cheapest.min(points[index].1);
         better
     });
-    places
+    indices
 }
 
 #[cfg(test)]
@@ -39,10 +39,10 @@ mod tests {
             let points: Vec<(f64, f64)> = points.into_iter().map(|(x, y)| (f64::from(x), f64::from(y))).collect();
             let front = pareto(&points);
             let betters = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
-            for (place, &point) in points.iter().enumerate() {
+            for (index, &point) in points.iter().enumerate() {
                 let bettered = points.iter().any(|&other| betters(other, point));
                 let on_it = front.iter().any(|&other| points[other] == point);
-                prop_assert_eq!(on_it, !bettered, "{:?}", points[place]);
+                prop_assert_eq!(on_it, !bettered, "{:?}", points[index]);
             }
         }
     }

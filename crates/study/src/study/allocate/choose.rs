@@ -205,16 +205,16 @@ struct Grades<'a> {
 }
 
 impl Grades<'_> {
-    /// Chooses for the items from `place` on; those before are chosen and cost so much.
-    fn descend(&mut self, multiples: &mut Vec<f64>, place: usize, cost: f64) {
-        let least: f64 = self.items[place..].iter().map(|item| item.cost(item.widest).unwrap_or(0.0)).sum();
+    /// Chooses for the items from `index` on; those before are chosen and cost so much.
+    fn descend(&mut self, multiples: &mut Vec<f64>, index: usize, cost: f64) {
+        let least: f64 = self.items[index..].iter().map(|item| item.cost(item.widest).unwrap_or(0.0)).sum();
         if self.best.as_ref().is_some_and(|best| cost + least >= best.0)
             || self.tried >= MOST
             || self.slack.is_interrupted()
         {
             return;
         }
-        let Some(item) = self.items.get(place) else {
+        let Some(item) = self.items.get(index) else {
             let mut found = multiples.clone();
             if self.items.iter().any(|item| matches!(item.choice, Choice::Reciprocal(_))) {
                 found = continuous(self.slack, self.items, &found, self.start);
@@ -225,17 +225,17 @@ impl Grades<'_> {
             }
             return;
         };
-        let Choice::Grades(grades) = &item.choice else { return self.descend(multiples, place + 1, cost) };
-        let tightest = multiples[place];
+        let Choice::Grades(grades) = &item.choice else { return self.descend(multiples, index + 1, cost) };
+        let tightest = multiples[index];
         for (multiple, own, _) in grades {
-            multiples[place] = *multiple;
+            multiples[index] = *multiple;
             self.tried += 1;
             // Those that come are at their tightest still.
             if !self.slack.is_known_to_fail(multiples) && is_good(self.slack, multiples) {
-                self.descend(multiples, place + 1, cost + own);
+                self.descend(multiples, index + 1, cost + own);
             }
         }
-        multiples[place] = tightest;
+        multiples[index] = tightest;
     }
 }
 

@@ -138,8 +138,8 @@ pub fn with_tolerances(description: &Description, items: &[Item], multiples: &[f
         (*lower, *upper) = (item.nominal - multiple * item.below, item.nominal + multiple * item.above);
     }
     for (name, law) in &mut model.statistics.laws {
-        if let Some(place) = items.iter().position(|item| item.name == *name) {
-            scale(law, items[place].nominal, multiples[place]);
+        if let Some(index) = items.iter().position(|item| item.name == *name) {
+            scale(law, items[index].nominal, multiples[index]);
         }
     }
     model

@@ -239,12 +239,12 @@ impl Allocator<'_> {
         let surface = self.surface();
         let mut holds = true;
         let mut unused = f64::INFINITY;
-        for (place, requirement) in summary.requirements.iter().enumerate() {
-            let scale = surface.as_ref().map_or(1.0, |surface| surface.scale(place));
+        for (index, requirement) in summary.requirements.iter().enumerate() {
+            let scale = surface.as_ref().map_or(1.0, |surface| surface.scale(index));
             let known = (requirement.margin - requirement.error) / scale;
             holds &= requirement.verdict == Verdict::Holds;
             if known.is_finite() {
-                slack.reserves()[place] += scale * (left[place] - known) + 1e-9 * scale;
+                slack.reserves()[index] += scale * (left[index] - known) + 1e-9 * scale;
                 unused = unused.min(known.max(0.0));
             }
         }
@@ -267,10 +267,10 @@ impl Allocator<'_> {
         let left = slack.left(&tightest);
         let Some(surface) = self.surface() else { return Vec::new() };
         let reserves = &*slack.reserves();
-        let of = |(place, left): (usize, &f64)| {
-            let own = &self.model.requirements[place];
-            let error = reserves[place];
-            let margin = left * surface.scale(place) + error;
+        let of = |(index, left): (usize, &f64)| {
+            let own = &self.model.requirements[index];
+            let error = reserves[index];
+            let margin = left * surface.scale(index) + error;
             let (requirement, unit, display) = (own.name.clone(), own.unit.clone(), own.display.clone());
             NotMet { requirement, unit, display, margin, error }
         };
@@ -290,25 +290,25 @@ impl Allocator<'_> {
         tightest: &mut String,
     ) -> Vec<AllocatedTolerance> {
         let left = slack.left(after);
-        let place = (0..left.len()).min_by(|&a, &b| left[a].total_cmp(&left[b])).unwrap_or(0);
-        tightest.clone_from(&self.model.requirements[place].name);
-        let shares = [before, after].map(|multiples| slack.shares(multiples, place));
-        let of = |(place, item): (usize, &Item)| {
+        let index = (0..left.len()).min_by(|&a, &b| left[a].total_cmp(&left[b])).unwrap_or(0);
+        tightest.clone_from(&self.model.requirements[index].name);
+        let shares = [before, after].map(|multiples| slack.shares(multiples, index));
+        let of = |(index, item): (usize, &Item)| {
             let zone = |multiple: f64| ToleranceZone { above: multiple * item.above, below: multiple * item.below };
             let own_name = item.name.strip_suffix(".deviation");
             AllocatedTolerance {
                 parameter: own_name.unwrap_or(&item.name).to_owned(),
                 unit: item.unit.clone(),
                 nominal: if own_name.is_some() { f64::NAN } else { item.nominal },
-                before: zone(before[place]),
-                after: zone(after[place]),
-                grade: item.grade(after[place]),
-                cost_before: item.cost(before[place]),
-                cost_after: item.cost(after[place]),
-                share_before: shares[0][place],
-                share_after: shares[1][place],
+                before: zone(before[index]),
+                after: zone(after[index]),
+                grade: item.grade(after[index]),
+                cost_before: item.cost(before[index]),
+                cost_after: item.cost(after[index]),
+                share_before: shares[0][index],
+                share_after: shares[1][index],
                 is_free: item.choice != Choice::Fixed,
-                at_widest: item.choice != Choice::Fixed && after[place] >= item.widest * (1.0 - 1e-3),
+                at_widest: item.choice != Choice::Fixed && after[index] >= item.widest * (1.0 - 1e-3),
             }
         };
         self.wide.items.iter().enumerate().map(of).collect()
@@ -333,7 +333,7 @@ impl Allocator<'_> {
                 break;
             }
             if number > 0 {
-                (0..surface.count).for_each(|place| slack.reserves()[place] += step * surface.scale(place));
+                (0..surface.count).for_each(|index| slack.reserves()[index] += step * surface.scale(index));
             }
             let Some(chosen) = choose(slack, &self.wide.items, &start) else { break };
             start.clone_from(&chosen.multiples);

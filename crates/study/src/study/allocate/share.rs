@@ -98,11 +98,11 @@ impl<'s> Share<'s> {
             order.sort_by(|&a, &b| own[a].total_cmp(&own[b]).then(a.cmp(&b)));
             let found =
                 order.iter().take(STARTS).filter_map(|&start| least_at_distance(&points[start], distance, &slack));
-            places.extend(found.map(|place| (slack(std::slice::from_ref(&place))[0], place)));
+            places.extend(found.map(|index| (slack(std::slice::from_ref(&index))[0], index)));
         }
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut mixture = Mixture::default();
-        places.into_iter().for_each(|(_, place)| mixture.add(place, PLACES));
+        places.into_iter().for_each(|(_, index)| mixture.add(index, PLACES));
         mixture
     }
 
@@ -124,8 +124,8 @@ impl<'s> Share<'s> {
     /// Numbers of the samples about the quantile of some values.
     fn beside(&self, values: &[f64], weights: &[f64]) -> Vec<usize> {
         let shares = shares_below(values, weights);
-        let place = |times: f64| shares.partition_point(|(_, below)| *below < times * self.may_fail);
-        let (from, to) = (place(BESIDE[0]), place(BESIDE[1]));
+        let index = |times: f64| shares.partition_point(|(_, below)| *below < times * self.may_fail);
+        let (from, to) = (index(BESIDE[0]), index(BESIDE[1]));
         let (from, to) = if to < from + LEAST { (0, LEAST.min(shares.len())) } else { (from, to) };
         shares[from..to].iter().map(|(number, _)| *number).collect()
     }
@@ -134,15 +134,15 @@ impl<'s> Share<'s> {
     /// those of all.
     fn slopes(&self, multiples: &[f64], which: &[usize], pick: impl Fn(&[f64], usize) -> f64) -> Vec<f64> {
         let Some(drawn) = &self.drawn else { return vec![0.0; multiples.len()] };
-        let weight: f64 = which.iter().map(|&place| drawn.weights[place]).sum();
+        let weight: f64 = which.iter().map(|&index| drawn.weights[index]).sum();
         let slope = |axis: usize| {
             let mean = |sign: f64| {
                 let mut moved = multiples.to_vec();
                 moved[axis] *= 1.0 + sign * STEP;
                 let samples: Vec<Vec<f64>> =
-                    which.iter().map(|&place| self.scaled(&moved, &drawn.samples[place])).collect();
+                    which.iter().map(|&index| self.scaled(&moved, &drawn.samples[index])).collect();
                 let slacks = self.surface.slacks(&samples);
-                let own = |(place, &number): (usize, &usize)| drawn.weights[number] * pick(&slacks, place);
+                let own = |(index, &number): (usize, &usize)| drawn.weights[number] * pick(&slacks, index);
                 which.iter().enumerate().map(own).sum::<f64>() / weight
             };
             (mean(1.0) - mean(-1.0)) / (2.0 * STEP * multiples[axis])
@@ -172,7 +172,7 @@ impl Slack for Share<'_> {
         let beside = self.beside(&values, &weights);
         let (count, n) = (self.surface.count, beside.len());
         let pick =
-            |slacks: &[f64], place: usize| (0..count).map(|own| slacks[own * n + place]).fold(f64::INFINITY, f64::min);
+            |slacks: &[f64], index: usize| (0..count).map(|own| slacks[own * n + index]).fold(f64::INFINITY, f64::min);
         let slopes = self.slopes(multiples, &beside, pick);
         // With respect to the squares.
         let slopes = slopes.iter().zip(multiples).map(|(slope, multiple)| slope / (2.0 * multiple)).collect();
@@ -187,7 +187,7 @@ impl Slack for Share<'_> {
         let (slacks, weights) = self.slacks(multiples);
         let beside = self.beside(&slacks[requirement * weights.len()..][..weights.len()], &weights);
         let count = beside.len();
-        self.slopes(multiples, &beside, |slacks, place| slacks[requirement * count + place])
+        self.slopes(multiples, &beside, |slacks, index| slacks[requirement * count + index])
     }
 
     fn reserves(&mut self) -> &mut [f64] {

@@ -26,7 +26,7 @@ impl<'k> Surface<'k> {
         let mut surface = Self { kept, items, count, nominal: vec![1.0; count], reserves: vec![0.0; count] };
         let nominal: Vec<f64> = items.iter().map(|item| item.nominal).collect();
         surface.nominal = surface.raw(&[nominal]);
-        surface.reserves = (0..count).map(|place| surface.error(place)).collect();
+        surface.reserves = (0..count).map(|index| surface.error(index)).collect();
         surface
     }
 

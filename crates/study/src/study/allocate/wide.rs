@@ -77,19 +77,19 @@ pub fn run_simulations(summary: &Summary) -> usize {
 fn is_known(items: &[Item], kept: &Kept) -> bool {
     let Some(margins) = kept.margins() else { return false };
     let surface = Surface::new(margins, items);
-    (0..surface.count).all(|place| surface.error(place).is_finite() && surface.nominal[place].is_finite())
+    (0..surface.count).all(|index| surface.error(index).is_finite() && surface.nominal[index].is_finite())
 }
 
 /// Whether a higher order is worth it.
 fn is_rough(items: &[Item], kept: &Kept) -> bool {
     let Some(margins) = kept.margins() else { return true };
     let surface = Surface::new(margins, items);
-    (0..surface.count).any(|place| surface.surrogate_error(place) > ROUGH * surface.scale(place))
+    (0..surface.count).any(|index| surface.surrogate_error(index) > ROUGH * surface.scale(index))
 }
 
 /// The largest error of a margin, as a share of the nominal one.
 pub fn largest_error(surface: &Surface) -> f64 {
-    (0..surface.count).map(|place| surface.error(place) / surface.scale(place)).fold(0.0, f64::max)
+    (0..surface.count).map(|index| surface.error(index) / surface.scale(index)).fold(0.0, f64::max)
 }
 
 /// Raises the order, where it is given and the budget allows it.

@@ -8,13 +8,13 @@ pub fn of(description: &Description) -> Vec<AssemblySummary> {
     let mut found: Vec<AssemblySummary> = Vec::new();
     for instance in &description.instances {
         let InstanceKind::Assembly(assembly) = &instance.kind else { continue };
-        let place = found.iter().position(|known| known.assembly == *assembly).unwrap_or_else(|| {
+        let index = found.iter().position(|known| known.assembly == *assembly).unwrap_or_else(|| {
             let (independent, shared) = (Vec::new(), Vec::new());
             found.push(AssemblySummary { assembly: assembly.clone(), instances: Vec::new(), independent, shared });
             found.len() - 1
         });
         let (independent, shared) = uncertain(description, &format!("{}.", instance.name));
-        let summary = &mut found[place];
+        let summary = &mut found[index];
         summary.instances.push(instance.name.clone());
         summary.independent.extend(independent);
         for name in shared {

@@ -38,12 +38,12 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ra
     let stop = results.bounded.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
     // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
     let rows = results.bounded.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
-    let outputs = study.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
+    let outputs = study.simulator.system.outputs.iter().enumerate().map(|(index, output)| OutputBounds {
         name: output.name.clone(),
         unit: output.unit.clone(),
         display: None,
-        nominal: results.bounded.nominal.result.bands[place][..rows].iter().map(|range| range.lower).collect(),
-        bands: bands(study, &results.bounded, place, rows),
+        nominal: results.bounded.nominal.result.bands[index][..rows].iter().map(|range| range.lower).collect(),
+        bands: bands(study, &results.bounded, index, rows),
     });
     let contributions = contributions(study, &results.bounded, rows);
     let bounds = Bounds {

@@ -15,15 +15,15 @@ const STRAIGHT: f64 = 1e-9;
 /// How far each output is moved; of those of which that is known.
 pub fn excitations(study: &Study, bounded: &Bounded, bounds: &Bounds) -> Vec<ExcitationSummary> {
     let Some(functions) = &bounded.functions else { return Vec::new() };
-    let of_output = |(place, output): (usize, &OutputBounds)| {
-        let (_, worst) = functions.worst[place].as_ref()?;
+    let of_output = |(index, output): (usize, &OutputBounds)| {
+        let (_, worst) = functions.worst[index].as_ref()?;
         let band = output.bands.first()?;
         let widths = band.upper.iter().zip(&band.lower).map(|(upper, lower)| upper - lower);
         Some(ExcitationSummary {
             output: output.name.clone(),
             unit: output.unit.clone(),
             display: study.description.display.get(&output.name).cloned(),
-            as_constant: 0.5 * as_constants(bounded, place, bounds.times.len()),
+            as_constant: 0.5 * as_constants(bounded, index, bounds.times.len()),
             as_function: 0.5 * widths.fold(0.0, f64::max),
             time: bounded.plan.schedule.time(worst.row),
             value: worst.value,

@@ -37,7 +37,7 @@ pub struct KeptPart {
 pub struct Kept {
     parts: Vec<Placed>,
     /// By output of the model: its subsystem, and its number there.
-    places: Vec<(usize, usize)>,
+    indices: Vec<(usize, usize)>,
     times: Vec<f64>,
 }
 
@@ -82,13 +82,13 @@ impl Placed {
 impl Kept {
     /// Of all subsystems of a model of so many outputs.
     pub(in crate::study) fn of_parts(parts: Vec<(KeptPart, &Subsystem)>, outputs: usize) -> Self {
-        let mut places = vec![(0, 0); outputs];
+        let mut indices = vec![(0, 0); outputs];
         for (number, (_, subsystem)) in parts.iter().enumerate() {
-            subsystem.outputs.iter().enumerate().for_each(|(place, &output)| places[output] = (number, place));
+            subsystem.outputs.iter().enumerate().for_each(|(index, &output)| indices[output] = (number, index));
         }
         // What an analysis of one system adds to the model's outputs.
         if let [(part, _)] = parts.as_slice() {
-            places.extend((outputs..part.errors.len()).map(|place| (0, place)));
+            indices.extend((outputs..part.errors.len()).map(|index| (0, index)));
         }
         let shortest = parts.iter().map(|(part, _)| &part.times).min_by_key(|times| times.len());
         let times = shortest.cloned().unwrap_or_default();
@@ -98,7 +98,7 @@ impl Kept {
             reduced: reduced.clone(),
             requirements: requirements.clone(),
         };
-        Self { parts: parts.into_iter().map(placed).collect(), places, times }
+        Self { parts: parts.into_iter().map(placed).collect(), indices, times }
     }
 
     /// Output times, s, up to the last row that all samples of all subsystems have reached.
@@ -109,36 +109,36 @@ impl Kept {
     /// How far an output's values may be from the truth, in each row, anywhere in the box, and in which rows they
     /// cannot be relied on.
     pub fn error(&self, output: usize) -> &BandError {
-        let (part, place) = self.places[output];
-        &self.parts[part].part.errors[place]
+        let (part, index) = self.indices[output];
+        &self.parts[part].part.errors[index]
     }
 
     /// Numbers of the uncertain parameters on which an output may depend.
     pub fn parameters(&self, output: usize) -> &[usize] {
-        &self.parts[self.places[output].0].parameters
+        &self.parts[self.indices[output].0].parameters
     }
 
     /// Whether an output is one polynomial of the parameters over the whole box in a row: then it takes nanoseconds,
     /// else a loop closure.
     pub fn is_polynomial(&self, row: usize, output: usize) -> bool {
-        let (part, place) = self.places[output];
-        self.parts[part].part.surrogate.is_polynomial(row, place)
+        let (part, index) = self.indices[output];
+        self.parts[part].part.surrogate.is_polynomial(row, index)
     }
 
     /// The polynomial through an output's own samples in a row: its terms in ξ ∈ \[−1, 1\] of
     /// [`parameters`](Self::parameters), and the coefficients before them. `None` where the box was split.
     pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
-        let (part, place) = self.places[output];
-        self.parts[part].part.surrogate.polynomial(row, place)
+        let (part, index) = self.indices[output];
+        self.parts[part].part.surrogate.polynomial(row, index)
     }
 
     /// Values of the polynomial through an output's own samples in a row, at samples of the model's box. `None` where
     /// the box was split.
     pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, output: usize, samples: &[P]) -> Option<Vec<f64>> {
-        let (number, place) = self.places[output];
+        let (number, index) = self.indices[output];
         let Placed { part, parameters, .. } = &self.parts[number];
         let pick = |sample: &P| -> Vec<f64> { parameters.iter().map(|&own| sample.as_ref()[own]).collect() };
-        part.surrogate.own_values(row, &[place], &samples.iter().map(pick).collect::<Vec<_>>())
+        part.surrogate.own_values(row, &[index], &samples.iter().map(pick).collect::<Vec<_>>())
     }
 
     /// Margins of all requirements. `None` where the model has none, or one of them is not known.
@@ -155,13 +155,13 @@ impl Kept {
 
     /// How many outputs there are: the model's, and what an analysis adds.
     pub fn outputs(&self) -> usize {
-        self.places.len()
+        self.indices.len()
     }
 
     /// Name and unit of an output.
     pub fn named(&self, output: usize) -> (&str, &str) {
-        let (part, place) = self.places[output];
-        let own = &self.parts[part].part.simulator.system.outputs[place];
+        let (part, index) = self.indices[output];
+        let own = &self.parts[part].part.simulator.system.outputs[index];
         (&own.name, &own.unit)
     }
 
@@ -183,9 +183,9 @@ impl Evaluator<'_> {
         let chunks: Vec<Vec<f64>> =
             samples.par_chunks(CHUNK).map(|samples| self.values_of_chunk(row, outputs, samples)).collect();
         let mut values = Vec::with_capacity(outputs.len() * samples.len());
-        for place in 0..outputs.len() {
+        for index in 0..outputs.len() {
             for (chunk, samples) in chunks.iter().zip(samples.chunks(CHUNK)) {
-                values.extend_from_slice(&chunk[place * samples.len()..][..samples.len()]);
+                values.extend_from_slice(&chunk[index * samples.len()..][..samples.len()]);
             }
         }
         values
@@ -196,17 +196,17 @@ impl Evaluator<'_> {
         for (number, (Placed { part, parameters, .. }, closures)) in
             self.kept.parts.iter().zip(&self.closures).enumerate()
         {
-            let asked = |place: &usize| self.kept.places[outputs[*place]].0 == number;
-            let places: Vec<usize> = (0..outputs.len()).filter(asked).collect();
-            if places.is_empty() {
+            let asked = |index: &usize| self.kept.indices[outputs[*index]].0 == number;
+            let indices: Vec<usize> = (0..outputs.len()).filter(asked).collect();
+            if indices.is_empty() {
                 continue;
             }
             let pick = |sample: &P| parameters.iter().map(|&parameter| sample.as_ref()[parameter]).collect();
             let own: Vec<Vec<f64>> = samples.iter().map(pick).collect();
-            let of_part: Vec<usize> = places.iter().map(|&place| self.kept.places[outputs[place]].1).collect();
+            let of_part: Vec<usize> = indices.iter().map(|&index| self.kept.indices[outputs[index]].1).collect();
             let found = part.surrogate.values(row, (&of_part, &own), closures);
-            for (&place, found) in places.iter().zip(found.chunks_exact(samples.len().max(1))) {
-                values[place * samples.len()..][..samples.len()].copy_from_slice(found);
+            for (&index, found) in indices.iter().zip(found.chunks_exact(samples.len().max(1))) {
+                values[index * samples.len()..][..samples.len()].copy_from_slice(found);
             }
         }
         values

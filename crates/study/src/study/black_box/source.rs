@@ -146,20 +146,20 @@ impl Source {
             let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
             points.iter().map(|point| known.answers.get(&bits(point)).map(|own| Ok(own.clone()))).collect()
         };
-        let open: Vec<usize> = (0..points.len()).filter(|&place| found[place].is_none()).collect();
+        let open: Vec<usize> = (0..points.len()).filter(|&index| found[index].is_none()).collect();
         done(points.len() - open.len());
-        let asked: Vec<Vec<f64>> = open.iter().map(|&place| points[place].clone()).collect();
+        let asked: Vec<Vec<f64>> = open.iter().map(|&index| points[index].clone()).collect();
         let answers = self.asked(&asked, interruption, done)?;
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        for (place, answer) in open.into_iter().zip(answers) {
-            let answer = answer.map(|rows| self.outputs_of(&rows, &samples[place]));
+        for (index, answer) in open.into_iter().zip(answers) {
+            let answer = answer.map(|rows| self.outputs_of(&rows, &samples[index]));
             if let Ok(values) = &answer
                 && known.values + values.len() <= MOST_KEPT
             {
                 known.values += values.len();
-                known.answers.insert(bits(&points[place]), values.clone());
+                known.answers.insert(bits(&points[index]), values.clone());
             }
-            found[place] = Some(answer);
+            found[index] = Some(answer);
         }
         Ok(found.into_iter().flatten().collect())
     }

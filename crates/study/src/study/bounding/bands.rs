@@ -12,7 +12,7 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
     let Some((validation, _)) = &bounded.validation else { return Vec::new() };
     let corrections = validation.corrections(output, rows, bounded.switched_from());
     let simulated: Vec<Range> = (0..rows).map(|row| bounded.seen.range(row, output)).collect();
-    let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
+    let band = |(index, (method, outcome)): (usize, &(Method, Outcome))| {
         // As constants, then as functions of the time.
         let constant = &outcome.result.bands[output][..rows];
         let functions = bounded.functions.as_ref();
@@ -23,7 +23,7 @@ pub fn bands(study: &Study, bounded: &Bounded, output: usize, rows: usize) -> Ve
         // A proven band needs no samples. (It may miss them by the rounding of the steps' equations.)
         let widened = |(range, simulated): (&Range, &Range)| if is_sampled { range.with(*simulated) } else { *range };
         let ranges: Vec<Range> = found.iter().zip(&simulated).map(widened).collect();
-        let halved = bounded.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
+        let halved = bounded.halved.get(index).map(|(_, halved)| &halved.result.bands[output]);
         let by_halving = |row: usize| {
             if let Some(halved) = halved {
                 return time_error_certified(constant[row], halved[row]);

@@ -9,13 +9,13 @@ use crate::study::problem::Study;
 pub fn contributions(study: &Study, bounded: &Bounded, rows: usize) -> Vec<Vec<Contribution>> {
     let known = |(_, outcome): &&(Method, Outcome)| outcome.result.sensitivities.iter().flatten().any(Option::is_some);
     let Some((_, outcome)) = bounded.methods.iter().find(known) else { return Vec::new() };
-    let of_parameter = |rows_of_output: &[Option<Sensitivity>], place: usize| {
+    let of_parameter = |rows_of_output: &[Option<Sensitivity>], index: usize| {
         let over_time = |pick: fn(&Sensitivity) -> &Vec<f64>| {
-            let at = |row: &Option<Sensitivity>| row.as_ref().map_or(f64::NAN, |sensitivity| pick(sensitivity)[place]);
+            let at = |row: &Option<Sensitivity>| row.as_ref().map_or(f64::NAN, |sensitivity| pick(sensitivity)[index]);
             rows_of_output[..rows].iter().map(at).collect()
         };
         Contribution {
-            parameter: study.simulator.system.parameters[place].name.clone(),
+            parameter: study.simulator.system.parameters[index].name.clone(),
             main: over_time(|sensitivity| &sensitivity.main),
             total: over_time(|sensitivity| &sensitivity.total),
             width_without: over_time(|sensitivity| &sensitivity.width_without),
@@ -23,6 +23,6 @@ pub fn contributions(study: &Study, bounded: &Bounded, rows: usize) -> Vec<Vec<C
     };
     let parameters = 0..study.domain.dimension();
     let of_output =
-        |rows: &Vec<Option<Sensitivity>>| parameters.clone().map(|place| of_parameter(rows, place)).collect();
+        |rows: &Vec<Option<Sensitivity>>| parameters.clone().map(|index| of_parameter(rows, index)).collect();
     outcome.result.sensitivities.iter().map(of_output).collect()
 }

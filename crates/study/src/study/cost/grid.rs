@@ -17,11 +17,11 @@ pub(super) const LEVELS: Integrator = Integrator::Extrapolated { levels: 3 };
 const COUNTS: [usize; 4] = [5, 8, 12, 16];
 
 /// Of which all samples lie in the true range: what a reference is checked by.
-pub(super) const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, place: 0 });
+pub(super) const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, index: 0 });
 
 /// What a reference is made by: the expansion of coordinates or, where the model does not admit that, of outputs.
 pub(super) fn smoothest(composable: bool) -> CostMethod {
-    CostMethod::Bounds(Curve { method: Method::Chebyshev, place: usize::from(!composable) })
+    CostMethod::Bounds(Curve { method: Method::Chebyshev, index: usize::from(!composable) })
 }
 
 /// A setting that runs once, or a few times for the clock's sake.

@@ -206,8 +206,8 @@ fn run_settings(
     let mut done = 0.0;
     let mut rates: Vec<(CostMethod, f64)> = Vec::new();
     let (mut points, mut skipped) = (vec![None; settings.len()], Vec::new());
-    for place in by_work {
-        let setting = &settings[place];
+    for index in by_work {
+        let setting = &settings[index];
         let work = setting.work(k);
         let progress = |fraction: f64| {
             let share = (done + fraction * work) / total;
@@ -220,9 +220,9 @@ fn run_settings(
             let point = point(model, setting, reference, options, &progress);
             *rate = this.elapsed().as_secs_f64() / work;
             // A run that was cut short measures nothing.
-            points[place] = Some(point).filter(|_| !(options.interrupted)());
+            points[index] = Some(point).filter(|_| !(options.interrupted)());
         }
-        if points[place].is_none() {
+        if points[index].is_none() {
             *entry(&mut skipped, setting.method, 0) += 1;
         }
         done += work;
@@ -232,11 +232,11 @@ fn run_settings(
 
 /// A method's value in a list, put there if it is missing.
 fn entry<T: Copy>(list: &mut Vec<(CostMethod, T)>, method: CostMethod, missing: T) -> &mut T {
-    let place = list.iter().position(|(known, _)| *known == method).unwrap_or_else(|| {
+    let index = list.iter().position(|(known, _)| *known == method).unwrap_or_else(|| {
         list.push((method, missing));
         list.len() - 1
     });
-    &mut list[place].1
+    &mut list[index].1
 }
 
 /// One setting's errors and price.
@@ -268,7 +268,7 @@ fn mark(points: &mut [CostPoint], own: f64) {
         point.limited = point.deviation.largest() < own;
     }
     let places: Vec<(f64, f64)> = points.iter().map(|point| point.place(own)).collect();
-    for place in pareto(&places) {
-        points[place].front = true;
+    for index in pareto(&places) {
+        points[index].front = true;
     }
 }

@@ -129,7 +129,7 @@ fn margins(
     let margin = |own: &Requirement| {
         let of_study = known.next();
         if is_over_time(own) {
-            let rows = own.places.iter().flat_map(|&place| of_rows(&bounds, place));
+            let rows = own.outputs.iter().flat_map(|&place| of_rows(&bounds, place));
             return rows.min_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or([f64::NAN; 2]);
         }
         of_study.map_or([f64::NAN; 2], |own| [own.margin, own.error])
@@ -140,7 +140,7 @@ fn margins(
 
 /// Whether a requirement is of outputs of the motion over time.
 fn is_over_time(own: &Requirement) -> bool {
-    own.times.is_some_and(|(from, to)| from < to) && !own.of_results && !own.places.is_empty()
+    own.times.is_some_and(|(from, to)| from < to) && !own.of_results && !own.outputs.is_empty()
 }
 
 /// Lower bounds of an output with their errors, in all rows.

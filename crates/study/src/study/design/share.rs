@@ -56,8 +56,8 @@ impl<'s> Yield<'s> {
     fn beside(&self, values: &[f64]) -> Vec<usize> {
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
-        let place = |times: f64| ((times * self.may_fail * values.len() as f64) as usize).min(values.len());
-        let (from, to) = (place(BESIDE[0]), place(BESIDE[1]));
+        let index = |times: f64| ((times * self.may_fail * values.len() as f64) as usize).min(values.len());
+        let (from, to) = (index(BESIDE[0]), index(BESIDE[1]));
         if to < from + LEAST { order[..LEAST].to_vec() } else { order[from..to].to_vec() }
     }
 }

@@ -102,9 +102,9 @@ impl Assessed for Worst<'_> {
         let samples: Vec<Vec<f64>> =
             all.iter().flat_map(|(_, xi)| points.iter().map(|own| self.surface.axes.sample(own, xi))).collect();
         let slacks = self.surface.at_instants(&samples);
-        let linear = |(place, (requirement, _)): (usize, &(usize, &Vec<f64>))| {
+        let linear = |(index, (requirement, _)): (usize, &(usize, &Vec<f64>))| {
             let of_instant = |instant: usize| {
-                let own = &slacks[instant * samples.len() + place * points.len()..][..points.len()];
+                let own = &slacks[instant * samples.len() + index * points.len()..][..points.len()];
                 (*requirement, quotients(own, &points))
             };
             self.surface.instants[*requirement].clone().map(of_instant).collect::<Vec<_>>()

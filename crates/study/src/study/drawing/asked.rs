@@ -1,4 +1,4 @@
-//! What a drawing asks of a model: hidden outputs, by their places in the list of all.
+//! What a drawing asks of a model: hidden outputs, by their indices in the list of all.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use symdiff::{Binary, Formula, math};

@@ -255,11 +255,11 @@ impl Scene<'_> {
         let parameters = &assembled.system.parameters;
         let nominal: Vec<f64> = parameters.iter().map(|parameter| parameter.nominal).collect();
         let mut found = Vec::new();
-        for (place, parameter) in parameters.iter().enumerate() {
+        for (index, parameter) in parameters.iter().enumerate() {
             let ends = [parameter.lower, parameter.upper];
             let distances = ends.map(|end| {
                 let mut sample = nominal.clone();
-                sample[place] = end;
+                sample[index] = end;
                 assembled.outputs_at_start(first..first + pairs.len(), &sample.into())
             });
             let allowed = SAME * (parameter.upper - parameter.lower);

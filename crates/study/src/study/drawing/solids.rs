@@ -54,8 +54,8 @@ pub(super) fn solids(
     });
     let links = description.robot.iter().flat_map(|robot| &robot.links);
     let visuals = links.filter_map(|link| Some((link.place?, &link.visuals)));
-    let visuals = visuals.flat_map(|(place, visuals)| visuals.iter().map(move |visual| (place, visual)));
-    let all = own.chain(visuals.map(|(place, visual)| of_link(place, visual, bodies, values))).filter(is_finite);
+    let visuals = visuals.flat_map(|(index, visuals)| visuals.iter().map(move |visual| (index, visual)));
+    let all = own.chain(visuals.map(|(index, visual)| of_link(index, visual, bodies, values))).filter(is_finite);
     let mut found: Vec<DrawnSolid> = Vec::new();
     for solid in all {
         // A ball that touches several things is one.

@@ -65,8 +65,8 @@ pub fn visit_watching(
         if found.iter().any(|visit| matches!(visit, Err(SimulationError::Interrupted))) {
             break;
         }
-        for (place, visit) in found.into_iter().enumerate() {
-            let (visit, sample) = (visit?, block * BLOCK + place);
+        for (index, visit) in found.into_iter().enumerate() {
+            let (visit, sample) = (visit?, block * BLOCK + index);
             for (line, value) in visit.values.into_iter().enumerate() {
                 values[line * count + sample] = value;
             }

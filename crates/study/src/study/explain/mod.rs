@@ -37,13 +37,13 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
         explanation
     };
     let mut explanation = explanation_of_subsystems(prepared.iter().map(of_subsystem).collect());
-    let place = |name: &String| description.outputs.iter().position(|output| output.name == *name);
-    explanation.outputs.retain(|name| place(name).is_some());
-    explanation.outputs.sort_by_key(place);
+    let index = |name: &String| description.outputs.iter().position(|output| output.name == *name);
+    explanation.outputs.retain(|name| index(name).is_some());
+    explanation.outputs.sort_by_key(index);
     explanation.analysis = description.analysis.in_words().map(str::to_owned);
     let uncertain = uncertain(description);
-    let place = |name: &String| uncertain.iter().position(|known| known == name);
-    explanation.parameters.sort_by_key(place);
+    let index = |name: &String| uncertain.iter().position(|known| known == name);
+    explanation.parameters.sort_by_key(index);
     for number in idle(&uncertain, &prepared) {
         let what = format!("parameter {}", uncertain[number]);
         explanation.left_out.push(LeftOut { what, why: "nothing depends on it".to_owned() });

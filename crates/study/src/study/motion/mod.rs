@@ -112,8 +112,8 @@ impl<'a> Posed<'a> {
             let fit = |line: fn(&Poses) -> &Vec<f64>| {
                 let of_nominal = line(&nominal);
                 let mut values = Vec::with_capacity(of_nominal.len() * nodes.len());
-                for (place, nominal) in of_nominal.iter().enumerate() {
-                    values.extend(nodes.iter().map(|node| line(node)[place] - nominal));
+                for (index, nominal) in of_nominal.iter().enumerate() {
+                    values.extend(nodes.iter().map(|node| line(node)[index] - nominal));
                 }
                 surrogate.coefficients(&values, &mut SurrogateWork::default())
             };
@@ -124,10 +124,10 @@ impl<'a> Posed<'a> {
             let mut found = vec![0.0; nominal.bodies.len() * samples.len()];
             surrogate.basis().values(&points_of_box, &bodies, &mut found, &mut SparseWork::default());
             let lines = found.chunks_exact(samples.len().max(1)).enumerate();
-            let error = lines.flat_map(|(place, found)| {
-                let weight = weights[place % weights.len()];
-                let simulated = samples.iter().map(move |sample| sample.poses.bodies[place]);
-                let base = nominal.bodies[place];
+            let error = lines.flat_map(|(index, found)| {
+                let weight = weights[index % weights.len()];
+                let simulated = samples.iter().map(move |sample| sample.poses.bodies[index]);
+                let base = nominal.bodies[index];
                 found.iter().zip(simulated).map(move |(found, value)| weight * (found + base - value).abs())
             });
             let error = error.fold(0.0, f64::max);

@@ -122,8 +122,8 @@ impl<'a> Rows<'a> {
                     continue;
                 }
                 times.push(schedule.time(row));
-                for (place, &sample) in running.iter().enumerate() {
-                    let own: Vec<f64> = (0..outputs).map(|output| of_row[output * samples.len() + place]).collect();
+                for (index, &sample) in running.iter().enumerate() {
+                    let own: Vec<f64> = (0..outputs).map(|output| of_row[output * samples.len() + index]).collect();
                     keep(sample, row == 0, Values(own));
                 }
             }

@@ -85,8 +85,8 @@ fn in_words(&seconds: &f64) -> String {
         return "1 ms".to_owned();
     }
     // Two of a unit at least, so that no digit is lost.
-    let place = UNITS.iter().rposition(|(unit, _)| seconds >= 2.0 * unit).unwrap_or(0);
-    let (unit, name) = UNITS[place];
+    let index = UNITS.iter().rposition(|(unit, _)| seconds >= 2.0 * unit).unwrap_or(0);
+    let (unit, name) = UNITS[index];
     let number = seconds / unit;
     if number < 10.0 { format!("{number:.1} {name}") } else { format!("{number:.0} {name}") }
 }

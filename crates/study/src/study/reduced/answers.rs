@@ -40,7 +40,7 @@ impl Parameters<'_> {
     /// A subsystem's sample among all parameters, the others nominal.
     fn spread(self, subsystem: &Subsystem, sample: &[f64]) -> Vec<f64> {
         let mut all = self.domain.nominal.to_vec();
-        subsystem.parameters.iter().zip(sample).for_each(|(&place, &value)| all[place] = value);
+        subsystem.parameters.iter().zip(sample).for_each(|(&index, &value)| all[index] = value);
         all
     }
 
@@ -55,7 +55,7 @@ impl Parameters<'_> {
         else {
             return;
         };
-        let others = self.all.iter().enumerate().filter(|(place, _)| !subsystem.parameters.contains(place));
+        let others = self.all.iter().enumerate().filter(|(index, _)| !subsystem.parameters.contains(index));
         let nothing = |(_, parameter): (usize, &ParameterSummary)| ReducedContribution {
             parameter: parameter.name.clone(),
             main: 0.0,

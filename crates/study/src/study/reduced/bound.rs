@@ -95,7 +95,7 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let values = Evaluated::new(study, &results, unreliable, store);
     let reduced = study.description.reduced.iter().enumerate();
     let contributions = contributions(study, &results, 1);
-    let reduced = reduced.map(|place| summary_of(study, place, &values, &contributions)).collect();
+    let reduced = reduced.map(|index| summary_of(study, index, &values, &contributions)).collect();
     let simulations = motions.over() + motions_halved.over() + motions_odd.over();
     let summary = (simulations > 0).then(|| MethodSummary {
         method: "reduced outputs".to_owned(),
@@ -172,8 +172,8 @@ fn nominal_values(study: &Study, ensemble: &dyn Ensemble) -> Result<MethodResult
     let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: true };
     let nominal = std::slice::from_ref(&study.domain.nominal);
     let mut take = |_, values: &[f64]| {
-        for (place, &value) in values.iter().enumerate() {
-            bands.set(0, place, Range { lower: value, upper: value }, 0.0);
+        for (index, &value) in values.iter().enumerate() {
+            bands.set(0, index, Range { lower: value, upper: value }, 0.0);
         }
     };
     ensemble.simulate(nominal, sampling, &mut take).map_err(simulation_error)?;
@@ -182,7 +182,7 @@ fn nominal_values(study: &Study, ensemble: &dyn Ensemble) -> Result<MethodResult
 
 fn summary_of(
     study: &Study,
-    (place, reduced): (usize, &ReducedOutput),
+    (index, reduced): (usize, &ReducedOutput),
     values: &Evaluated,
     contributions: &[Vec<Contribution>],
 ) -> ReducedSummary {
@@ -202,14 +202,14 @@ fn summary_of(
         width_without: contribution.width_without[0],
     };
     let mut contributions: Vec<ReducedContribution> =
-        contributions.get(place).into_iter().flatten().map(of_parameter).collect();
+        contributions.get(index).into_iter().flatten().map(of_parameter).collect();
     contributions.retain(|contribution| contribution.total.is_finite());
     contributions.sort_by(|a, b| b.total.total_cmp(&a.total));
-    let known = || values.samples.iter().filter(|(_, values)| !values[place].is_nan());
-    let case = |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[place] };
-    let least = known().min_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
-    let greatest = known().max_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
-    let absent = values.samples.iter().find(|(_, values)| values[place].is_nan());
+    let known = || values.samples.iter().filter(|(_, values)| !values[index].is_nan());
+    let case = |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[index] };
+    let least = known().min_by(|a, b| a.1[index].total_cmp(&b.1[index])).map(case);
+    let greatest = known().max_by(|a, b| a.1[index].total_cmp(&b.1[index])).map(case);
+    let absent = values.samples.iter().find(|(_, values)| values[index].is_nan());
     let absent = absent.map(|(sample, _)| sample.to_vec());
     let occurs = Occurrence { samples: known().count(), of: values.samples.len(), absent };
     ReducedSummary {
@@ -217,8 +217,8 @@ fn summary_of(
         of: reduced.text.clone(),
         unit: reduced.unit.clone(),
         display: study.description.display.get(&reduced.name).cloned(),
-        nominal: values.bounded.nominal.result.bands[place][0].lower,
-        bands: bands(study, values.bounded, place, 1).into_iter().map(band).collect(),
+        nominal: values.bounded.nominal.result.bands[index][0].lower,
+        bands: bands(study, values.bounded, index, 1).into_iter().map(band).collect(),
         contributions,
         worst: least.zip(greatest).map(|(least, greatest)| [least, greatest]),
         occurs: (occurs.samples < occurs.of).then_some(occurs),

@@ -23,8 +23,8 @@ pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64)
     let [first, .., last] = *span.as_slice() else { return None };
     let end = to.min(schedule.time(schedule.rows - 1));
     let is_whole = schedule.time(first) == from && schedule.time(last) == end && span.len() > 2;
-    let of_slack = |&place: &usize| {
-        let bands = bands(study, rows, place, schedule.rows);
+    let of_slack = |&index: &usize| {
+        let bands = bands(study, rows, index, schedule.rows);
         let is_resolved = |band: &&Band| span.iter().all(|&row| !band.error.unresolved[row]);
         let is_known = |band: &&Band| span.iter().all(|&row| band.error.decisive(row).is_some());
         let band = bands.iter().find(is_resolved).or(bands.iter().find(is_known))?;
@@ -42,7 +42,7 @@ pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64)
             method: band.method.name(),
         })
     };
-    let parts: Vec<Part> = own.places.iter().map(of_slack).collect::<Option<_>>()?;
+    let parts: Vec<Part> = own.outputs.iter().map(of_slack).collect::<Option<_>>()?;
     let part = parts.into_iter().min_by(|a, b| a.reached().total_cmp(&b.reached()))?;
     (is_whole && part.reached() <= simulated).then_some(part)
 }

@@ -54,9 +54,9 @@ impl Store {
     pub fn keep(&self, steps: Steps, samples: &[Sample], values: &[f64]) {
         // Stored values are whole, whoever panicked.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        for (place, sample) in samples.iter().enumerate() {
+        for (index, sample) in samples.iter().enumerate() {
             if kept.len() * (self.plan.channels.len() + sample.len()) < MOST_KEPT {
-                let channels = values.iter().skip(place).step_by(samples.len()).copied().collect();
+                let channels = values.iter().skip(index).step_by(samples.len()).copied().collect();
                 kept.insert((steps, bits(sample)), channels);
             }
         }
@@ -184,12 +184,12 @@ impl Ensemble for ReducedEnsemble<'_> {
         let motions = if sampling.observed == Observed::Motion { 2 * self.scales.len() } else { 0 };
         let mut block = vec![0.0; (motions + self.outputs()) * samples.len()];
         let mut values = Vec::new();
-        for (place, (sample, channels)) in samples.iter().zip(&channels).enumerate() {
+        for (index, (sample, channels)) in samples.iter().zip(&channels).enumerate() {
             let coordinates = channels[..self.scales.len()].iter().take(motions);
-            coordinates.enumerate().for_each(|(line, &value)| block[line * samples.len() + place] = value);
+            coordinates.enumerate().for_each(|(line, &value)| block[line * samples.len() + index] = value);
             self.store.plan.values.evaluate(channels, sample, &mut values);
             for (line, &value) in values.iter().enumerate() {
-                block[(motions + line) * samples.len() + place] = value;
+                block[(motions + line) * samples.len() + index] = value;
             }
         }
         reduce(0..1, &block);

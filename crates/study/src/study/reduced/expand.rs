@@ -7,7 +7,7 @@ use symdiff::formula::Term;
 
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::unit::Unit;
-use crate::model::{Description, Output, Requirement};
+use crate::model::{Description, Output};
 use crate::results::{Bounds, ContributionSummary, ErrorSummary, Summary};
 
 /// The model with these outputs behind its own; the model itself where it reduces and requires nothing.
@@ -19,18 +19,18 @@ pub fn expanded(description: &Description) -> Cow<'_, Description> {
     let outputs = &mut expanded.outputs;
     for reduced in &mut expanded.reduced {
         let of_results = reduced.of_results;
-        reduced.places =
-            reduced.sources.iter().map(|source| place(outputs, &reduced.name, source, of_results)).collect();
+        reduced.outputs =
+            reduced.sources.iter().map(|source| output_of(outputs, &reduced.name, source, of_results)).collect();
     }
     for own in expanded.requirements.iter_mut().filter(|own| own.times.is_some()) {
-        let Requirement { name, slacks, places, of_results, .. } = own;
-        *places = slacks.iter().map(|slack| place(outputs, name, slack, *of_results)).collect();
+        let of = |slack| output_of(outputs, &own.name, slack, own.of_results);
+        own.outputs = own.slacks.iter().map(of).collect();
     }
     Cow::Owned(expanded)
 }
 
-/// The output with a formula; a new one where none has it.
-fn place(outputs: &mut Vec<Output>, name: &str, formula: &Formula, of_results: bool) -> usize {
+/// Index of the output with a formula; of a new one where none has it.
+fn output_of(outputs: &mut Vec<Output>, name: &str, formula: &Formula, of_results: bool) -> usize {
     let terms = |formula: &Formula| formula.terms().iter().map(|(term, _)| term.clone()).collect::<Vec<Term>>();
     let own = terms(formula);
     let is_same = |output: &Output| output.of_results == of_results && terms(&output.formula) == own;

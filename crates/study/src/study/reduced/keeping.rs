@@ -20,9 +20,9 @@ pub fn kept_reduced(
     if !study.request.keep {
         return None;
     }
-    let place = results.methods.iter().position(|(method, _)| *method == Method::Chebyshev)?;
-    let surrogate = results.methods[place].1.result.kept.take().filter(|kept| kept.rows() > 0)?;
-    let outcome = &results.methods[place].1;
+    let index = results.methods.iter().position(|(method, _)| *method == Method::Chebyshev)?;
+    let surrogate = results.methods[index].1.result.kept.take().filter(|kept| kept.rows() > 0)?;
+    let outcome = &results.methods[index].1;
     let (validation, _) = results.validation.as_ref()?;
     let mut kept = KeptReduced { surrogate, values: values.clone(), errors: Vec::new() };
     let samples: Vec<Sample> = study.domain.samples(&validation.points);

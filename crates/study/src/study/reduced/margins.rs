@@ -16,7 +16,7 @@ pub struct MarginsOfPart<'k> {
 impl MarginsOfPart<'_> {
     /// Samples of the model's box as those of the subsystem's.
     fn own<P: AsRef<[f64]>>(&self, samples: &[P]) -> Vec<Vec<f64>> {
-        let pick = |sample: &P| self.parameters.iter().map(|&place| sample.as_ref()[place]).collect();
+        let pick = |sample: &P| self.parameters.iter().map(|&index| sample.as_ref()[index]).collect();
         samples.iter().map(pick).collect()
     }
 }
@@ -25,23 +25,23 @@ impl MarginsOfPart<'_> {
 pub struct ReducedValues<'k> {
     parts: Vec<MarginsOfPart<'k>>,
     /// By reduced output: its part, and its number there.
-    places: Vec<(usize, usize)>,
+    indices: Vec<(usize, usize)>,
 }
 
 impl<'k> ReducedValues<'k> {
     /// So many of these parts; `None` where one is of none.
     pub fn of(parts: Vec<MarginsOfPart<'k>>, count: usize) -> Option<Self> {
-        let place = |number: usize| {
+        let index = |number: usize| {
             let own = |part: &MarginsOfPart| part.reduced.iter().position(|&own| own == number);
             parts.iter().enumerate().find_map(|(part, of)| Some((part, own(of)?)))
         };
-        let places = (0..count).map(place).collect::<Option<Vec<_>>>()?;
-        Some(Self { parts, places })
+        let indices = (0..count).map(index).collect::<Option<Vec<_>>>()?;
+        Some(Self { parts, indices })
     }
 
     /// How far one may be from the truth anywhere in the box; unknown where it cannot be relied on.
     pub fn error(&self, number: usize) -> f64 {
-        let (part, own) = self.places[number];
+        let (part, own) = self.indices[number];
         self.parts[part].kept.value_error(own)
     }
 
@@ -50,7 +50,7 @@ impl<'k> ReducedValues<'k> {
         let found: Vec<Vec<f64>> =
             self.parts.iter().map(|part| part.kept.values(part.reduced.len(), &part.own(samples))).collect();
         let of = |&(part, own): &(usize, usize)| found[part][own * samples.len()..][..samples.len()].to_vec();
-        self.places.iter().map(of).collect()
+        self.indices.iter().map(of).collect()
     }
 }
 
@@ -58,52 +58,52 @@ impl<'k> ReducedValues<'k> {
 pub struct Margins<'k> {
     parts: Vec<MarginsOfPart<'k>>,
     /// By requirement: its part, and its number there.
-    places: Vec<(usize, usize)>,
+    indices: Vec<(usize, usize)>,
 }
 
 impl<'k> Margins<'k> {
     /// Of these parts; `None` where a requirement has none.
     pub fn of(parts: Vec<MarginsOfPart<'k>>) -> Option<Self> {
         let count = parts.iter().map(|part| part.requirements.len()).sum();
-        let place = |requirement: usize| {
+        let index = |requirement: usize| {
             let own = |part: &MarginsOfPart| part.requirements.iter().position(|&own| own == requirement);
             parts.iter().enumerate().find_map(|(number, part)| Some((number, own(part)?)))
         };
-        let places = (0..count).map(place).collect::<Option<Vec<_>>>()?;
-        Some(Self { parts, places })
+        let indices = (0..count).map(index).collect::<Option<Vec<_>>>()?;
+        Some(Self { parts, indices })
     }
 
     /// Those of some requirements alone, numbered in this order; no other is evaluated.
     pub fn only(&self, requirements: &[usize]) -> Self {
         let mut of_parts = vec![Vec::new(); self.parts.len()];
         let place = |&requirement: &usize| {
-            let (part, own) = self.places[requirement];
+            let (part, own) = self.indices[requirement];
             of_parts[part].push(own);
             (part, of_parts[part].len() - 1)
         };
-        let places = requirements.iter().map(place).collect();
+        let indices = requirements.iter().map(place).collect();
         let of_part = |(part, own): (&MarginsOfPart<'k>, &Vec<usize>)| MarginsOfPart {
             kept: Cow::Owned(part.kept.only(own)),
             requirements: own.iter().map(|&own| part.requirements[own]).collect(),
             ..*part
         };
-        Self { parts: self.parts.iter().zip(&of_parts).map(of_part).collect(), places }
+        Self { parts: self.parts.iter().zip(&of_parts).map(of_part).collect(), indices }
     }
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.places.len()
+        self.indices.len()
     }
 
     /// How far a margin may be from the truth anywhere in the box; unknown where it cannot be relied on.
     pub fn error(&self, requirement: usize) -> f64 {
-        let (part, own) = self.places[requirement];
+        let (part, own) = self.indices[requirement];
         self.parts[part].kept.error(own)
     }
 
     /// The part of it that a better surrogate would not have.
     pub fn surrogate_error(&self, requirement: usize) -> f64 {
-        let (part, own) = self.places[requirement];
+        let (part, own) = self.indices[requirement];
         self.parts[part].kept.surrogate_error(own)
     }
 
@@ -112,6 +112,6 @@ impl<'k> Margins<'k> {
         let of_part = |part: &MarginsOfPart| part.kept.margins(part.requirements.len(), &part.own(samples));
         let found: Vec<Vec<f64>> = self.parts.iter().map(of_part).collect();
         let of = |&(part, own): &(usize, usize)| &found[part][own * samples.len()..][..samples.len()];
-        self.places.iter().flat_map(of).copied().collect()
+        self.indices.iter().flat_map(of).copied().collect()
     }
 }

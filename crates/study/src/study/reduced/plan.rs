@@ -55,9 +55,9 @@ impl Plan {
         let expanded = planner.channels.len();
         let when = |own: &Requirement| match own.times {
             Some((from, to)) if from < to => {
-                let mut add = |place: usize, accumulation| planner.add(place, accumulation, (from, to));
-                let of = |&place: &usize| (add(place, Accumulation::WhenLeast), add(place, Accumulation::Least));
-                own.places.iter().map(of).collect()
+                let mut add = |index: usize, accumulation| planner.add(index, accumulation, (from, to));
+                let of = |&index: &usize| (add(index, Accumulation::WhenLeast), add(index, Accumulation::Least));
+                own.outputs.iter().map(of).collect()
             }
             _ => Vec::new(),
         };
@@ -108,7 +108,7 @@ impl Planner<'_> {
     fn reduced(&mut self, reduced: &ReducedOutput, end: f64) -> Value {
         let span = (reduced.from, reduced.to);
         let length = reduced.to.min(end) - reduced.from;
-        let own = reduced.places[0];
+        let own = reduced.outputs[0];
         let at = |time: f64| (time, time);
         match reduced.kind {
             ReducedKind::Range => Value::Range(self.extremes(own, 1.0, span), self.extremes(own, -1.0, span)),
@@ -127,7 +127,7 @@ impl Planner<'_> {
                 Value::Settling(self.humps(own, Accumulation::Last, span), reduced.from, reduced.to.min(end))
             }
             ReducedKind::Overshoot => {
-                let target = reduced.places.get(1).copied().unwrap_or(own);
+                let target = reduced.outputs.get(1).copied().unwrap_or(own);
                 Value::Overshoot {
                     greatest: self.extremes(own, 1.0, span),
                     least: self.extremes(own, -1.0, span),
@@ -137,7 +137,7 @@ impl Planner<'_> {
             }
             ReducedKind::Straightness => {
                 let path = Accumulation::Zone { abscissa: own };
-                Value::Mean(self.add(reduced.places[1], path, span), 1.0)
+                Value::Mean(self.add(reduced.outputs[1], path, span), 1.0)
             }
         }
     }
@@ -145,8 +145,8 @@ impl Planner<'_> {
     /// What the margin is the least of.
     fn margin(&mut self, description: &Description, own: &Requirement) -> Vec<Value> {
         let channels = match own.times {
-            Some((from, to)) if from == to => self.windowed_at(&own.places, from),
-            Some(span) => own.places.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect(),
+            Some((from, to)) if from == to => self.windowed_at(&own.outputs, from),
+            Some(span) => own.outputs.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect(),
             None => {
                 let formula = |slack: &symdiff::Formula| {
                     let reads = |own: &ReducedOutput| slack.names().any(|(name, _)| name == own.name);
@@ -167,22 +167,22 @@ impl Planner<'_> {
     }
 
     fn windowed_at(&mut self, places: &[usize], at: f64) -> Vec<usize> {
-        places.iter().map(|&place| self.add(place, Accumulation::AtEnd, (at, at))).collect()
+        places.iter().map(|&index| self.add(index, Accumulation::AtEnd, (at, at))).collect()
     }
 
     /// The time cut at the dips between the humps of the nominal course times `sign`.
     fn windows(&self, output: usize, sign: f64, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
         let rows: Vec<usize> = (0..self.times.len()).filter(|&row| (from..=to).contains(&self.times[row])).collect();
         let all = (self.nominal)(output);
-        let value = |place: usize| sign * all[rows[place]];
+        let value = |index: usize| sign * all[rows[index]];
         let (low, high) = (0..rows.len())
             .map(value)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         // A dip with the depth below the lower one of the humps beside it.
         let mut dips: Vec<(usize, f64)> = Vec::new();
-        for place in 1..rows.len().saturating_sub(1) {
-            if value(place) < value(place - 1) && value(place) <= value(place + 1) {
-                dips.push((place, 0.0));
+        for index in 1..rows.len().saturating_sub(1) {
+            if value(index) < value(index - 1) && value(index) <= value(index + 1) {
+                dips.push((index, 0.0));
             }
         }
         loop {
@@ -201,7 +201,7 @@ impl Planner<'_> {
                 _ => break,
             };
         }
-        let cuts = dips.iter().map(|&(place, _)| self.times[rows[place]]);
+        let cuts = dips.iter().map(|&(index, _)| self.times[rows[index]]);
         let edges: Vec<f64> = [from].into_iter().chain(cuts).chain([to]).collect();
         edges.windows(2).map(|pair| (pair[0], pair[1])).collect()
     }

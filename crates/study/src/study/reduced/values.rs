@@ -151,17 +151,17 @@ impl Value {
     fn of(&self, channels: &[f64], parameters: &[f64], before: &[f64]) -> f64 {
         // NaN is passed on.
         let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
-        let greatest = |places: &[usize]| places.iter().map(|&place| channels[place]).fold(f64::NEG_INFINITY, larger);
+        let greatest = |places: &[usize]| places.iter().map(|&index| channels[index]).fold(f64::NEG_INFINITY, larger);
         let least_of = |values: &mut dyn Iterator<Item = f64>| -values.fold(f64::NEG_INFINITY, |a, b| larger(a, -b));
-        let least = |places: &[usize]| least_of(&mut places.iter().map(|&place| channels[place]));
+        let least = |places: &[usize]| least_of(&mut places.iter().map(|&index| channels[index]));
         match self {
             Self::Greatest(places) => greatest(places),
             Self::Least(places) => least(places),
             Self::Range(above, below) => greatest(above) - least(below),
             Self::Magnitude(above, below) => larger(greatest(above), -least(below)),
-            Self::Mean(place, length) => channels[*place] / length,
+            Self::Mean(index, length) => channels[*index] / length,
             // A polynomial may be below zero where a square is not.
-            Self::Rms(place, length) => (channels[*place] / length).max(0.0).sqrt(),
+            Self::Rms(index, length) => (channels[*index] / length).max(0.0).sqrt(),
             Self::TimeOf(humps, sign) => {
                 let height = |window: usize| sign * channels[humps.heights[window]];
                 let best = (0..humps.heights.len()).fold(0, |a, b| if height(b) > height(a) { b } else { a });

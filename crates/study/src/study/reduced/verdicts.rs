@@ -54,12 +54,12 @@ fn verdict(
     ensembles: [&ReducedEnsemble; 2],
 ) -> Result<RequirementSummary, SimulationError> {
     let mut parts: Vec<Part> =
-        ensembles[0].plan().values.parts(number).map(|place| part(study, values, place)).collect();
+        ensembles[0].plan().values.parts(number).map(|index| part(study, values, index)).collect();
     let decided = |parts: &[Part]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
     if rows.functions.is_some() {
         parts = by_rows(study, own, rows, f64::INFINITY).map_or(parts, |part| vec![part]);
     } else if !decided(&parts) && !values.unreliable {
-        let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().values.margin(number, |place| all[place]);
+        let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().values.margin(number, |index| all[index]);
         // NaN stays, and contradicts.
         let simulated = values.samples.iter().map(margin).fold(f64::INFINITY, smaller);
         parts = match by_rows(study, own, rows, simulated) {
@@ -113,8 +113,8 @@ fn verdict(
 
 /// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be
 /// believed.
-fn part(study: &Study, values: &Evaluated, place: usize) -> Part {
-    let bands = bands(study, values.bounded, place, 1);
+fn part(study: &Study, values: &Evaluated, index: usize) -> Part {
+    let bands = bands(study, values.bounded, index, 1);
     let is_resolved = |band: &Band| !band.error.unresolved[0];
     let is_known = |band: &Band| band.error.decisive(0).is_some();
     let band = bands.iter().find(|band| is_resolved(band)).or(foremost(&bands, is_known));
@@ -138,7 +138,7 @@ fn nearest(
     holds: bool,
     [direct, halved]: [&ReducedEnsemble; 2],
 ) -> Result<Option<NearestCase>, SimulationError> {
-    let margin = |all: &[f64]| direct.plan().values.margin(number, |place| all[place]);
+    let margin = |all: &[f64]| direct.plan().values.margin(number, |index| all[index]);
     // A missing value fails more than any value.
     let key = |value: f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
     let of_sample = |(sample, all): &(Sample, Vec<f64>)| (sample.clone(), margin(all));
@@ -195,7 +195,7 @@ fn search(
         let before = best.1;
         for (sample, channels) in samples.iter().zip(&channels) {
             ensemble.plan().values.evaluate(channels, sample, &mut values);
-            let margin = ensemble.plan().values.margin(requirement, |place| values[place]);
+            let margin = ensemble.plan().values.margin(requirement, |index| values[index]);
             if margin < best.1 {
                 *best = (sample.clone(), margin);
             }
@@ -221,12 +221,12 @@ fn is_certified(own: &Requirement, rows: &Bounded) -> bool {
     let counts: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
     if from == to || result.between.is_empty() {
         let seen = schedule.steps_per_row() == Some(1) || from == to;
-        let holds = |place: &usize| counts.iter().all(|&row| result.bands[*place][row].lower >= 0.0);
-        return seen && !counts.is_empty() && own.places.iter().all(holds);
+        let holds = |index: &usize| counts.iter().all(|&row| result.bands[*index][row].lower >= 0.0);
+        return seen && !counts.is_empty() && own.outputs.iter().all(holds);
     }
     let overlaps = |row: &usize| schedule.time(*row) >= from && schedule.time(*row - 1) <= to;
-    let holds = |place: &usize| (1..schedule.rows).filter(overlaps).all(|row| result.between[*place][row].lower >= 0.0);
-    schedule.rows > 1 && own.places.iter().all(holds)
+    let holds = |index: &usize| (1..schedule.rows).filter(overlaps).all(|row| result.between[*index][row].lower >= 0.0);
+    schedule.rows > 1 && own.outputs.iter().all(holds)
 }
 
 /// Constant limits of outputs and reduced outputs.

@@ -44,10 +44,10 @@ impl Laws {
         let mut matrix: Vec<Vec<f64>> =
             (0..names.len()).map(|i| (0..names.len()).map(|j| f64::from(u8::from(i == j))).collect()).collect();
         for group in &description.statistics.correlations {
-            let places: Vec<Option<usize>> =
+            let indices: Vec<Option<usize>> =
                 group.names.iter().map(|name| names.iter().position(|known| known == name)).collect();
-            for (i, row) in places.iter().zip(&group.matrix) {
-                for (j, &value) in places.iter().zip(row) {
+            for (i, row) in indices.iter().zip(&group.matrix) {
+                for (j, &value) in indices.iter().zip(row) {
                     if let (Some(i), Some(j)) = (*i, *j) {
                         matrix[i][j] = value;
                     }
@@ -86,8 +86,8 @@ impl Laws {
 
     /// The model over a box that has nearly all of the laws; samples are drawn from it then.
     pub fn widened(&mut self, description: &Description) -> Description {
-        for (place, law) in self.laws.iter().enumerate() {
-            (self.least[place], self.most[place]) = ends(law, (self.lower[place], self.upper[place]));
+        for (index, law) in self.laws.iter().enumerate() {
+            (self.least[index], self.most[index]) = ends(law, (self.lower[index], self.upper[index]));
         }
         let mut wider = description.clone();
         let uncertain = wider.parameters.iter_mut().filter_map(|parameter| match &mut parameter.value {
@@ -103,15 +103,15 @@ impl Laws {
     /// Cuts off normal and lognormal laws at the box' ends.
     pub fn cut_off(&mut self) {
         (self.least, self.most) = (self.lower.clone(), self.upper.clone());
-        for (place, law) in self.laws.iter_mut().enumerate() {
+        for (index, law) in self.laws.iter_mut().enumerate() {
             if let Distribution::Normal { mean, sigma } = law.distribution {
-                let (lower, upper) = (self.lower[place], self.upper[place]);
+                let (lower, upper) = (self.lower[index], self.upper[index]);
                 law.distribution = Distribution::TruncatedNormal { mean, sigma, lower, upper };
             }
             if let Distribution::Lognormal { lower, upper, .. } = &mut law.distribution {
-                (*lower, *upper) = (lower.max(self.lower[place]), upper.min(self.upper[place]));
+                (*lower, *upper) = (lower.max(self.lower[index]), upper.min(self.upper[index]));
             }
-            self.quantiles[place] = Quantiles::new(&law.distribution);
+            self.quantiles[index] = Quantiles::new(&law.distribution);
         }
     }
 
@@ -142,9 +142,9 @@ impl Laws {
                 sample.iter_mut().for_each(|share| *share = normal_quantile(*share));
                 self.copula.correlate_scores(sample);
             }
-            for (value, (place, quantiles)) in sample.iter_mut().zip(self.quantiles.iter().enumerate()) {
+            for (value, (index, quantiles)) in sample.iter_mut().zip(self.quantiles.iter().enumerate()) {
                 let found = if is_correlated { quantiles.of_score(*value) } else { quantiles.of_share(*value) };
-                *value = found.clamp(self.least[place], self.most[place]);
+                *value = found.clamp(self.least[index], self.most[index]);
             }
             self.zones.iter().for_each(|zone| zone.place(sample));
         }
@@ -155,8 +155,8 @@ impl Laws {
     pub fn of_scores(&self, scores: &[f64]) -> Vec<f64> {
         let mut scores = scores.to_vec();
         self.copula.correlate_scores(&mut scores);
-        let value = |(place, score): (usize, &f64)| {
-            self.quantiles[place].of_score(*score).clamp(self.least[place], self.most[place])
+        let value = |(index, score): (usize, &f64)| {
+            self.quantiles[index].of_score(*score).clamp(self.least[index], self.most[index])
         };
         let mut sample: Vec<f64> = scores.iter().enumerate().map(value).collect();
         self.zones.iter().for_each(|zone| zone.place(&mut sample));

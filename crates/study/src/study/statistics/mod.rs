@@ -95,7 +95,7 @@ fn of_run(
         left_out: laws.left_out(),
         outside: laws.outside(),
         simulations,
-        outputs: outputs.iter().filter_map(|(place, output)| side_by_side(&rows, bounds, *place, output)).collect(),
+        outputs: outputs.iter().filter_map(|(index, output)| side_by_side(&rows, bounds, *index, output)).collect(),
         reduced,
         requirements,
         together,
@@ -124,12 +124,12 @@ fn quiet<'a>(options: &Options<'a>) -> Options<'a> {
 fn side_by_side(
     rows: &Rows,
     bounds: &Bounds,
-    place: usize,
+    index: usize,
     output: &OutputStatistics,
 ) -> Option<OutputStatisticsSummary> {
     let known = (0..output.deviation.len()).filter(|&row| output.deviation[row].value.is_finite());
     let row = known.max_by(|&a, &b| output.deviation[a].value.total_cmp(&output.deviation[b].value).then(b.cmp(&a)))?;
-    let of_bounds = &bounds.outputs[place];
+    let of_bounds = &bounds.outputs[index];
     let band = of_bounds.bands.iter().find(|band| band.method == Method::Chebyshev)?;
     let is_stack = stack::is_stack(rows.description, &output.name);
     Some(OutputStatisticsSummary {
@@ -145,8 +145,8 @@ fn side_by_side(
         mean: output.mean[row],
         deviation: output.deviation[row],
         quantiles: output.quantiles.iter().map(|values| values[row]).collect(),
-        sensitivities: if is_stack { stack::sensitivities(rows, row, place) } else { Vec::new() },
-        histogram: if is_stack { stack::histogram(rows, row, place) } else { None },
+        sensitivities: if is_stack { stack::sensitivities(rows, row, index) } else { Vec::new() },
+        histogram: if is_stack { stack::histogram(rows, row, index) } else { None },
     })
 }
 

@@ -26,13 +26,13 @@ pub(super) fn all(rows: &Rows) -> Result<Vec<NumberStatistics>, String> {
             own.add(&mut { values }, shares);
         }
     }
-    let number = |(place, own): (usize, Replicates)| {
-        let error = kept.error(place);
+    let number = |(index, own): (usize, Replicates)| {
+        let error = kept.error(index);
         let with_error = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
         NumberStatistics {
-            name: reduced[place].name.clone(),
-            unit: reduced[place].unit.clone(),
-            display: rows.description.display.get(&reduced[place].name).cloned(),
+            name: reduced[index].name.clone(),
+            unit: reduced[index].unit.clone(),
+            display: rows.description.display.get(&reduced[index].name).cloned(),
             mean: with_error(own.mean()),
             deviation: with_error(own.deviation()),
             quantiles: own.quantiles().into_iter().map(with_error).collect(),

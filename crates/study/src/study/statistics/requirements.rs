@@ -233,7 +233,7 @@ fn capability(
     let of_row = |row: usize| {
         rows.go_on()?;
         let own = |&output: &usize| moments(&rows.few_values(row, output));
-        let moments: Vec<(f64, f64)> = requirement.places.iter().map(own).collect();
+        let moments: Vec<(f64, f64)> = requirement.outputs.iter().map(own).collect();
         let cpk = moments.iter().map(|(mean, deviation)| mean / (3.0 * deviation)).fold(f64::INFINITY, f64::min);
         let cp = match moments[..] {
             // Of a response, the same limit at several frequencies.

@@ -145,7 +145,7 @@ impl<'a> Rows<'a> {
         if let Some(widest) = known.max_by(|a, b| deviation(a).total_cmp(&deviation(b)).then(b.cmp(a))) {
             rows[widest] = self.of_row(widest, output, 1)?;
         }
-        let quantile = |place: usize| rows.iter().map(|row| row.quantiles[place]).collect();
+        let quantile = |index: usize| rows.iter().map(|row| row.quantiles[index]).collect();
         let (name, unit) = self.kept.named(output);
         Ok(OutputStatistics {
             name: name.to_owned(),

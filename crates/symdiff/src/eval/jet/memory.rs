@@ -51,13 +51,13 @@ impl<'s> JetMemory<'s> {
     pub fn run(&mut self, tape: &Tape) {
         let length = self.space.len();
         let Self { space, scratch, values, first, second } = self;
-        let mut place = 0;
-        while let Some(part) = tape.part(&mut place) {
+        let mut index = 0;
+        while let Some(part) = tape.part(&mut index) {
             let (op, operands) = match part {
                 Part::Run(op, operands) => (op, operands),
                 Part::Region(region) => {
                     let condition = values[region.condition as usize * length];
-                    region.skip_unless(region.wants(condition), &mut place);
+                    region.skip_unless(region.wants(condition), &mut index);
                     continue;
                 }
             };

@@ -66,7 +66,7 @@ impl JetSpace {
     pub fn new(variables: usize, order: usize) -> Self {
         let monomials = Monomials::new(variables, order);
         let count = monomials.len();
-        let place: FxHashMap<&[usize], usize> = (0..count).map(|r| (monomials.exponents(r), r)).collect();
+        let index: FxHashMap<&[usize], usize> = (0..count).map(|r| (monomials.exponents(r), r)).collect();
         let mut by_result = vec![Vec::new(); count];
         let mut exponents = vec![0; variables];
         let (mut targets, mut rows) = (Vec::new(), vec![0]);
@@ -77,7 +77,7 @@ impl JetSpace {
                 {
                     *power = a + b;
                 }
-                let r = place[exponents.as_slice()];
+                let r = index[exponents.as_slice()];
                 by_result[r].push([i as u32, j as u32]);
                 targets.push(r as u32);
             }

@@ -47,14 +47,14 @@ impl<'s> ModelMemory<'s> {
     pub fn run(&mut self, tape: &Tape) {
         let size = self.space.size();
         let Self { space, scratch, values, first, second } = self;
-        let mut place = 0;
-        while let Some(part) = tape.part(&mut place) {
+        let mut index = 0;
+        while let Some(part) = tape.part(&mut index) {
             let (op, operands) = match part {
                 Part::Run(op, operands) => (op, operands),
                 Part::Region(region) => {
                     // Undecided is neither.
                     let sign = space.sign(&values[region.condition as usize * size..][..size]);
-                    region.skip_unless(sign.is_none_or(|sign| region.wants(sign)), &mut place);
+                    region.skip_unless(sign.is_none_or(|sign| region.wants(sign)), &mut index);
                     continue;
                 }
             };

@@ -157,16 +157,16 @@ impl<const W: usize, const C: usize, K: Keep> Vectorise for Interpretation<'_, W
 /// an operand.
 #[inline(always)]
 unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory: *mut f64, keep: &mut K) {
-    let mut place = 0;
-    while let Some(part) = tape.part(&mut place) {
+    let mut index = 0;
+    while let Some(part) = tape.part(&mut index) {
         let (op, operands) = match part {
             Part::Run(op, operands) => {
-                keep.run(place - 1);
+                keep.run(index - 1);
                 (op, operands)
             }
             Part::Region(region) => {
                 // SAFETY: the caller's.
-                region.skip_unless(unsafe { wanted::<W>(region, memory) }, &mut place);
+                region.skip_unless(unsafe { wanted::<W>(region, memory) }, &mut index);
                 continue;
             }
         };

@@ -5,7 +5,7 @@ use crate::lower::tape::Tape;
 /// Keeps values before they are replaced.
 pub(super) trait Keep {
     /// Instructions of one operation are run: their part of the tape.
-    fn run(&mut self, place: usize);
+    fn run(&mut self, index: usize);
 
     /// A register of `W` lanes is about to be replaced.
     ///
@@ -61,8 +61,8 @@ impl Record {
 
 impl Keep for Record {
     #[inline(always)]
-    fn run(&mut self, place: usize) {
-        self.parts.push(place);
+    fn run(&mut self, index: usize) {
+        self.parts.push(index);
     }
 
     #[inline(always)]

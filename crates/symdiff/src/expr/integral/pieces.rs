@@ -96,8 +96,8 @@ impl Graph {
     /// The value of an expression of conditions of which those hold whose bits are set.
     fn truth_where(&self, of: Expr, conditions: &[Expr], held: usize) -> f64 {
         let value = |expr| self.truth_where(expr, conditions, held);
-        if let Some(place) = conditions.iter().position(|&condition| condition == of) {
-            return f64::from(u8::from(held >> place & 1 == 1));
+        if let Some(index) = conditions.iter().position(|&condition| condition == of) {
+            return f64::from(u8::from(held >> index & 1 == 1));
         }
         match self.node(of) {
             Node::Unary(_, a) => -value(a),

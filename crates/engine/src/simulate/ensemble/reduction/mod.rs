@@ -128,13 +128,13 @@ impl<'s> Reduction<'s> {
         }
         // What waits for a step after it has none.
         let first = if self.begun { self.times.len() - 2 } else { 0 };
-        for place in first..self.times.len().saturating_sub(1) {
-            self.accumulate(place);
+        for index in first..self.times.len().saturating_sub(1) {
+            self.accumulate(index);
         }
-        let value = |(place, state): (usize, &State)| {
-            let channel = &self.channels[place / self.width];
+        let value = |(index, state): (usize, &State)| {
+            let channel = &self.channels[index / self.width];
             match channel.accumulation {
-                _ if self.stopped[place % self.width] => f64::NAN,
+                _ if self.stopped[index % self.width] => f64::NAN,
                 Accumulation::WhenGreatest | Accumulation::WhenLeast => state.time,
                 Accumulation::First | Accumulation::Last if state.value.is_nan() => state.time,
                 Accumulation::Zone { .. } => state.zone.width(),
@@ -145,15 +145,15 @@ impl<'s> Reduction<'s> {
     }
 
     /// Accumulates the interval between two steps.
-    fn accumulate(&mut self, place: usize) {
+    fn accumulate(&mut self, index: usize) {
         let piece = |output: usize, lane: usize| {
             let mut points = [(0.0, 0.0); 4];
             for (point, (&time, values)) in points.iter_mut().zip(self.times.iter().zip(&self.values)) {
                 *point = (time, values[output * self.width + lane]);
             }
-            Piece::between(&points[..self.times.len()], place)
+            Piece::between(&points[..self.times.len()], index)
         };
-        let [start, end] = [self.times[place], self.times[place + 1]];
+        let [start, end] = [self.times[index], self.times[index + 1]];
         for (number, channel) in self.channels.iter().enumerate() {
             // A channel of a single time takes the piece that ends there or after it.
             let is_at = channel.accumulation == Accumulation::AtEnd;
@@ -185,8 +185,8 @@ const OF_PATH: usize = 4;
 
 fn add_path(zone: &mut Zone, x: &Piece, y: &Piece, channel: &Channel) {
     if let Some(Range { start: begin, end }) = y.part(channel.from, channel.to) {
-        for place in 0..=OF_PATH {
-            let share = begin + (end - begin) * place as f64 / OF_PATH as f64;
+        for index in 0..=OF_PATH {
+            let share = begin + (end - begin) * index as f64 / OF_PATH as f64;
             zone.add([x.at(share), y.at(share)]);
         }
     }

@@ -40,8 +40,8 @@ impl Piece {
         let triples = (first.saturating_sub(1)..=first).filter_map(|begin| points.get(begin..begin + 3));
         let parabolas: Vec<[f64; 4]> =
             triples.map(|triple| interpolated(triple.iter().map(|&(time, value)| (share(time), value)))).collect();
-        for (place, sign) in [1.0, -1.0].into_iter().enumerate() {
-            piece.peaks[place] = piece.peak(sign, &parabolas);
+        for (index, sign) in [1.0, -1.0].into_iter().enumerate() {
+            piece.peaks[index] = piece.peak(sign, &parabolas);
         }
         piece
     }
@@ -157,17 +157,17 @@ fn interpolated(points: impl Iterator<Item = (f64, f64)>) -> [f64; 4] {
         count += 1;
     }
     for order in 1..count {
-        for place in (order..count).rev() {
-            differences[place] = (differences[place] - differences[place - 1]) / (nodes[place] - nodes[place - order]);
+        for index in (order..count).rev() {
+            differences[index] = (differences[index] - differences[index - 1]) / (nodes[index] - nodes[index - order]);
         }
     }
     let mut polynomial = [0.0; 4];
-    for place in (0..count).rev() {
+    for index in (0..count).rev() {
         // polynomial · (s − node) + difference
         for power in (1..4).rev() {
-            polynomial[power] = polynomial[power - 1] - nodes[place] * polynomial[power];
+            polynomial[power] = polynomial[power - 1] - nodes[index] * polynomial[power];
         }
-        polynomial[0] = differences[place] - nodes[place] * polynomial[0];
+        polynomial[0] = differences[index] - nodes[index] * polynomial[0];
     }
     polynomial
 }

@@ -44,8 +44,8 @@ impl Zone {
 /// from the edge goes around with it (M. I. Shamos, Computational Geometry, Yale 1978: rotating calipers).
 fn narrowest(hull: &[[f64; 2]]) -> f64 {
     let count = hull.len();
-    let distance = |edge: usize, place: usize| {
-        let (a, b, point) = (hull[edge], hull[(edge + 1) % count], hull[place % count]);
+    let distance = |edge: usize, index: usize| {
+        let (a, b, point) = (hull[edge], hull[(edge + 1) % count], hull[index % count]);
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         (x * (point[1] - a[1]) - y * (point[0] - a[0])).abs() / (x * x + y * y).sqrt()
     };
@@ -63,7 +63,7 @@ fn narrowest(hull: &[[f64; 2]]) -> f64 {
     // right.
     loop {
         let edge = (0..count).fold(0, |best, edge| if widths[edge] < widths[best] { edge } else { best });
-        let width = (0..count).map(|place| distance(edge, place)).fold(0.0, f64::max);
+        let width = (0..count).map(|index| distance(edge, index)).fold(0.0, f64::max);
         // NaN ends, too.
         if width.partial_cmp(&widths[edge]) != Some(std::cmp::Ordering::Greater) {
             return width;
@@ -103,13 +103,13 @@ mod tests {
     #[test]
     fn a_tilted_box_is_as_wide_as_its_short_side() {
         let mut zone = Zone::default();
-        for place in 0..1000 {
-            let (along, across) = (0.01 * f64::from(place), 0.2 * f64::from(place % 7) / 6.0);
+        for index in 0..1000 {
+            let (along, across) = (0.01 * f64::from(index), 0.2 * f64::from(index % 7) / 6.0);
             zone.add([0.8 * along - 0.6 * across, 0.6 * along + 0.8 * across]);
         }
         assert!((zone.width() - 0.2).abs() < 1e-9, "{}", zone.width());
         let mut line = Zone::default();
-        (0..200).for_each(|place| line.add([f64::from(place), 2.0 * f64::from(place)]));
+        (0..200).for_each(|index| line.add([f64::from(index), 2.0 * f64::from(index)]));
         assert!(line.width().abs() < 1e-12 && Zone::default().width().is_nan());
     }
 
@@ -118,8 +118,8 @@ mod tests {
     fn a_round_path_costs_no_hull_a_point() {
         let mut zone = Zone::default();
         let begun = std::time::Instant::now();
-        for place in -100_000..=100_000 {
-            let x = 1e-5 * f64::from(place);
+        for index in -100_000..=100_000 {
+            let x = 1e-5 * f64::from(index);
             zone.add([x, 0.3 * x * x]);
         }
         assert!((zone.width() - 0.3).abs() < 1e-12, "{}", zone.width());

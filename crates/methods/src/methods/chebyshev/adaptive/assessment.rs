@@ -35,13 +35,13 @@ impl Adaptation<'_> {
         let step = self.every.max(reached.div_ceil(AT_NODES));
         let rows: Vec<usize> = (0..reached).rev().step_by(step).collect();
         let goal = &self.goal;
-        let look = |place: usize, composed: &Row, _: &mut Previous| {
-            let own = &own[rows[place] * own_stride..];
+        let look = |index: usize, composed: &Row, _: &mut Previous| {
+            let own = &own[rows[index] * own_stride..];
             let (expected, found) = (composed.evaluate_motion(nodes, own), composed.predict(nodes));
             let of_node = |node: usize| {
                 let of_output = |(expected, found): (&[f64], &[f64])| expected[node] - found[node];
                 let outputs = expected.chunks_exact(nodes.len()).zip(found.chunks_exact(nodes.len()));
-                goal.share(rows[place], outputs.map(of_output))
+                goal.share(rows[index], outputs.map(of_output))
             };
             (0..nodes.len()).map(of_node).collect::<Vec<f64>>()
         };
@@ -60,10 +60,10 @@ impl Adaptation<'_> {
         sub_box.estimates = None;
         let rows = self.looked_at(sub_box);
         let glance = self.glance(sub_box, &rows)?;
-        let mut suspects: Vec<usize> = (0..rows.len()).filter(|&place| is_missed(glance[place])).collect();
+        let mut suspects: Vec<usize> = (0..rows.len()).filter(|&index| is_missed(glance[index])).collect();
         suspects.sort_by(|&a, &b| glance[b].total_cmp(&glance[a]).then(a.cmp(&b)));
         sub_box.error = glance.iter().filter(|error| **error <= 1.0).fold(0.0, |most, error| error.max(most));
-        let mut suspects: &[usize] = &suspects.into_iter().map(|place| rows[place]).collect::<Vec<usize>>();
+        let mut suspects: &[usize] = &suspects.into_iter().map(|index| rows[index]).collect::<Vec<usize>>();
         // The worst alone at first: it tells most often.
         let mut together = 1;
         while !suspects.is_empty() && !is_missed(sub_box.error) {
@@ -89,9 +89,9 @@ impl Adaptation<'_> {
     fn glance(&mut self, sub_box: &SubBox, rows: &[usize]) -> Result<Vec<f64>, EnsembleError> {
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let goal = &self.goal;
-        let look = |place: usize, row: &Row, _: &mut Previous| {
-            let errors = row.errors_at_samples((&sub_box.points, &sub_box.direct), rows[place]);
-            goal.share(rows[place], errors.iter().map(|error| SAFETY_OF_SURROGATE * error))
+        let look = |index: usize, row: &Row, _: &mut Previous| {
+            let errors = row.errors_at_samples((&sub_box.points, &sub_box.direct), rows[index]);
+            goal.share(rows[index], errors.iter().map(|error| SAFETY_OF_SURROGATE * error))
         };
         rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, (false, BLOCK), look)
     }
@@ -114,8 +114,8 @@ impl Adaptation<'_> {
             }),
         };
         let keeps = self.kept.is_some() && detail != Detail::Errors;
-        let look = |place: usize, row: &Row, previous: &mut Previous| {
-            let found = estimator.estimate(row, rows[place], previous);
+        let look = |index: usize, row: &Row, previous: &mut Previous| {
+            let found = estimator.estimate(row, rows[index], previous);
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };

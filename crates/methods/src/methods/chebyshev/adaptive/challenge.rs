@@ -57,9 +57,9 @@ impl Adaptation<'_> {
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let (search, goal) = (&self.search, &self.goal);
         // Of each output how often its range is what is allowed, and where its ends are.
-        let look = |place: usize, row: &Row, previous: &mut Previous| {
+        let look = |index: usize, row: &Row, previous: &mut Previous| {
             let found = row.range(search, previous).extents.into_iter().zip(&goal.outputs);
-            let counting = found.filter(|(_, goal)| rows[place] < goal.rows);
+            let counting = found.filter(|(_, goal)| rows[index] < goal.rows);
             counting.map(|(found, goal)| (found.range.width() / goal.allowed, found.places)).collect::<Vec<_>>()
         };
         // The rows are no neighbours.

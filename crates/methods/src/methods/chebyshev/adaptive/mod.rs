@@ -220,14 +220,14 @@ impl<'r> Adaptation<'r> {
     /// allowed.
     fn is_contradicted(&self, boxes: &[SubBox]) -> bool {
         let outputs = self.ensemble.outputs();
-        let of = |sub_box: &SubBox, place: usize| {
-            let known = sub_box.estimates.as_ref().and_then(|(known, _)| known.get(place));
+        let of = |sub_box: &SubBox, index: usize| {
+            let known = sub_box.estimates.as_ref().and_then(|(known, _)| known.get(index));
             known.map_or(Range::UNKNOWN, |known| known.range)
         };
-        let beyond = |place: usize| {
-            let ranges = boxes.iter().map(|sub_box| (of(sub_box, place), 0.0));
+        let beyond = |index: usize| {
+            let ranges = boxes.iter().map(|sub_box| (of(sub_box, index), 0.0));
             let (range, _) = ranges.fold((EMPTY, 0.0), union);
-            SAFETY_OF_SURROGATE * range.misses(self.ensemble.seen(place / outputs, place % outputs))
+            SAFETY_OF_SURROGATE * range.misses(self.ensemble.seen(index / outputs, index % outputs))
         };
         (0..self.goal.rows())
             .any(|row| self.goal.share(row, (0..outputs).map(|output| beyond(row * outputs + output))) > 1.0)

@@ -146,13 +146,13 @@ impl Row<'_> {
     fn moved(&self, range_search: &RangeSearch, found: &[Extent], moves: &[Moves]) -> Vec<f64> {
         let one_by_one = moves.len() <= MOST_MOVED;
         let rounds = if one_by_one { moves.len() } else { 2 };
-        let weight = |round: usize, place: usize| match (one_by_one, place == round) {
+        let weight = |round: usize, index: usize| match (one_by_one, index == round) {
             (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
-            (false, _) if round == 1 && place % 2 == 1 => -1.0,
+            (false, _) if round == 1 && index % 2 == 1 => -1.0,
             (false, _) => 1.0,
         };
         let way = |round: usize, sign: f64| {
-            Moves::sum(moves.iter().enumerate().map(|(place, moves)| (moves, sign * weight(round, place))))
+            Moves::sum(moves.iter().enumerate().map(|(index, moves)| (moves, sign * weight(round, index))))
         };
         let ways: Vec<Moves> = (0..rounds).flat_map(|round| [1.0, -1.0].map(|sign| way(round, sign))).collect();
         let mut moved = vec![0.0; found.len()];

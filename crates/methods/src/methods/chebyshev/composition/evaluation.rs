@@ -121,9 +121,9 @@ impl Row<'_> {
         let mut found = vec![0.0; outputs.len() * ways_count * count];
         for (part, some) in points.chunks(together).enumerate() {
             let values = self.evaluate_moved(some, ways);
-            for (place, output) in outputs.iter().enumerate() {
+            for (index, output) in outputs.iter().enumerate() {
                 for way in 0..ways_count {
-                    let into = &mut found[(place * ways_count + way) * count + part * together..][..some.len()];
+                    let into = &mut found[(index * ways_count + way) * count + part * together..][..some.len()];
                     into.copy_from_slice(&values[(output * ways_count + way) * some.len()..][..some.len()]);
                 }
             }
@@ -138,14 +138,14 @@ impl Row<'_> {
         let mut points: Vec<Vec<f64>> = Vec::new();
         // Of each point: whose, and which end.
         let mut wanted: Vec<Vec<(usize, usize)>> = Vec::new();
-        for (place, extent) in found.iter().enumerate() {
+        for (index, extent) in found.iter().enumerate() {
             for (end, at) in extent.places.iter().enumerate() {
                 let number = *known.entry(at.iter().map(|xi| xi.to_bits()).collect()).or_insert_with(|| {
                     points.push(at.clone());
                     wanted.push(Vec::new());
                     points.len() - 1
                 });
-                wanted[number].push((place, end));
+                wanted[number].push((index, end));
             }
         }
         let together = (AT_ONCE / (self.ensemble.outputs() * ways.len()).max(1)).max(LEAST_AT_ONCE);
@@ -153,10 +153,10 @@ impl Row<'_> {
         for (points, wanted) in points.chunks(together).zip(wanted.chunks(together)) {
             let values = self.evaluate_moved(points, ways);
             for (point, wanted) in wanted.iter().enumerate() {
-                for &(place, end) in wanted {
+                for &(index, end) in wanted {
                     for way in 0..ways.len() {
-                        ends[place * ways.len() + way][end] =
-                            values[(outputs[place] * ways.len() + way) * points.len() + point];
+                        ends[index * ways.len() + way][end] =
+                            values[(outputs[index] * ways.len() + way) * points.len() + point];
                     }
                 }
             }
@@ -166,14 +166,14 @@ impl Row<'_> {
 
     /// Moves ends of the ranges of outputs that jump to the brinks, with the motion moved.
     pub(super) fn to_brinks(&self, outputs: &[usize], found: &mut [Extent], way: &Moves) {
-        let jumping: Vec<usize> = (0..outputs.len()).filter(|&place| self.ensemble.jumps(outputs[place])).collect();
+        let jumping: Vec<usize> = (0..outputs.len()).filter(|&index| self.ensemble.jumps(outputs[index])).collect();
         if jumping.is_empty() {
             return;
         }
-        let wanted: Vec<usize> = jumping.iter().map(|&place| outputs[place]).collect();
-        let mut extents: Vec<Extent> = jumping.iter().map(|&place| found[place].clone()).collect();
+        let wanted: Vec<usize> = jumping.iter().map(|&index| outputs[index]).collect();
+        let mut extents: Vec<Extent> = jumping.iter().map(|&index| found[index].clone()).collect();
         to_brinks(&mut extents, |points| self.evaluate_some(&wanted, points, std::slice::from_ref(way)));
-        jumping.into_iter().zip(extents).for_each(|(place, extent)| found[place] = extent);
+        jumping.into_iter().zip(extents).for_each(|(index, extent)| found[index] = extent);
     }
 
     /// The polynomials' values: 2n lines of points.

@@ -83,9 +83,9 @@ impl<'a> Composer<'a> {
         let look_at_block = |(block, times): (usize, &[f64])| {
             let (mut work, mut previous) = (SurrogateWork::default(), Previous::default());
             let first = block * together;
-            let at = |(place, &time): (usize, &f64)| {
+            let at = |(index, &time): (usize, &f64)| {
                 self.ensemble.go_on()?;
-                let row = first + place;
+                let row = first + index;
                 let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..stride]);
                 let velocities = velocities || closure.needs_velocities();
                 let at = Row::new(
@@ -395,6 +395,6 @@ impl<'r> Row<'r> {
                 |sign: f64| (0..values.len()).fold(0, |a, b| if sign * values[b] > sign * values[a] { b } else { a });
             [best(-1.0), best(1.0)]
         };
-        values.chunks_exact(places.len()).flat_map(of_output).map(|place| places[place].clone()).collect()
+        values.chunks_exact(places.len()).flat_map(of_output).map(|index| places[index].clone()).collect()
     }
 }

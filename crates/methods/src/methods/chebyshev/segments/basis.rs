@@ -72,8 +72,8 @@ impl Powers {
         let degree = self.0.iter().flatten().copied().max().unwrap_or(0);
         let chebyshev = |&xi: &f64| {
             let mut values = vec![1.0, xi];
-            for place in 2..=usize::from(degree) {
-                values.push(2.0 * xi * values[place - 1] - values[place - 2]);
+            for index in 2..=usize::from(degree) {
+                values.push(2.0 * xi * values[index - 1] - values[index - 2]);
             }
             values
         };
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn roots_behind_a_surface_are_terms() {
         let f = |x: f64| 1.0 + 0.3 * x + if x > 0.2 { (x - 0.2).sqrt() * (0.5 - 0.1 * x) } else { 0.0 };
-        let margins: Vec<Vec<f64>> = (0..20).map(|place| vec![f64::from(place) / 10.0 - 0.95]).collect();
+        let margins: Vec<Vec<f64>> = (0..20).map(|index| vec![f64::from(index) / 10.0 - 0.95]).collect();
         let level = Level::through(&margins.iter().map(|xi| (&xi[..], 0.2 - xi[0])).collect::<Vec<_>>()).unwrap();
         let inside: Vec<Vec<f64>> = margins.into_iter().filter(|xi| xi[0] > 0.2).collect();
         let basis = Basis::Fitted(Fitted::new(2, &[level], 1));

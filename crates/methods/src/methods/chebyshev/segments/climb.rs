@@ -165,15 +165,15 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
     };
     let around = row.piece.surrogate.points(going.iter().flat_map(beside).collect());
     let at: Vec<(&Point, usize, f64)> =
-        around.iter().enumerate().map(|(place, point)| (point, going[place / k].segment, row.time)).collect();
+        around.iter().enumerate().map(|(index, point)| (point, going[index / k].segment, row.time)).collect();
     let values = row.outputs_on(&at);
     let mut moves = Vec::with_capacity(going.len());
-    for (place, climb) in going.iter().enumerate() {
-        let own = &around[place * k..][..k];
+    for (index, climb) in going.iter().enumerate() {
+        let own = &around[index * k..][..k];
         let slopes = |of: &dyn Fn(usize) -> f64, here: f64| -> Vec<f64> {
             (0..k).map(|axis| (of(axis) - here) / inward(climb.point.xi[axis])).collect()
         };
-        let value = |axis: usize| climb.sign * values[climb.output * at.len() + place * k + axis];
+        let value = |axis: usize| climb.sign * values[climb.output * at.len() + index * k + axis];
         let ascent = slopes(&value, climb.sign * climb.value);
         let share = climb.share(&climb.point, row.time);
         let slopes = slopes(&|axis| climb.share(&own[axis], row.time), share);
@@ -215,8 +215,8 @@ fn step(row: &SegmentRow, climbs: &mut [Climb]) -> bool {
         points.iter().zip(&going).map(|(point, climb)| (point, climb.segment, row.time)).collect();
     let values = row.outputs_on(&at);
     let count = going.len();
-    for (place, (climb, point)) in going.iter_mut().zip(&points).enumerate() {
-        let value = values[climb.output * count + place];
+    for (index, (climb, point)) in going.iter_mut().zip(&points).enumerate() {
+        let value = values[climb.output * count + index];
         let in_segment = (-2.0 * MISSED..=1.0 + 2.0 * MISSED).contains(&climb.share(point, row.time));
         let inside = in_segment && point.is_inside();
         let rises = inside && climb.sign * value > climb.sign * climb.value;

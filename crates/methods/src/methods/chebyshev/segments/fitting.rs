@@ -126,8 +126,8 @@ impl Fitting<'_> {
         let errors = SegmentErrors::of_samples(&motions, left_out);
         let points = self.points;
         let held_out = &self.direct.words[part.word];
-        let is_inside = |place: &usize| {
-            surrogate.ends.iter().all(|end| end.offset == 0.0 || end.margin(&points[held_out.samples[*place]]) >= 0.0)
+        let is_inside = |index: &usize| {
+            surrogate.ends.iter().all(|end| end.offset == 0.0 || end.margin(&points[held_out.samples[*index]]) >= 0.0)
         };
         let held_out = picked(held_out, &(0..held_out.samples.len()).filter(is_inside).collect::<Vec<_>>());
         let at: Vec<Vec<f64>> = held_out.samples.iter().map(|&sample| points[sample].clone()).collect();
@@ -139,10 +139,10 @@ impl Fitting<'_> {
 /// Motions of some of the samples.
 fn picked(motions: &SegmentMotions, places: &[usize]) -> SegmentMotions {
     let count = motions.samples.len();
-    let pick = |line: &[f64]| places.iter().map(|&place| line[place]).collect::<Vec<f64>>();
+    let pick = |line: &[f64]| places.iter().map(|&index| line[index]).collect::<Vec<f64>>();
     let of_node = |node: &Vec<f64>| node.chunks_exact(count.max(1)).flat_map(pick).collect();
     SegmentMotions {
-        samples: places.iter().map(|&place| motions.samples[place]).collect(),
+        samples: places.iter().map(|&index| motions.samples[index]).collect(),
         steps: motions.steps.clone(),
         times: motions.times.iter().map(|times| pick(times)).collect(),
         nodes: motions.nodes.iter().map(|nodes| nodes.iter().map(of_node).collect()).collect(),

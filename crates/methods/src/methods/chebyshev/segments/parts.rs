@@ -46,7 +46,7 @@ impl Samples {
         let ends = layers.ends(levels);
         let own = self.motions.words[part.word].samples.iter().enumerate();
         own.filter(|(_, sample)| ends.iter().all(|end| end.margin(&self.xi[**sample]) >= 0.0))
-            .map(|(place, _)| place)
+            .map(|(index, _)| index)
             .collect()
     }
 }

@@ -44,9 +44,9 @@ impl SegmentRow<'_> {
         let surrogate = &self.piece.surrogate;
         let (count, lines) = (points.len(), surrogate.lines());
         let mut motion = vec![0.0; lines * count];
-        for (place, (point, segment, time)) in points.iter().enumerate() {
+        for (index, (point, segment, time)) in points.iter().enumerate() {
             let values = surrogate.motion(point, *segment, *time);
-            values.enumerate().for_each(|(line, value)| motion[line * count + place] = value);
+            values.enumerate().for_each(|(line, value)| motion[line * count + index] = value);
         }
         self.closed(points.iter().map(|(point, ..)| point.xi.as_slice()), count, motion)
     }
@@ -60,9 +60,9 @@ impl SegmentRow<'_> {
     fn closed<'x>(&self, xi: impl Iterator<Item = &'x [f64]>, count: usize, motion: Vec<f64>) -> Vec<f64> {
         let domain = self.ensemble.domain();
         let mut parameters = vec![0.0; domain.dimension() * count];
-        for (place, xi) in xi.enumerate() {
+        for (index, xi) in xi.enumerate() {
             for (parameter, &xi) in xi.iter().enumerate() {
-                parameters[parameter * count + place] = domain.value(parameter, xi);
+                parameters[parameter * count + index] = domain.value(parameter, xi);
             }
         }
         self.closure.outputs(self.time, count, parameters, motion)
@@ -87,8 +87,8 @@ impl SegmentRow<'_> {
         let mut moved: Vec<Vec<f64>> = vec![vec![0.0; count]; extents.len()];
         let mut add = |ways: [Vec<f64>; 2]| {
             for (output, moved) in moved.iter_mut().enumerate() {
-                for (place, moved) in moved.iter_mut().enumerate() {
-                    let value = |way: &Vec<f64>| way[output * count + place] - here[output * count + place];
+                for (index, moved) in moved.iter_mut().enumerate() {
+                    let value = |way: &Vec<f64>| way[output * count + index] - here[output * count + index];
                     *moved += largest(ways.iter().map(value));
                 }
             }
@@ -97,11 +97,11 @@ impl SegmentRow<'_> {
         for line in self.closure.independent().iter().flat_map(|&coordinate| [coordinate, n + coordinate]) {
             add([-1.0, 1.0].map(|sign| {
                 let mut motion = vec![0.0; 2 * n * count];
-                for (place, point) in points.iter().enumerate() {
+                for (index, point) in points.iter().enumerate() {
                     let segment = point.segment(self.time);
                     for (number, value) in surrogate.motion(point, segment, self.time).enumerate() {
                         let by = if number == line { sign * errors.lines[segment][line] } else { 0.0 };
-                        motion[number * count + place] = value + by;
+                        motion[number * count + index] = value + by;
                     }
                 }
                 self.closed(points.iter().map(|point| point.xi.as_slice()), count, motion)
@@ -168,8 +168,8 @@ impl Predicted for SensedRow<'_> {
             let at = piece.surrogate.points(own.iter().map(|&point| points[point].clone()).collect());
             let found = self.row.in_part(piece).outputs_at(&at);
             for (line, output) in outputs.iter().enumerate() {
-                for (place, point) in own.iter().enumerate() {
-                    values[line * points.len() + point] = found[output * own.len() + place];
+                for (index, point) in own.iter().enumerate() {
+                    values[line * points.len() + point] = found[output * own.len() + index];
                 }
             }
         }

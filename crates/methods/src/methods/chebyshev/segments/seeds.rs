@@ -69,7 +69,7 @@ impl Lattice {
             };
             let shares: Vec<f64> = last.iter().map(next).collect();
             let on_edge = |(&(a, b), share): (&(usize, usize), &f64)| {
-                let [from, to] = [a, b].map(|place| &self.points[place].xi);
+                let [from, to] = [a, b].map(|index| &self.points[index].xi);
                 from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect()
             };
             found = surrogate.points(edges.iter().zip(&shares).map(on_edge).collect());
