@@ -26,7 +26,7 @@ use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
 use super::superelement::Superelement;
 use super::superelement_motion::{ByRow, Deformation};
-use crate::elements::effects::matrices::{Matrices, OF_NODE};
+use crate::elements::effects::superelement::matrices::{Matrices, OF_NODE};
 use crate::model::ReducedInertia;
 use crate::multibody::{BuildError, Context, DEGREES_OF_FREEDOM, EULER, Matrix, RotationCoordinates, Vector};
 

@@ -13,7 +13,7 @@ use super::applied_forces::AppliedForces;
 use super::mechanism::{Mechanism, Owner};
 use super::superelement::Superelement;
 use super::system::{ConditionOf, ConstraintInfo, ResidualUnit, StartCondition};
-use crate::elements::effects::matrices::Matrices;
+use crate::elements::effects::superelement::matrices::Matrices;
 use crate::model::{Description, Effect, PointRef, ReducedInertia};
 use crate::multibody::{Body, BuildError, Context, Matrix, Pair, RelativeDisplacement, Vector};
 

@@ -7,7 +7,7 @@ use super::numbers::{State, output, time_derivative};
 use super::power::{potential_rate, value};
 use super::spatial;
 use crate::assemble::System;
-use crate::elements::effects::matrices::Matrices;
+use crate::elements::effects::superelement::matrices::Matrices;
 use crate::grammar::Components;
 use crate::model::{Gravity, Rotation, Superelement};
 

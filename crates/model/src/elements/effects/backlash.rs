@@ -14,7 +14,7 @@
 use mbint_derive::Element;
 use symdiff::{Binary, Formula};
 
-use super::positive_part::PositivePart;
+use super::laws::positive_part::PositivePart;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{JointCoordinate, Sensor, OnJoint, TimeOrder, Rotating};

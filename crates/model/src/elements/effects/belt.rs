@@ -21,7 +21,7 @@
 use mbint_derive::{Choice, Element};
 use symdiff::{Binary, Formula};
 
-use super::positive_part::{PositivePart, clipped};
+use super::laws::positive_part::{PositivePart, clipped};
 use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;

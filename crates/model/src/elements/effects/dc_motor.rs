@@ -11,7 +11,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::saturation::saturated;
+use super::laws::saturation::saturated;
 use super::{ForceElement, Forces, StateVariable, TypedSensor, effort};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;

@@ -20,7 +20,7 @@ use std::f64::consts::FRAC_PI_4;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::positive_part::PositivePart;
+use super::laws::positive_part::PositivePart;
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;

@@ -3,45 +3,23 @@
 //! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema,
 //! documentation, its references, its forces, its cost.
 
-mod along_hull;
-mod arc;
-mod beside;
-mod carried;
-mod course;
-mod cylinder;
-mod cylinder_touches;
-mod dry_friction;
-mod facets;
-mod felt;
 mod forces;
-mod goal;
-mod ground;
-mod hull;
-mod impact;
-pub mod matrices;
-mod outline;
-mod polyhedron;
-mod positive_part;
+mod laws;
 mod registry;
-mod rod;
-mod saturation;
-mod solid;
-mod spatial_beam;
-mod touch;
 
 use schemars::JsonSchema;
 use symdiff::Formula;
 
-pub use self::carried::Carried;
-pub(super) use self::course::{Course, Points};
-pub use self::dry_friction::{DryFriction, Friction, FrictionAlong};
+pub(super) use self::contact::course::{Course, Points};
+pub use self::contact::hull::faces_of_hull;
+pub(super) use self::contact::solid::{check_ends, check_lengths};
 pub use self::forces::Forces;
-pub use self::hull::faces_of_hull;
-pub use self::impact::Impact;
-pub use self::impact::{Exponent, RestitutionLaw};
-use self::matrices::Matrices;
+pub use self::laws::dry_friction::{DryFriction, Friction, FrictionAlong};
+pub use self::laws::impact::Impact;
+pub use self::laws::impact::{Exponent, RestitutionLaw};
 use self::registry::effects;
-pub(super) use self::solid::{check_ends, check_lengths};
+pub use self::superelement::carried::Carried;
+use self::superelement::matrices::Matrices;
 use crate::elements::{Glyph, SurfaceAt, Surroundings};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Element, ElementDocs, Node, OnJoint, PointRef, Reader, Sensor, SymbolTable};

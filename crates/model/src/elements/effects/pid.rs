@@ -15,8 +15,8 @@ use std::sync::LazyLock;
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::goal::{check_rate, goal};
-use super::saturation::saturated;
+use super::laws::goal::{check_rate, goal};
+use super::laws::saturation::saturated;
 use super::{ForceElement, Forces, StateVariable, TypedSensor, effort};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;

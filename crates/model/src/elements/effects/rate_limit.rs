@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::Formula;
 
-use super::saturation::saturated;
+use super::laws::saturation::saturated;
 use super::state::{VALUE_AND_CHANGE, value_and_change};
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;

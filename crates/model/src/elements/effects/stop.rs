@@ -9,7 +9,7 @@
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::impact::Push;
+use super::laws::impact::Push;
 use super::{ForceElement, Forces, Impact, TypedSensor, effort};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, Sensor, OnJoint, Reader, SymbolTable};

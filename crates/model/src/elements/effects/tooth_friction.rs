@@ -15,7 +15,7 @@ use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar};
 
-use super::dry_friction::Resistance;
+use super::laws::dry_friction::Resistance;
 use super::{DryFriction, ForceElement, Forces, TypedSensor};
 use crate::elements::meshing::{Flanks, Meshing, Rim};
 use crate::grammar::mentions::NameKind;

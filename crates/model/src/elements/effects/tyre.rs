@@ -20,7 +20,7 @@
 use mbint_derive::Element;
 use symdiff::{Binary, Formula, Scalar};
 
-use super::saturation::saturated;
+use super::laws::saturation::saturated;
 use super::{ForceElement, Forces, Scope, TypedSensor};
 use crate::elements::{Form, Glyph, Shape, SurfaceAt, Surroundings};
 use crate::grammar::quantity::Dimension;

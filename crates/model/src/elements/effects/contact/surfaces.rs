@@ -2,7 +2,7 @@
 
 use symdiff::{Binary, Formula};
 
-use super::{Contact, Course};
+use crate::elements::effects::{Contact, Course};
 use crate::elements::{Form, Shape, Surroundings};
 use crate::grammar::OfPlace;
 
@@ -14,7 +14,7 @@ fn number(value: f64) -> Formula {
 }
 
 /// Of the first body, in the first point's frame.
-pub(super) fn of_first(contact: &Contact, surroundings: Surroundings) -> Option<Form<Formula>> {
+pub fn of_first(contact: &Contact, surroundings: Surroundings) -> Option<Form<Formula>> {
     let radius = contact.rounding.clone();
     let axis = contact.axis.as_ref().filter(|_| surroundings.spatial).map(|axis| axis.0.clone());
     let outline = |course: &Course, is_closed: bool| Form::Outline {
@@ -45,7 +45,7 @@ pub(super) fn of_first(contact: &Contact, surroundings: Surroundings) -> Option<
 }
 
 /// Of the second body, in the second point's frame.
-pub(super) fn of_second(contact: &Contact, surroundings: Surroundings) -> Vec<Shape> {
+pub fn of_second(contact: &Contact, surroundings: Surroundings) -> Vec<Shape> {
     let radius = contact.radius.clone();
     let form = if let Some(ends) = &contact.line {
         two(ends).map(|ends| Form::Capsule { ends, radius })

@@ -11,7 +11,7 @@
 
 use symdiff::Scalar;
 
-use super::Forces;
+use crate::elements::effects::Forces;
 use super::solid::Gap;
 use crate::grammar::OfPlace;
 use crate::multibody::{BuildError, OwnFunction, Pair, Vector};
@@ -21,7 +21,7 @@ const STEPS: usize = 3;
 
 /// A height over a point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ground<'g> {
+pub struct Ground<'g> {
     height: OwnFunction<'g>,
     slope: OwnFunction<'g>,
     bend: OwnFunction<'g>,

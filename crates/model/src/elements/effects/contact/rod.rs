@@ -23,7 +23,7 @@ const PARALLEL: f64 = 1e-4;
 
 /// A line in the second frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rod<'g> {
+pub struct Rod<'g> {
     start: Vector<'g>,
     /// v
     tangent: Vector<'g>,
@@ -122,7 +122,7 @@ impl<'g> Rod<'g> {
 const MOST_CORNERS: usize = 256;
 
 /// Reports more corners than a contact has.
-pub(super) fn check_corners<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, corners: &Points) {
+pub fn check_corners<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, corners: &Points) {
     if corners.len() > MOST_CORNERS {
         let message = format!("a contact has at most {MOST_CORNERS} `corners`, not {}", corners.len());
         let help = "points inside of their hull touch nothing: leave them out".to_owned();
@@ -155,7 +155,7 @@ const TOUCHED: [(&str, &[&str], &str); 4] = [
 ];
 
 /// Reports shapes of the second body that exclude each other, that lack a radius, and surfaces that they do not touch.
-pub(super) fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, all: &[&'static str]) {
+pub fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, all: &[&'static str]) {
     let shapes = ["corners", "line", "cylinder", "box", "polyhedron"].into_iter();
     let shapes: Vec<&str> = shapes.filter(|key| fields.get(key).is_some()).collect();
     if let [first, second, ..] = shapes.as_slice() {

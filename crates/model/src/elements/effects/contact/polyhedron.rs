@@ -33,7 +33,7 @@ const EDGES: usize = 12;
 
 /// A polyhedron of the second body.
 #[derive(Clone, Debug)]
-pub(super) struct Polyhedron<'g> {
+pub struct Polyhedron<'g> {
     body: Body<'g>,
     facets: Facets<'g>,
     /// r, m
@@ -129,7 +129,7 @@ impl<'g> Polyhedron<'g> {
 }
 
 /// Reports two polyhedra of too many edges; of a box there are no points.
-pub(super) fn check_edges<S: SymbolTable>(
+pub fn check_edges<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     at: Span,
     first: Option<&Points>,

@@ -5,7 +5,7 @@ use std::ops::Deref;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar, math};
 
-use super::Forces;
+use crate::elements::effects::Forces;
 use crate::elements::form::Bend;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Vector};
@@ -73,7 +73,7 @@ struct Stop {
 
 /// The same as expressions.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner<'g> {
+pub struct Corner<'g> {
     /// m
     pub place: Vector<'g>,
     /// m, negative where the arc turns right
@@ -82,7 +82,7 @@ pub(super) struct Corner<'g> {
 
 impl Course {
     /// Its points as expressions.
-    pub(super) fn corners<'g>(&self, forces: &dyn Forces<'g>) -> Result<Vec<Corner<'g>>, BuildError> {
+    pub fn corners<'g>(&self, forces: &dyn Forces<'g>) -> Result<Vec<Corner<'g>>, BuildError> {
         let corner = |stop: &Stop| {
             let radius = stop.radius.as_ref().map(|radius| forces.prescribed(radius)).transpose()?;
             Ok(Corner { place: forces.prescribed_vector(&stop.place)?, radius })
@@ -192,6 +192,6 @@ impl Value for Course {
 }
 
 /// Formulas of points as vectors.
-pub(super) fn placed<'g>(forces: &dyn Forces<'g>, points: &Points) -> Result<Vec<Vector<'g>>, BuildError> {
+pub fn placed<'g>(forces: &dyn Forces<'g>, points: &Points) -> Result<Vec<Vector<'g>>, BuildError> {
     points.iter().map(|point| forces.prescribed_vector(point)).collect()
 }

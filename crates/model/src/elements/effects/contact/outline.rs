@@ -13,12 +13,12 @@
 
 use symdiff::Scalar;
 
-use super::Forces;
+use crate::elements::effects::Forces;
 use super::arc::Arc;
 use super::course::Corner;
-use super::dry_friction::Resistance;
+use crate::elements::effects::laws::dry_friction::Resistance;
 use super::felt::Felt;
-use super::impact::Push;
+use crate::elements::effects::laws::impact::Push;
 use crate::multibody::{Pair, Vector};
 
 /// Turns of less than this at a corner are none, over the outline's reach.
@@ -26,7 +26,7 @@ const SMOOTH: f64 = 1e-6;
 
 /// Edges in the x and y of a frame.
 #[derive(Clone, Debug)]
-pub(super) struct Outline<'g> {
+pub struct Outline<'g> {
     edges: Vec<Edge<'g>>,
     /// Whether the last edge ends where the first begins.
     closed: bool,

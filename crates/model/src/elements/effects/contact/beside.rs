@@ -21,7 +21,7 @@ const NONE: f64 = 1e-30;
 
 /// t: how far along the line, from `start` along the unit vector `along` of the block's frame. `half` are the block's
 /// half-sizes, `reach` is ρ + r.
-pub(super) fn nearest_to_block<'g>(
+pub fn nearest_to_block<'g>(
     (start, along, length): Segment<'g>,
     half: [Option<Scalar<'g>>; 3],
     reach: Scalar<'g>,

@@ -39,7 +39,7 @@ const NONE: f64 = 1e-30;
 
 /// A cylinder of the second body.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cylinder<'g> {
+pub struct Cylinder<'g> {
     pub axis: Rod<'g>,
     /// r, m
     pub radius: Scalar<'g>,

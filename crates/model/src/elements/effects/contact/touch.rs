@@ -6,12 +6,12 @@ use std::rc::Rc;
 
 use symdiff::Scalar;
 
-use super::Forces;
-use super::dry_friction::Resistance;
+use crate::elements::effects::Forces;
+use crate::elements::effects::laws::dry_friction::Resistance;
 use super::felt::Felt;
 use super::ground::Ground;
 use super::hull::Hull;
-use super::impact::Push;
+use crate::elements::effects::laws::impact::Push;
 use super::outline::Outline;
 use super::rod::Rod;
 use super::solid::{Gap, Solid};
@@ -21,7 +21,7 @@ use crate::multibody::{Pair, Vector};
 const CENTRED: f64 = 1e-4;
 
 /// What the first body's surface is made of.
-pub(super) enum Surface<'g> {
+pub enum Surface<'g> {
     Whole(Shape<'g>),
     Edges(Outline<'g>),
 }
@@ -54,7 +54,7 @@ impl<'g> Surface<'g> {
 
 /// The first body's surface, where it is one.
 #[derive(Clone, Debug)]
-pub(super) enum Shape<'g> {
+pub enum Shape<'g> {
     /// A unit normal, in the first frame.
     Plane(Vector<'g>),
     /// R, m
@@ -71,7 +71,7 @@ pub(super) enum Shape<'g> {
 
 /// What two surfaces do to one another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Law<'g> {
+pub struct Law<'g> {
     pub impact: Push<'g>,
     pub friction: Option<Resistance<'g>>,
     /// A unit vector in the first frame and the coefficient of friction along it.
@@ -129,7 +129,7 @@ impl<'g> Law<'g> {
 
 /// Where two surfaces touch.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Touch<'g> {
+pub struct Touch<'g> {
     pub gap: Gap<'g>,
     pub place: Vector<'g>,
     /// The first surface's velocity beyond its body's.

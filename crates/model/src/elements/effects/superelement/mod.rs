@@ -16,10 +16,14 @@
 //! constant, so tension and spin do not stiffen the body: what bends far, or spins fast, is divided into several, or is
 //! a `beam`.
 
+pub(super) mod carried;
+pub mod matrices;
+
+
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::matrices::{Matrices, OF_NODE};
+use self::matrices::{Matrices, OF_NODE};
 use super::{ForceElement, Forces, ReducedInertia, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;

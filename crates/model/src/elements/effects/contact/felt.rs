@@ -2,12 +2,12 @@
 
 use symdiff::Scalar;
 
-use super::{Forces, TypedSensor};
+use crate::elements::effects::{Forces, TypedSensor};
 use crate::grammar::Sensor;
 use crate::grammar::quantity::Dimension;
 
 /// What two surfaces measure.
-pub(super) const SENSORS: &[TypedSensor] = &[
+pub const SENSORS: &[TypedSensor] = &[
     (Sensor::GAP, Dimension::LENGTH),
     (Sensor::RATE, Dimension::VELOCITY),
     (Sensor::FORCE, Dimension::FORCE),
@@ -16,7 +16,7 @@ pub(super) const SENSORS: &[TypedSensor] = &[
 
 /// Sensors of two surfaces.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Felt<'g> {
+pub struct Felt<'g> {
     /// m
     pub gap: Scalar<'g>,
     /// m/s

@@ -51,7 +51,7 @@ fn unit(a: Point) -> Point {
 
 /// A plane that all points are below.
 #[derive(Clone, Debug)]
-pub(super) struct Face {
+pub struct Face {
     pub normal: Point,
     pub height: f64,
     /// Points in it.
@@ -60,7 +60,7 @@ pub(super) struct Face {
 
 /// The line between two corners.
 #[derive(Clone, Debug)]
-pub(super) struct Edge {
+pub struct Edge {
     pub ends: [usize; 2],
     /// From the first end.
     pub along: Point,
@@ -79,7 +79,7 @@ impl Edge {
 
 /// A convex hull.
 #[derive(Clone, Debug)]
-pub(super) struct Hull {
+pub struct Hull {
     pub points: Vec<Point>,
     pub faces: Vec<Face>,
     pub edges: Vec<Edge>,
@@ -242,7 +242,7 @@ pub fn faces_of_hull(points: Vec<[f64; 3]>) -> Option<Vec<Vec<[f64; 3]>>> {
     Some(hull.faces.iter().enumerate().filter_map(corners).collect())
 }
 
-pub(super) fn constant(g: &Builder, point: Point) -> Vector<'_> {
+pub fn constant(g: &Builder, point: Point) -> Vector<'_> {
     point.map(|part| g.number(part)).into()
 }
 
@@ -261,7 +261,7 @@ fn farthest(points: &[Point], some: &[usize]) -> Option<[usize; 2]> {
 }
 
 /// Reports points that make no hull, and those that are not the same for all samples.
-pub(super) fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, (key, points): (&str, &Points)) {
+pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, (key, points): (&str, &Points)) {
     let at = fields.key_span(key);
     if !reader.model.is_spatial() {
         let help = if key == "hull" { "in the plane it is a `polygon`" } else { "in the plane name its `corners`" };
@@ -303,7 +303,7 @@ fn numbers<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> Option<Ve
 }
 
 /// How many edges the hull of points has; none where they make none.
-pub(super) fn edges<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> usize {
+pub fn edges<S: SymbolTable>(reader: &Reader<'_, S>, points: &Points) -> usize {
     let hull = numbers(reader, points).filter(|points| (4..=MOST).contains(&points.len())).and_then(Hull::of);
     hull.map_or(0, |hull| hull.edges.len())
 }

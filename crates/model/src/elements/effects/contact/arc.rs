@@ -13,7 +13,7 @@ const CENTRED: f64 = 1e-4;
 
 /// An arc in the x and y of a frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Arc<'g> {
+pub struct Arc<'g> {
     ends: [Vector<'g>; 2],
     /// c
     middle: Vector<'g>,

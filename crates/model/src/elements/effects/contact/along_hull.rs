@@ -48,7 +48,7 @@ struct Line<'g> {
 }
 
 /// t: how far along the line from `start` along the unit vector `along`.
-pub(super) fn nearest_to_hull<'g>(hull: &Hull, (start, along, length): Segment<'g>) -> Scalar<'g> {
+pub fn nearest_to_hull<'g>(hull: &Hull, (start, along, length): Segment<'g>) -> Scalar<'g> {
     let zero = length.builder().number(0.0);
     let ends = [(start, zero, along), (start + length * along, length, -along)];
     let line = Line { along, length, ends, slack: ROUNDING * hull.radius() };

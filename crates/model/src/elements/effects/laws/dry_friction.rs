@@ -15,7 +15,7 @@
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::Forces;
+use crate::elements::effects::Forces;
 use crate::grammar::{Checked, Direction, Fields, Reader, Requirement, SymbolTable};
 use crate::multibody::BuildError;
 
@@ -81,14 +81,17 @@ impl Checked for DryFriction {
 
 impl Friction {
     /// The law's numbers.
-    pub(super) fn resistance<'g>(&self, forces: &dyn Forces<'g>) -> Result<Resistance<'g>, BuildError> {
+    pub fn resistance<'g>(
+        &self,
+        forces: &dyn Forces<'g>,
+    ) -> Result<Resistance<'g>, BuildError> {
         Resistance::of(forces, &self.coefficient, &self.speed)
     }
 }
 
 /// The law's numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Resistance<'g> {
+pub struct Resistance<'g> {
     /// μ
     pub coefficient: Scalar<'g>,
     breakaway: Scalar<'g>,

@@ -18,7 +18,7 @@ use crate::multibody::{Pair, Vector};
 
 /// Where two surfaces are to one another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Gap<'g> {
+pub struct Gap<'g> {
     /// How far they are apart, m.
     pub gap: Scalar<'g>,
     /// The direction in which the second is pushed.
@@ -30,11 +30,11 @@ pub(super) struct Gap<'g> {
 }
 
 /// A line: from a point along a unit vector, with a length.
-pub(super) type Segment<'g> = (Vector<'g>, Vector<'g>, Scalar<'g>);
+pub type Segment<'g> = (Vector<'g>, Vector<'g>, Scalar<'g>);
 
 /// A convex body in the first frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Solid<'g> {
+pub enum Solid<'g> {
     /// From a point along a unit vector.
     Capsule { start: Vector<'g>, tangent: Vector<'g>, length: Scalar<'g> },
     /// Half-sizes; one that is not there is in the plane.

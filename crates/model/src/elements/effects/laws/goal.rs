@@ -5,12 +5,12 @@
 
 use symdiff::{Formula, Scalar};
 
-use super::Forces;
+use crate::elements::effects::Forces;
 use crate::grammar::{Context, Fields, Reader, Symbol, SymbolTable, TimeOrder};
 use crate::multibody::BuildError;
 
 /// A target and its rate.
-pub(super) fn goal<'g>(
+pub fn goal<'g>(
     forces: &dyn Forces<'g>,
     target: &Formula,
     rate: Option<&Formula>,
@@ -24,7 +24,7 @@ pub(super) fn goal<'g>(
 }
 
 /// Reports a target of more than t whose rate one of the keys needs and nothing says.
-pub(super) fn check_rate<S: SymbolTable>(
+pub fn check_rate<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     fields: &Fields<'_>,
     target: &Formula,

@@ -18,10 +18,13 @@
 //! *Theory of Matrix Structural Analysis* (1968), ch. 5), and e has b ((φ₁ + φ₂)/2)² + L (φ₂ − φ₁)²/24 after ℓ − L,
 //! with Φ and b as in space. A massless one is an effect; of those with mass (`flexible`) a flexible body is made.
 
+mod spatial;
+
+
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::spatial_beam::{SpatialBeam, bow_of_shear, shear_number};
+use self::spatial::{SpatialBeam, bow_of_shear, shear_number};
 use super::{ForceElement, Forces, LineMass, Section, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;

@@ -28,8 +28,8 @@ use mbint_derive::{Choice, Element};
 use schemars::{Schema, SchemaGenerator};
 use symdiff::{Formula, Scalar};
 
-use super::Forces;
 use super::positive_part::clipped;
+use crate::elements::effects::Forces;
 use crate::grammar::motions::dimensions_of;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
@@ -154,7 +154,7 @@ impl Value for Exponent {
 
 /// The law's numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Push<'g> {
+pub struct Push<'g> {
     /// K, N/mⁿ
     pub stiffness: Scalar<'g>,
     exponent: f64,

@@ -17,7 +17,7 @@ use super::touch::{Shape, Surface, Touch};
 use crate::multibody::{Pair, Vector};
 
 /// All places where they may touch.
-pub(super) fn touches<'g>(surface: &Surface<'g>, cylinder: &Cylinder<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
+pub fn touches<'g>(surface: &Surface<'g>, cylinder: &Cylinder<'g>, pair: &Pair<'g>) -> Vec<Touch<'g>> {
     let Surface::Whole(shape) = surface else { return Vec::new() };
     let point = cylinder.radius.builder().number(0.0);
     let on_rims =

@@ -11,7 +11,7 @@ const MIXED: f64 = 0.1;
 
 /// A polyhedron in its body's frame.
 #[derive(Clone, Debug)]
-pub(super) struct Facets<'g> {
+pub struct Facets<'g> {
     pub corners: Vec<Vector<'g>>,
     pub edges: Vec<Segment<'g>>,
     /// Normals, and how far the faces are from the frame's origin along them.

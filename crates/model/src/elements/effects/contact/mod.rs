@@ -21,25 +21,39 @@
 //! two whose centres meet, is no contact that this can tell. Apart the force and its derivatives are exactly zero, and
 //! of a tile of samples that all are apart only the sign of the gap is computed: without a root, from squares.
 
+mod along_hull;
+mod arc;
+mod beside;
+pub(super) mod course;
+mod cylinder;
+mod cylinder_touches;
+mod facets;
+pub(super) mod felt;
+mod ground;
+pub(super) mod hull;
+mod outline;
+mod polyhedron;
+mod rod;
+pub(super) mod solid;
 mod surfaces;
+pub(super) mod touch;
 
 use std::rc::Rc;
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::course::{Course, Points, placed};
-use super::cylinder::Cylinder;
-use super::cylinder_touches;
-use super::felt::{Felt, SENSORS};
-use super::ground::Ground;
-use super::hull::{self, Hull};
-use super::impact::Push;
-use super::outline::Outline;
-use super::polyhedron::{self, Polyhedron};
-use super::rod::{self, Rod};
-use super::solid::{self, Solid};
-use super::touch::{self, Law, Surface, Touch};
+use self::course::{Course, Points, placed};
+use self::cylinder::Cylinder;
+use self::felt::{Felt, SENSORS};
+use self::ground::Ground;
+use self::hull::{Hull};
+use super::laws::impact::Push;
+use self::outline::Outline;
+use self::polyhedron::{Polyhedron};
+use self::rod::{Rod};
+use self::solid::{Solid};
+use self::touch::{Law, Surface, Touch};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::elements::{Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
