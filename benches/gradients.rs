@@ -39,7 +39,7 @@ impl Case {
         let schedule = match method {
             "plain" => scheme,
             "two levels" => scheme.taken(Integration::Extrapolated { levels: 2 }),
-            _ => Schedule::passing((duration, duration / 10.0), ends, Vec::new()).taken(Integration::Explicit),
+            _ => Schedule::passing(duration, duration / 10.0, ends, Vec::new()).taken(Integration::Explicit),
         };
         let system = assemble::build(&assemble::Questions::of(&description)).expect("shipped models are built");
         let simulator = Simulator::new(system, Scheme::Hht { alpha: -0.1 }, schedule.first_step());

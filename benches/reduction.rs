@@ -19,17 +19,17 @@ const UNEQUAL: usize = 21;
 
 fn main() {
     let crank = slider_crank(0);
-    let beside_crank = |name, other| compare(EQUAL, ("slider crank", &crank), (name, &other));
+    let beside_crank = |name, other| compare(EQUAL, "slider crank", &crank, name, &other);
     beside_crank("itself", slider_crank(0));
     beside_crank("with ten bodies that no output needs", slider_crank(10));
     beside_crank("a scene of one with eight effects more, none of them in", scene_without());
     for (count, mixed) in [(2, "mixed: p0.x - p1.x"), (3, "mixed: p0.x - p1.x + p2.x")] {
         let name = format!("{count} uncertain pendulums, apart");
-        compare(UNEQUAL, (&name, &pendulums(count, "")), ("as one", &pendulums(count, mixed)));
+        compare(UNEQUAL, &name, &pendulums(count, ""), "as one", &pendulums(count, mixed));
     }
 }
 
-fn compare(pairs: usize, (name, first): (&str, &Description), (other_name, other): (&str, &Description)) {
+fn compare(pairs: usize, name: &str, first: &Description, other_name: &str, other: &Description) {
     let ran = |description: &Description| {
         run(description, Options { threads: Some(1), ..Options::default() }).expect("the model runs");
     };

@@ -108,7 +108,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let kept = request.store.as_ref().zip(store.as_ref());
     let found = bounds(&job.model, &request.settings, kept, &|| interrupt::keep_results(true));
     if let Some((kept, store)) = kept
-        && !kept.close((job.number, job.scene.as_deref()), store)
+        && !kept.close(job.number, job.scene.as_deref(), store)
     {
         found.map_or_else(
             |failure| if matches!(failure, Failure::Deferred) { Ok(()) } else { Err(failure) },

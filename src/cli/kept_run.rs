@@ -61,7 +61,7 @@ impl KeptRun {
 
     /// Notes what a job left to shards: of which model, and of which scene of it. Whether its results are complete and
     /// to be written.
-    pub fn close(&self, (model, scene): (usize, Option<&str>), store: &PartStore) -> bool {
+    pub fn close(&self, model: usize, scene: Option<&str>, store: &PartStore) -> bool {
         let deferred = store.deferred();
         self.shards.borrow_mut().extend(Shard::of(model, scene, &deferred, self.shard_seconds));
         deferred.is_empty() && !self.plans

@@ -137,7 +137,7 @@ fn schedules(description: &Description) -> Vec<Schedule> {
     let scheme = Schedule::fixed(duration, output_step / (STEPS / (ROWS - 1)) as f64, output_step);
     // Steps that pass over rows.
     let ends: Vec<f64> = (1..=STEPS / 4).map(|step| duration * step as f64 / (STEPS / 4) as f64).collect();
-    let explicit = Schedule::passing((duration, duration / 5.0), ends, Vec::new());
+    let explicit = Schedule::passing(duration, duration / 5.0, ends, Vec::new());
     vec![scheme.clone(), scheme.taken(Integration::Extrapolated { levels: 2 }), explicit.taken(Integration::Explicit)]
 }
 

@@ -189,7 +189,8 @@ fn the_error_falls_with_the_tolerance_in_every_scheme() {
             let piloted = schedule_for_tolerance(
                 &simulator,
                 std::slice::from_ref(&sample),
-                (1.0, 0.02),
+                1.0,
+                0.02,
                 tolerance,
                 Interruption::default(),
             )

@@ -169,7 +169,7 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
     let ordered = parts.iter().filter_map(|part| {
         let (ident, high, low) = (&part.field.ident, part.name(), part.key.above.as_ref()?);
         let low_name = LitStr::new(&low.to_string(), low.span());
-        Some(quote!(crate::grammar::ordered(reader, fields, (#low_name, #low.as_ref()), (#high, #ident.as_ref()));))
+        Some(quote!(crate::grammar::ordered(reader, fields, #low_name, #low.as_ref(), #high, #ident.as_ref());))
     });
     // Defaults that are computed may use the fields before them, which are there by then.
     let there = parts.iter().map(|part| {

@@ -152,7 +152,7 @@ impl Sampling<'_> {
         });
         drop(progress);
         if let (Some(kept), Some(store)) = (self.store, &store) {
-            kept.close((0, scene.as_deref()), store);
+            kept.close(0, scene.as_deref(), store);
         }
         let sampled = match done {
             Ok(sampled) => sampled,

@@ -54,7 +54,7 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
     };
     let kept = KeptRun::of_study(args.output.clone(), &asked).planning();
     let (status, shards) = if asked.points.is_some() {
-        let status = sampling::simulate(&asked, &kept, None, (args.threads, true), console)?;
+        let status = sampling::simulate(&asked, &kept, None, args.threads, true, console)?;
         (status, kept.shards())
     } else {
         let request = request(&asked, args.threads, kept)?;
@@ -82,7 +82,7 @@ pub(super) fn merge(args: MergeArgs, console: &mut Console) -> Result<Status, Fa
     let kept = KeptRun::of_study(args.study.clone(), &plan.asked);
     let (status, shards) = if plan.asked.points.is_some() {
         let target = target(args.output, None);
-        let status = sampling::simulate(&plan.asked, &kept, Some(target), (args.threads, args.quiet), console)?;
+        let status = sampling::simulate(&plan.asked, &kept, Some(target), args.threads, args.quiet, console)?;
         (status, kept.shards())
     } else {
         let mut request = request(&plan.asked, args.threads, kept)?;

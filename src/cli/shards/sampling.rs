@@ -26,7 +26,8 @@ pub(super) fn simulate(
     asked: &Asked,
     kept: &KeptRun,
     output: Option<(PathBuf, SampleFormat)>,
-    (threads, quiet): (Threads, bool),
+    threads: Threads,
+    quiet: bool,
     console: &mut Console,
 ) -> Result<Status, Failure> {
     let ([model], Some(points)) = (&asked.models[..], &asked.points) else {

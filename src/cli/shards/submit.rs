@@ -74,7 +74,7 @@ impl Job<'_> {
             last = tasks - 1,
             list = quoted(&list),
         );
-        self.sbatch(("array.sh", "shards-%A_%a"), &script, None)
+        self.sbatch("array.sh", "shards-%A_%a", &script, None)
     }
 
     /// Merging, when all tasks of the array ended; it submits the next round where there is one.
@@ -92,7 +92,7 @@ impl Job<'_> {
              if [ $status -eq 75 ]; then exec {program} submit {folder} --slurm{output}{options}; fi\n\
              exit $status\n"
         );
-        self.sbatch(("merge.sh", "merge-%j"), &script, array)
+        self.sbatch("merge.sh", "merge-%j", &script, array)
     }
 
     fn write(&self, name: &str, text: &str) -> Result<PathBuf, String> {
@@ -104,7 +104,7 @@ impl Job<'_> {
 
     /// Submits a script of this name, with a log of that one. A directive in the script would need a quoting of its
     /// own.
-    fn sbatch(&self, (name, log): (&str, &str), script: &str, after: Option<&str>) -> Result<String, String> {
+    fn sbatch(&self, name: &str, log: &str, script: &str, after: Option<&str>) -> Result<String, String> {
         let path = self.write(name, script)?;
         // Slurm puts numbers in place of `%A`; twice, the sign stands for itself.
         let folder = self.folder.join("logs").to_string_lossy().replace('%', "%%");

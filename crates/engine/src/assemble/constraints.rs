@@ -65,8 +65,8 @@ impl<'g> Constraints<'g> {
             } else {
                 constraints.closures.push(index);
                 let [positions, velocities] = [m.rows(index)?, m.velocity_rows(index)?];
-                let mut kept = constraints.positions.add_rows(m, index, positions, (length, left_out))?;
-                kept.extend(constraints.velocities.add_rows(m, index, velocities, (length, left_out))?);
+                let mut kept = constraints.positions.add_rows(m, index, positions, length, left_out)?;
+                kept.extend(constraints.velocities.add_rows(m, index, velocities, length, left_out)?);
                 kept
             };
             let mut reaction = Reaction::of(m.g, &*joint.kind, &kept);
@@ -103,7 +103,8 @@ impl<'g> Rows<'g> {
         m: &Mechanism<'g, '_>,
         index: usize,
         rows: Vec<Row<'g>>,
-        (length, left_out): (f64, &mut Vec<LeftOut>),
+        length: f64,
+        left_out: &mut Vec<LeftOut>,
     ) -> Result<Vec<(Row<'g>, Scalar<'g>)>, BuildError> {
         let joint = &m.joints[index];
         let mut kept = Vec::with_capacity(rows.len());

@@ -75,7 +75,7 @@ impl<'g> Mechanism<'g, '_> {
                 let place = self.joint_coordinates.get(&(joint, coordinate)).copied();
                 let on = OnJoint { joint, coordinate };
                 let mut value = self.measured_coordinate(on)?;
-                if let Some(guess) = self.guessed(description, start, (body, on), value)? {
+                if let Some(guess) = self.guessed(description, start, body, on, value)? {
                     value -= guess;
                 }
                 let owner = Owner::Joint(joint, coordinate);
@@ -91,7 +91,8 @@ impl<'g> Mechanism<'g, '_> {
         &self,
         description: &Description,
         start: &Start,
-        (body, on): (usize, OnJoint),
+        body: usize,
+        on: OnJoint,
         value: Scalar<'g>,
     ) -> Result<Option<Scalar<'g>>, BuildError> {
         let of_joint = description.guess.iter().find_map(|guess| match guess {

@@ -23,7 +23,7 @@ impl<'g> Mechanism<'g, '_> {
         for value in &description.initial {
             match value {
                 StartValue::Coordinate { body, coordinate, order, value }
-                    if self.lacks(description, (*body, *coordinate, *order)) =>
+                    if self.lacks(description, *body, *coordinate, *order) =>
                 {
                     let symbol = Symbol::Coordinate { body: *body, coordinate: *coordinate, order: *order };
                     let name = format!("{}.{}", description.bodies[*body].name, motion_name(*coordinate, *order));
@@ -41,7 +41,7 @@ impl<'g> Mechanism<'g, '_> {
                 }
                 StartValue::AngularRate { body, axis, in_body, value } => {
                     let value = self.formula(value, Context::Parameters)?;
-                    conditions.push(self.rate_condition(description, (*body, *axis, *in_body), value));
+                    conditions.push(self.rate_condition(description, *body, *axis, *in_body, value));
                 }
                 StartValue::RollPitchYaw { body, angle, value } => {
                     let name = format!("{}.{}", description.bodies[*body].name, ATTITUDE[*angle]);
@@ -51,7 +51,7 @@ impl<'g> Mechanism<'g, '_> {
                 StartValue::AngularVelocity { body, value, in_body } if self.is_child(*body) => {
                     let value = self.vector(value, Context::Parameters)?;
                     conditions.extend(
-                        (0..3).map(|axis| self.rate_condition(description, (*body, axis, *in_body), value[axis])),
+                        (0..3).map(|axis| self.rate_condition(description, *body, axis, *in_body, value[axis])),
                     );
                 }
                 StartValue::Orientation { body, rotation } if self.is_child(*body) => {
@@ -76,7 +76,7 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// Whether a coordinate of a body that `initial` names is no coordinate of the equations, nor stands for one.
-    fn lacks(&self, description: &Description, (body, coordinate, order): (usize, Coordinate, TimeOrder)) -> bool {
+    fn lacks(&self, description: &Description, body: usize, coordinate: Coordinate, order: TimeOrder) -> bool {
         self.is_child(body)
             && self.bodies[body].index[dof(coordinate)].is_none()
             && self.angle_of_inboard_joint(description, Named::Kept, body, coordinate, order).is_none()
@@ -91,7 +91,9 @@ impl<'g> Mechanism<'g, '_> {
     fn rate_condition(
         &self,
         description: &Description,
-        (body, axis, in_body): (usize, usize, bool),
+        body: usize,
+        axis: usize,
+        in_body: bool,
         value: Scalar<'g>,
     ) -> StartCondition {
         let rate = self.observe(Symbol::AngularMotion { body, axis, order: TimeOrder::Velocity, in_body });

@@ -11,7 +11,7 @@ use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
 
 use super::newton_matrix::ITERATION;
 use super::program::{Mode, Watched, WatchedPivot};
-use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
+use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, PivotRule, Pivoting, factorise};
 use crate::assemble::ConstraintId;
 use crate::compile::tuning::TUNING;
 
@@ -53,8 +53,8 @@ impl PivotChoice<'_> {
         let (regular, numbers) = self.regularised(graph, matrix, numbers, &equilibration);
         let plan = |graph: &mut Graph, pivoting: Pivoting| {
             let factorised = |graph: &mut Graph, numbers: &[Numbers]| {
-                let search = (Stages::new(inputs), ITERATION, pivoting);
-                factorise(graph, (&regular, numbers, &equilibration), self.first, search)
+                let rule = PivotRule { stages: Stages::new(inputs), costly: ITERATION, pivoting };
+                factorise(graph, &regular, numbers, &equilibration, self.first, rule)
             };
             // A singular start has no pivots of its own: then the states in general position decide.
             factorised(graph, &numbers).or_else(|_| {

@@ -16,7 +16,8 @@ pub(super) fn first_correction(
     graph: &mut Graph,
     inputs: &mut Vec<Input>,
     next: &mut u32,
-    (frozen, guards): (&mut Vec<Target>, &FxHashMap<Expr, Guard>),
+    frozen: &mut Vec<Target>,
+    guards: &FxHashMap<Expr, Guard>,
     correct: &[Target],
 ) -> Vec<Target> {
     let mut stages = Stages::new(inputs);

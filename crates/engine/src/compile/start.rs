@@ -36,7 +36,7 @@ use super::equations::Equation;
 use super::layout::Layout;
 use super::links::{self, MassOfLinks};
 use super::nearest::{LeastSquares, OpenStart};
-use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
+use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, PivotRule, Pivoting, factorise};
 use super::start_equations::{ClosureOf, Equations, constraint_sizes, given_values, named, residuals};
 use super::start_factors::Factorised;
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, SAMPLING, SampledValue, StartProgram, VELOCITY};
@@ -206,7 +206,7 @@ impl Builder<'_> {
             links::Elimination::Whole | links::Elimination::Shorter => system.mass_entries(&mut self.graph),
         };
         let motion = equations.motion.clone();
-        let (mass, motion) = self.with_defined_coordinates(jacobian, (entries.clone(), motion), rate_of_rate, &pairs);
+        let (mass, motion) = self.with_defined_coordinates(jacobian, entries.clone(), motion, rate_of_rate, &pairs);
         let free = vec![false; n];
         let constraints = system.lambda.len();
         let of_masses = Known { given: &free, constraints, pairs: &pairs, is_coupled: false, is_mass: true };
@@ -237,7 +237,7 @@ impl Builder<'_> {
             }
         };
         let zero = vec![self.graph.constant(0.0); n];
-        let (mass, motion) = self.with_defined_coordinates(jacobian, (entries, zero), &equations.rate, &pairs);
+        let (mass, motion) = self.with_defined_coordinates(jacobian, entries, zero, &equations.rate, &pairs);
         let projection =
             self.correction(&mass, &none, jacobian, of_masses, &motion, &equations.rate).map_err(of_motion)?;
         Ok([position, velocity, acceleration, projection])
@@ -305,9 +305,8 @@ impl Builder<'_> {
             Some(known) => known,
             None => {
                 let pivoting = Pivoting::Diagonal { constraints: late, pairs: &pairs };
-                let stages = Stages::new(self.inputs);
-                let entries = (&matrix, &numbers[..], &scale[..]);
-                let factors = factorise(&mut self.graph, entries, &pivots, (stages, 1, pivoting))?;
+                let rule = PivotRule { stages: Stages::new(self.inputs), costly: 1, pivoting };
+                let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, &pivots, rule)?;
                 self.factorised.push(Factorised { matrix, pairs, late, factors });
                 self.factorised.len() - 1
             }
@@ -351,7 +350,8 @@ impl Builder<'_> {
     fn with_defined_coordinates(
         &mut self,
         jacobian: &SparseMatrix,
-        (mut mass, mut motion): (Vec<(usize, usize, Expr)>, Vec<Expr>),
+        mut mass: Vec<(usize, usize, Expr)>,
+        mut motion: Vec<Expr>,
         rate_of_rate: &[Expr],
         pairs: &[(usize, usize)],
     ) -> (Vec<(usize, usize, Expr)>, Vec<Expr>) {

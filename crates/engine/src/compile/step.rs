@@ -70,7 +70,7 @@ fn compile_as(
     let observe = with_reciprocals(&mut graph, &inputs, &outputs).into_iter().map(|output| (output, None)).collect();
     let mut matrix: Vec<Target> = newton.matrix.entries().map(|(_, _, value)| (value, None)).collect();
     matrix.extend(newton.residual.iter().map(|&value| (value, None)));
-    let first = first_correction(&mut graph, &mut inputs, &mut next, (&mut frozen, &guards), &correct);
+    let first = first_correction(&mut graph, &mut inputs, &mut next, &mut frozen, &guards, &correct);
     let guards = guards.into_iter().map(|(value, guard)| ((FACTOR, value), guard)).collect();
     let kernels = [frozen, first, correct, advanced_state(&newton, &layout), observe, matrix, estimate];
     let lowered = lower_where(&graph, &inputs, ITERATION, next, &kernels, &guards);

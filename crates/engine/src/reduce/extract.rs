@@ -79,7 +79,7 @@ pub fn extract(
 ) -> Subsystem {
     let mut part = description.clone();
     asked.ask(&mut part);
-    let kept = Kept::of(description, couplings, set, (&asked, &required(&part)));
+    let kept = Kept::of(description, couplings, set, &asked, &required(&part));
     let (bodies, joints) = (places(&kept.bodies), places(&kept.joints));
     let points: Vec<Vec<Option<usize>>> = kept.points.iter().map(|points| places(points)).collect();
     let moved = |place: PointRef| {
@@ -158,12 +158,7 @@ fn with_earlier(description: &Description, parameters: &mut [bool]) {
 }
 
 impl Kept {
-    fn of(
-        d: &Description,
-        couplings: &mut Couplings,
-        set: Option<usize>,
-        (asked, required): (&Asked, &[bool]),
-    ) -> Self {
+    fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, asked: &Asked, required: &[bool]) -> Self {
         let mut has = |part: Part| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
         let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Part::Body(body))).collect();
         let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Part::Joint(joint))).collect();

@@ -200,8 +200,8 @@ impl Linearised {
         for (index, &square) in eigen.eigenvalues.iter().enumerate() {
             if square.sqrt() * h > SLOWEST {
                 let shape = shapes.column(index).into_owned();
-                let of_scheme = (h, simulator.program.coefficients);
-                modes.push(self.mode(&shape, square.sqrt(), of_scheme, constraints.as_ref()));
+                let coefficients = simulator.program.coefficients;
+                modes.push(self.mode(&shape, square.sqrt(), h, coefficients, constraints.as_ref()));
             }
         }
         Some(modes)
@@ -211,7 +211,8 @@ impl Linearised {
         &self,
         shape: &DVector<f64>,
         omega: f64,
-        (h, coefficients): (f64, Coefficients),
+        h: f64,
+        coefficients: Coefficients,
         constraints: Option<&SVD<f64, Dyn, Dyn>>,
     ) -> (ExcitedMode, Watched) {
         let weighted = &self.mass * shape;

@@ -41,7 +41,7 @@ impl<'s> Instants<'s> {
     }
 
     /// A step of length h, divided at the instants in it: length and end of each part, s.
-    pub fn divide(self, (h, end): (f64, f64)) -> impl Iterator<Item = (f64, f64)> + use<'s> {
+    pub fn divide(self, h: f64, end: f64) -> impl Iterator<Item = (f64, f64)> + use<'s> {
         let mut from = Some(end - h);
         std::iter::from_fn(move || {
             let begin = from?;
@@ -99,19 +99,19 @@ impl<'s> Sampling<'s> {
 mod tests {
     use super::*;
 
-    fn divided(periods: &[f64], step: (f64, f64)) -> Vec<(f64, f64)> {
+    fn divided(periods: &[f64], h: f64, end: f64) -> Vec<(f64, f64)> {
         let sampled: Vec<SampledValue> =
             periods.iter().map(|&period| SampledValue { state: 0, value: 0, period }).collect();
-        Instants(&sampled).divide(step).collect()
+        Instants(&sampled).divide(h, end).collect()
     }
 
     #[test]
     fn steps_are_divided_at_the_instants_in_them_only() {
-        assert_eq!(divided(&[], (0.1, 0.7)), [(0.1, 0.7)]);
+        assert_eq!(divided(&[], 0.1, 0.7), [(0.1, 0.7)]);
         // Ends and beginnings may be off by rounding.
-        assert_eq!(divided(&[0.1], (0.1, 0.1 + 0.2)), [(0.1, 0.1 + 0.2)]);
-        assert_eq!(divided(&[0.1, 0.05], (0.1, 1e3)).len(), 2);
-        let parts = divided(&[0.3, 0.25], (1.0, 1.0));
+        assert_eq!(divided(&[0.1], 0.1, 0.1 + 0.2), [(0.1, 0.1 + 0.2)]);
+        assert_eq!(divided(&[0.1, 0.05], 0.1, 1e3).len(), 2);
+        let parts = divided(&[0.3, 0.25], 1.0, 1.0);
         let ends: Vec<f64> = parts.iter().map(|&(_, end)| end).collect();
         assert_eq!(ends.len(), 7);
         for (end, expected) in ends.iter().zip([0.25, 0.3, 0.5, 0.6, 0.75, 0.9, 1.0]) {
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn the_parts_of_a_step_are_the_step() {
         for (periods, h, end) in [(&[0.3, 0.25][..], 1.0, 1.0), (&[0.007], 0.02, 12.345), (&[1.0], 0.5, 0.5)] {
-            let parts = divided(periods, (h, end));
+            let parts = divided(periods, h, end);
             assert_eq!(parts.last().unwrap().1, end);
             assert!((parts.iter().map(|&(h, _)| h).sum::<f64>() - h).abs() < 1e-14);
             assert!(parts.iter().all(|&(h, _)| h > 0.0));

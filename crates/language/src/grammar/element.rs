@@ -144,8 +144,10 @@ pub trait FromNumber {
 pub fn ordered<S: SymbolTable>(
     reader: &mut Reader<'_, S>,
     fields: &Fields<'_>,
-    (low, first): (&str, Option<&impl Value>),
-    (high, second): (&str, Option<&impl Value>),
+    low: &str,
+    first: Option<&impl Value>,
+    high: &str,
+    second: Option<&impl Value>,
 ) {
     let (mut lower, mut upper) = (Vec::new(), Vec::new());
     if let (Some(first), Some(second), true, true) =
@@ -155,7 +157,7 @@ pub fn ordered<S: SymbolTable>(
         second.formulas(&mut upper);
     }
     if let ([lower], [upper]) = (lower.as_slice(), upper.as_slice()) {
-        reader.ordered(fields, (low, lower), (high, upper));
+        reader.ordered(fields, low, lower, high, upper);
     }
 }
 

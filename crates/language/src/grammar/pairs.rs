@@ -8,7 +8,7 @@ use super::symbols::SymbolTable;
 
 impl<S: SymbolTable> Reader<'_, S> {
     /// Reports where the second of two keys is not larger than the first.
-    pub fn ordered(&mut self, fields: &Fields, (low, first): (&str, &Formula), (high, second): (&str, &Formula)) {
+    pub fn ordered(&mut self, fields: &Fields, low: &str, first: &Formula, high: &str, second: &Formula) {
         for corner in 0..self.corners.len() {
             let values = self.evaluate(first, corner).zip(self.evaluate(second, corner));
             if let Some((first, second)) = values.filter(|(first, second)| first >= second) {

@@ -366,7 +366,7 @@ pub fn scan_shard<E>(
     mut simulate: impl FnMut(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
 ) -> Result<Simulated, E> {
     let sampling = Sampling { observed: Observed::Outputs, until: Until::End, whole: false };
-    simulate(samples, sampling, &mut |rows, values| bounds.observe(rows, (first, samples.len()), values))
+    simulate(samples, sampling, &mut |rows, values| bounds.observe(rows, first, samples.len(), values))
 }
 
 /// Number of values that a row has for each sample.

@@ -148,7 +148,8 @@ impl KeptSurrogate {
     pub fn values<'c, P: AsRef<[f64]>>(
         &self,
         row: usize,
-        (outputs, samples): (&[usize], &[P]),
+        outputs: &[usize],
+        samples: &[P],
         closures: &'c [Box<dyn Closure + 'c>],
     ) -> Vec<f64> {
         let mut values = vec![f64::NAN; outputs.len() * samples.len()];

@@ -126,7 +126,8 @@ impl BandBuilder {
         &mut self,
         rows: Rows<usize>,
         found: &mut [PolynomialEstimate],
-        (validation, kinks): (&Validation, &[bool]),
+        validation: &Validation,
+        kinks: &[bool],
     ) {
         for (row, found) in rows.zip(found.chunks_exact_mut(self.bands.len())) {
             for (output, found) in found.iter_mut().enumerate() {

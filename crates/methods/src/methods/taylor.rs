@@ -162,7 +162,7 @@ impl BoundingMethod for Taylor {
             let Some(mut found) = found else { return };
             reached = rows.end;
             // With a kink, too, it is furthest off at the corners, which are among the validation samples.
-            bands.set_polynomials(rows, &mut found, (validation, &[]));
+            bands.set_polynomials(rows, &mut found, validation, &[]);
         })?;
         simulated.end_at(reached, ensemble);
         Ok(bands.finish(1, simulated))

@@ -17,6 +17,15 @@ const CORNERS: usize = 8;
 /// Width of an output's range, relative to its values, that is rounding.
 const ROUNDING: f64 = 1e-10;
 
+/// Samples of a box that a surrogate has not seen, with their values.
+#[derive(Clone, Copy, Debug)]
+pub struct HeldOut<'a> {
+    /// ξ of the samples.
+    pub points: &'a [Vec<f64>],
+    /// Their motions and outputs, and nothing in rows that were not reached.
+    pub direct: &'a ValidationTable,
+}
+
 /// All values of a few samples in all rows.
 #[derive(Clone, Debug)]
 pub struct ValidationTable {
@@ -209,6 +218,11 @@ impl OddSteps {
 }
 
 impl Validation {
+    /// Its samples with the schedule's steps.
+    pub fn held_out(&self) -> HeldOut<'_> {
+        HeldOut { points: &self.points, direct: &self.direct }
+    }
+
     /// Simulates them, for surrogates of this degree at most; `ends` are further ξ at which halved steps count.
     ///
     /// # Errors
@@ -252,7 +266,7 @@ impl Validation {
     ///
     /// # Errors
     /// Where it cannot be assembled.
-    pub fn of_nominal(ensembles: Ensembles, (nominal, reached): (&[Vec<Range>], usize)) -> Result<Self, EnsembleError> {
+    pub fn of_nominal(ensembles: Ensembles, nominal: &[Vec<Range>], reached: usize) -> Result<Self, EnsembleError> {
         let Ensembles { direct: ensemble, halved, .. } = ensembles;
         let points = validation(0, 0);
         let at = |row: usize| nominal.iter().map(move |ranges| ranges[row].lower);
@@ -277,7 +291,7 @@ impl Validation {
     /// Notes what the samples have been simulated to be with the schedule's steps.
     pub fn note(&self, ledger: &Ledger) {
         let ValidationTable { motions, outputs, samples, values } = &self.direct;
-        ledger.note(0, (motions + outputs, *samples), values);
+        ledger.note(0, motions + outputs, *samples, values);
     }
 
     /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2, or since

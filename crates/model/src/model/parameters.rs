@@ -195,7 +195,8 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
     if draft.spec.is_uncertain() {
         let nominal = number.filter(|number| number.is_finite());
         if let (Some(formula), Some(deviation)) = (&value, draft.deviation) {
-            dependent::finish(reader, draft, (index, deviation), (formula, nominal), &mut kind, values);
+            let own = dependent::Deviating { index, deviation, formula, nominal };
+            dependent::finish(reader, draft, own, &mut kind, values);
             return;
         }
         let Some([nominal, lower, upper]) = interval::bounds(reader, draft, nominal, &mut kind) else { return };

@@ -99,7 +99,7 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
         }
     }
     let times = times(reader, &fields);
-    let found = sources(reader, &fields, (key, kind), node);
+    let found = sources(reader, &fields, key, kind, node);
     let (Some((from, mut to)), Some((sources, dimension))) = (times, found) else { return };
     if key == "value" {
         let Some(at) = reader.required(&fields, "at").and_then(|node| reader.number(node, Dimension::TIME)) else {
@@ -159,7 +159,8 @@ pub(super) fn times(reader: &mut Reader, fields: &Fields) -> Option<(f64, f64)> 
 fn sources(
     reader: &mut Reader,
     fields: &Fields,
-    (key, kind): (&str, ReducedKind),
+    key: &str,
+    kind: ReducedKind,
     node: &Node,
 ) -> Option<(Vec<Formula>, Option<Dimension>)> {
     match kind {

@@ -54,7 +54,7 @@ fn of_text(reader: &mut Reader, node: &Node, entry: &Entry) -> Option<Requiremen
         reader.check_fits(&node.span, found, wanted);
     }
     let limited = Limited { of, own, limit, is_upper };
-    Some(required(reader, entry, text, vec![limited], (of_reduced, (0.0, f64::INFINITY))))
+    Some(required(reader, entry, text, vec![limited], of_reduced, (0.0, f64::INFINITY)))
 }
 
 /// `{ output: peak, max: 250 N }`, or `{ that: "x3 >= 0.4 m", from: 0.1 }`.
@@ -102,7 +102,7 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
         reader.error(fields.key_span("max"), message, "`min` is the smaller one".to_owned());
         return None;
     }
-    let found = required(reader, entry, texts.join(" and "), limited, (of_reduced, times));
+    let found = required(reader, entry, texts.join(" and "), limited, of_reduced, times);
     timed(reader, &fields, found, times)
 }
 
@@ -124,7 +124,7 @@ pub(super) fn distance_from_zero(reader: &mut Reader, entry: &Entry, is_upper: b
     let own = side(reader, &entry.value, of_reduced)?;
     let limit = Source { formula: Formula::number(0.0), dimension: own.dimension };
     let limited = Limited { of: of.clone(), own, limit, is_upper };
-    let found = required(reader, entry, of, vec![limited], (of_reduced, (0.0, f64::INFINITY)));
+    let found = required(reader, entry, of, vec![limited], of_reduced, (0.0, f64::INFINITY));
     Some(Requirement { limits: Vec::new(), ..found })
 }
 
@@ -164,7 +164,8 @@ fn required(
     entry: &Entry,
     text: String,
     limited: Vec<Limited>,
-    (of_reduced, times): (bool, (f64, f64)),
+    of_reduced: bool,
+    times: (f64, f64),
 ) -> Requirement {
     let (mut slacks, mut limits) = (Vec::new(), Vec::new());
     let dimension = limited.iter().find_map(|limited| limited.own.dimension.or(limited.limit.dimension));

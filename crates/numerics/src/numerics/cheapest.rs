@@ -64,8 +64,10 @@ impl Power {
 pub fn cheapest(
     costs: &[f64],
     power: Power,
-    (at, constraints): (&[f64], &[Linear]),
-    (least, most): (&[f64], &[f64]),
+    at: &[f64],
+    constraints: &[Linear],
+    least: &[f64],
+    most: &[f64],
 ) -> Vec<f64> {
     let sizes = |multipliers: &[f64]| -> Vec<f64> {
         let of = |i: usize| {
@@ -137,8 +139,7 @@ mod tests {
         for power in [Power::First, Power::Second] {
             let slopes = s.map(|s: f64| if power == Power::First { -s } else { -s * s }).to_vec();
             let limit = 2.0;
-            let found =
-                cheapest(&costs, power, (&[0.0; 3], &[Linear { value: limit, slopes }]), (&[1e-3; 3], &[1e3; 3]));
+            let found = cheapest(&costs, power, &[0.0; 3], &[Linear { value: limit, slopes }], &[1e-3; 3], &[1e3; 3]);
             let shape: [f64; 3] = std::array::from_fn(|i| match power {
                 Power::First => (costs[i] / s[i]).sqrt(),
                 Power::Second => (costs[i] / (s[i] * s[i])).cbrt(),
@@ -158,21 +159,21 @@ mod tests {
     fn several_constraints_and_ends() {
         let constraints =
             [Linear { value: 1.0, slopes: vec![-1.0, -1.0] }, Linear { value: 1.0, slopes: vec![-4.0, 0.0] }];
-        let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &constraints), (&[0.01; 2], &[10.0; 2]));
+        let found = cheapest(&[1.0, 1.0], Power::First, &[0.0, 0.0], &constraints, &[0.01; 2], &[10.0; 2]);
         assert!((found[0] - 0.25).abs() < 1e-8 && (found[1] - 0.75).abs() < 1e-8, "{found:?}");
-        let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &constraints), (&[0.01; 2], &[10.0, 0.5]));
+        let found = cheapest(&[1.0, 1.0], Power::First, &[0.0, 0.0], &constraints, &[0.01; 2], &[10.0, 0.5]);
         assert!((found[0] - 0.25).abs() < 1e-8 && found[1] == 0.5, "{found:?}");
         // A constraint that sizes do not change, or hardly change, leaves the others as they are.
         for slope in [0.0, -0.0, -1e-300] {
             let with_flat = [constraints[0].clone(), Linear { value: -1.0, slopes: vec![slope; 2] }];
-            let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &with_flat), (&[0.01; 2], &[10.0, 0.5]));
+            let found = cheapest(&[1.0, 1.0], Power::First, &[0.0, 0.0], &with_flat, &[0.01; 2], &[10.0, 0.5]);
             assert!(found.iter().all(|size| (0.01..=10.0).contains(size)), "{slope} {found:?}");
             if slope == 0.0 {
                 assert!((found[0] - 0.5).abs() < 1e-8 && found[1] == 0.5, "{found:?}");
             }
         }
         let impossible = [Linear { value: -1.0, slopes: vec![-1.0, -1.0] }];
-        let found = cheapest(&[1.0, 1.0], Power::First, (&[0.0, 0.0], &impossible), (&[0.01; 2], &[10.0; 2]));
+        let found = cheapest(&[1.0, 1.0], Power::First, &[0.0, 0.0], &impossible, &[0.01; 2], &[10.0; 2]);
         assert_eq!(found, [0.01, 0.01]);
     }
 }

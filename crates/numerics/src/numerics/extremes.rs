@@ -63,8 +63,7 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
             (lattice, intervals) = (Lattice::new(&finer), finer);
             continue;
         }
-        let search =
-            |(output, line): (usize, &(&[f64], &[f64]))| Search::new((output, least[output]), &lattice, line.0);
+        let search = |(output, line): (usize, &(&[f64], &[f64]))| Search::new(output, least[output], &lattice, line.0);
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
         for _ in 0..MORE {
             climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
@@ -136,7 +135,7 @@ fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64
         let settled = SETTLED * width;
         let end = |end: usize| {
             let limits = [settled, LEFT * width];
-            let near = End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], limits);
+            let near = End::near(output, &extent.places[end], &extent.spacing[end], SIGNS[end], limits);
             if corners_stay && extent.places[end].iter().all(|xi| xi.abs() == 1.0) {
                 let best = [extent.range.lower, extent.range.upper][end];
                 return End { best, gap: 0.0, found: true, ..near };
@@ -193,13 +192,13 @@ fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
 
 impl Search {
     /// From the values of function number `output`, for which differences of `least` do not matter, on a lattice.
-    fn new((output, least): (usize, f64), lattice: &Lattice, values: &[f64]) -> Self {
+    fn new(output: usize, least: f64, lattice: &Lattice, values: &[f64]) -> Self {
         let range = Range::of(values);
         let settled = (SETTLED * range.width()).max(SETTLED_OF_LEAST * least);
         let mut search = Self { ends: Vec::new(), output, settled, omitted: [Vec::new(), Vec::new()] };
         let limits = [settled, settled.max(LEFT * range.width())];
         let end =
-            |index: usize, sign: f64| End::near(output, (&lattice.point(index), &lattice.spacing(index)), sign, limits);
+            |index: usize, sign: f64| End::near(output, &lattice.point(index), &lattice.spacing(index), sign, limits);
         for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
             if range.lower.is_nan() {
                 search.ends.push(End { best: f64::NAN, found: true, ..end(0, sign) });
@@ -234,7 +233,7 @@ impl Search {
                 let taken = left.split_off(left.len().saturating_sub(CANDIDATES));
                 let sign = SIGNS[index];
                 let end = |(at, _): (usize, f64)| {
-                    End::near(self.output, (&lattice.point(at), &lattice.spacing(at)), sign, [self.settled, matters])
+                    End::near(self.output, &lattice.point(at), &lattice.spacing(at), sign, [self.settled, matters])
                 };
                 self.ends.extend(taken.into_iter().rev().map(end));
                 more = true;
@@ -294,7 +293,7 @@ struct End {
 
 impl End {
     /// Not far from a place, with neighbours at these distances.
-    fn near(output: usize, (xi, spacing): (&[f64], &[f64]), sign: f64, [settled, matters]: [f64; 2]) -> Self {
+    fn near(output: usize, xi: &[f64], spacing: &[f64], sign: f64, [settled, matters]: [f64; 2]) -> Self {
         let spacing: Vec<f64> = spacing.iter().map(|spacing| spacing.min(NEAR)).collect();
         let around = Peak::new(xi.to_vec(), spacing.clone());
         let best = -sign * f64::INFINITY;

@@ -57,7 +57,7 @@ impl Lattice {
 
     /// The values at a point and at those one and two further along an axis, mirrored at the faces: two before, before,
     /// here, after, two after.
-    fn along(&self, values: &[f64], place: usize, (axis, at): (usize, usize)) -> [f64; 5] {
+    fn along(&self, values: &[f64], place: usize, axis: usize, at: usize) -> [f64; 5] {
         let count = self.intervals[axis] as isize;
         let stride = self.strides[axis];
         [-2, -1, 0, 1, 2].map(|away| {
@@ -72,7 +72,7 @@ impl Lattice {
         let mut residuals = vec![0.0_f64; self.intervals.len()];
         for index in 0..values.len() {
             for (axis, at) in self.indices(index).enumerate() {
-                residuals[axis] = residuals[axis].max(residual(self.along(values, index, (axis, at))));
+                residuals[axis] = residuals[axis].max(residual(self.along(values, index, axis, at)));
             }
         }
         residuals
@@ -85,7 +85,7 @@ impl Lattice {
         for index in 0..values.len() {
             let mut height = sign * values[index];
             let is_peak = self.indices(index).enumerate().all(|(axis, at)| {
-                let line = self.along(values, index, (axis, at));
+                let line = self.along(values, index, axis, at);
                 let [_, before, here, after, _] = line;
                 height += (before - 2.0 * here + after).abs() / 8.0 + residual(line);
                 sign * here >= sign * before && sign * here >= sign * after

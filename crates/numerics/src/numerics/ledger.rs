@@ -21,7 +21,7 @@ impl Ledger {
 
     /// Takes in consecutive rows' values, line by line, sample by sample; the outputs are the last of `lines` lines.
     /// NaN, of samples that stopped, does not count, nor do infinite values.
-    pub fn note(&self, first: usize, (lines, samples): (usize, usize), values: &[f64]) {
+    pub fn note(&self, first: usize, lines: usize, samples: usize, values: &[f64]) {
         let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
         let known = ends.chunks_exact_mut(self.outputs.max(1)).skip(first);
         for (row, ends) in values.chunks_exact((lines * samples).max(1)).zip(known) {
@@ -58,7 +58,7 @@ mod tests {
         let ledger = Ledger::new(3, 2);
         // A line of the motion, then two outputs, of two samples in two rows.
         let rows = [9.0, 9.0, 1.0, 2.0, -1.0, f64::NAN, 9.0, 9.0, f64::NAN, f64::NAN, 5.0, 4.0];
-        ledger.note(1, (3, 2), &rows);
+        ledger.note(1, 3, 2, &rows);
         ledger.note_range(1, 0, Range { lower: 1.5, upper: 3.0 });
         ledger.note_range(1, 1, Range::UNKNOWN);
         let range = |lower, upper| Range { lower, upper };

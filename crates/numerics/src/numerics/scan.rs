@@ -73,7 +73,7 @@ impl ScanBounds {
     }
 
     /// Values in some rows (row, output, sample) of so many of the grid's samples, from number `first` on.
-    pub fn observe(&mut self, rows: Rows<usize>, (first, count): (usize, usize), values: &[f64]) {
+    pub fn observe(&mut self, rows: Rows<usize>, first: usize, count: usize, values: &[f64]) {
         if count == 0 {
             return;
         }
@@ -183,9 +183,9 @@ mod tests {
         let mut scan = ScanBounds::new(1, 3, &[6]);
         assert!(scan.range(0, 0).lower.is_nan());
         let nan = f64::NAN;
-        scan.observe(0..1, (0, 3), &[1.0, nan, 2.0, 3.0, 3.0, 3.0, nan, nan, nan]);
-        scan.observe(0..1, (3, 2), &[-1.0, 5.0, 3.0, 3.0, nan, nan]);
-        scan.observe(0..1, (5, 1), &[9.0, 3.0, nan]);
+        scan.observe(0..1, 0, 3, &[1.0, nan, 2.0, 3.0, 3.0, 3.0, nan, nan, nan]);
+        scan.observe(0..1, 3, 2, &[-1.0, 5.0, 3.0, 3.0, nan, nan]);
+        scan.observe(0..1, 5, 1, &[9.0, 3.0, nan]);
         assert_eq!(scan.range(0, 0), Range { lower: -1.0, upper: 9.0 });
         assert!(scan.error(0, 0).is_nan() && scan.error(0, 1) == 0.0);
         assert_eq!(scan.range(0, 1), Range { lower: 3.0, upper: 3.0 });
@@ -202,7 +202,7 @@ mod tests {
             };
             let values: Vec<f64> = (0..121).map(|index| value(index / 11, index % 11)).collect();
             let mut scan = ScanBounds::new(1, 1, &[11, 11]);
-            scan.observe(0..1, (0, values.len()), &values);
+            scan.observe(0..1, 0, values.len(), &values);
             let (missed, error) = (1.0 - scan.range(0, 0).upper, scan.error(0, 0));
             assert!(missed <= error + 1e-12, "{shift}: {missed} of {error}");
             assert!(error < 0.041);
@@ -212,7 +212,7 @@ mod tests {
     fn of_line(f: impl Fn(f64) -> f64, count: usize) -> (Range, f64) {
         let values: Vec<f64> = (0..count).map(|i| f(2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect();
         let mut scan = ScanBounds::new(1, 1, &[count]);
-        scan.observe(0..1, (0, values.len()), &values);
+        scan.observe(0..1, 0, values.len(), &values);
         (scan.range(0, 0), scan.error(0, 0))
     }
 
@@ -271,7 +271,7 @@ mod tests {
             };
             let values: Vec<f64> = (0..99).map(|index| value(index / 11, index % 11)).collect();
             let mut scan = ScanBounds::new(1, 1, &[9, 11]);
-            scan.observe(0..1, (0, 99), &values);
+            scan.observe(0..1, 0, 99, &values);
             let line = Line { points: &[9, 11], first: 0, values: &values };
             let mut all = EMPTY;
             for (place, &value) in values.iter().enumerate() {
@@ -287,7 +287,7 @@ mod tests {
     fn the_ends_of_the_axes_are_exact() {
         let values: Vec<f64> = (0..25).map(|index| (0.3 * index as f64).exp()).collect();
         let mut scan = ScanBounds::new(1, 1, &[5, 5]);
-        scan.observe(0..1, (0, values.len()), &values);
+        scan.observe(0..1, 0, values.len(), &values);
         assert_eq!(scan.error(0, 0), 0.0);
     }
 
@@ -297,9 +297,9 @@ mod tests {
             let cut = cut.min(values.len());
             let empty = || ScanBounds::new(1, 1, &[values.len()]);
             let (mut whole, mut parts) = (empty(), empty());
-            whole.observe(0..1, (0, values.len()), &values);
-            parts.observe(0..1, (0, cut), &values[..cut]);
-            parts.observe(0..1, (cut, values.len() - cut), &values[cut..]);
+            whole.observe(0..1, 0, values.len(), &values);
+            parts.observe(0..1, 0, cut, &values[..cut]);
+            parts.observe(0..1, cut, values.len() - cut, &values[cut..]);
             prop_assert_eq!(whole.range(0, 0), parts.range(0, 0));
             prop_assert!(values.iter().all(|&value| whole.range(0, 0).contains(value)));
         }

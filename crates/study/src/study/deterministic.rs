@@ -58,7 +58,7 @@ pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, S
         let ratio = schedule.ratio_to(&finer[1].schedule);
         let ensembles = Ensembles { direct: &motions, halved: &halved, odd: &odd, ratio };
         let validation =
-            Validation::of_nominal(ensembles, (&nominal.bands, nominal.reached)).map_err(simulation_error)?;
+            Validation::of_nominal(ensembles, &nominal.bands, nominal.reached).map_err(simulation_error)?;
         if let Some(allowed) = study.request.tolerance
             && steps.adjust(validation.worst_share(allowed, schedule.rows))
         {

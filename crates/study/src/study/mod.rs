@@ -184,7 +184,8 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
         let (bounds, summary, _) = reduced::run(&model, &options, false)?;
         Ok((bounds, summary))
     });
-    let (mut bounds, mut summary) = reduced::shown(description, &model, found?);
+    let (bounds, summary) = found?;
+    let (mut bounds, mut summary) = reduced::shown(description, &model, bounds, summary);
     summary.chains = chains::chains(description, &bounds);
     zones::joined(description, &mut bounds, &mut summary);
     summary.is_cut = interrupted();
@@ -203,7 +204,7 @@ pub fn run_keeping(description: &Description, options: Options) -> Result<(Bound
     let pool = pool(options.threads)?;
     let model = reduced::expanded(description);
     let (bounds, summary, kept) = pool.install(|| reduced::run(&model, &options, true))?;
-    let (mut bounds, mut summary) = reduced::shown(description, &model, (bounds, summary));
+    let (mut bounds, mut summary) = reduced::shown(description, &model, bounds, summary);
     zones::joined(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))
 }

@@ -163,7 +163,7 @@ impl Trajectories<'_> {
             values.resize(indices.len() * self.times.len() * width, f64::NAN);
             let mut stops = vec![false; indices.len()];
             for (number, motions) in motions.iter().enumerate() {
-                self.chunk(number, motions, indices.clone(), &closed, (&mut values, &mut stops))
+                self.chunk(number, motions, indices.clone(), &closed, &mut values, &mut stops)
                     .map_err(RunError::from)?;
             }
             if motions.iter().any(Ensemble::is_interrupted) {
@@ -229,7 +229,8 @@ impl Trajectories<'_> {
         motions: &Motions,
         indices: Range<usize>,
         closed: &[bool],
-        (values, stops): (&mut [f64], &mut [bool]),
+        values: &mut [f64],
+        stops: &mut [bool],
     ) -> Result<(), SimulationError> {
         let (going, samples) = self.own(number, indices, closed);
         if samples.is_empty() {

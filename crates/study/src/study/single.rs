@@ -146,7 +146,8 @@ pub(super) fn try_samples(study: &Study) -> Result<Tried, RunError> {
             let controlled = schedule_for_tolerance(
                 &study.simulator,
                 &samples,
-                (duration, output_step),
+                duration,
+                output_step,
                 tolerance,
                 study.interruption,
             )?;

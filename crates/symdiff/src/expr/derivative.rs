@@ -128,7 +128,7 @@ impl Graph {
             }
             Node::Binary(function, a, b) => {
                 let (da, db) = (known(self, a), known(self, b));
-                self.binary_rule(function, expr, (a, da), (b, db))
+                self.binary_rule(function, expr, a, da, b, db)
             }
         }
     }
@@ -175,7 +175,7 @@ impl Graph {
         }
     }
 
-    fn binary_rule(&mut self, function: Binary, value: Expr, (a, da): (Expr, Expr), (b, db): (Expr, Expr)) -> Expr {
+    fn binary_rule(&mut self, function: Binary, value: Expr, a: Expr, da: Expr, b: Expr, db: Expr) -> Expr {
         match function {
             Binary::Add => self.add(da, db),
             Binary::Sub => self.sub(da, db),

@@ -76,7 +76,7 @@ impl Active {
         let entries: Vec<Entry> = below.iter().map(|&other| self.take(other, column)).collect();
         let lower: Vec<(usize, Expr)> =
             below.iter().zip(&entries).map(|(&other, entry)| (other, graph.mul(entry.value, inverse))).collect();
-        let mirrored = self.mirrored((row, column), &upper, &lower, &entries);
+        let mirrored = self.mirrored(row, column, &upper, &lower, &entries);
         for (&(other, multiplier), entry) in lower.iter().zip(&entries) {
             let ratio: Numbers = std::array::from_fn(|sample| entry.numbers[sample] / pivot.numbers[sample]);
             for (&right, above) in &upper {
@@ -84,7 +84,7 @@ impl Active {
                     Some(&of_mirror) => graph.mul(of_mirror, upper[&other].value),
                     None => graph.mul(multiplier, above.value),
                 };
-                self.update(graph, (other, right), product, &ratio, above);
+                self.update(graph, other, right, product, &ratio, above);
             }
             self.sparsest_rows.insert(self.row_key(other));
         }
@@ -104,7 +104,8 @@ impl Active {
     /// half the operations.
     fn mirrored(
         &self,
-        (row, column): (usize, usize),
+        row: usize,
+        column: usize,
         upper: &BTreeMap<usize, Entry>,
         lower: &[(usize, Expr)],
         entries: &[Entry],
@@ -127,14 +128,7 @@ impl Active {
     }
 
     /// entry(row, column) −= `product`, which is `ratio` times what stands above.
-    fn update(
-        &mut self,
-        graph: &mut Graph,
-        (row, column): (usize, usize),
-        product: Expr,
-        ratio: &Numbers,
-        above: &Entry,
-    ) {
+    fn update(&mut self, graph: &mut Graph, row: usize, column: usize, product: Expr, ratio: &Numbers, above: &Entry) {
         let old = self.rows[row].get(&column).copied();
         let value = match old {
             Some(entry) => graph.sub(entry.value, product),

@@ -31,20 +31,32 @@ impl NoFactors {
     }
 }
 
+/// How pivots are searched for.
+pub struct PivotRule<'a> {
+    /// Stages of the graph's nodes.
+    pub stages: Stages,
+    /// The stage at which operations are saved.
+    pub costly: usize,
+    /// Which entries may be pivots.
+    pub pivoting: Pivoting<'a>,
+}
+
 /// Factorises a square matrix.
 ///
 /// `numbers` runs over the matrix's entries row by row. `scale` (one factor a row, symmetric) makes entries comparable
 /// for the threshold and changes nothing else. The pivots `first` (row, column) come before those that are searched
-/// for; the search saves operations at the stage `costly`.
+/// for.
 ///
 /// # Errors
 /// Where no entry of the rows left is large enough at every pivot sample, where one of `first` vanishes, and where the
 /// graph is full.
 pub fn factorise(
     graph: &mut Graph,
-    (matrix, numbers, scale): (&SparseMatrix, &[Numbers], &[f64]),
+    matrix: &SparseMatrix,
+    numbers: &[Numbers],
+    scale: &[f64],
     first: &[(usize, usize)],
-    (stages, costly, pivoting): (Stages, usize, Pivoting),
+    PivotRule { stages, costly, pivoting }: PivotRule<'_>,
 ) -> Result<Factors, NoFactors> {
     let size = matrix.rows.len();
     let mut active = Active::new(matrix, numbers, scale, pivoting.first_late());

@@ -16,7 +16,7 @@ mod ordering;
 mod pivoting;
 mod solve;
 
-pub use factor::{NoFactors, factorise};
+pub use factor::{NoFactors, PivotRule, factorise};
 pub use pivoting::Pivoting;
 pub use solve::Factors;
 
@@ -50,7 +50,14 @@ mod tests {
             }
         }
         let scale = vec![1.0; dense.len()];
-        let factors = factorise(&mut graph, (&matrix, &numbers, &scale), &[], (Stages::new(&[]), 0, pivoting))?;
+        let factors = factorise(
+            &mut graph,
+            &matrix,
+            &numbers,
+            &scale,
+            &[],
+            PivotRule { stages: Stages::new(&[]), costly: 0, pivoting },
+        )?;
         let right: Vec<Expr> = right.iter().map(|&value| graph.constant(value)).collect();
         let x = factors.solve(&mut graph, &right);
         let x = x.into_iter().map(|expr| graph.as_constant(expr).unwrap()).collect();

@@ -222,7 +222,7 @@ impl TileOf<'_> {
             let mut ends_of_rows = vec![0; rows.len()];
             let mut steps = Vec::new();
             for row in 0..=rows.first().copied().unwrap_or(0) {
-                steps.extend(refined.steps_to(row).flat_map(|step| instants.divide(step)));
+                steps.extend(refined.steps_to(row).flat_map(|(h, end)| instants.divide(h, end)));
                 rows.iter()
                     .zip(&mut ends_of_rows)
                     .filter(|(known, _)| **known == row)

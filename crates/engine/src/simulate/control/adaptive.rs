@@ -109,7 +109,7 @@ impl<'s> Adaptive<'s> {
         if let Some(watch) = &mut self.watch {
             watch.end(self.stepper.tile());
         }
-        let passes = self.passes(&converged, (step, end));
+        let passes = self.passes(&converged, step, end);
         let switched: Vec<Option<(usize, Crossing)>> =
             (0..converged.len()).map(|lane| self.crossing(lane, step)).collect();
         let crossings: Vec<Option<Crossing>> =
@@ -145,12 +145,12 @@ impl<'s> Adaptive<'s> {
     }
 
     /// Lanes that pass over a feature of the forces. Like switches, features are located to a shortest step.
-    fn passes(&mut self, converged: &[bool], (step, end): (f64, f64)) -> Vec<bool> {
+    fn passes(&mut self, converged: &[bool], step: f64, end: f64) -> Vec<bool> {
         let mut passes = vec![false; converged.len()];
         if let Some(features) = self.features.as_mut().filter(|_| step > self.controller.event()) {
             features.end(&self.stepper);
             for lane in (0..passes.len()).filter(|&lane| converged[lane] && self.stepper.alive()[lane]) {
-                passes[lane] = features.change(&self.stepper, lane, (step, end), MOST_CHANGE);
+                passes[lane] = features.change(&self.stepper, lane, step, end, MOST_CHANGE);
             }
         }
         passes

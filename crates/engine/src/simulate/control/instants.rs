@@ -25,13 +25,13 @@ impl Schedule {
         if instants.is_empty() || steps().all(|(h, end)| instants.between(end - h, end).is_none()) {
             return Cow::Borrowed(self);
         }
-        let times = (self.end(), self.output_step);
+        let (duration, output_step) = (self.end(), self.output_step);
         let ends = |steps: &mut dyn Iterator<Item = (f64, f64)>| {
-            steps.flat_map(|step| instants.divide(step)).map(|(_, end)| end).collect::<Vec<f64>>()
+            steps.flat_map(|(h, end)| instants.divide(h, end)).map(|(_, end)| end).collect::<Vec<f64>>()
         };
         let divided = if self.passes_rows() {
-            let at_rows = ends(&mut steps()).into_iter().map(|end| Self::at_row(end, times)).collect();
-            Self::passing(times, at_rows, Vec::new())
+            let at_rows = ends(&mut steps()).into_iter().map(|end| Self::at_row(end, duration, output_step)).collect();
+            Self::passing(duration, output_step, at_rows, Vec::new())
         } else {
             Self::listed(self.output_step, (1..self.rows).map(|row| ends(&mut self.steps_to(row))).collect())
         };
@@ -40,7 +40,7 @@ impl Schedule {
 
     /// An instant, or the time of the row that it is but for rounding, so that the row comes after what changes there;
     /// of a schedule of this duration and output step, s.
-    pub(in crate::simulate) fn at_row(instant: f64, (duration, output_step): (f64, f64)) -> f64 {
+    pub(in crate::simulate) fn at_row(instant: f64, duration: f64, output_step: f64) -> f64 {
         let row = (instant / output_step).round();
         let time = Self::time_of(duration, output_step, row as usize);
         if (time - instant).abs() <= ROUNDING * output_step { time } else { instant }

@@ -49,7 +49,8 @@ pub struct ToleranceSchedule {
 pub fn schedule_for_tolerance(
     simulator: &Simulator,
     samples: &[Sample],
-    (duration, output_step): (f64, f64),
+    duration: f64,
+    output_step: f64,
     tolerance: f64,
     interruption: Interruption<'_>,
 ) -> Result<ToleranceSchedule, SimulationError> {

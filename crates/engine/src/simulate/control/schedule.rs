@@ -88,14 +88,14 @@ impl Schedule {
 
     /// Steps that end at the listed times, whatever rows lie between. The ends by the numbers `kept` stay where they
     /// are in all schedules that are made of this one.
-    pub fn passing((duration, output_step): (f64, f64), ends: Vec<f64>, kept: Vec<usize>) -> Self {
+    pub fn passing(duration: f64, output_step: f64, ends: Vec<f64>, kept: Vec<usize>) -> Self {
         let rows = rows(duration, output_step);
         let steps = Steps::Passing { ends, kept };
         Self { output_step, rows, end: duration, steps, integration: Integration::Plain }
     }
 
     /// Steps between the events that all samples meet.
-    pub fn segmented((duration, output_step): (f64, f64), segments: Segments) -> Self {
+    pub fn segmented(duration: f64, output_step: f64, segments: Segments) -> Self {
         let (rows, steps) = (rows(duration, output_step), Steps::Segmented(segments));
         Self { output_step, rows, end: duration, steps, integration: Integration::Segments }
     }

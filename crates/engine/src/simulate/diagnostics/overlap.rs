@@ -47,7 +47,7 @@ impl<'s> OverlapWatch<'s> {
 
     /// Examines the first `count` lanes after a step of length h up to `end`, which is one step or, where `is_divided`,
     /// several. Whether the first such surfaces were found.
-    pub fn end(&mut self, stepper: &Stepper, count: usize, (h, end): (f64, f64), is_divided: bool) -> bool {
+    pub fn end(&mut self, stepper: &Stepper, count: usize, h: f64, end: f64, is_divided: bool) -> bool {
         if self.found.is_some() {
             return false;
         }

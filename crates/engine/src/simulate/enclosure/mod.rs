@@ -258,7 +258,7 @@ impl<'s> Enclosure<'s> {
         let next: Vec<f64> = lengths.map(|(length, _)| length).collect();
         for (index, (length, end)) in schedule.steps_to(row).enumerate() {
             let next = next.get(index).copied().unwrap_or(length);
-            self.step(end, (length, next)).map_err(|lost| (end, lost))?;
+            self.step(end, length, next).map_err(|lost| (end, lost))?;
         }
         Ok(())
     }

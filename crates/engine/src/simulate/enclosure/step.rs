@@ -93,7 +93,7 @@ impl<'s> Enclosure<'s> {
 
     /// One step to the time `end`, with its length and that of the step after it. On return the memory holds q₊, v₊,
     /// w₊, λ₊ with all their radii.
-    pub(super) fn step(&mut self, end: f64, (length, next): (f64, f64)) -> Result<(), EnclosureError> {
+    pub(super) fn step(&mut self, end: f64, length: f64, next: f64) -> Result<(), EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
         self.gains = self.next.gains;
         self.next = if next == length {

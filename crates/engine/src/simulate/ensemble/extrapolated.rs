@@ -149,8 +149,8 @@ impl<'s> Integrator<'s> for ExtrapolatedRun<'s> {
             .par_iter_mut()
             .enumerate()
             .map(|(index, closure)| {
-                let first = index * WIDTH;
-                closed(closure, schedule, (rows.clone(), observed, lines), (motion, first, samples))
+                let lanes = Lanes { motion, samples, first: index * WIDTH };
+                closed(closure, schedule, rows.clone(), observed, lines, lanes)
             })
             .collect();
         into.clear();
@@ -203,13 +203,24 @@ impl<'s> Integrator<'s> for ExtrapolatedRun<'s> {
     }
 }
 
-/// Observed values in rows (row, line, lane), from a motion (row, line, sample) whose samples from `first` on are the
-/// lanes.
+/// Lanes of a motion.
+#[derive(Clone, Copy)]
+struct Lanes<'m> {
+    /// Row, line, sample.
+    motion: &'m [f64],
+    samples: usize,
+    /// The sample in the first lane.
+    first: usize,
+}
+
+/// Observed values in rows: row, line, lane.
 fn closed(
     closure: &mut RowClosure,
     schedule: &Schedule,
-    (rows, observed, lines): (std::ops::Range<usize>, Observed, usize),
-    (motion, first, samples): (&[f64], usize, usize),
+    rows: std::ops::Range<usize>,
+    observed: Observed,
+    lines: usize,
+    Lanes { motion, samples, first }: Lanes<'_>,
 ) -> Vec<f64> {
     let width = closure.tile().width();
     let of_row = motion.len() / rows.len().max(1);

@@ -88,7 +88,7 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         sample_states(start, memory, 0.0);
         accelerate(simulator, memory, order);
     }
-    shift_accelerations(simulator, memory, order, (0.0, simulator.program.coefficients.shift() * first_step));
+    shift_accelerations(simulator, memory, order, 0.0, simulator.program.coefficients.shift() * first_step);
 }
 
 /// Gives the states that change at a time their new values.
@@ -103,12 +103,7 @@ pub(super) fn sample_states(program: &StartProgram, memory: &mut JetMemory, time
 }
 
 /// a = w(t + shift), as for tiles.
-pub(super) fn shift_accelerations(
-    simulator: &Simulator,
-    memory: &mut JetMemory,
-    order: usize,
-    (time, shift): (f64, f64),
-) {
+pub(super) fn shift_accelerations(simulator: &Simulator, memory: &mut JetMemory, order: usize, time: f64, shift: f64) {
     let layout = &simulator.start.layout;
     let saved: Vec<Vec<f64>> = layout.state().map(|register| memory.jet(register).to_vec()).collect();
     let state = |register: usize| &saved[register - layout.q.start];

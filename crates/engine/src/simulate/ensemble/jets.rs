@@ -108,7 +108,7 @@ impl<'s> JetRun<'s> {
     /// Advances to a row from the one before; where the run stopped, if it did.
     fn advance_to(&mut self, schedule: &Schedule, row: usize) -> Option<Stop> {
         let instants = Instants::of(self.simulator);
-        for (h, end) in schedule.steps_to(row).flat_map(|step| instants.divide(step)) {
+        for (h, end) in schedule.steps_to(row).flat_map(|(h, end)| instants.divide(h, end)) {
             self.is_cut |= self.interruption.is_asked();
             if self.is_cut {
                 return None;
@@ -140,7 +140,7 @@ impl<'s> JetRun<'s> {
         // The centre's converge where those of the step are far.
         layout.w.clone().chain(layout.lambda.clone()).for_each(|register| constant(start, register));
         accelerate(simulator, start, *order);
-        shift_accelerations(simulator, start, *order, (time, simulator.program.coefficients.shift() * self.step_size));
+        shift_accelerations(simulator, start, *order, time, simulator.program.coefficients.shift() * self.step_size);
         for register in layout.v.start..layout.lambda.end {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
             constant(memory, register);

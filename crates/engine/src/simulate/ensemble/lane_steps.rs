@@ -90,7 +90,7 @@ impl<'s> LaneSteps<'s> {
             let size = if crossing.is_some() { error.whole } else { error.size };
             let ratio = self.controller.error_ratio(size, h);
             let features = self.features.as_mut().filter(|_| converged[lane] && h > self.controller.event());
-            let passes = features.is_some_and(|features| features.change(stepper, lane, (h, end), MOST_CHANGE));
+            let passes = features.is_some_and(|features| features.change(stepper, lane, h, end, MOST_CHANGE));
             let within =
                 converged[lane] && !passes && ratio <= 1.0 && crossing.is_none_or(|crossing| crossing.is_at_the_end());
             let attached = self.alone[lane].as_ref().is_none_or(|alone| alone.h >= h && !alone.has_switched());

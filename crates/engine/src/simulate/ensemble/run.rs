@@ -247,7 +247,7 @@ impl TileRun<'_> {
                 self.reduce(0.0);
             }
             let instants = Instants::of(self.simulator);
-            let mut steps = schedule.steps_to(row).flat_map(|step| instants.divide(step)).peekable();
+            let mut steps = schedule.steps_to(row).flat_map(|(h, end)| instants.divide(h, end)).peekable();
             while let Some((h, end)) = steps.next() {
                 if !self.stepper.alive().contains(&true) {
                     break;
@@ -290,9 +290,9 @@ impl TileRun<'_> {
                     switches.end(&self.stepper, h);
                 }
                 let features = self.features.as_mut();
-                let hidden = features.is_some_and(|it| it.end_hidden(&self.stepper, self.count, (h, end)));
+                let hidden = features.is_some_and(|it| it.end_hidden(&self.stepper, self.count, h, end));
                 let (overlaps, is_divided) = (self.overlaps.as_mut(), self.lanes.is_some());
-                let is_too_deep = overlaps.is_some_and(|it| it.end(&self.stepper, self.count, (h, end), is_divided));
+                let is_too_deep = overlaps.is_some_and(|it| it.end(&self.stepper, self.count, h, end, is_divided));
                 self.beyond = self.beyond.or((hidden || is_too_deep).then_some(row));
                 self.sample(end);
                 self.reduce(end);

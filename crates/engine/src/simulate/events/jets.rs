@@ -69,7 +69,7 @@ pub fn segment_jets(
 ) -> Result<Option<(usize, SegmentMotions)>, SimulationError> {
     let Some(program) = simulator.switches() else { return Ok(None) };
     let sample: Sample = about.center.iter().copied().collect();
-    let spelled = Spelled::by(Path::start(simulator, program, &sample, (duration, segments.tolerance))?, segments);
+    let spelled = Spelled::by(Path::start(simulator, program, &sample, duration, segments.tolerance)?, segments);
     let Some(number) = spelled.word else { return Ok(None) };
     let word = &segments.words[number];
     let start = simulator.assemble(1, 0.0, |_| sample.clone())?;

@@ -24,7 +24,7 @@ impl Crossing {
 }
 
 /// The end beyond a change between a share before it and one beyond it, after so many bisections.
-pub fn bisected((mut before, mut beyond): (f64, f64), bisections: usize, is_beyond: impl Fn(f64) -> bool) -> f64 {
+pub fn bisected(mut before: f64, mut beyond: f64, bisections: usize, is_beyond: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..bisections {
         let middle = 0.5 * (before + beyond);
         if is_beyond(middle) {
@@ -58,7 +58,7 @@ pub fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64
     };
     let changed = |s: f64| cubic(s) * start <= 0.0;
     let first = (1..=POINTS).map(|point| point as f64 / POINTS as f64).find(|&s| changed(s))?;
-    let share = bisected((first - 1.0 / POINTS as f64, first), BISECTIONS, changed);
+    let share = bisected(first - 1.0 / POINTS as f64, first, BISECTIONS, changed);
     Some(Crossing { share, hidden: !changes })
 }
 

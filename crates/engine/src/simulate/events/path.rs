@@ -112,7 +112,8 @@ impl<'s> Path<'s> {
         simulator: &'s Simulator,
         program: &'s SwitchProgram,
         sample: &Sample,
-        (duration, tolerance): (f64, f64),
+        duration: f64,
+        tolerance: f64,
     ) -> Result<Self, SimulationError> {
         let assembled = simulator.assemble(1, 0.0, |_| sample.clone())?;
         let mut closure = RowClosure::new(simulator, &assembled)?;

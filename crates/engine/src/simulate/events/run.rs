@@ -99,7 +99,7 @@ impl<'s> SegmentRun<'s> {
         let of_lanes = |lanes: Lanes<'s>| {
             let own: Vec<Sample> = lanes.indices.iter().map(|&sample| samples[sample].clone()).collect();
             let width = WIDTHS.into_iter().find(|&width| width >= own.len()).unwrap_or(own.len());
-            let tile = SegmentTile::start(simulator, (program, segments), lanes, (&own, width), duration)?;
+            let tile = SegmentTile::start(simulator, program, segments, lanes, &own, width, duration)?;
             let start = simulator.assemble(width, 0.0, |lane| own[lane.min(own.len() - 1)].clone())?;
             let rows = RowClosure::new(simulator, &start)?;
             Ok(RowTile {
@@ -118,7 +118,7 @@ impl<'s> SegmentRun<'s> {
     }
 
     fn path(&self, program: &'s SwitchProgram, sample: &Sample) -> Result<Path<'s>, SimulationError> {
-        Path::start(self.simulator, program, sample, (self.duration, self.segments.tolerance))
+        Path::start(self.simulator, program, sample, self.duration, self.segments.tolerance)
     }
 
     /// The motions in their segments, to the end; `None` where an instant cannot be solved for.
@@ -280,7 +280,7 @@ impl RowTile<'_> {
                 for lane in 0..width {
                     let time = (recorded.begin[lane] + share * recorded.length[lane]).min(end);
                     self.rows.times_mut()[lane] = time;
-                    recorded.interpolate(steps, (lane, width), time, &mut own);
+                    recorded.interpolate(steps, lane, width, time, &mut own);
                     state.iter_mut().skip(lane).step_by(width).zip(&own).for_each(|(value, own)| *value = *own);
                 }
                 self.rows.close_at_times(&mut state);

@@ -80,15 +80,17 @@ impl<'s> SegmentTile<'s> {
     /// Where a sample cannot be assembled.
     pub fn start(
         simulator: &'s Simulator,
-        (program, segments): (&'s SwitchProgram, &'s Segments),
+        program: &'s SwitchProgram,
+        segments: &'s Segments,
         lanes: Lanes<'s>,
-        (samples, width): (&[Sample], usize),
+        samples: &[Sample],
+        width: usize,
         duration: f64,
     ) -> Result<Self, SimulationError> {
         let Lanes { word, indices, spelled } = lanes;
         let horizon = segments.horizon;
         let alone = |sample: &Sample| {
-            let path = Path::start(simulator, program, sample, (duration, segments.tolerance))?;
+            let path = Path::start(simulator, program, sample, duration, segments.tolerance)?;
             Ok(Alone { path: path.behind_words(), step: None, lost: false })
         };
         let goes_alone = word.is_none() || horizon < duration;
@@ -150,7 +152,7 @@ impl<'s> SegmentTile<'s> {
                 Some(word) => {
                     let holds = |recorded: &&Recorded| recorded.begin[lane] + recorded.length[lane] >= time;
                     let Some(recorded) = self.recorded.iter().find(holds).or(self.recorded.back()) else { continue };
-                    recorded.interpolate(&word.steps[recorded.number], (lane, width), time, &mut own);
+                    recorded.interpolate(&word.steps[recorded.number], lane, width, time, &mut own);
                 }
                 // Behind the samples: the last of them once more.
                 None => {
@@ -245,7 +247,7 @@ impl Recorded {
     }
 
     /// A lane's positions and velocities (2n) at a time.
-    pub fn interpolate(&self, steps: &[f64], (lane, width): (usize, usize), time: f64, into: &mut [f64]) {
+    pub fn interpolate(&self, steps: &[f64], lane: usize, width: usize, time: f64, into: &mut [f64]) {
         let share = ((time - self.begin[lane]) / self.length[lane]).clamp(0.0, 1.0);
         let (step, weights) = step_weights(steps, share);
         let nodes = &self.nodes[step * (STEP_NODES - 1)..][..STEP_NODES];

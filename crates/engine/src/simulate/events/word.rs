@@ -45,7 +45,7 @@ pub fn segments_of(
     tolerance: f64,
 ) -> Result<Option<Segments>, SimulationError> {
     let Some(program) = simulator.switches().filter(|_| can_be_cut(simulator)) else { return Ok(None) };
-    let path = |sample: &Sample| Path::start(simulator, program, sample, (duration, tolerance));
+    let path = |sample: &Sample| Path::start(simulator, program, sample, duration, tolerance);
     let is_whole = is_cut_as_a_whole(simulator);
     // Where words end, each sample goes on alone. A single motion has no bounds to gain.
     let may_end = !is_whole && samples.len() > 1;

@@ -76,13 +76,12 @@ impl<'s> JetIntegrator<'s> for ExplicitJets<'s> {
         let mut state = vec![0.0; self.run.state.len()];
         for row in rows {
             let time = schedule.time(row);
-            let steps = (&mut self.steps, &ends[..]);
             let (interruption, is_cut) = (self.interruption, &mut self.is_cut);
             let mut stepped = |_: &mut RungeKutta, _: &mut JetClosure, _| {
                 *is_cut |= interruption.is_asked();
                 !*is_cut
             };
-            reach(&mut self.run, &mut self.motion, steps, time, (&mut state, &mut stepped));
+            reach(&mut self.run, &mut self.motion, &mut self.steps, &ends, time, &mut state, &mut stepped);
             if self.is_cut {
                 return None;
             }

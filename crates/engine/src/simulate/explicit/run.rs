@@ -216,7 +216,7 @@ impl Tile<'_> {
                 *is_cut |= interruption.is_asked_in(taken);
                 !*is_cut
             };
-            reach(run, motion, (steps, ends), time, (&mut state, &mut stepped));
+            reach(run, motion, steps, ends, time, &mut state, &mut stepped);
             self.is_cut |= self.interruption.is_asked_in(row);
             if self.is_cut {
                 return (values, stops);
@@ -261,9 +261,11 @@ type Stepped<'f, M> = dyn FnMut(&mut RungeKutta, &mut M, f64) -> bool + 'f;
 pub(super) fn reach<M: Motion>(
     run: &mut RungeKutta,
     motion: &mut M,
-    (steps, ends): (&mut usize, &[f64]),
+    steps: &mut usize,
+    ends: &[f64],
     time: f64,
-    (state, stepped): (&mut [f64], &mut Stepped<'_, M>),
+    state: &mut [f64],
+    stepped: &mut Stepped<'_, M>,
 ) {
     // `steps` counts the steps that are begun; the last of them is open until a row lies beyond its end.
     while time > run.time {

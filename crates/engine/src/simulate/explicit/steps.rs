@@ -74,7 +74,8 @@ pub enum ExplicitObstacle {
 pub fn explicit_schedule(
     simulator: &Simulator,
     samples: &[Sample],
-    (duration, output_step): (f64, f64),
+    duration: f64,
+    output_step: f64,
     tolerance: f64,
     most: usize,
     interruption: Interruption<'_>,
@@ -106,7 +107,7 @@ pub fn explicit_schedule(
         };
         let Ok(step) = resolved else { return too_many };
         let step = match instants.between(time, time + step) {
-            Some(instant) => Schedule::at_row(instant, (duration, output_step)) - time,
+            Some(instant) => Schedule::at_row(instant, duration, output_step) - time,
             None => step,
         };
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
@@ -148,5 +149,5 @@ pub fn explicit_schedule(
         // A step cut short at the end, or by a function of the time, is no reason against the longer one.
         h = if step < h { h } else { step * factor.clamp(LEAST_FACTOR, LARGEST_FACTOR) };
     }
-    Ok(Ok(Schedule::passing((duration, output_step), ends, switches).taken(Integration::Explicit)))
+    Ok(Ok(Schedule::passing(duration, output_step, ends, switches).taken(Integration::Explicit)))
 }

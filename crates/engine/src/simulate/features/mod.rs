@@ -241,22 +241,23 @@ impl<'s> FeatureWatch<'s> {
     }
 
     /// Whether a function changes by more than this share of its whole range in a lane's step of length h up to `end`.
-    pub fn change(&mut self, stepper: &Stepper, lane: usize, (h, end): (f64, f64), share: f64) -> bool {
-        self.with(stepper, lane, (h, end), |features, passage, work| features.change(passage, share, work))
+    pub fn change(&mut self, stepper: &Stepper, lane: usize, h: f64, end: f64, share: f64) -> bool {
+        self.with(stepper, lane, h, end, |features, passage, work| features.change(passage, share, work))
     }
 
     /// After a step: whether its ends hide in one of the first `count` lanes what functions do on the way.
-    pub fn end_hidden(&mut self, stepper: &Stepper, count: usize, step: (f64, f64)) -> bool {
+    pub fn end_hidden(&mut self, stepper: &Stepper, count: usize, h: f64, end: f64) -> bool {
         self.end(stepper);
         let mut lanes = (0..count).filter(|&lane| stepper.alive()[lane]);
-        lanes.any(|lane| self.with(stepper, lane, step, Features::are_hidden))
+        lanes.any(|lane| self.with(stepper, lane, h, end, Features::are_hidden))
     }
 
     fn with(
         &mut self,
         stepper: &Stepper,
         lane: usize,
-        (h, end): (f64, f64),
+        h: f64,
+        end: f64,
         ask: impl Fn(&Features, Passage, &mut FeatureWork) -> bool,
     ) -> bool {
         let layout = &self.features.layout;

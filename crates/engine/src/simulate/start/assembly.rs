@@ -333,11 +333,11 @@ impl<'p> Assembly<'p> {
     pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) -> Vec<bool> {
         let layout = &self.program.layout;
         let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };
-        let registers = (start, layout.correction.start, count);
+        let corrections = layout.correction.start;
         self.settling.begin();
         for _ in 0..MAX_CORRECTIONS {
             self.tile.run(tape);
-            if !self.settling.apply(&mut self.tile, registers, &self.scale) {
+            if !self.settling.apply(&mut self.tile, start, corrections, count, &self.scale) {
                 break;
             }
         }

@@ -62,7 +62,7 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
         let distances = if is_open { distances(system, &start.layout, nominal, kind) } else { Vec::new() };
         let is_far = |(distance, value): &(&Distance, f64)| (value / distance.scale).abs() > APART;
         let far: Vec<&Distance> = distances.iter().filter(|distance| is_far(distance)).map(|(far, _)| *far).collect();
-        shared.extend(open_of(system, start, nominal, (kind, far)).map(|distance| known_as(&distance.name, kind)));
+        shared.extend(open_of(system, start, nominal, kind, far).map(|distance| known_as(&distance.name, kind)));
     }
     shared.dedup();
     shared
@@ -84,7 +84,8 @@ fn open_of<'s>(
     system: &'s System,
     start: &StartProgram,
     nominal: &[f64],
-    (kind, distances): (Kind, Vec<&'s Distance>),
+    kind: Kind,
+    distances: Vec<&'s Distance>,
 ) -> impl Iterator<Item = &'s Distance> {
     let mut rows = Vec::new();
     if !distances.is_empty() {

@@ -32,12 +32,7 @@ impl Settling {
     /// Adds corrections, `count` registers from `corrections` on, to as many values from `values` on, which are before
     /// them in the tile, in all lanes that have not settled. `scale` has the least size of the values, 1 where it ends.
     /// Returns whether a lane has not settled.
-    pub fn apply(
-        &mut self,
-        tile: &mut Tile,
-        (values, corrections, count): (usize, usize, usize),
-        scale: &[f64],
-    ) -> bool {
+    pub fn apply(&mut self, tile: &mut Tile, values: usize, corrections: usize, count: usize, scale: &[f64]) -> bool {
         let width = tile.width();
         let (known, found) = tile.values_mut().split_at_mut(corrections * width);
         let (known, found) = (&mut known[values * width..][..count * width], &found[..count * width]);

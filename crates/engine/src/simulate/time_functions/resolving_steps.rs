@@ -53,19 +53,19 @@ impl ResolvingSteps {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let mut steps: Vec<(f64, f64)> = (1..=PLACES)
             .map(|index| (1.0 - share / duration) * duration * (golden * index as f64).fract())
-            .map(|from| (from, self.resolved_step(from, share, (share, HALVINGS))))
+            .map(|from| (from, self.resolved_step(from, share, share, HALVINGS)))
             .collect();
         steps.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
         steps.truncate(PLACES - LEFT_OUT);
         let expected: f64 = steps.iter().map(|(_, step)| share / step).sum();
         match steps.last() {
-            Some(&(from, step)) if expected > UNCERTAIN * most as f64 => Err(self.too_fast(system, (from, step), most)),
+            Some(&(from, step)) if expected > UNCERTAIN * most as f64 => Err(self.too_fast(system, from, step, most)),
             _ => Ok(()),
         }
     }
 
     /// A part h of a step, halved until it resolves all functions, or so many times.
-    fn resolved_step(&mut self, from: f64, step: f64, (mut h, halvings): (f64, u32)) -> f64 {
+    fn resolved_step(&mut self, from: f64, step: f64, mut h: f64, halvings: u32) -> f64 {
         for _ in 0..halvings {
             let share = if h < step { RESOLVED } else { TOO_FAST };
             if self.functions.are_resolved((from, from + h), h, share, &mut self.work) {
@@ -89,7 +89,7 @@ impl ResolvingSteps {
     ) -> Result<f64, SimulationError> {
         if self.work.enclosures() > MOST_ENCLOSURES {
             let short = self.last.unwrap_or(step);
-            return Err(self.too_fast(system, (from, short), 0));
+            return Err(self.too_fast(system, from, short, 0));
         }
         let (mut h, mut halvings) = (step, self.functions.halvings());
         let most = self.last.map_or(f64::INFINITY, |last| GROWTH * last * (1.0 + 1e-9));
@@ -97,13 +97,13 @@ impl ResolvingSteps {
             h *= 0.5;
             halvings -= 1;
         }
-        let h = self.resolved_step(from, step, (h, halvings));
+        let h = self.resolved_step(from, step, h, halvings);
         self.last = Some(h).filter(|&h| h < step);
         Ok(h)
     }
 
     /// Of a step that is as long as the functions allow, in place of which twice as long a one was asked for.
-    fn too_fast(&mut self, system: &System, (time, step): (f64, f64), most: usize) -> SimulationError {
+    fn too_fast(&mut self, system: &System, time: f64, step: f64, most: usize) -> SimulationError {
         let h = 2.0 * step;
         let unresolved = self.functions.first_unresolved(time, h, &mut self.work);
         let (function, period) = match unresolved {

@@ -90,7 +90,7 @@ pub(super) fn drawing_svg(drawing: &Drawing) -> String {
         .add(text(Px::new(20.0, 26.0), 16.0, &what));
     let panels = projections.iter().enumerate().map(|(index, projection)| {
         let corner = Px::new(size.x * (index % columns) as f64, 40.0 + size.y * (index / columns) as f64);
-        panel(drawing, &View::centred(*projection, &places, scale, (corner, size)), corner, size)
+        panel(drawing, &View::centred(*projection, &places, scale, corner, size), corner, size)
     });
     panels.fold(document, Document::add).to_string() + "\n"
 }

@@ -74,7 +74,7 @@ pub(super) struct View {
 
 impl View {
     /// That shows the middle of some positions in the middle of a rectangle whose upper left corner is `corner`.
-    pub fn centred(projection: Projection, positions: &[[f64; 3]], scale: f64, (corner, size): (Px, Px)) -> Self {
+    pub fn centred(projection: Projection, positions: &[[f64; 3]], scale: f64, corner: Px, size: Px) -> Self {
         let (middle, _) = projection.extent(positions);
         Self { projection, scale, middle, centre: corner + 0.5 * size }
     }
@@ -124,10 +124,10 @@ mod tests {
     #[test]
     fn all_is_in_view_and_in_scale() {
         let positions = [[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.5, -1.0, 0.0]];
-        let rectangle = (Px::new(10.0, 20.0), Px::new(200.0, 100.0));
-        let scale = PLANE[0].scale(&positions, rectangle.1);
+        let (corner, size) = (Px::new(10.0, 20.0), Px::new(200.0, 100.0));
+        let scale = PLANE[0].scale(&positions, size);
         assert!((scale * PLANE[0].height(&positions) - 100.0).abs() < 1e-9);
-        let view = View::centred(PLANE[0], &positions, scale, rectangle);
+        let view = View::centred(PLANE[0], &positions, scale, corner, size);
         for position in positions {
             let px = view.px(position);
             assert!(px.x >= 10.0 - 1e-9 && px.x <= 210.0 + 1e-9 && px.y >= 20.0 - 1e-9 && px.y <= 120.0 + 1e-9);
@@ -151,7 +151,7 @@ mod tests {
     fn an_axis_at_the_reader_has_no_direction() {
         let scale = PLANE[0].scale(&[], Px::new(2.0, 3.0));
         assert!((scale - 2.0).abs() < 1e-12);
-        let view = View::centred(PLANE[0], &[], scale, (Px::zeros(), Px::new(2.0, 3.0)));
+        let view = View::centred(PLANE[0], &[], scale, Px::zeros(), Px::new(2.0, 3.0));
         assert_eq!(view.direction([0.0, 0.0, 1.0]), None);
         assert_eq!(view.direction([0.0, 2.0, 0.0]), Some(Px::new(0.0, -1.0)));
     }

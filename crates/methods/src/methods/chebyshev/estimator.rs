@@ -5,13 +5,12 @@ use super::range_search::{Previous, RangeSearch};
 use super::sensitivity::SensitivityAnalysis;
 use crate::methods::followed::Sensitivity;
 use crate::methods::result::Estimate;
-use crate::methods::validation::ValidationTable;
+use crate::methods::validation::{HeldOut, ValidationTable};
 
 /// Estimates ranges with their errors.
 pub(super) struct RangeEstimator<'a> {
     pub search: &'a RangeSearch,
-    /// ξ of the validation samples, and their motions.
-    pub validation: (&'a [Vec<f64>], &'a ValidationTable),
+    pub validation: HeldOut<'a>,
     /// Samples of the whole box with the schedule's steps and with halved ones, where the time steps' errors are asked
     /// for.
     pub halved: Option<(&'a ValidationTable, &'a ValidationTable)>,
@@ -24,7 +23,7 @@ impl RangeEstimator<'_> {
         let found = row.range(self.search, previous);
         let errors = row.errors(self.search, self.validation, index, &found);
         let step_errors = match self.halved {
-            Some(halved) => row.step_errors(self.search, halved, index, &found),
+            Some((direct, halved)) => row.step_errors(self.search, direct, halved, index, &found),
             None => vec![f64::NAN; errors.len()],
         };
         let sensitivities: Vec<Option<Sensitivity>> = match &self.sensitivity {

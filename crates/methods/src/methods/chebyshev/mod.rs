@@ -31,7 +31,7 @@ use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROG
 use adaptive::{Goal, OutputGoal};
 pub use combined::ends_of_combinations;
 pub use composition::can_compose;
-use composition::{BLOCK, Composer, Row};
+use composition::{BLOCK, Composer, NodeMotions, Row};
 use estimator::RangeEstimator;
 use outputs_alone::OutputsAlone;
 use polynomials::expanded;
@@ -362,7 +362,7 @@ fn composed(
     let search = RangeSearch::new(domain.dimension());
     let estimator = RangeEstimator {
         search: &search,
-        validation: (&validation.points, &validation.direct),
+        validation: validation.held_out(),
         halved: Some((&validation.direct, &validation.halved)),
         sensitivity: Some(SensitivityAnalysis::new(domain, surrogate)),
     };
@@ -379,7 +379,8 @@ fn composed(
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };
-        match composer.rows(surrogate, domain, &times, (values, stride, &[]), (true, BLOCK), look) {
+        let motions = NodeMotions { times: &times, values, stride, courses: &[] };
+        match composer.rows(surrogate, domain, motions, true, BLOCK, look) {
             Ok(found) => {
                 for (row, (estimates, row_kept)) in rows.zip(found) {
                     kept.iter_mut().for_each(|kept| kept.extend(row_kept.clone()));

@@ -128,7 +128,7 @@ pub(super) fn expanded(
             .collect();
         let Some(mut found) = found else { return };
         reached = rows.end;
-        bands.set_polynomials(rows.clone(), &mut found, (validation, &kinks));
+        bands.set_polynomials(rows.clone(), &mut found, validation, &kinks);
         if let Some(kept) = &mut kept {
             let lines: Vec<&[f64]> = found.iter().map(|found| found.coefficients.as_slice()).collect();
             let of_rows = rows.zip(lines.chunks_exact(ensemble.outputs().max(1)));

@@ -8,7 +8,7 @@ use symdiff::math;
 
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
-use crate::methods::validation::ValidationTable;
+use crate::methods::validation::{HeldOut, ValidationTable};
 use crate::numerics::{Course, ParameterBox, Range, SparseGrid, expected, step_validation};
 
 /// Highest degree in a parameter, by the number of parameters: one costs a node each, many their products.
@@ -66,6 +66,11 @@ pub(super) struct SubBox<'r> {
 }
 
 impl SubBox<'_> {
+    /// The validation samples.
+    pub fn held_out(&self) -> HeldOut<'_> {
+        HeldOut { points: &self.points, direct: &self.direct }
+    }
+
     /// Highest degree along each axis.
     pub fn degrees(&self) -> Vec<u8> {
         let mut degrees = vec![0; self.grid.dimension()];
@@ -103,7 +108,7 @@ impl SubBox<'_> {
     }
 
     /// Adds nodes, given their motions and outputs: row by row, line by line, node by node.
-    pub fn add(&mut self, (count, values): (usize, Vec<f64>)) {
+    pub fn add(&mut self, count: usize, values: Vec<f64>) {
         let turning = self.courses.iter().flatten().count();
         let with_times = |row: &[f64]| {
             let mut row = row.to_vec();

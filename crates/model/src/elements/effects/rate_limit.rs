@@ -139,7 +139,7 @@ impl Group for RateLimit {
         let formula = |value: Option<(Formula, Option<Dimension>)>| value.map(|(formula, _)| formula);
         let limits = formula(lower).zip(formula(upper)).map(|(lower, upper)| [lower, upper]);
         if let Some([lower, upper]) = &limits {
-            reader.ordered(fields, ("lower", lower), ("upper", upper));
+            reader.ordered(fields, "lower", lower, "upper", upper);
         }
         let initial = formula(initial).unwrap_or_else(|| Formula::number(0.0));
         Some(Self { input, rate: formula(rate), lag, limits, initial, dimension })

@@ -39,6 +39,6 @@ impl ShapeElement for Capsule {
 
 impl Checked for Capsule {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        check_ends(reader, fields.key_span("ends"), ("capsule", &self.ends));
+        check_ends(reader, fields.key_span("ends"), "capsule", &self.ends);
     }
 }

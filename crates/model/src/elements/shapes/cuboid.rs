@@ -36,6 +36,6 @@ impl ShapeElement for Cuboid {
 
 impl Checked for Cuboid {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        check_lengths(reader, fields.key_span("size"), ("box", &self.size));
+        check_lengths(reader, fields.key_span("size"), "box", &self.size);
     }
 }

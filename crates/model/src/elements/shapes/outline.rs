@@ -43,6 +43,6 @@ impl ShapeElement for Outline {
 
 impl Checked for Outline {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        self.points.check_edges(reader, fields.key_span("points"), ("outline", 3));
+        self.points.check_edges(reader, fields.key_span("points"), "outline", 3);
     }
 }

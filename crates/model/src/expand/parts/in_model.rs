@@ -142,7 +142,7 @@ impl Writer<'_, '_> {
             None => Vec::new(),
         };
         // The reader reports malformed values.
-        let Some(wanted) = held_in_model(&held, frame, free, turns.contains(&true), (scope, &span)) else { return };
+        let Some(wanted) = held_in_model(&held, frame, free, turns.contains(&true), scope, &span) else { return };
         for (name, value) in wanted {
             held.retain(|key| key.key != name && !(name == "orientation" && key.key == "angle"));
             held.push(Entry { key: name.to_owned(), key_span: at.clone(), value });
@@ -162,7 +162,8 @@ fn held_in_model(
     frame: Frame,
     free: [bool; 3],
     turns: bool,
-    (scope, span): (&Arc<Scope>, &Span),
+    scope: &Arc<Scope>,
+    span: &Span,
 ) -> Option<Vec<(&'static str, Node)>> {
     let of = |name: &str| held.iter().find(|key| key.key == name).map(|key| &key.value);
     let number = |name: &str| of(name).map_or_else(|| Some("0".to_owned()), text);

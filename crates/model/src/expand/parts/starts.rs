@@ -35,7 +35,7 @@ impl Writer<'_, '_> {
                             mirror::negate(&mut start.value);
                         }
                     }
-                    Some(of) => self.start(start, &of, &said, (frame, scope)),
+                    Some(of) => self.start(start, &of, &said, frame, scope),
                     None => {}
                 }
             }
@@ -63,7 +63,7 @@ impl Writer<'_, '_> {
         }
     }
 
-    fn start(&mut self, start: &mut Entry, of: &Of, said: &[Entry], (frame, scope): (Frame, &Arc<Scope>)) {
+    fn start(&mut self, start: &mut Entry, of: &Of, said: &[Entry], frame: Frame, scope: &Arc<Scope>) {
         let Some((owner, coordinate)) = start.key.rsplit_once('.').map(|(a, b)| (a.to_owned(), b.to_owned())) else {
             return;
         };
@@ -105,13 +105,13 @@ impl Writer<'_, '_> {
                     mirror::negate(&mut start.value);
                 }
             }
-            (Of::Place, "angle" | "angular_velocity") => self.angle(start, coordinate == "angle", (frame, scope)),
-            _ => self.component(start, &owner, &coordinate, said, (frame, scope)),
+            (Of::Place, "angle" | "angular_velocity") => self.angle(start, coordinate == "angle", frame, scope),
+            _ => self.component(start, &owner, &coordinate, said, frame, scope),
         }
     }
 
     /// The start of a body's angle or of its rate.
-    fn angle(&mut self, start: &mut Entry, is_angle: bool, (frame, scope): (Frame, &Arc<Scope>)) {
+    fn angle(&mut self, start: &mut Entry, is_angle: bool, frame: Frame, scope: &Arc<Scope>) {
         if frame.turned == Turned::InSpace {
             let name = own_name(start, scope);
             let message = format!("`{name}` is about the model's z, but the instance is turned in space");
@@ -134,7 +134,8 @@ impl Writer<'_, '_> {
         owner: &str,
         coordinate: &str,
         said: &[Entry],
-        (frame, scope): (Frame, &Arc<Scope>),
+        frame: Frame,
+        scope: &Arc<Scope>,
     ) {
         let (is_velocity, letter) = match coordinate.strip_prefix('v') {
             Some(letter) => (true, letter),

@@ -88,12 +88,23 @@ fn varying(reader: &Reader, drafts: &[Draft]) -> Vec<bool> {
     varies
 }
 
+/// A parameter whose value depends on uncertain ones, and which deviates from it.
+pub struct Deviating<'f> {
+    /// Index of the parameter.
+    pub index: usize,
+    /// Index of the parameter that is its deviation.
+    pub deviation: usize,
+    /// Its value without the deviation.
+    pub formula: &'f Formula,
+    /// That at the nominal values, where it is known.
+    pub nominal: Option<f64>,
+}
+
 /// Gives such a parameter its formula, and its deviation an interval; those that it uses have theirs.
 pub fn finish(
     reader: &mut Reader,
     draft: &Draft,
-    (index, deviation): (usize, usize),
-    (formula, nominal): (&Formula, Option<f64>),
+    Deviating { index, deviation, formula, nominal }: Deviating<'_>,
     kind: &mut Kind,
     values: &mut [f64],
 ) {

@@ -164,7 +164,7 @@ fn settled(
         let ends = |to: f64| priced.iter().map(move |&i| (i, to));
         let least: Vec<f64> = ends(1.0 / change).map(|(i, change)| (multiples[i] * change).max(tightest[i])).collect();
         let most: Vec<f64> = ends(change).map(|(i, change)| (multiples[i] * change).min(items[i].widest)).collect();
-        let found = cheapest(&costs, slack.power(), (&pick(&multiples), &constraints), (&least, &most));
+        let found = cheapest(&costs, slack.power(), &pick(&multiples), &constraints, &least, &most);
         let moved = priced.iter().zip(&found).map(|(&i, found)| (found / multiples[i] - 1.0).abs()).fold(0.0, f64::max);
         priced.iter().zip(&found).for_each(|(&i, &found)| multiples[i] = found);
         if moved < settled || slack.is_interrupted() {

@@ -148,12 +148,12 @@ impl Allocator<'_> {
         let last = best.map(|(_, found, summary)| (found, summary)).or(chosen);
         let Some((found, summary)) = last else {
             allocation.not_met = self.not_met(&mut *slack);
-            allocation.tolerances = self.tolerances((&present, &present), &mut *slack, &mut allocation.tightest);
+            allocation.tolerances = self.tolerances(&present, &present, &mut *slack, &mut allocation.tightest);
             return Ok(allocation);
         };
         allocation.is_confirmed = confirmed;
         allocation.is_exhaustive = found.is_exhaustive;
-        allocation.tolerances = self.tolerances((&present, &found.multiples), &mut *slack, &mut allocation.tightest);
+        allocation.tolerances = self.tolerances(&present, &found.multiples, &mut *slack, &mut allocation.tightest);
         self.trade(&mut *slack, &found.multiples, &mut allocation);
         allocation.requirements = summary.requirements;
         if let Some(found) = summary.statistics {
@@ -285,7 +285,8 @@ impl Allocator<'_> {
 
     fn tolerances(
         &self,
-        (before, after): (&[f64], &[f64]),
+        before: &[f64],
+        after: &[f64],
         slack: &mut dyn Slack,
         tightest: &mut String,
     ) -> Vec<AllocatedTolerance> {

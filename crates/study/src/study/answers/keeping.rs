@@ -67,7 +67,7 @@ fn errors_of_values(
     let samples: Vec<Sample> = study.domain.samples(&validation.points);
     let every: Vec<usize> = (0..outputs).collect();
     let own: Vec<Vec<f64>> =
-        (0..rows).into_par_iter().map(|row| part.surrogate.values(row, (&every, &samples), &closures)).collect();
+        (0..rows).into_par_iter().map(|row| part.surrogate.values(row, &every, &samples, &closures)).collect();
     let of_output = |output: usize| {
         let corrections = validation.corrections(output, rows, results.bounded.switched_from());
         let surrogate = |row: usize| {

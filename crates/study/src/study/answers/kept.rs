@@ -204,7 +204,7 @@ impl Evaluator<'_> {
             let pick = |sample: &P| parameters.iter().map(|&parameter| sample.as_ref()[parameter]).collect();
             let own: Vec<Vec<f64>> = samples.iter().map(pick).collect();
             let of_part: Vec<usize> = indices.iter().map(|&index| self.kept.indices[outputs[index]].1).collect();
-            let found = part.surrogate.values(row, (&of_part, &own), closures);
+            let found = part.surrogate.values(row, &of_part, &own, closures);
             for (&index, found) in indices.iter().zip(found.chunks_exact(samples.len().max(1))) {
                 values[index * samples.len()..][..samples.len()].copy_from_slice(found);
             }

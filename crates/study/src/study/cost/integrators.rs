@@ -102,7 +102,8 @@ impl Course {
                 let controlled = schedule_for_tolerance(
                     simulator,
                     samples,
-                    (simulation.duration, simulation.output_step),
+                    simulation.duration,
+                    simulation.output_step,
                     tolerance,
                     Interruption::default(),
                 )?;

@@ -88,7 +88,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     let progress = |done| (options.progress)(REFERENCE_DONE * done);
     let is_fixed = matches!(model.simulation.stepping, Stepping::Fixed(_));
     let has_expansion = is_fixed && compile_switches(&system).is_none() && !system.analysis.is_without_steps();
-    let planned = Plan::within_budget(model, (composable, has_expansion), &within)
+    let planned = Plan::within_budget(model, composable, has_expansion, &within)
         .and_then(|plan| Ok((Reference::compute(model, &plan, &within, &progress)?, plan)));
     let (reference, plan) = match planned {
         Ok(found) => found,
@@ -118,7 +118,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         let skipped;
         let over = is_over(for_bounds);
         let within = CostOptions { budget: for_bounds, interrupted: &over, ..*options };
-        (bounds, skipped) = run_settings(model, &settings, &reference, (&within, plan.rate), begun);
+        (bounds, skipped) = run_settings(model, &settings, &reference, &within, plan.rate, begun);
         // An interruption is another reason.
         let skipped = skipped.into_iter().filter(|_| !(options.interrupted)());
         left_out.extend(skipped.map(|(method, count)| beyond_budget(method, count, options)));
@@ -196,7 +196,8 @@ fn run_settings(
     model: &Description,
     settings: &[Setting],
     reference: &Reference,
-    (options, rate): (&CostOptions, f64),
+    options: &CostOptions,
+    rate: f64,
     begun: Instant,
 ) -> (Vec<CostPoint>, Vec<(CostMethod, usize)>) {
     let k = uncertain(model);

@@ -57,7 +57,8 @@ impl Plan {
     /// Where a run fails, or even the coarsest takes too long, or there are too many parameters for any.
     pub(super) fn within_budget(
         model: &Description,
-        (composable, has_expansion): (bool, bool),
+        composable: bool,
+        has_expansion: bool,
         options: &CostOptions,
     ) -> Result<Self, CostError> {
         let k = uncertain(model);

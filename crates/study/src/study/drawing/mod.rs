@@ -138,7 +138,9 @@ struct End {
 }
 
 fn drawn_element(
-    (name, kind, glyph): (&str, &'static str, Glyph),
+    name: &str,
+    kind: &'static str,
+    glyph: Glyph,
     ends: &[End],
     axis: Option<Vector3<f64>>,
 ) -> DrawnElement {
@@ -207,13 +209,13 @@ impl Scene<'_> {
             let joint = &self.description.joints[index];
             let turned = joint.kind.between().map(|[first, _]| self.frame(first).rotation);
             let axis = direction.zip(turned).map(|(direction, turned)| turned * self.values.vector(direction));
-            elements.push(drawn_element((&joint.name, joint.kind.keyword(), joint.kind.glyph()), &ends, axis));
+            elements.push(drawn_element(&joint.name, joint.kind.keyword(), joint.kind.glyph(), &ends, axis));
         }
         for (index, direction) in of_effects.iter().enumerate() {
             let ends = self.effect(index);
             let effect = &self.description.effects[index];
             let axis = direction.map(|direction| self.values.vector(direction));
-            elements.push(drawn_element((&effect.name, effect.kind.keyword(), effect.kind.glyph()), &ends, axis));
+            elements.push(drawn_element(&effect.name, effect.kind.keyword(), effect.kind.glyph(), &ends, axis));
         }
         elements
     }

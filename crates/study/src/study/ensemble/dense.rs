@@ -21,8 +21,8 @@ pub fn dense(motions: &Motions, samples: &[Sample]) -> Result<Option<DenseMotion
         return Ok(None);
     }
     let (end, ends) = (motions.schedule.end(), motions.schedule.ends());
-    let dense = Schedule::passing((end, end / (DENSE * ends.len()) as f64), ends, Vec::new())
-        .taken(motions.schedule.integration);
+    let dense =
+        Schedule::passing(end, end / (DENSE * ends.len()) as f64, ends, Vec::new()).taken(motions.schedule.integration);
     let mut run = integrator(motions.simulator, samples, &dense)?;
     run.heed(motions.interruption);
     let lines = 2 * motions.simulator.system.q.len() * samples.len();

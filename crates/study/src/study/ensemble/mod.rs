@@ -304,7 +304,7 @@ impl Ensemble for Motions<'_> {
     ) -> Result<Simulated, EnsembleError> {
         let lines = methods::lines(self, sampling.observed);
         let mut noted = |rows: Rows<usize>, values: &[f64]| {
-            self.ledger.into_iter().for_each(|ledger| ledger.note(rows.start, (lines, samples.len()), values));
+            self.ledger.into_iter().for_each(|ledger| ledger.note(rows.start, lines, samples.len(), values));
             reduce(rows, values);
         };
         let simulated = match &self.stored {

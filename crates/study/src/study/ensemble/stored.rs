@@ -48,7 +48,7 @@ impl Stored<'_> {
         motions: &Motions,
         parts: impl Iterator<Item = Vec<Sample>> + Clone,
     ) -> Result<(), SimulationError> {
-        let tasks = parts.map(|samples| self.task(motions, samples, (Observed::Outputs, Until::End), None));
+        let tasks = parts.map(|samples| self.task(motions, samples, Observed::Outputs, Until::End, None));
         self.each_part(motions, tasks, |_, _| Ok(()))
     }
 
@@ -62,7 +62,7 @@ impl Stored<'_> {
     ) -> Result<Simulated, SimulationError> {
         let lines = lines(motions, sampling.observed);
         let size = samples_of_part(lines, motions.rows());
-        let task = |samples: &[Sample]| self.task(motions, samples.to_vec(), (sampling.observed, sampling.until), None);
+        let task = |samples: &[Sample]| self.task(motions, samples.to_vec(), sampling.observed, sampling.until, None);
         let mut parts = Vec::new();
         self.each_part(motions, samples.chunks(size).map(task), |_, part| {
             parts.push(part);
@@ -74,7 +74,7 @@ impl Stored<'_> {
             keep_reduced(motions, samples, &part.simulated.reduced);
             total.add(number * size, part.simulated.clone());
         }
-        deliver(&mut parts, (&counts, lines), reduce)?;
+        deliver(&mut parts, &counts, lines, reduce)?;
         Ok(total)
     }
 
@@ -82,7 +82,7 @@ impl Stored<'_> {
     pub fn scan(&self, motions: &Motions, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), SimulationError> {
         let task = |first: usize| {
             let scan = ScanPart { points: grid.points().to_vec(), first };
-            self.task(motions, grid.samples(first, motions.domain), (Observed::Outputs, Until::End), Some(scan))
+            self.task(motions, grid.samples(first, motions.domain), Observed::Outputs, Until::End, Some(scan))
         };
         let mut bounds = ScanBounds::new(motions.rows(), motions.outputs(), grid.points());
         let mut total = Simulated::default();
@@ -106,7 +106,8 @@ impl Stored<'_> {
         &self,
         motions: &Motions,
         samples: Vec<Sample>,
-        (observed, until): (Observed, Until),
+        observed: Observed,
+        until: Until,
         scan: Option<ScanPart>,
     ) -> Task {
         let Steps { schedule, controller } = motions.steps();
@@ -205,7 +206,8 @@ pub(in crate::study) fn simulate_part(
 /// Gives the rows that all parts have, in blocks as those of a simulation of all samples.
 fn deliver(
     parts: &mut [PartReader],
-    (counts, lines): (&[usize], usize),
+    counts: &[usize],
+    lines: usize,
     reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
 ) -> Result<(), SimulationError> {
     let all: usize = counts.iter().sum();

@@ -187,7 +187,8 @@ impl<'a> Rows<'a> {
                 let found = schedule_for_tolerance(
                     &self.simulator,
                     controlling,
-                    (duration, output_step),
+                    duration,
+                    output_step,
                     tolerance,
                     self.interruption,
                 )?;

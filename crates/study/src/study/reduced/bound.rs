@@ -95,7 +95,7 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let values = Evaluated::new(study, &results, unreliable, store);
     let reduced = study.description.reduced.iter().enumerate();
     let contributions = contributions(study, &results, 1);
-    let reduced = reduced.map(|index| summary_of(study, index, &values, &contributions)).collect();
+    let reduced = reduced.map(|(index, own)| summary_of(study, index, own, &values, &contributions)).collect();
     let simulations = motions.over() + motions_halved.over() + motions_odd.over();
     let summary = (simulations > 0).then(|| MethodSummary {
         method: "reduced outputs".to_owned(),
@@ -136,8 +136,8 @@ fn bounds_of(
     let sampled: Vec<(Method, &dyn BoundingMethod)> = sampled.collect();
     let summary = MethodSummary { method: "validation".to_owned(), ..results.nominal.summary.clone() };
     if study.domain.dimension() == 0 {
-        let known = (&results.nominal.result.bands[..], 1);
-        let validation = Validation::of_nominal(ensembles, known).map_err(simulation_error)?;
+        let validation =
+            Validation::of_nominal(ensembles, &results.nominal.result.bands, 1).map_err(simulation_error)?;
         for (method, _) in sampled {
             let known = |range: &Range| if range.lower.is_nan() { f64::NAN } else { 0.0 };
             let own = &results.nominal.result;
@@ -182,7 +182,8 @@ fn nominal_values(study: &Study, ensemble: &dyn Ensemble) -> Result<MethodResult
 
 fn summary_of(
     study: &Study,
-    (index, reduced): (usize, &ReducedOutput),
+    index: usize,
+    reduced: &ReducedOutput,
     values: &Evaluated,
     contributions: &[Vec<Contribution>],
 ) -> ReducedSummary {

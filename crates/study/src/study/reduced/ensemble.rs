@@ -101,7 +101,7 @@ impl<'a> ReducedEnsemble<'a> {
         if self.domain().contains(sample) && channels.iter().all(|value| value.is_finite()) {
             let mut values = Vec::new();
             self.store.plan.values.evaluate(channels, sample, &mut values);
-            self.seen.note(0, (values.len(), 1), &values);
+            self.seen.note(0, values.len(), 1, &values);
         }
     }
 

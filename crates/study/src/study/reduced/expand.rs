@@ -46,7 +46,8 @@ fn output_of(outputs: &mut Vec<Output>, name: &str, formula: &Formula, of_result
 pub fn shown(
     description: &Description,
     expanded: &Description,
-    (mut bounds, mut summary): (Bounds, Summary),
+    mut bounds: Bounds,
+    mut summary: Summary,
 ) -> (Bounds, Summary) {
     let hidden = description.outputs.len()..expanded.outputs.len();
     if !hidden.is_empty() {

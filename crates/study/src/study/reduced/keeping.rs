@@ -27,7 +27,7 @@ pub fn kept_reduced(
     let mut kept = KeptReduced { surrogate, values: values.clone(), errors: Vec::new() };
     let samples: Vec<Sample> = study.domain.samples(&validation.points);
     let every: Vec<usize> = (0..values.count()).collect();
-    let own = kept.surrogate.values(0, (&every, &samples), &kept.closures());
+    let own = kept.surrogate.values(0, &every, &samples, &kept.closures());
     let of_value = |value: usize| {
         let direct = validation.direct.at(0, value);
         let known = &own[value * samples.len()..][..samples.len()];

@@ -32,7 +32,7 @@ impl KeptReduced {
     pub fn values<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
         let wanted: Vec<usize> = (0..count).collect();
         let closures = self.closures();
-        let of_chunk = |samples: &[P]| self.surrogate.values(0, (&wanted, samples), &closures);
+        let of_chunk = |samples: &[P]| self.surrogate.values(0, &wanted, samples, &closures);
         let chunks: Vec<Vec<f64>> = samples.par_chunks(CHUNK).map(of_chunk).collect();
         together(count, &chunks, samples.len())
     }
@@ -61,7 +61,7 @@ impl KeptReduced {
         let wanted: Vec<usize> = (first..self.values.count()).collect();
         let closures = self.closures();
         let of_chunk = |samples: &[P]| {
-            let values = self.surrogate.values(0, (&wanted, samples), &closures);
+            let values = self.surrogate.values(0, &wanted, samples, &closures);
             let margin = |index: usize| {
                 let (requirement, sample) = (index / samples.len(), index % samples.len());
                 self.values.margin(requirement, |value| values[(value - first) * samples.len() + sample])

@@ -67,7 +67,7 @@ impl Plan {
     }
 
     /// When a requirement is nearest to failing in a motion; `None` without a time.
-    pub fn when(&self, (number, own): (usize, &Requirement), channels: &[f64]) -> Option<f64> {
+    pub fn when(&self, number: usize, own: &Requirement, channels: &[f64]) -> Option<f64> {
         let (from, to) = own.times?;
         if from == to {
             return Some(from);

@@ -39,16 +39,17 @@ pub fn verdicts(
     ensembles: [&ReducedEnsemble; 2],
 ) -> Result<Vec<RequirementSummary>, SimulationError> {
     let requirements = study.description.requirements.iter().enumerate();
-    let verdict = |own| match study.interruption.is_asked() {
+    let verdict = |(number, own)| match study.interruption.is_asked() {
         true => Err(SimulationError::Interrupted),
-        false => verdict(study, own, values, rows, ensembles),
+        false => verdict(study, number, own, values, rows, ensembles),
     };
     requirements.map(verdict).collect()
 }
 
 fn verdict(
     study: &Study,
-    (number, own): (usize, &Requirement),
+    number: usize,
+    own: &Requirement,
     values: &Evaluated,
     rows: &Bounded,
     ensembles: [&ReducedEnsemble; 2],
@@ -75,7 +76,7 @@ fn verdict(
     let by_functions = rows.functions.is_some() && parts.iter().all(|part| part.is_known) && parts.len() == 1;
     let is_known = parts.iter().all(|part| part.is_known) && (by_functions || !values.unreliable);
     let holds = is_known && least >= 0.0;
-    let nearest = nearest(study, (number, own), values, holds, ensembles)?;
+    let nearest = nearest(study, number, own, values, holds, ensembles)?;
     let fails = nearest.as_ref().is_some_and(|case| case.margin.is_nan() || case.margin + case.error < 0.0);
     // An end over functions is attained.
     let fails = fails || by_functions && lower + error < 0.0;
@@ -133,7 +134,8 @@ fn part(study: &Study, values: &Evaluated, index: usize) -> Part {
 /// are tried too.
 fn nearest(
     study: &Study,
-    (number, own): (usize, &Requirement),
+    number: usize,
+    own: &Requirement,
     values: &Evaluated,
     holds: bool,
     [direct, halved]: [&ReducedEnsemble; 2],
@@ -164,7 +166,7 @@ fn nearest(
         parameters: best.0.to_vec(),
         margin: least,
         error: if error.is_nan() && !least.is_nan() { f64::INFINITY } else { error },
-        time: direct.plan().when((number, own), &channels),
+        time: direct.plan().when(number, own, &channels),
         corner: !xi.is_empty() && xi.iter().all(|xi| (xi.abs() - 1.0).abs() < 1e-12),
         settings: known.map(|(parameter, value)| setting(&parameter.name, *value, &parameter.unit)).collect(),
         command: String::new(),

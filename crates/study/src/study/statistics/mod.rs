@@ -34,7 +34,7 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
     let found = match &kept {
         _ if (options.interrupted)() => Err(INTERRUPTED.to_owned()),
         _ if random::is_random(description) => random::of_motions(description, shown, options),
-        Some(kept) => of_run((description, shown), options, &bounds, kept),
+        Some(kept) => of_run(description, shown, options, &bounds, kept),
         None => Err("there is no surrogate over the whole box".to_owned()),
     };
     let found = found.unwrap_or_else(|failure| StatisticsResult {
@@ -51,7 +51,8 @@ pub(super) fn run(description: &Description, shown: usize, options: &Options) ->
 
 /// Statistics of what a run kept; where a law reaches beyond the box, of a surrogate over a wider one.
 fn of_run(
-    (description, shown): (&Description, usize),
+    description: &Description,
+    shown: usize,
     options: &Options,
     bounds: &Bounds,
     kept: &Kept,

@@ -167,7 +167,7 @@ impl<'a> Rows<'a> {
         let mut replicates = Replicates::new(shares.len());
         for replicate in 0..REPLICATES {
             self.go_on()?;
-            replicates.add(&mut self.values(row, output, (replicate, fewer), own_error.is_some()), shares);
+            replicates.add(&mut self.values(row, output, replicate, fewer, own_error.is_some()), shares);
         }
         let error = stated.total[row] + own_error.unwrap_or(0.0);
         let with_error = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
@@ -186,11 +186,11 @@ impl<'a> Rows<'a> {
     pub fn few_values(&self, row: usize, output: usize) -> Vec<f64> {
         let by_own = self.own_error(row, output, self.kept.error(output).total[row]).is_some();
         let fewer = self.fewer(if by_own { FEW } else { FEW_CLOSED });
-        (0..REPLICATES).flat_map(|replicate| self.values(row, output, (replicate, fewer), by_own)).collect()
+        (0..REPLICATES).flat_map(|replicate| self.values(row, output, replicate, fewer, by_own)).collect()
     }
 
     /// An output's values in a row, by its own polynomial or through the loop closure.
-    pub fn values(&self, row: usize, output: usize, (replicate, fewer): (usize, usize), by_own: bool) -> Vec<f64> {
+    pub fn values(&self, row: usize, output: usize, replicate: usize, fewer: usize, by_own: bool) -> Vec<f64> {
         if by_own {
             return self.kept.own_values(row, output, &self.points(replicate, fewer)).unwrap_or_default();
         }

@@ -32,7 +32,7 @@ pub(super) fn sensitivities(rows: &Rows, row: usize, output: usize) -> Vec<Sensi
 pub(super) fn histogram(rows: &Rows, row: usize, output: usize) -> Option<Histogram> {
     let is_own = rows.own_error(row, output, rows.kept.error(output).total[row]).is_some();
     let values: Vec<f64> =
-        (0..REPLICATES).flat_map(|replicate| rows.values(row, output, (replicate, 1), is_own)).collect();
+        (0..REPLICATES).flat_map(|replicate| rows.values(row, output, replicate, 1, is_own)).collect();
     let (lower, upper) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
     let width = (upper - lower) / INTERVALS as f64;
     // Written so that NaN has none.

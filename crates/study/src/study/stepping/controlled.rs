@@ -20,17 +20,23 @@ pub fn schedule_within(
     tolerance: f64,
     samples: &[Sample],
 ) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
-    let times = (study.description.simulation.duration, study.description.simulation.output_step);
+    let (duration, output_step) = (study.description.simulation.duration, study.description.simulation.output_step);
     let integration = integration(study);
     // Plain steps for an error of e are as long as the root of e, extrapolated ones as long as a higher root.
     let of_plain = |error: f64| match integration.order() {
         2 => error,
         order => math::pow(error, 2.0 / order as f64),
     };
-    let mut controller = Controller { tolerance: of_plain(tolerance), duration: times.0 };
+    let mut controller = Controller { tolerance: of_plain(tolerance), duration };
     let schedule = |controller: Controller| -> Result<ToleranceSchedule, SimulationError> {
-        let controlled =
-            schedule_for_tolerance(&study.simulator, samples, times, controller.tolerance, study.interruption)?;
+        let controlled = schedule_for_tolerance(
+            &study.simulator,
+            samples,
+            duration,
+            output_step,
+            controller.tolerance,
+            study.interruption,
+        )?;
         Ok(ToleranceSchedule { schedule: controlled.schedule.taken(integration), ..controlled })
     };
     let mut controlled = schedule(controller)?;

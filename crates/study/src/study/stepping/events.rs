@@ -19,18 +19,18 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     }
     (study.stage)("searching for events");
     let simulation = &study.description.simulation;
-    let times = (simulation.duration, simulation.output_step);
+    let (duration, output_step) = (simulation.duration, simulation.output_step);
     let of_steps = match simulation.stepping {
         Stepping::Tolerance(tolerance) => Some(tolerance),
         Stepping::Fixed(_) => None,
     };
     let asked = of_steps.into_iter().chain(study.request.tolerance).map(|tolerance| TUNING.event_share * tolerance);
     let tolerance = asked.fold(TUNING.event_error, f64::min);
-    let segments = segments_of(&study.simulator, &study.domain, &event_samples(study), times.0, tolerance)?;
+    let segments = segments_of(&study.simulator, &study.domain, &event_samples(study), duration, tolerance)?;
     // A number that is accumulated over a motion is one of the whole of it.
     let accumulates = !study.description.reduced.is_empty() || !study.description.requirements.is_empty();
-    let segments = segments.filter(|segments| !accumulates || segments.horizon >= times.0);
-    Ok(segments.map(|segments| Schedule::segmented(times, segments)))
+    let segments = segments.filter(|segments| !accumulates || segments.horizon >= duration);
+    Ok(segments.map(|segments| Schedule::segmented(duration, output_step, segments)))
 }
 
 /// The search for events, as a line of the summary: no sample met others.

@@ -73,14 +73,14 @@ pub fn explicit_steps(
     base: &Schedule,
     tolerance: f64,
 ) -> Result<Result<Schedule, ExplicitObstacle>, SimulationError> {
-    let times = (study.description.simulation.duration, study.description.simulation.output_step);
+    let (duration, output_step) = (study.description.simulation.duration, study.description.simulation.output_step);
     let asked = study.description.simulation.scheme == SchemeChoice::Explicit;
     let most = if asked {
         TUNING.explicit_most_steps
     } else {
         TUNING.explicit_further_steps + base.steps_before(base.rows - 1)
     };
-    explicit_schedule(&study.simulator, samples, times, tolerance, most, study.interruption)
+    explicit_schedule(&study.simulator, samples, duration, output_step, tolerance, most, study.interruption)
 }
 
 /// A schedule whose errors at the validation samples are within the steps' share of a tolerance of the bounds.
@@ -191,15 +191,13 @@ pub fn decision(description: &Description, simulator: &Simulator) -> Option<Deci
     };
     let base = Schedule::fixed(simulation.duration, step, simulation.output_step);
     let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-    let (times, most) = (
-        (simulation.duration, simulation.output_step),
-        TUNING.explicit_further_steps + base.steps_before(base.rows - 1),
-    );
+    let most = TUNING.explicit_further_steps + base.steps_before(base.rows - 1);
     Some(
         match explicit_schedule(
             simulator,
             &[nominal],
-            times,
+            simulation.duration,
+            simulation.output_step,
             TUNING.explicit_share * tolerance,
             most,
             Interruption::default(),

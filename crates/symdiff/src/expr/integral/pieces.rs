@@ -16,7 +16,7 @@ impl Graph {
             return Some(self.binary(function, condition, whole));
         }
         let Some(slope) = self.steady_slope(condition, by) else {
-            return self.integral_under_joined(function, condition, (value, whole), by);
+            return self.integral_under_joined(function, condition, value, whole, by);
         };
         let is_late = (self.as_constant(slope)? > 0.0) == (function == Binary::Select);
         let zero = self.constant(0.0);
@@ -32,7 +32,8 @@ impl Graph {
         &mut self,
         function: Binary,
         condition: Expr,
-        (value, whole): (Expr, Expr),
+        value: Expr,
+        whole: Expr,
         by: Expr,
     ) -> Option<Expr> {
         if !self.is_truth(condition)? {

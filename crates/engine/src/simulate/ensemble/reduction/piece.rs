@@ -96,7 +96,7 @@ impl Piece {
 
     /// Where the value becomes positive on the way from a share at which it is negative to one at which it is not.
     fn crossing(&self, below: f64, above: f64) -> f64 {
-        bisected((below, above), BISECTIONS, |share| self.at(share) >= 0.0)
+        bisected(below, above, BISECTIONS, |share| self.at(share) >= 0.0)
     }
 
     /// The integral of a function of the value over a part, by Gauss' rule of four nodes: exact up to degree 7.

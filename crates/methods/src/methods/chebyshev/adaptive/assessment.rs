@@ -1,7 +1,7 @@
 //! How far off the surrogate of a sub-box is: at nodes that are new to it, and at validation samples.
 
 use super::Adaptation;
-use crate::methods::chebyshev::composition::{BLOCK, Composer, Row};
+use crate::methods::chebyshev::composition::{BLOCK, Composer, NodeMotions, Row};
 use crate::methods::chebyshev::detail::Detail;
 use crate::methods::chebyshev::estimator::RangeEstimator;
 use crate::methods::chebyshev::range_search::Previous;
@@ -45,7 +45,14 @@ impl Adaptation<'_> {
             };
             (0..nodes.len()).map(of_node).collect::<Vec<f64>>()
         };
-        let by_row = rows_of(&mut self.composer, self.ensemble, (sub_box, surrogate), &rows, (false, BLOCK), look)?;
+        let by_row = rows_of(
+            &mut self.composer,
+            self.ensemble,
+            sub_box,
+            surrogate,
+            Looks { rows: &rows, velocities: false, block: BLOCK },
+            look,
+        )?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
@@ -90,10 +97,17 @@ impl Adaptation<'_> {
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let goal = &self.goal;
         let look = |index: usize, row: &Row, _: &mut Previous| {
-            let errors = row.errors_at_samples((&sub_box.points, &sub_box.direct), rows[index]);
+            let errors = row.errors_at_samples(sub_box.held_out(), rows[index]);
             goal.share(rows[index], errors.iter().map(|error| SAFETY_OF_SURROGATE * error))
         };
-        rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, (false, BLOCK), look)
+        rows_of(
+            &mut self.composer,
+            self.ensemble,
+            sub_box,
+            &surrogate,
+            Looks { rows, velocities: false, block: BLOCK },
+            look,
+        )
     }
 
     /// Estimates over a sub-box in some rows, by row and output, and what is kept of them.
@@ -106,7 +120,7 @@ impl Adaptation<'_> {
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let estimator = RangeEstimator {
             search: &self.search,
-            validation: (&sub_box.points, &sub_box.direct),
+            validation: sub_box.held_out(),
             halved: (detail != Detail::Errors).then_some((&self.validation.direct, &self.validation.halved)),
             sensitivity: (detail == Detail::Sensitivities).then(|| match self.combined {
                 Some(combined) => SensitivityAnalysis::over(combined),
@@ -120,8 +134,9 @@ impl Adaptation<'_> {
             (found, kept)
         };
         // Errors alone are asked for of rows that are not neighbours.
-        let looked = if detail == Detail::Errors { (false, 1) } else { (true, BLOCK) };
-        let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, looked, look)?;
+        let (velocities, block) = if detail == Detail::Errors { (false, 1) } else { (true, BLOCK) };
+        let looks = Looks { rows, velocities, block };
+        let found = rows_of(&mut self.composer, self.ensemble, sub_box, &surrogate, looks, look)?;
         let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();
         Ok((found.concat(), kept.into_iter().flatten().collect()))
     }
@@ -138,19 +153,30 @@ impl Adaptation<'_> {
     }
 }
 
+/// The rows of a sub-box's surrogate that are looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Looks<'a> {
+    pub rows: &'a [usize],
+    /// Whether velocities are expanded even where no output needs them.
+    pub velocities: bool,
+    /// Rows in a block: those that are neighbours share extremes.
+    pub block: usize,
+}
+
 /// Applies `look` to some rows of a sub-box's surrogate.
 pub(super) fn rows_of<T: Send>(
     composer: &mut Composer,
     ensemble: &dyn Ensemble,
-    (sub_box, surrogate): (&SubBox, &Surrogate),
-    rows: &[usize],
-    (velocities, together): (bool, usize),
+    sub_box: &SubBox,
+    surrogate: &Surrogate,
+    Looks { rows, velocities, block }: Looks<'_>,
     look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
 ) -> Result<Vec<T>, EnsembleError> {
     let values = sub_box.values(rows.iter().copied());
     let times: Vec<f64> = rows.iter().map(|&row| ensemble.time(row)).collect();
-    let values = (values.as_slice(), sub_box.lines * surrogate.samples().len(), sub_box.courses.as_slice());
-    composer.rows(surrogate, &sub_box.domain, &times, values, (velocities, together), look)
+    let stride = sub_box.lines * surrogate.samples().len();
+    let motions = NodeMotions { times: &times, values: &values, stride, courses: &sub_box.courses };
+    composer.rows(surrogate, &sub_box.domain, motions, velocities, block, look)
 }
 
 /// Whether an error is more than the one that is allowed, which is 1; NaN is.

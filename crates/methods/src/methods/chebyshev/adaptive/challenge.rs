@@ -8,7 +8,7 @@
 use std::borrow::Cow;
 
 use super::Adaptation;
-use super::assessment::rows_of;
+use super::assessment::{Looks, rows_of};
 use crate::methods::chebyshev::composition::Row;
 use crate::methods::chebyshev::range_search::Previous;
 use crate::methods::chebyshev::sub_box::SubBox;
@@ -63,7 +63,14 @@ impl Adaptation<'_> {
             counting.map(|(found, goal)| (found.range.width() / goal.allowed, found.places)).collect::<Vec<_>>()
         };
         // The rows are no neighbours.
-        let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, 1), look)?;
+        let found = rows_of(
+            &mut self.composer,
+            self.ensemble,
+            sub_box,
+            &surrogate,
+            Looks { rows: &rows, velocities: false, block: 1 },
+            look,
+        )?;
         let found = found.into_iter().flatten();
         // Outputs that hardly range are not off by much, unless all of it is in one corner: of these the one that
         // ranges most tells. Of NaN there is no place.

@@ -157,9 +157,9 @@ impl<'r> Adaptation<'r> {
     /// # Errors
     /// Where a sample cannot be assembled or a closure not be compiled, and at an interruption.
     pub fn search(mut self) -> Result<Adapted, EnsembleError> {
-        let direct = (Cow::Borrowed(self.validation.points.as_slice()), Cow::Borrowed(&self.validation.direct));
-        let spread = self.validation.spread;
-        let mut boxes = vec![self.sub_box(self.ensemble.domain().clone(), direct, spread)?];
+        let Validation { points, direct, spread, .. } = self.validation;
+        let whole = self.ensemble.domain().clone();
+        let mut boxes = vec![self.sub_box(whole, Cow::Borrowed(points.as_slice()), Cow::Borrowed(direct), *spread)?];
         loop {
             let worst = (0..boxes.len()).max_by(|&a, &b| boxes[a].error.total_cmp(&boxes[b].error)).unwrap_or(0);
             // NaN is not met.
@@ -208,7 +208,7 @@ impl<'r> Adaptation<'r> {
                         let points = [self.validation.points.as_slice(), &inherited].concat();
                         let direct = if inherited.is_empty() { direct } else { direct.with(&known) };
                         let spread = self.validation.spread;
-                        boxes.push(self.sub_box(half, (Cow::Owned(points), Cow::Owned(direct)), spread)?);
+                        boxes.push(self.sub_box(half, Cow::Owned(points), Cow::Owned(direct), spread)?);
                     }
                 }
                 None => self.refine(&mut boxes[worst], reserve)?,
@@ -244,7 +244,8 @@ impl<'r> Adaptation<'r> {
     fn sub_box(
         &mut self,
         domain: ParameterBox,
-        (points, direct): (Cow<'r, [Vec<f64>]>, Cow<'r, ValidationTable>),
+        points: Cow<'r, [Vec<f64>]>,
+        direct: Cow<'r, ValidationTable>,
         spread: usize,
     ) -> Result<SubBox<'r>, EnsembleError> {
         let grid = SparseGrid::new(&vec![highest(domain.dimension()); domain.dimension()]);
@@ -268,7 +269,7 @@ impl<'r> Adaptation<'r> {
             points,
             direct,
         };
-        sub_box.add(middle);
+        sub_box.add(middle.0, middle.1);
         Ok(sub_box)
     }
 
@@ -324,7 +325,7 @@ impl<'r> Adaptation<'r> {
             let own = of_samples(&values, count, places.clone());
             let surplus = self.errors_at(&before, sub_box, &nodes[places], &own)?;
             added.iter().for_each(|levels| sub_box.grid.add(levels));
-            sub_box.add((added.len(), own));
+            sub_box.add(added.len(), own);
             sub_box.surplus.extend(added.into_iter().zip(surplus));
         }
         sub_box.challenged = false;

@@ -6,7 +6,7 @@ use super::{Found, Row};
 use crate::methods::chebyshev::range_search::{RangeSearch, block, extent};
 use crate::methods::expansion::Moves;
 use crate::methods::result::BETWEEN_KINKS;
-use crate::methods::validation::ValidationTable;
+use crate::methods::validation::{HeldOut, ValidationTable};
 use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surrogate_error, truncation};
 
 /// So many independent coordinates are moved one by one.
@@ -24,7 +24,7 @@ impl Row<'_> {
 
     /// Errors of the outputs at a glance: how far the coordinates' errors move them where the samples have their least
     /// and largest values. Near an extreme that is an upper bound of what moves the extreme itself.
-    pub fn errors_at_samples(&self, (points, direct): (&[Vec<f64>], &ValidationTable), row: usize) -> Vec<f64> {
+    pub fn errors_at_samples(&self, HeldOut { points, direct }: HeldOut<'_>, row: usize) -> Vec<f64> {
         let outputs = self.ensemble.outputs();
         if row >= direct.rows() {
             return vec![f64::NAN; outputs];
@@ -50,11 +50,11 @@ impl Row<'_> {
     }
 
     /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends,
-    /// and how far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
+    /// and how far the validation samples lie outside in row `row`.
     pub fn errors(
         &self,
         range_search: &RangeSearch,
-        (points, direct): (&[Vec<f64>], &ValidationTable),
+        HeldOut { points, direct }: HeldOut<'_>,
         row: usize,
         Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
@@ -99,7 +99,8 @@ impl Row<'_> {
     pub fn step_errors(
         &self,
         range_search: &RangeSearch,
-        (direct, halved): (&ValidationTable, &ValidationTable),
+        direct: &ValidationTable,
+        halved: &ValidationTable,
         row: usize,
         Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
@@ -168,7 +169,7 @@ impl Row<'_> {
                         *own = largest([*own, moved]);
                     }
                 }
-                for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), way)) {
+                for (&output, shifted) in far.iter().zip(self.range_near(range_search, &far, found, way)) {
                     let (from, to) = (found[output].range, shifted.range);
                     own[output] = largest([from.lower - to.lower, from.upper - to.upper, own[output]]);
                 }
@@ -192,15 +193,10 @@ impl Row<'_> {
     }
 
     /// Ranges of some outputs with the motion moved, near those that are known of all.
-    fn range_near(
-        &self,
-        range_search: &RangeSearch,
-        (outputs, known): (&[usize], &[Extent]),
-        way: &Moves,
-    ) -> Vec<Extent> {
+    fn range_near(&self, range_search: &RangeSearch, outputs: &[usize], known: &[Extent], way: &Moves) -> Vec<Extent> {
         let by_block = outputs.chunk_by(|a, b| block(*a) == block(*b));
         let near = |outputs: &[usize]| {
-            let mut ranges = self.block_near(range_search, (outputs, known), way);
+            let mut ranges = self.block_near(range_search, outputs, known, way);
             self.to_brinks(outputs, &mut ranges, way);
             ranges
         };
@@ -208,12 +204,7 @@ impl Row<'_> {
     }
 
     /// The same of outputs that are searched together.
-    fn block_near(
-        &self,
-        range_search: &RangeSearch,
-        (outputs, known): (&[usize], &[Extent]),
-        way: &Moves,
-    ) -> Vec<Extent> {
+    fn block_near(&self, range_search: &RangeSearch, outputs: &[usize], known: &[Extent], way: &Moves) -> Vec<Extent> {
         let evaluate = |points: &[Vec<f64>]| self.evaluate_some(outputs, points, std::slice::from_ref(way));
         let near = outputs.iter().map(|&output| &known[output]);
         let Some(search) = range_search.climbs() else {

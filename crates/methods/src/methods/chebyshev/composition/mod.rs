@@ -5,17 +5,17 @@
 //! polynomial takes its place: its range costs no closure. Where it is NaN, or not what the samples' simulations say,
 //! so does that polynomial, as with `expand: output`.
 
+mod composer;
 mod errors;
 mod evaluation;
 mod phases;
 
-use rayon::prelude::*;
-
+pub(super) use composer::{Composer, NodeMotions};
 use phases::{as_times, phases, with_turns};
 pub(super) use phases::{courses, turning};
 
 use super::range_search::{Evaluate, Functions, Previous, RangeSearch, block};
-use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
+use crate::methods::ensemble::{Closure, Ensemble};
 use crate::methods::expansion::Moves;
 use crate::numerics::{
     Course, Extent, ParameterBox, Phase, Range, Surrogate, SurrogateWork, corners, largest, limits, surrogate_error,
@@ -46,83 +46,15 @@ pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
     parameters > 0 && (1..=MOST_COORDINATES).contains(&coordinates)
 }
 
-/// One mechanism's closures, and the functions that are evaluated through them.
-pub(super) struct Composer<'a> {
-    ensemble: &'a dyn Ensemble,
-    /// Those used so far.
-    closures: Vec<Box<dyn Closure + 'a>>,
-}
-
-impl<'a> Composer<'a> {
-    /// Without any closure yet.
-    pub fn new(ensemble: &'a dyn Ensemble) -> Self {
-        Self { ensemble, closures: Vec::new() }
-    }
-
-    /// Applies `look` to rows, in parallel block by block of so many (with the extremes of the row before in the same
-    /// block), given the motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line),
-    /// courses of coordinates, and, behind the outputs, times of these. Velocities are expanded where they are asked
-    /// for, or outputs need them.
-    ///
-    /// # Errors
-    /// Where a closure cannot be compiled, and at an interruption.
-    pub fn rows<T: Send>(
-        &mut self,
-        surrogate: &Surrogate,
-        domain: &ParameterBox,
-        times: &[f64],
-        (motions, stride, courses): (&[f64], usize, &[Option<Course>]),
-        (velocities, together): (bool, usize),
-        look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
-    ) -> Result<Vec<T>, EnsembleError> {
-        let coordinates = 2 * self.ensemble.scales().len() * surrogate.samples().len();
-        let mut chosen = Vec::with_capacity(times.len());
-        for (&time, motion) in times.iter().zip(motions.chunks_exact(stride)) {
-            chosen.push(self.choose(surrogate, domain, time, &motion[..coordinates])?);
-        }
-        let look_at_block = |(block, times): (usize, &[f64])| {
-            let (mut work, mut previous) = (SurrogateWork::default(), Previous::default());
-            let first = block * together;
-            let at = |(index, &time): (usize, &f64)| {
-                self.ensemble.go_on()?;
-                let row = first + index;
-                let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..stride]);
-                let velocities = velocities || closure.needs_velocities();
-                let at = Row::new(
-                    self.ensemble,
-                    surrogate,
-                    domain,
-                    (closure, courses),
-                    (time, motion, velocities),
-                    &mut work,
-                );
-                Ok(look(row, &at, &mut previous))
-            };
-            times.iter().enumerate().map(at).collect()
-        };
-        let blocks: Result<Vec<Vec<T>>, EnsembleError> =
-            times.par_chunks(together).enumerate().map(look_at_block).collect();
-        Ok(blocks?.into_iter().flatten().collect())
-    }
-
-    /// The closure over the coordinates that are best taken as independent at the middle sample's motion.
-    fn choose(
-        &mut self,
-        surrogate: &Surrogate,
-        domain: &ParameterBox,
-        time: f64,
-        motion: &[f64],
-    ) -> Result<usize, EnsembleError> {
-        let middle = surrogate.middle();
-        let parameters = domain.sample(&surrogate.samples()[middle]);
-        let values: Vec<f64> = motion.chunks_exact(surrogate.samples().len()).map(|line| line[middle]).collect();
-        let independent = self.ensemble.independent(&parameters, &values, time);
-        if let Some(known) = self.closures.iter().position(|closure| closure.independent() == independent) {
-            return Ok(known);
-        }
-        self.closures.push(self.ensemble.closure(independent)?);
-        Ok(self.closures.len() - 1)
-    }
+/// Motions and outputs of a surrogate's samples in one row.
+struct RowMotion<'r> {
+    /// s.
+    time: f64,
+    /// Line by line, sample by sample.
+    motion: &'r [f64],
+    courses: &'r [Option<Course>],
+    /// Whether velocities are expanded.
+    velocities: bool,
 }
 
 /// Corners of the box at which a search looks first: all of eight parameters', and of more such that any two meet at
@@ -178,8 +110,8 @@ impl<'r> Row<'r> {
         ensemble: &'r dyn Ensemble,
         surrogate: &'r Surrogate,
         domain: &'r ParameterBox,
-        (closure, courses): (&'r dyn Closure, &'r [Option<Course>]),
-        (time, motion, velocities): (f64, &'r [f64], bool),
+        closure: &'r dyn Closure,
+        RowMotion { time, motion, courses, velocities }: RowMotion<'r>,
         work: &mut SurrogateWork,
     ) -> Self {
         let count = surrogate.samples().len();
@@ -188,7 +120,7 @@ impl<'r> Row<'r> {
         let extent: Vec<(f64, f64)> = coordinates.chunks_exact(count).map(limits).collect();
         let phases = phases(closure, courses, &extent);
         let wanted = if velocities { coordinates } else { &coordinates[..coordinates.len() / 2] };
-        let expanded = as_times(wanted, &phases, (courses, times), count);
+        let expanded = as_times(wanted, &phases, courses, times, count);
         let mut coefficients = surrogate.coefficients(&[&expanded, at_samples].concat(), work);
         if !velocities {
             let of_outputs = coefficients.split_off(ensemble.scales().len() * surrogate.basis().len());
@@ -234,7 +166,7 @@ impl<'r> Row<'r> {
             |wanted: &[usize], points: &[Vec<f64>]| self.evaluate_some(wanted, points, &[Moves::default()]);
         let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
         let of_polynomials = |outputs: &[usize], previous: &mut Previous| {
-            let functions = self.functions(outputs.to_vec(), None, (&rounding, &places), &by_coefficients);
+            let functions = self.functions(outputs.to_vec(), None, &rounding, &places, &by_coefficients);
             range_search.range(&functions, &of(outputs, &own, points.len()), previous)
         };
         let found = of_polynomials(&alike, previous);
@@ -251,7 +183,7 @@ impl<'r> Row<'r> {
         }
         composed.sort_unstable();
         let composed_values = of(&composed, &values, all.len());
-        let functions = self.functions(composed, Some(&degrees), (&rounding, &places), &by_closure);
+        let functions = self.functions(composed, Some(&degrees), &rounding, &places, &by_closure);
         let mut ranges = range_search.range(&functions, &composed_values, previous);
         self.to_brinks(&functions.outputs, &mut ranges, &Moves::default());
         for (&output, extent) in functions.outputs.iter().zip(ranges) {
@@ -309,8 +241,7 @@ impl<'r> Row<'r> {
 
     /// Highest degree along each axis, or what stands for it where a coordinate turns more often.
     fn degrees(&self) -> Vec<u8> {
-        let polynomials = (self.surrogate.basis(), self.coefficients.as_slice());
-        with_turns(polynomials, &self.phases, &self.extent, self.ensemble.scales())
+        with_turns(self.surrogate.basis(), &self.coefficients, &self.phases, &self.extent, self.ensemble.scales())
     }
 
     /// Outputs as polynomials, or, where degrees are given that stand for them, as they are composed.
@@ -318,7 +249,8 @@ impl<'r> Row<'r> {
         &'f self,
         outputs: Vec<usize>,
         composed: Option<&'f [u8]>,
-        (rounding, places): (&'f [f64], &'f [Vec<Vec<f64>>]),
+        rounding: &'f [f64],
+        places: &'f [Vec<Vec<f64>>],
         evaluate: &'f Evaluate<'f>,
     ) -> Functions<'f> {
         let degrees = composed.unwrap_or(self.surrogate.basis().orders());

@@ -71,7 +71,8 @@ pub(super) fn phases<'c>(
 pub(super) fn as_times<'m>(
     motion: &'m [f64],
     phases: &[(usize, Phase)],
-    (courses, known): (&[Option<Course>], &[f64]),
+    courses: &[Option<Course>],
+    known: &[f64],
     samples: usize,
 ) -> Cow<'m, [f64]> {
     let mut motion = Cow::Borrowed(motion);
@@ -93,7 +94,8 @@ pub(super) fn as_times<'m>(
 /// polynomials of the coordinate itself would have to follow. An axis turns it by the share of the coefficients whose
 /// terms it has.
 pub fn with_turns(
-    (basis, coefficients): (&SparseBasis, &[f64]),
+    basis: &SparseBasis,
+    coefficients: &[f64],
     phases: &[(usize, Phase)],
     extent: &[(f64, f64)],
     scales: &[f64],

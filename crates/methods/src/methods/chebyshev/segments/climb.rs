@@ -108,7 +108,7 @@ fn begun(row: &SegmentRow, lattice: &Lattice) -> Vec<Climb> {
         for share in [0.0, 0.5, 1.0] {
             // The start and the end of the motion are no surfaces.
             let is_end = segment == 0 && share == 0.0 || segment + 1 == surrogate.segments() && share == 1.0;
-            let found = if is_end { Vec::new() } else { lattice.on_surface(surrogate, (segment, share), time) };
+            let found = if is_end { Vec::new() } else { lattice.on_surface(surrogate, segment, share, time) };
             seeds.extend(found.into_iter().map(|point| (segment, point)));
         }
     }

@@ -44,7 +44,7 @@ impl Lattice {
     }
 
     /// Points at which the box is at a share of a segment at a time, where edges meet that surface.
-    pub fn on_surface(&self, surrogate: &SegmentSurrogate, (segment, share): (usize, f64), time: f64) -> Vec<Point> {
+    pub fn on_surface(&self, surrogate: &SegmentSurrogate, segment: usize, share: f64, time: f64) -> Vec<Point> {
         self.at_zeros(surrogate, |point| {
             let [begin, end] = [point.times[segment], point.times[segment + 1]];
             begin + share * (end - begin) - time

@@ -13,7 +13,7 @@
 //!
 //! c_y and c_z are the mean slopes of the sections against the chord: with EI ψ/L they are the stiffness matrix of
 //! Timoshenko's beam (Przemieniecki, *Theory of Matrix Structural Analysis* (1968), ch. 5). Without shear e is that of
-//! the element in the plane ([`crate::elements::effects::beam`]); a part c/(1 + Φ) of the slope bends, and the sections shear by γ = c
+//! the element in the plane ([`super`]); a part c/(1 + Φ) of the slope bends, and the sections shear by γ = c
 //! Φ/(1 + Φ), which brings them nearer by L γ²/2. The middle frame turns by δμ = ½ (δα + δβ) − ½ τ × (δβ − δα), with δα
 //! and δβ the rotations of the ends in its axes, and δτ = ¼ (1 + τ²)(δβ − δα) (conformal rotation vector: Milenković,
 //! *Coordinates suitable for angular motion synthesis in robots* (1982)). So, with n = ∂V/∂d, m = ∂V/∂ψ and k = d × n,

@@ -97,7 +97,7 @@ impl Course {
 
     /// Reports too few points, neighbours that are one point somewhere in the box of parameters, and arcs that do not
     /// reach.
-    pub fn check_edges<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, at: Span, (key, least): (&str, usize)) {
+    pub fn check_edges<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, at: Span, key: &str, least: usize) {
         let count = self.0.len();
         if count < least {
             let article = if key.starts_with('o') { "an" } else { "a" };

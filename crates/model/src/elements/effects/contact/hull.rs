@@ -261,7 +261,7 @@ fn farthest(points: &[Point], some: &[usize]) -> Option<[usize; 2]> {
 }
 
 /// Reports points that make no hull, and those that are not the same for all samples.
-pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, (key, points): (&str, &Points)) {
+pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, key: &str, points: &Points) {
     let at = fields.key_span(key);
     if !reader.model.is_spatial() {
         let help = if key == "hull" { "in the plane it is a `polygon`" } else { "in the plane name its `corners`" };

@@ -168,7 +168,7 @@ impl ForceElement for Contact {
         let pair = forces.pair(self.between);
         let felt: Vec<Felt<'g>> = if let Surface::Edges(outline) = &surface {
             let centres = self.corners(forces, &pair)?.into_iter();
-            centres.map(|centre| outline.apply(forces, (&pair, centre), &impact, friction.as_ref())).collect()
+            centres.map(|centre| outline.apply(forces, &pair, centre, &impact, friction.as_ref())).collect()
         } else {
             let law = Law { impact, friction, along };
             let touches = self.touches(forces, &surface, radius, &pair)?.into_iter();
@@ -355,7 +355,7 @@ impl Checked for Contact {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         for (key, points, least) in [("path", &self.path, 2), ("polygon", &self.polygon, 3)] {
             if let Some(points) = points {
-                points.check_edges(reader, fields.key_span(key), (key, least));
+                points.check_edges(reader, fields.key_span(key), key, least);
             }
         }
         if let Some(corners) = &self.corners {
@@ -363,12 +363,12 @@ impl Checked for Contact {
         }
         for (key, ends) in [("capsule", &self.capsule), ("line", &self.line), ("cylinder", &self.cylinder)] {
             if let Some(ends) = ends {
-                solid::check_ends(reader, fields.key_span(key), (key, ends));
+                solid::check_ends(reader, fields.key_span(key), key, ends);
             }
         }
         for (key, points) in [("hull", &self.hull), ("polyhedron", &self.polyhedron)] {
             if let Some(points) = points {
-                hull::check(reader, fields, (key, points));
+                hull::check(reader, fields, key, points);
             }
         }
         if let Some(key) = ["box", "polyhedron"].into_iter().find(|key| fields.get(key).is_some())
@@ -378,7 +378,7 @@ impl Checked for Contact {
         }
         for (key, lengths) in [("block", &self.block), ("box", &self.r#box)] {
             if let Some(lengths) = lengths {
-                solid::check_lengths(reader, fields.key_span(key), (key, lengths));
+                solid::check_lengths(reader, fields.key_span(key), key, lengths);
             }
         }
     }

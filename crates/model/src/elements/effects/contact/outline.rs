@@ -89,13 +89,7 @@ impl<'g> Outline<'g> {
     }
 
     /// Adds the forces on a circle about `centre`, which belongs to the second body.
-    pub fn apply(
-        &self,
-        forces: &mut dyn Forces<'g>,
-        (pair, centre): (&Pair<'g>, Vector<'g>),
-        impact: &Push<'g>,
-        friction: Option<&Resistance<'g>>,
-    ) -> Felt<'g> {
+    pub fn apply(&self, forces: &mut dyn Forces<'g>, pair: &Pair<'g>, centre: Vector<'g>, impact: &Push<'g>, friction: Option<&Resistance<'g>>) -> Felt<'g> {
         let g = forces.graph();
         let axes = [0, 1, 2].map(|axis| pair.outward(Vector::along(g, axis)));
         let inward = |vector: Vector<'g>| Vector::from(axes.map(|axis| axis.dot(vector)));
@@ -112,7 +106,7 @@ impl<'g> Outline<'g> {
         let nearest = places.iter().map(|place| place.square).reduce(Scalar::min).unwrap_or(square_of_reach);
         let overlap = square_of_reach - nearest;
         forces.only_where(overlap);
-        let sum = self.pushes(&places, (velocity, spin), impact, friction);
+        let sum = self.pushes(&places, velocity, spin, impact, friction);
         forces.between(&first, &second, outward(sum.force));
         if friction.is_some() {
             forces.torque(bodies[0], bodies[1], outward(sum.torque));
@@ -129,13 +123,7 @@ impl<'g> Outline<'g> {
         }
     }
 
-    fn pushes(
-        &self,
-        places: &[Place<'g>],
-        (velocity, spin): (Vector<'g>, Vector<'g>),
-        impact: &Push<'g>,
-        friction: Option<&Resistance<'g>>,
-    ) -> Sum<'g> {
+    fn pushes(&self, places: &[Place<'g>], velocity: Vector<'g>, spin: Vector<'g>, impact: &Push<'g>, friction: Option<&Resistance<'g>>) -> Sum<'g> {
         let g = self.reach.builder();
         let (none, zero) = (Vector::zero(g), g.number(0.0));
         let mut sum = Sum { force: none, torque: none, push: zero, friction: none, along: zero, energy: zero };

@@ -137,11 +137,7 @@ fn inside<'g>(
 }
 
 /// Reports a capsule of other than two points, or of one twice, somewhere in the box of parameters.
-pub(in crate::elements) fn check_ends<S: SymbolTable>(
-    reader: &mut Reader<'_, S>,
-    at: Span,
-    (key, ends): (&str, &Points),
-) {
+pub(in crate::elements) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, key: &str, ends: &Points) {
     let [start, end] = &**ends else {
         let message = format!("a `{key}` has 2 points, not {}", ends.len());
         let help = (key == "capsule").then(|| "several in a row are a `path`, in the plane".to_owned());
@@ -164,11 +160,7 @@ pub(in crate::elements) fn check_ends<S: SymbolTable>(
 }
 
 /// Reports a block that is flat somewhere in the box of parameters.
-pub(in crate::elements) fn check_lengths<S: SymbolTable>(
-    reader: &mut Reader<'_, S>,
-    at: Span,
-    (key, lengths): (&str, &[Formula; 3]),
-) {
+pub(in crate::elements) fn check_lengths<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, key: &str, lengths: &[Formula; 3]) {
     let needed = if reader.model.is_spatial() { 3 } else { 2 };
     for corner in 0..reader.corners.len() {
         let lengths = lengths[..needed].iter().map(|length| reader.evaluate(length, corner));

@@ -81,10 +81,7 @@ impl Checked for DryFriction {
 
 impl Friction {
     /// The law's numbers.
-    pub fn resistance<'g>(
-        &self,
-        forces: &dyn Forces<'g>,
-    ) -> Result<Resistance<'g>, BuildError> {
+    pub fn resistance<'g>(&self, forces: &dyn Forces<'g>) -> Result<Resistance<'g>, BuildError> {
         Resistance::of(forces, &self.coefficient, &self.speed)
     }
 }

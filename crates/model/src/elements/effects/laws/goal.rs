@@ -24,12 +24,7 @@ pub fn goal<'g>(
 }
 
 /// Reports a target of more than t whose rate one of the keys needs and nothing says.
-pub fn check_rate<S: SymbolTable>(
-    reader: &mut Reader<'_, S>,
-    fields: &Fields<'_>,
-    target: &Formula,
-    keys: &[&str],
-) {
+pub fn check_rate<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, target: &Formula, keys: &[&str]) {
     let Some(key) = keys.iter().find(|key| fields.get(key).is_some()) else { return };
     let has_no_rate = |name: &str| match reader.resolve(name, Context::Time) {
         Ok(Symbol::Trajectory { trajectory, .. }) => reader.model.derivatives(trajectory) == Some(TimeOrder::Position),
