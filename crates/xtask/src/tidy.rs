@@ -24,7 +24,7 @@ const RULES: [Rule; 4] = [
 ];
 
 /// Limits of the first three rules.
-const LIMITS: [usize; 3] = [22, 60, 21];
+const LIMITS: [usize; 3] = [0, 60, 21];
 
 /// Endings of files that programs leave behind.
 const STRAY: [&str; 6] = [".orig", ".rej", ".log", ".LOG.TXT", "_LOG.TXT", ".snap.new"];

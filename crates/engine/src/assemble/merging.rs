@@ -5,7 +5,8 @@
 //!
 //! ```text
 //! m = m₁ + m₂          m c = m₁ c₁ + m₂ (o + R c₂)
-//! J = J₁ + R J₂ Rᵀ + Σ mᵢ (dᵢᵀdᵢ 1 − dᵢ dᵢᵀ),   dᵢ from c to each centre; together m₁m₂/m (dᵀd 1 − d dᵀ), d = o + R c₂ − c₁
+//! J = J₁ + R J₂ Rᵀ + Σ mᵢ (dᵢᵀdᵢ 1 − dᵢ dᵢᵀ)          dᵢ from c to each centre
+//!   = J₁ + R J₂ Rᵀ + m₁m₂/m (dᵀd 1 − d dᵀ)             d = o + R c₂ − c₁
 //! ```
 
 use symdiff::Scalar;

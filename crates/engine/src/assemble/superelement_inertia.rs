@@ -15,7 +15,8 @@
 //! ```text
 //! f_k = a_k·a + b_k·Ω̇ − Ω·c_k Ω + π̇_k, on displacements + Ω × π_i          on each coordinate of u
 //! F = m a + Ω̇ × S + Ω × (Ω × S) + 2 Ω × Ṡ + S̈          on the whole body
-//! τ = S × a + J Ω̇ + J̇ Ω + Ω × J Ω + Σ (b_k ü_k + Ω × b_k u̇_k) + Σ (ḋ_i × π_i + d_i × π̇_i + Ω × (d_i × π_i))          about the first node
+//! τ = S × a + J Ω̇ + J̇ Ω + Ω × J Ω + Σ (b_k ü_k + Ω × b_k u̇_k)
+//!   + Σ (ḋ_i × π_i + d_i × π̇_i + Ω × (d_i × π_i))          about the first node
 //! ```
 //!
 //! in which no velocity stands but against the first node: the body is the same from a frame that moves steadily.

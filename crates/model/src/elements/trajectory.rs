@@ -1,13 +1,15 @@
 //! A trajectory: a value over the time by points that it passes.
 //!
 //! ```text
-//! x(t) = x₀ before t₀,  xₙ after tₙ,  else by the timing, with  u = (t − tᵢ)/h,  h = tᵢ₊₁ − tᵢ,  d = xᵢ₊₁ − xᵢ,  v the rates, w = h v
+//! x(t) = x₀ before t₀,  xₙ after tₙ,  else by the timing
+//! u = (t − tᵢ)/h,  h = tᵢ₊₁ − tᵢ,  d = xᵢ₊₁ − xᵢ,  v the rates, w = h v
 //!
 //! cubic        xᵢ + wᵢ u + (3 d − 2 wᵢ − wᵢ₊₁) u² + (wᵢ + wᵢ₊₁ − 2 d) u³
 //! quintic      xᵢ + wᵢ u + (10 d − 6 wᵢ − 4 wᵢ₊₁) u³ + (8 wᵢ + 7 wᵢ₊₁ − 15 d) u⁴ + (6 d − 3 wᵢ − 3 wᵢ₊₁) u⁵
-//! trapezoidal  xᵢ + d σ(u),  σ = u²/(2 r (1 − r)) up to r = ramp/h,  (u − r/2)/(1 − r) up to 1 − r,  then 1 − (1 − u)²/(2 r (1 − r))
-//! spline       cubic, with the rates that make ẍ continuous: hᵢ vᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) vᵢ + hᵢ₋₁ vᵢ₊₁ = 3 (hᵢ dᵢ₋₁/hᵢ₋₁ + hᵢ₋₁ dᵢ/hᵢ),
-//!              v₀ = vₙ = 0
+//! trapezoidal  xᵢ + d σ(u),  σ = u²/(2 r (1 − r)) up to r = ramp/h,  (u − r/2)/(1 − r) up to 1 − r,
+//!              then 1 − (1 − u)²/(2 r (1 − r))
+//! spline       cubic, with the rates that make ẍ continuous:
+//!              hᵢ vᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) vᵢ + hᵢ₋₁ vᵢ₊₁ = 3 (hᵢ dᵢ₋₁/hᵢ₋₁ + hᵢ₋₁ dᵢ/hᵢ),   v₀ = vₙ = 0
 //! ```
 //!
 //! Rate and acceleration are its derivatives. Pieces are guarded by their times, so that steps end there as at every

@@ -4,7 +4,8 @@
 //! v̂, w) to the next by
 //!
 //! ```text
-//! q₊ = q̂ + b x,   v₊ = v̂ + c x,   F(x, λ₊; q̂, v̂, ξ) = 0        F = (M w₊ + Φ_qᵀ λ₊ − Q, Φ/b) at (t₊, q₊, v₊, w₊ = x)
+//! q₊ = q̂ + b x,   v₊ = v̂ + c x,   F(x, λ₊; q̂, v̂, ξ) = 0
+//! F = (M w₊ + Φ_qᵀ λ₊ − Q, Φ/b) at (t₊, q₊, v₊, w₊ = x)
 //! ```
 //!
 //! and linear updates. Enclosed is the exact solution of these equations in real numbers, with the step size and the

@@ -5,7 +5,8 @@ use nalgebra::DMatrix;
 use crate::numerics::dot;
 use crate::simulate::statics::times;
 
-/// |aᴴ M b|² / (aᴴ M a · bᴴ M b), the modal assurance criterion; M = I where none is given. 1 for shapes that are the same.
+/// Modal assurance criterion, |aᴴ M b|² / (aᴴ M a · bᴴ M b); M = I where none is given. 1 for shapes that are the
+/// same.
 pub fn likeness(a: &[Vec<f64>; 2], b: &[Vec<f64>; 2], mass: Option<&DMatrix<f64>>) -> f64 {
     let image = |shape: &[Vec<f64>; 2]| match mass {
         Some(mass) => [times(mass, &shape[0]), times(mass, &shape[1])],

@@ -1,7 +1,8 @@
 //! A number that follows another no faster than at a rate, and within limits: a command on its way through a drive.
 //!
 //! ```text
-//! ẏ = sat_R((c − y)/T),     c = u, or within limits: m + sat_w(u − m),   m = (lower + upper)/2,   w = (upper − lower)/2
+//! ẏ = sat_R((c − y)/T),     c = u, or within limits: m + sat_w(u − m)
+//! m = (lower + upper)/2,    w = (upper − lower)/2
 //! ```
 //!
 //! sat is that of a servo, T the lag with which y follows slow inputs. Since y follows c, which is within the limits, y

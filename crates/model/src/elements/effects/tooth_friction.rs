@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! gear, rack, planetary    f = −(1 − η)/(1 + η) |λ| R(u) u          on each rim, along its speed u
-//! worm                     F = −μ N R(u) u,   N = |λ|/(r₂ cos α cos γ)      on the worm along its thread, u the speed of sliding there
+//! worm                     F = −μ N R(u) u,   N = |λ|/(r₂ cos α cos γ)
+//!                          on the worm along its thread, u the speed of sliding there
 //! ```
 //!
 //! R is that of `dry_friction`. Teeth that roll take their share from both rims: the one that drives gives (1 + c)|λ

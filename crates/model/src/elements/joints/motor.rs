@@ -4,10 +4,11 @@
 //! Φ = s − s(t) = 0          1 row, rad or m
 //!
 //! position     s(t), a formula
-//! speed        s(t) = from + ∫ v(t) dt                                        where `Graph::integral` knows it
-//!              Ψ = ṡ − v(t, q, y) = 0      1 row, rad/s or m/s                where it follows positions q or states y, from where `initial` says
-//! move         s(t) = from + (to − from) σ(u)                                 u = (t − start)/duration, kept within 0 … 1
-//! run-up       s(t) = from + v [duration Σ(u) + ⟨t − start − duration⟩]       Σ = ∫σ, so that ṡ = v σ(u)
+//! speed        s(t) = from + ∫ v(t) dt                                     where `Graph::integral` knows it
+//!              Ψ = ṡ − v(t, q, y) = 0      1 row, rad/s or m/s
+//!              where it follows positions q or states y, from where `initial` says
+//! move         s(t) = from + (to − from) σ(u)                              u = (t − start)/duration, kept within 0 … 1
+//! run-up       s(t) = from + v [duration Σ(u) + ⟨t − start − duration⟩]    Σ = ∫σ, so that ṡ = v σ(u)
 //!
 //! cycloidal    σ = u − sin(2π u)/2π                       Σ = u²/2 + (cos(2π u) − 1)/4π²
 //! quintic      σ = u³ (10 − 15 u + 6 u²)                  Σ = u⁴ (5/2 − 3 u + u²)

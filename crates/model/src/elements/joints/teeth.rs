@@ -1,7 +1,8 @@
 //! The force between teeth: on the second gear, at the pitch point, with its transmitted, radial and axial components.
 //!
 //! ```text
-//! F = F_t t + |F_t| (tan αₙ / cos β) m − h F_t tan β g          on the second gear at P, the opposite on the first          N
+//! F = F_t t + |F_t| (tan αₙ / cos β) m − h F_t tan β g          N
+//!     on the second gear at P, the opposite on the first
 //! F_t = τ₂/ρ₂,   |F| = |F_t| / (cos αₙ cos β)
 //! ```
 //!
@@ -13,7 +14,8 @@
 //! goes.
 //!
 //! ```text
-//! parallel axes        P = c₁ + x e,   x = κ d/(κ − 1),   g = a₁          κ = (a₁ · a₂) ψ̇₂/ψ̇₁, e from c₁ to c₂, d apart
+//! parallel axes        P = c₁ + x e,   x = κ d/(κ − 1),   g = a₁
+//!                      κ = (a₁ · a₂) ψ̇₂/ψ̇₁, e from c₁ to c₂, d apart
 //! intersecting axes    P = O + R g,    g ∥ a₁ − (ψ̇₂/ψ̇₁) a₂               R the mean cone distance
 //! rack                 P = c₁ + x e,   e = s × a₁,   x = ṡ/ψ̇₁              s along the rack
 //! ```

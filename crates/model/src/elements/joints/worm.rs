@@ -1,10 +1,11 @@
 //! Worm gear: a worm and its wheel about axes that cross at right angles, apart from one another.
 //!
 //! ```text
-//! Φ = φ₂ − i φ₁ − offset = 0,   i = −σ ratio      1 row, rad          σ = sign(γ) sign(a₂ · t), of angles against the common body
-//! r₁ = d κ/(1 + κ),   r₂ = d/(1 + κ),   κ = ratio/tan |γ|                                    pitch radii, d the axes' distance, m
-//! F = f a₁ − f tan γ t + |f| (tan α/cos γ) e,   f r₂ = ± λ                                   on the wheel at the pitch point, N
-//! N = |f|/(cos α cos γ)                                                                      between the flanks, N
+//! Φ = φ₂ − i φ₁ − offset = 0,   i = −σ ratio      1 row, rad
+//!     σ = sign(γ) sign(a₂ · t), of angles against the common body
+//! r₁ = d κ/(1 + κ),   r₂ = d/(1 + κ),   κ = ratio/tan |γ|          pitch radii, d the axes' distance, m
+//! F = f a₁ − f tan γ t + |f| (tan α/cos γ) e,   f r₂ = ± λ         on the wheel at the pitch point, N
+//! N = |f|/(cos α cos γ)                                            between the flanks, N
 //! ```
 //!
 //! e leads from the worm's axis a₁ to the wheel's, a₂, where they are nearest, t = a₁ × e. The thread runs along cos γ

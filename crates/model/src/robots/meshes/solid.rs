@@ -1,7 +1,8 @@
 //! What triangles enclose, by tetrahedra from each to a common apex:
 //!
 //! ```text
-//! V = Σ Vᵢ,   Vᵢ = a·(b × c)/6,   ∫ x dV = Σ Vᵢ (a + b + c)/4,   ∫ x xᵀ dV = Σ Vᵢ/20 (a aᵀ + b bᵀ + c cᵀ + s sᵀ),   s = a + b + c
+//! V = Σ Vᵢ,   Vᵢ = a·(b × c)/6,   ∫ x dV = Σ Vᵢ (a + b + c)/4
+//! ∫ x xᵀ dV = Σ Vᵢ/20 (a aᵀ + b bᵀ + c cᵀ + s sᵀ),   s = a + b + c
 //! ```
 //!
 //! Exact for a closed surface, wherever the apex is. Of a surface, areas take the place of volumes:

@@ -33,8 +33,8 @@ impl<'a> Composer<'a> {
         Self { ensemble, closures: Vec::new() }
     }
 
-    /// Applies `look` to rows of a surrogate over a box, in parallel by blocks of `block` rows (with the extremes of the
-    /// row before in the same block). Velocities are expanded where they are asked for, or outputs need them.
+    /// Applies `look` to rows of a surrogate over a box, in parallel by blocks of `block` rows (with the extremes of
+    /// the row before in the same block). Velocities are expanded where they are asked for, or outputs need them.
     ///
     /// # Errors
     /// Where a closure cannot be compiled, and at an interruption.

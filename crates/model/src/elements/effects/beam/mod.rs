@@ -2,7 +2,8 @@
 //! space it is that of `spatial_beam`, in the plane
 //!
 //! ```text
-//! d = r_B − r_A,   ℓ = |d|,   c = d/ℓ          φᵢ: angle from c to the beam's axis aᵢ at its end, fixed in that end's body
+//! d = r_B − r_A,   ℓ = |d|,   c = d/ℓ
+//! φᵢ: angle from c to the beam's axis aᵢ at its end, fixed in that end's body
 //! e = ℓ − L + L (2 φ₁² − φ₁ φ₂ + 2 φ₂²)/30     m
 //! N = (EA/L) (e + τ ė)
 //! M₁ = (EI/L) (4 φ₁ + 2 φ₂ + τ (4 φ̇₁ + 2 φ̇₂)) + N L (4 φ₁ − φ₂)/30          N m

@@ -1,12 +1,12 @@
 //! The point of a line that is nearest to a convex hull.
 //!
 //! ```text
-//! line p = b + t v, t within 0 … M; ends p₀, p₁                                 distance                 t
-//! face over which an end is       n · p − d, of the lower end                   n · p − d                0 or M
-//! edge and line that cross        e = u × v                                     |e · (b − a)|/|e|        where they cross
-//! edge beside an end              w = (p − a) − ((p − a) · u) u                 |w|                      0 or M
-//! corner beside the line          w = (b − c) − ((b − c) · v) v                 |w|                      −(b − c) · v
-//! corner beside an end            w = p − c                                     |w|                      0 or M
+//! line p = b + t v, t within 0 … M; ends p₀, p₁                             distance                 t
+//! face over which an end is       n · p − d, of the lower end               n · p − d                0 or M
+//! edge and line that cross        e = u × v                                 |e · (b − a)|/|e|        where they cross
+//! edge beside an end              w = (p − a) − ((p − a) · u) u             |w|                      0 or M
+//! corner beside the line          w = (b − c) − ((b − c) · v) v             |w|                      −(b − c) · v
+//! corner beside an end            w = p − c                                 |w|                      0 or M
 //! ```
 //!
 //! Each is taken where the hull does not reach beyond the feature along w, n or e, and the line does not come nearer.

@@ -4,7 +4,8 @@
 //! A row and a column belong to each of
 //!
 //! ```text
-//! x, y, z, rotations about x, y and z of the first node, …, of the last one, then the modes          (in the plane x, y, angle)
+//! x, y, z, rotations about x, y and z of the first node, …, of the last one, then the modes
+//! x, y, angle of the first node, …, of the last one, then the modes          in the plane
 //! ```
 //!
 //! That is the order of Craig and Bampton's reduction (*Coupling of substructures for dynamic analyses*, AIAA J. 6

@@ -7,9 +7,10 @@
 //! ```text
 //! d_i = Rᵀ (r_i − r_1) − (X_i − X_1),     ρ_i = 2 tan(θ_i/2) n_i of the rotation Rᵀ R_i          m, rad
 //! u = (d_2, ρ_2, …, d_n, ρ_n, q),     V = ½ s uᵀ K u          J
-//! f = s K (u + τ u̇):   −R f_i at node i, R f_i at the same place on the first body, −R (m + ½ ρ × m + ¼ ρ (ρ · m)) between both,
-//!                      −f_q on the modes
-//! T = ½ ∫ |Rᵀ ṙ_1 + Rᵀ ω_1 × (x + N u) + N u̇|² dm          J, N the displacement by u: see `assemble::superelement_inertia`
+//! f = s K (u + τ u̇):   −R f_i at node i, R f_i at the same place on the first body,
+//!                      −R (m + ½ ρ × m + ¼ ρ (ρ · m)) between both, −f_q on the modes
+//! T = ½ ∫ |Rᵀ ṙ_1 + Rᵀ ω_1 × (x + N u) + N u̇|² dm          J
+//! N: the displacement by u, see `assemble::superelement_inertia`
 //! ```
 //!
 //! Deformation is small against the first node, its motion is not; rigid motions strain nothing. The matrices are
