@@ -10,6 +10,7 @@ mod scalar;
 mod spline;
 mod spline_error;
 mod spline_pieces;
+mod spline_range;
 mod visits;
 
 pub use derivative::SparseMatrix;
@@ -19,3 +20,4 @@ pub(crate) use passes::Choice;
 pub use scalar::{Builder, Scalar};
 pub use spline::Spline;
 pub use spline_error::SplineError;
+pub(crate) use spline_range::SplinePiece;

@@ -83,13 +83,36 @@ impl Spline {
             Course::Periodic => Pieces::periodic(points),
             Course::Linear => Pieces::with_second(points, &vec![0.0; points.len()], false),
         };
-        Ok(*known.entry((bits, course)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
+        Ok(*known.entry((bits, course)).or_insert_with(|| Self::kept(pieces())))
+    }
+
+    /// Of knots and cubics as [`pieces`](Self::pieces) tells them; `None` where the knots do not ascend, or the cubics are
+    /// not one more.
+    pub fn of_pieces(knots: Vec<f64>, cubics: Vec<[f64; 4]>, periodic: bool) -> Option<Self> {
+        let is_sound = knots.len() >= 2
+            && knots.windows(2).all(|pair| pair[0] < pair[1])
+            && cubics.len() == knots.len() + 1
+            && knots.iter().chain(cubics.as_flattened()).all(|number| number.is_finite());
+        is_sound.then(|| Self::kept(Pieces { knots, cubics, periodic, jumps: OnceLock::new() }))
+    }
+
+    /// The one with these pieces.
+    fn kept(pieces: Pieces) -> Self {
+        static KNOWN: OnceLock<Mutex<HashMap<(Vec<u64>, bool), Spline>>> = OnceLock::new();
+        let numbers = pieces.knots.iter().chain(pieces.cubics.as_flattened());
+        let bits = numbers.map(|number| number.to_bits()).collect();
+        let mut known = KNOWN.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner);
+        *known.entry((bits, pieces.periodic)).or_insert_with(|| Self(Box::leak(Box::new(pieces))))
     }
 
     /// Knots, cubics (below the first knot, between each two, above the last; of powers of x minus the knot before),
     /// and whether it repeats.
-    pub(crate) fn pieces(self) -> (&'static [f64], &'static [[f64; 4]], bool) {
+    pub fn pieces(self) -> (&'static [f64], &'static [[f64; 4]], bool) {
         (&self.0.knots, &self.0.cubics, self.0.periodic)
+    }
+
+    pub(super) fn jumps(self) -> &'static OnceLock<[Option<f64>; 4]> {
+        &self.0.jumps
     }
 
     /// The derivative of this order at x.

@@ -1,5 +1,7 @@
 //! The cubics of a spline between its knots.
 
+use std::sync::OnceLock;
+
 /// Cubics: below the first knot, between each two, above the last.
 pub(super) struct Pieces {
     pub knots: Vec<f64>,
@@ -7,6 +9,8 @@ pub(super) struct Pieces {
     pub cubics: Vec<[f64; 4]>,
     /// Whether the spline repeats beyond its first and last knots.
     pub periodic: bool,
+    /// See [`Spline::rounding_jumps`](super::Spline::rounding_jumps), of orders 0 to 3.
+    pub jumps: OnceLock<[Option<f64>; 4]>,
 }
 
 impl Pieces {
@@ -74,6 +78,6 @@ impl Pieces {
         let (h, m) = (points[n - 1].0 - points[n - 2].0, second[n - 2]);
         let slope = (points[n - 1].1 - points[n - 2].1) / h;
         cubics.push([points[n - 1].1, slope + h * m / 6.0, 0.0, 0.0]);
-        Self { knots: points.iter().map(|point| point.0).collect(), cubics, periodic }
+        Self { knots: points.iter().map(|point| point.0).collect(), cubics, periodic, jumps: OnceLock::new() }
     }
 }

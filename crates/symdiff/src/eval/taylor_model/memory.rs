@@ -2,7 +2,6 @@
 
 use crate::eval::interval::Interval;
 use crate::eval::taylor_model::{ModelScratch, ModelSpace};
-use crate::expr::{Binary, Unary};
 use crate::lower::tape::{Op, Operands, Part, Tape};
 
 /// Memory of a program whose values are enclosed over a whole box of parameters.
@@ -75,11 +74,6 @@ impl<'s> ModelMemory<'s> {
                         Some(sign) => first.copy_from_slice(if sign <= 0.0 { c } else { b }),
                         None => space.unknown(first),
                     },
-                    Op::Unary(Unary::Tan) => {
-                        let mut cosine = vec![0.0; size];
-                        space.sin_cos(a, second, &mut cosine, scratch);
-                        space.binary(Binary::Div, second, &cosine, first, scratch);
-                    }
                     Op::Unary(function) => space.unary(function, a, first, scratch),
                     Op::Binary(function) => space.binary(function, a, b, first, scratch),
                     Op::SinCos => {

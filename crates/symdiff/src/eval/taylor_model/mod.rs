@@ -12,13 +12,15 @@
 //! hence the weights (d+1)^k by which norms bound the rounding errors of all coefficients at once.
 
 mod memory;
+mod smooth;
+mod spline;
 
 pub use memory::ModelMemory;
 
 use crate::eval::functions;
 use crate::eval::interval::Interval;
 use crate::eval::jet::{JetScratch, JetSpace};
-use crate::expr::{Binary, Node, Unary};
+use crate::expr::{Binary, Unary};
 
 /// Largest order, so that norms by degree fit on the stack.
 pub const MAX_ORDER: usize = 24;
@@ -62,19 +64,28 @@ pub struct ModelSpace {
     degrees: Vec<usize>,
     /// (d+1)^k of each degree.
     weights: Vec<f64>,
+    /// See [`ModelSpace::with_ranges_of_signs`].
+    signs_are_ranges: bool,
 }
 
 /// Room for intermediate models.
 #[derive(Clone, Debug)]
 pub struct ModelScratch {
     jets: JetScratch,
-    registers: [Vec<f64>; 2],
+    registers: [Vec<f64>; 3],
+    /// Of functions that are made of others.
+    spare: [Vec<f64>; 2],
 }
 
 impl ModelScratch {
     /// For models of this shape.
     pub fn new(space: &ModelSpace) -> Self {
-        Self { jets: JetScratch::new(&space.jets), registers: std::array::from_fn(|_| vec![0.0; space.size()]) }
+        let model = || vec![0.0; space.size()];
+        Self {
+            jets: JetScratch::new(&space.jets),
+            registers: std::array::from_fn(|_| model()),
+            spare: std::array::from_fn(|_| model()),
+        }
     }
 }
 
@@ -89,7 +100,14 @@ impl ModelSpace {
         let jets = JetSpace::new(variables, order);
         let degrees = (0..jets.len()).map(|r| jets.monomials().degree(r)).collect();
         let weights = (0..=order).map(|d| ((d + 1) as f64).powi(variables.max(1) as i32)).collect();
-        Self { jets, degrees, weights }
+        Self { jets, degrees, weights, signs_are_ranges: false }
+    }
+
+    /// Where a sign is not known it is between −1 and 1, and not unknown: right for the derivative of a maximum, and for
+    /// the value of a sign of the time. Who takes it sees to it that nothing jumps with what is solved for.
+    #[must_use]
+    pub fn with_ranges_of_signs(self) -> Self {
+        Self { signs_are_ranges: true, ..self }
     }
 
     /// The polynomials' arithmetic.
@@ -233,6 +251,9 @@ impl ModelSpace {
 
     /// `out = √a`: |√a − h| = |a − h²| / (√a + h), h > 0.
     fn sqrt(&self, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
+        if a.iter().all(|&c| c == 0.0) {
+            return out.fill(0.0);
+        }
         let x = self.split(a).0;
         self.jets.unary(Unary::Sqrt, x, self.split_mut(out).0, &mut scratch.jets);
         *self.split_mut(out).1 = 0.0;
@@ -259,7 +280,7 @@ impl ModelSpace {
         *self.split_mut(cosine).1 = 0.0;
         let (exact_sine, exact_cosine) = Interval::point(x[0]).sin_cos();
         let mut missed = exact_sine.radius_about(sine[0]) + exact_cosine.radius_about(cosine[0]) + e;
-        let [slope, residual] = &mut scratch.registers;
+        let [slope, residual, _] = &mut scratch.registers;
         for ((slope, &c), &degree) in slope.iter_mut().zip(x).zip(&self.degrees) {
             *slope = degree as f64 * c;
         }
@@ -280,7 +301,7 @@ impl ModelSpace {
         *self.split_mut(cosine).1 = missed;
     }
 
-    /// `out = function(a)`; unknown (an infinite radius) for functions whose enclosure is not written.
+    /// `out = function(a)`; unknown (an infinite radius) where the function is not smooth over the box.
     pub fn unary(&self, function: Unary, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         let (x, e) = self.split(a);
         match function {
@@ -289,6 +310,7 @@ impl ModelSpace {
                 *self.split_mut(out).1 = e;
             }
             Unary::Sqrt => self.sqrt(a, out, scratch),
+            Unary::Abs | Unary::Sign if a.iter().all(|&c| c == 0.0) => out.fill(0.0),
             Unary::Abs | Unary::Sign if self.away_from_zero(x, &self.norms(a)) > 0.0 => {
                 let sign = functions::sign(x[0]);
                 if function == Unary::Sign {
@@ -301,11 +323,30 @@ impl ModelSpace {
                 let range = self.range(a);
                 self.constant(Interval::new(range.lower().floor(), range.upper().floor()), out);
             }
-            _ => self.unknown(out),
+            Unary::Exp => self.exp(a, out, scratch),
+            Unary::Log => self.log(a, out, scratch),
+            Unary::Atan => self.atan(a, out, scratch),
+            Unary::Tanh => self.tanh(a, out, scratch),
+            Unary::Asin => self.asin(a, out, scratch),
+            Unary::Acos => self.acos(a, out, scratch),
+            Unary::Spline(spline, order) => self.spline(spline, order, a, out, scratch),
+            Unary::Abs => self.with_spare(scratch, |opposite, _, _| {
+                opposite.copy_from_slice(a);
+                self.negate(opposite);
+                self.extreme(Binary::Max, a, opposite, out);
+            }),
+            Unary::Sign if self.signs_are_ranges => self.constant(Interval::new(-1.0, 1.0), out),
+            Unary::Sign => self.unknown(out),
+            Unary::Sin => self.with_spare(scratch, |other, _, scratch| self.sin_cos(a, out, other, scratch)),
+            Unary::Cos => self.with_spare(scratch, |other, _, scratch| self.sin_cos(a, other, out, scratch)),
+            Unary::Tan => self.with_spare(scratch, |sine, cosine, scratch| {
+                self.sin_cos(a, sine, cosine, scratch);
+                self.div(sine, cosine, out, scratch);
+            }),
         }
     }
 
-    /// `out = function(a, b)`; unknown for functions whose enclosure is not written.
+    /// `out = function(a, b)`; unknown where the function may jump over the box.
     pub fn binary(&self, function: Binary, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         match function {
             Binary::Add => self.add(a, b, out),
@@ -317,16 +358,14 @@ impl ModelSpace {
                 Some(_) => out.fill(0.0),
                 None => self.unknown(out),
             },
-            Binary::Max => {
-                let (a, b) = (self.range(a), self.range(b));
-                self.constant(Interval::new(a.lower().max(b.lower()), a.upper().max(b.upper())), out);
-            }
-            _ => self.unknown(out),
+            Binary::Min | Binary::Max => self.extreme(function, a, b, out),
+            Binary::Pow => self.pow(a, b, out, scratch),
+            Binary::Atan2 => self.atan2(a, b, out, scratch),
         }
     }
 
     /// The sign of a model over the whole box, where it has one; zero counts as negative.
-    pub(crate) fn sign(&self, a: &[f64]) -> Option<f64> {
+    pub fn sign(&self, a: &[f64]) -> Option<f64> {
         let range = self.range(a);
         if range.upper() <= 0.0 { Some(-1.0) } else { (range.lower() > 0.0).then_some(1.0) }
     }
@@ -345,21 +384,6 @@ impl ModelSpace {
     /// `out` = anything.
     pub(crate) fn unknown(&self, out: &mut [f64]) {
         self.constant(Interval::ENTIRE, out);
-    }
-}
-
-/// Whether a node's function has an enclosure; without one its value is unknown everywhere.
-pub fn encloses(node: Node) -> bool {
-    match node {
-        Node::Constant(_) | Node::Symbol(_) => true,
-        Node::Unary(function, _) => matches!(
-            function,
-            Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Floor | Unary::Sin | Unary::Cos | Unary::Tan
-        ),
-        Node::Binary(function, ..) => matches!(
-            function,
-            Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Select | Binary::SelectElse
-        ),
     }
 }
 

@@ -1,6 +1,8 @@
 //! Enclosures of functions, against their values at points.
 
 use super::*;
+use crate::eval::functions;
+use crate::expr::{Binary, Spline};
 use proptest::prelude::*;
 
 /// Σ aᵣ ξ^r.
@@ -56,6 +58,80 @@ proptest! {
         inside(&second, y.cos())?;
         space.scale(Interval::new(-0.3, -0.1), &a, &mut out);
         inside(&out, -0.2 * x)?;
+        for function in [Unary::Exp, Unary::Atan, Unary::Tanh, Unary::Tan] {
+            space.unary(function, &a, &mut out, &mut scratch);
+            inside(&out, functions::unary(function, x))?;
+        }
+        space.unary(Unary::Log, &b, &mut out, &mut scratch);
+        inside(&out, y.ln())?;
+        let mut shrunk = a.clone();
+        space.scale(Interval::point(0.4), &a, &mut shrunk);
+        for function in [Unary::Asin, Unary::Acos] {
+            space.unary(function, &shrunk, &mut out, &mut scratch);
+            inside(&out, functions::unary(function, 0.4 * x))?;
+        }
+        let mut exponent = vec![0.0; space.size()];
+        for power in [3.0, -2.0, 0.0, 1.5, -0.7] {
+            exponent[0] = power;
+            space.binary(Binary::Pow, &b, &exponent, &mut out, &mut scratch);
+            inside(&out, y.powf(power))?;
+        }
+        space.binary(Binary::Pow, &b, &a, &mut out, &mut scratch);
+        inside(&out, y.powf(x))?;
+        for (from, to) in [(&a, &b), (&b, &a)] {
+            let [x, y] = if std::ptr::eq(from, &a) { [x, y] } else { [y, x] };
+            space.binary(Binary::Atan2, from, to, &mut out, &mut scratch);
+            inside(&out, x.atan2(y))?;
+        }
+        for function in [Binary::Min, Binary::Max] {
+            space.binary(function, &a, &b, &mut out, &mut scratch);
+            inside(&out, functions::binary(function, x, y))?;
+        }
+        let points = [(-1.5, 1.0), (-0.4, -3.0), (0.5, 2.0), (1.9, 2.5), (2.2, 1.7), (3.0, 1.0)];
+        for spline in [Spline::through(&points), Spline::periodic(&points), Spline::linear(&points)].map(Result::unwrap) {
+            for (order, (model, at)) in (0..4).flat_map(|order| [(order, (&a, x)), (order, (&b, y))]) {
+                space.unary(Unary::Spline(spline, order), model, &mut out, &mut scratch);
+                inside(&out, spline.derivative(order, at))?;
+            }
+        }
+    }
+}
+
+#[test]
+fn radii_of_every_smooth_function_fall_with_the_order() {
+    let functions = [Unary::Exp, Unary::Log, Unary::Atan, Unary::Tanh, Unary::Asin, Unary::Acos, Unary::Tan];
+    for function in functions {
+        let radius = |order: usize| {
+            let space = ModelSpace::new(2, order);
+            let mut scratch = ModelScratch::new(&space);
+            let (mut a, mut out) = (vec![0.0; space.size()], vec![0.0; space.size()]);
+            space.variable(0, 0.45, 0.55, &mut a);
+            a[2] = 0.03;
+            space.unary(function, &a, &mut out, &mut scratch);
+            out[space.size() - 1]
+        };
+        for order in 1..8 {
+            let (this, next) = (radius(order), radius(order + 1));
+            assert!(next < 0.5 * this + 1e-14, "{function:?} {order}: {this:e}, then {next:e}");
+        }
+        assert!(radius(20) < 1e-14, "{function:?}: {:e}", radius(20));
+    }
+}
+
+#[test]
+fn a_knot_costs_the_third_power_of_what_lies_beyond() {
+    let spline = Spline::through(&[(0.0, 1.0), (1.0, -2.0), (2.0, 0.3), (3.0, 5.0)]).unwrap();
+    let radius = |beyond: f64| {
+        let space = ModelSpace::new(1, 4);
+        let mut scratch = ModelScratch::new(&space);
+        let (mut a, mut out) = (vec![0.0; space.size()], vec![0.0; space.size()]);
+        space.variable(0, 1.0 - 2.0 * beyond, 1.0 + beyond, &mut a);
+        space.unary(Unary::Spline(spline, 0), &a, &mut out, &mut scratch);
+        out[space.size() - 1]
+    };
+    for beyond in [1e-1, 1e-2] {
+        let ratio = radius(beyond) / radius(0.1 * beyond);
+        assert!((ratio - 1000.0).abs() < 5.0, "{beyond}: {ratio}");
     }
 }
 
@@ -88,10 +164,16 @@ fn what_cannot_be_bounded_is_unknown() {
     let one = [1.0, 0.0, 0.0, 0.0, 0.0];
     space.div(&one, &a, &mut out, &mut scratch);
     assert_eq!(out[4], f64::INFINITY);
-    for function in [Unary::Sqrt, Unary::Abs, Unary::Log] {
+    for function in [Unary::Sqrt, Unary::Sign, Unary::Log] {
         space.unary(function, &a, &mut out, &mut scratch);
         assert_eq!(out[4], f64::INFINITY, "{function:?}");
     }
+    // A kink has a radius: how far the other side is beyond.
+    space.unary(Unary::Abs, &a, &mut out, &mut scratch);
+    assert!((out[4] - 0.2).abs() < 1e-9, "{}", out[4]);
+    let ranges = ModelSpace::new(1, 3).with_ranges_of_signs();
+    ranges.unary(Unary::Sign, &a, &mut out, &mut scratch);
+    assert!(out[0].abs() < 1e-300 && (out[4] - 1.0).abs() < 1e-12, "{out:?}");
 }
 
 /// Integers are exact rationals: sums and products of whole numbers of 52 bits, in 128 bits.

@@ -1,0 +1,65 @@
+//! Tables of models: the cubic in which the middle is, with a radius for the other pieces that the box reaches.
+//!
+//! Beyond a knot κ the cubics differ by Σ Δₖ (x − κ)ᵏ. Of a spline with two continuous derivatives Δ₀, Δ₁ and Δ₂ are
+//! rounding, so that a box that crosses a knot costs the third power of how far it goes beyond.
+
+use super::{ModelScratch, ModelSpace, up};
+use crate::eval::interval::Interval;
+use crate::expr::{Spline, SplinePiece};
+
+/// Most pieces that a box may reach.
+const MOST_PIECES: usize = 64;
+
+impl ModelSpace {
+    /// `out` = the derivative of this order of a table at a; unknown where the box reaches too many pieces. The jumps at
+    /// knots that rounding leaves ([`Spline::rounding_jumps`]) are in the radius.
+    pub(super) fn spline(&self, spline: Spline, order: u8, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
+        let range = self.range(a);
+        let pieces = spline.pieces_over(range, MOST_PIECES);
+        let of_middle = pieces.iter().find(|piece| a[0] < piece.to);
+        let Some(own) = of_middle.or(pieces.last()) else { return self.unknown(out) };
+        self.with_spare(scratch, |from, product, _| {
+            from.copy_from_slice(a);
+            self.shift(-own.knot, from);
+            let coefficients = derivative(own.cubic.map(Interval::point), order);
+            self.constant(coefficients[3], out);
+            for &coefficient in coefficients[..3].iter().rev() {
+                self.mul(out, from, product);
+                out.copy_from_slice(product);
+                self.shift(coefficient, out);
+            }
+        });
+        let apart = pieces.iter().map(|other| apart(own, other, order, range)).fold(0.0, f64::max);
+        let radius = self.split_mut(out).1;
+        *radius = up(*radius + apart + spline.rounding_jumps(order).unwrap_or(0.0));
+    }
+}
+
+/// Coefficients of a cubic's derivative, lowest first.
+fn derivative(cubic: [Interval; 4], order: u8) -> [Interval; 4] {
+    let step =
+        |[_, b, c, d]: [Interval; 4]| [b, Interval::point(2.0) * c, Interval::point(3.0) * d, Interval::point(0.0)];
+    (0..order).fold(cubic, |cubic, _| step(cubic))
+}
+
+/// How far the derivatives of two pieces' cubics are from each other where the range is in the second one.
+fn apart(own: &SplinePiece, other: &SplinePiece, order: u8, range: Interval) -> f64 {
+    if own.number == other.number {
+        return 0.0;
+    }
+    // The knot between both, on the other's side.
+    let knot = if other.number > own.number { other.knot } else { other.end };
+    let [a, b] = [own, other].map(|piece| derivative(about(piece, knot), order));
+    let (from, to) = (range.lower().max(other.from), range.upper().min(other.to));
+    let beyond = (Interval::new(from, to.max(from)) - knot).magnitude();
+    let differences = a.into_iter().zip(b).map(|(a, b)| (a - b).magnitude());
+    differences.rev().fold(0.0, |sum, difference| up(sum * beyond + difference))
+}
+
+/// Taylor coefficients of a piece's cubic about a point.
+fn about(piece: &SplinePiece, point: Interval) -> [Interval; 4] {
+    let [a, b, c, d] = piece.cubic.map(Interval::point);
+    let s = point - piece.knot;
+    let [two, three] = [2.0, 3.0].map(Interval::point);
+    [a + s * (b + s * (c + s * d)), b + s * (two * c + three * s * d), c + three * s * d, d]
+}
