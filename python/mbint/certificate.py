@@ -162,6 +162,9 @@ def _check_system(system: _System) -> None:
         raise Refused("a row does not have a bound of each output")
     if not _covered(system):
         raise Refused("its pieces do not cover the box of the parameters")
+    if missing := _without_enclosure(system):
+        names = ", ".join(f"`{name}`" for name in missing)
+        raise Refused(f"its equations have {names}, which only `mbint verify-certificate` encloses")
     for number, piece in enumerate(system.pieces, 1):
         try:
             _Checker(system, piece).check()
@@ -360,6 +363,35 @@ def _binary(name: str, a: _Dual, b: _Dual) -> _Dual:
     raise Unknown
 
 
+#: Functions that have an enclosure here.
+_ENCLOSED = {
+    *("neg", "sin", "cos", "tan", "sqrt", "abs", "sign", "floor"),
+    *("add", "sub", "mul", "div", "select", "select_else"),
+}
+
+#: Nodes with a number that is no node.
+_LEAVES = ("q", "v", "w", "lambda", "p")
+
+
+def _without_enclosure(system: _System) -> list[str]:
+    """Functions in the equations of motion and of the start that have no enclosure here."""
+    nodes = (system.nodes[place] for place in _needed(system, [*system.motion, *system.start[0], *system.start[1]]))
+    return sorted({name for name, *words in nodes if words and name not in {*_ENCLOSED, *_LEAVES}})
+
+
+def _needed(system: _System, rows: Sequence[int]) -> list[int]:
+    """Nodes that some rows need, ascending."""
+    needed, waiting = set[int](), list(rows)
+    while waiting:
+        place = waiting.pop()
+        if place not in needed:
+            needed.add(place)
+            name, *words = system.nodes[place]
+            if name in _ENCLOSED:
+                waiting += [int(word) for word in words]
+    return sorted(needed)
+
+
 #: Columns of models: q, v, w and lambda.
 State = dict[str, list[Model]]
 
@@ -371,6 +403,8 @@ def _evaluate(
 
     def node(place: int) -> _Dual:
         name, *words = system.nodes[place]
+        if words and name not in {*_ENCLOSED, *_LEAVES}:
+            raise Unknown
         children = [int(word) for word in words]
         if name in ("q", "v", "w", "lambda"):
             by = {(name, children[0]): space.one()} if derive else {}
@@ -389,15 +423,7 @@ def _evaluate(
             raise Unknown
         return _Dual(space.constant(*fixed(_number(name))), {})
 
-    needed, waiting = set[int](), list(rows)
-    while waiting:
-        place = waiting.pop()
-        if place not in needed:
-            needed.add(place)
-            name, *words = system.nodes[place]
-            if name not in ("q", "v", "w", "lambda", "p"):
-                waiting += [int(word) for word in words]
-    for place in sorted(needed):
+    for place in _needed(system, rows):
         known[place] = node(place)
     return [known[row] for row in rows]
 

@@ -130,3 +130,41 @@ fn certificates_are_of_one_model() {
     let found = verified(&place, &lines, "pendulum.yaml --set g=9.8", 4);
     assert!(found.contains("the equations are not those of the model"), "{found}");
 }
+
+/// The certificate has the tables' cubics: with others it does not hold, and it is not of the model.
+#[test]
+fn tables_stand_in_a_certificate() {
+    let place = Place::new();
+    let model = "
+model: table
+parameters: { k: { value: 3, tolerance: 1% } }
+tables: { spring: { points: [[-1, -2], [0, 0], [0.3, 0.5], [0.8, 1.9]] } }
+bodies: { mass: { mass: 1, coordinates: [x] } }
+effects: { push: { force: { on: mass, value: [\"-k*spring(mass.x)\", 0] } } }
+initial: { mass.x: 0.5, mass.vx: 0.2 }
+outputs: { x: mass.x }
+simulation: { duration: 0.4, step: 0.01, output_step: 0.1 }
+";
+    fs::write(place.path().join("table.yaml"), model).unwrap();
+    place.run("run table.yaml --certify --method certified -o out --no-report -q", 0);
+    let text = fs::read_to_string(place.path().join("out/certificate.jsonl")).unwrap();
+    let lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let found = verified(&place, &lines, "table.yaml", 0);
+    assert!(found.contains("table: proven") && found.contains("its equations are those of the model"), "{found}");
+
+    let system = first(&lines, "system");
+    let parsed: serde_json::Value = serde_json::from_str(&lines[system]).unwrap();
+    let cubic = parsed["system"]["tables"][0]["cubics"][3].as_str().unwrap().to_owned();
+    let change = |to: &str| {
+        let mut changed = lines.clone();
+        changed[system] = changed[system].replacen(&cubic, to, 1);
+        changed
+    };
+    let stiffer = format!("0x1p+3 {}", cubic.split_once(' ').unwrap().1);
+    let found = verified(&place, &change(&stiffer), "", 4);
+    assert!(found.contains("table: refused"), "{found}");
+    let found = verified(&place, &change("0x1p+0"), "", 2);
+    assert!(found.contains("a cubic has four numbers"), "{found}");
+    let found = verified(&place, &change("0x1p+0 0x0p+0 0x0p+0 inf"), "", 2);
+    assert!(found.contains("no hexadecimal float") || found.contains("a table has ascending knots"), "{found}");
+}

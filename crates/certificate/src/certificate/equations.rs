@@ -1,6 +1,6 @@
 //! Equations as a list of operations, each of earlier ones.
 
-use symdiff::{Binary, Unary};
+use symdiff::{Binary, Spline, Unary};
 
 /// One number of a list.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub enum Node {
     Unary(Unary, usize),
     /// A function of two.
     Binary(Binary, usize, usize),
-    /// A function that has no enclosure, such as a table.
+    /// A number of which nothing is known.
     Unknown,
 }
 
@@ -87,7 +87,8 @@ impl Node {
         a.into_iter().chain(b)
     }
 
-    pub(super) fn text(self) -> String {
+    /// As the file has it; `tables` are those of the file.
+    pub(super) fn text(self, tables: &[Spline]) -> String {
         let name = |known: Option<&str>| known.unwrap_or("unknown").to_owned();
         match self {
             Self::Number(value) => super::hexadecimal::write(value),
@@ -97,6 +98,10 @@ impl Node {
             Self::Velocity(index) => format!("v {index}"),
             Self::Acceleration(index) => format!("w {index}"),
             Self::Multiplier(index) => format!("lambda {index}"),
+            Self::Unary(Unary::Spline(table, order), a) => {
+                let known = tables.iter().position(|own| *own == table);
+                known.map_or_else(|| name(None), |table| format!("spline {table} {order} {a}"))
+            }
             Self::Unary(function, a) => {
                 let known = UNARY.iter().find(|(_, own)| *own == function);
                 known.map_or_else(|| name(None), |(own, _)| format!("{own} {a}"))
@@ -109,7 +114,7 @@ impl Node {
         }
     }
 
-    pub(super) fn of_text(text: &str) -> Option<Self> {
+    pub(super) fn of_text(text: &str, tables: &[Spline]) -> Option<Self> {
         let mut words = text.split(' ');
         let name = words.next()?;
         let indices = words.map(|word| word.parse().ok()).collect::<Option<Vec<usize>>>()?;
@@ -126,6 +131,9 @@ impl Node {
             ("lambda", &[index]) => Self::Multiplier(index),
             (_, &[a]) => Self::Unary(unary()?, a),
             (_, &[a, b]) => Self::Binary(binary()?, a, b),
+            ("spline", &[table, order, a]) => {
+                Self::Unary(Unary::Spline(*tables.get(table)?, u8::try_from(order).ok()?), a)
+            }
             _ => return None,
         })
     }
@@ -146,6 +154,37 @@ impl Equations {
         self.nodes.iter().enumerate().all(is_sound)
             && lengths.iter().all(|&is_right| is_right)
             && rows.iter().all(|row| row.iter().all(|&node| node < self.nodes.len()))
+            && !self.jumps_with_the_motion()
+    }
+
+    /// Tables of the nodes, each once.
+    pub(super) fn tables(&self) -> Vec<Spline> {
+        let mut tables = Vec::new();
+        for node in &self.nodes {
+            match node {
+                Node::Unary(Unary::Spline(table, _), _) if !tables.contains(table) => tables.push(*table),
+                _ => {}
+            }
+        }
+        tables
+    }
+
+    /// Whether a table, or a derivative of one, that jumps is of the motion: no derivative shows it.
+    fn jumps_with_the_motion(&self) -> bool {
+        let mut is_of_motion: Vec<bool> = Vec::with_capacity(self.nodes.len());
+        self.nodes.iter().any(|node| {
+            let of_children = node.children().any(|child| is_of_motion[child]);
+            is_of_motion.push(
+                of_children
+                    || matches!(
+                        node,
+                        Node::Position(_) | Node::Velocity(_) | Node::Acceleration(_) | Node::Multiplier(_)
+                    ),
+            );
+            let jumps = matches!(node, Node::Unary(Unary::Spline(table, order), _)
+                if table.rounding_jumps(*order).is_none());
+            jumps && of_children
+        })
     }
 
     /// Nodes that some rows need, ascending.

@@ -14,7 +14,8 @@ const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
 /// Parts of half a cell in which ranges are found term by term.
 const PARTS: i32 = 32;
 
-/// Polynomials of (τ, ξ) next to those of ξ, of the same order.
+/// Polynomials of (τ, ξ) next to those of ξ, of the same order. Signs are ranges: whoever encloses a motion refuses signs
+/// of it that are not known.
 #[derive(Clone, Debug)]
 pub struct Space {
     /// Of (τ, ξ).
@@ -56,7 +57,8 @@ impl Cell {
 impl Space {
     /// In so many parameters.
     pub fn new(parameters: usize, order: usize) -> Self {
-        let (cell, box_of) = (ModelSpace::new(parameters + 1, order), ModelSpace::new(parameters, order));
+        let [cell, box_of] =
+            [parameters + 1, parameters].map(|variables| ModelSpace::new(variables, order).with_ranges_of_signs());
         let (all, own) = (cell.jets().monomials(), box_of.jets().monomials());
         let index = |exponents: &[usize]| (0..all.len()).find(|&r| all.exponents(r) == exponents);
         let index_of_own = |exponents: &[usize]| (0..own.len()).find(|&r| own.exponents(r) == exponents);

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use symdiff::Spline;
+
 use super::hexadecimal;
 use super::{Certificate, Certified, Equations, ModelFile, Node, Piece, ProvenCell};
 
@@ -41,10 +43,21 @@ struct SystemLine {
     order: usize,
     coordinates: usize,
     multipliers: usize,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    tables: Vec<TableLine>,
     nodes: Vec<String>,
     motion: Vec<usize>,
     start: [Vec<usize>; 2],
     outputs: Vec<(String, usize)>,
+}
+
+/// A piecewise cubic: below the first knot, between each two, above the last; of powers of t less the knot before.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TableLine {
+    knots: String,
+    cubics: Vec<String>,
+    periodic: bool,
 }
 
 /// Numbers, with a space between two. Zeros at the end of polynomials are left out.
@@ -72,6 +85,7 @@ pub fn write(certificate: &Certificate) -> String {
     add(&Line::Certificate { version: VERSION, model: model.clone(), files });
     for system in systems {
         let equations = &system.equations;
+        let tables = equations.tables();
         add(&Line::System(SystemLine {
             parameters: system.parameters.clone(),
             lower: numbers(&system.lower),
@@ -79,7 +93,8 @@ pub fn write(certificate: &Certificate) -> String {
             order: system.order,
             coordinates: equations.coordinates,
             multipliers: equations.multipliers,
-            nodes: equations.nodes.iter().map(|node| node.text()).collect(),
+            tables: tables.iter().map(|&table| table_line(table)).collect(),
+            nodes: equations.nodes.iter().map(|node| node.text(&tables)).collect(),
             motion: equations.motion.clone(),
             start: equations.start.clone(),
             outputs: system.outputs.iter().cloned().zip(equations.outputs.iter().copied()).collect(),
@@ -169,8 +184,21 @@ fn add(found: &mut Option<Certificate>, line: Line) -> Result<(), String> {
     Ok(())
 }
 
+fn table_line(table: Spline) -> TableLine {
+    let (knots, cubics, periodic) = table.pieces();
+    TableLine { knots: numbers(knots), cubics: cubics.iter().map(|cubic| numbers(cubic)).collect(), periodic }
+}
+
+fn table(line: &TableLine) -> Result<Spline, String> {
+    let cubic = |text: &String| <[f64; 4]>::try_from(list(text)?).map_err(|_| "a cubic has four numbers".to_owned());
+    let cubics = line.cubics.iter().map(cubic).collect::<Result<Vec<_>, String>>()?;
+    let table = Spline::of_pieces(list(&line.knots)?, cubics, line.periodic);
+    table.ok_or_else(|| "a table has ascending knots, and one cubic more than knots".to_owned())
+}
+
 fn system(line: SystemLine) -> Result<Certified, String> {
-    let node = |text: &String| Node::of_text(text).ok_or_else(|| format!("`{text}` is no operation"));
+    let tables = line.tables.iter().map(table).collect::<Result<Vec<_>, _>>()?;
+    let node = |text: &String| Node::of_text(text, &tables).ok_or_else(|| format!("`{text}` is no operation"));
     let nodes = line.nodes.iter().map(node).collect::<Result<_, _>>()?;
     let (outputs, of_outputs): (Vec<String>, Vec<usize>) = line.outputs.into_iter().unzip();
     Ok(Certified {

@@ -72,7 +72,7 @@ fn symbols(system: &System) -> FxHashMap<Expr, Node> {
 fn node(graph: &Graph, expr: Expr, symbols: &FxHashMap<Expr, Node>, place: &FxHashMap<Expr, usize>) -> Node {
     match graph.node(expr) {
         symdiff::Node::Constant(bits) if f64::from_bits(bits).is_finite() => Node::Number(f64::from_bits(bits)),
-        symdiff::Node::Constant(_) | symdiff::Node::Unary(symdiff::Unary::Spline(..), _) => Node::Unknown,
+        symdiff::Node::Constant(_) => Node::Unknown,
         symdiff::Node::Symbol(_) => symbols.get(&expr).copied().unwrap_or(Node::Unknown),
         symdiff::Node::Unary(function, a) => Node::Unary(function, place[&a]),
         symdiff::Node::Binary(function, a, b) => Node::Binary(function, place[&a], place[&b]),

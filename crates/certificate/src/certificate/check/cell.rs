@@ -232,7 +232,9 @@ fn over_tube(motion: &Unknowns, given: &Given, fine: &State, tube: &[f64], resid
         }
     }
     let indices: Vec<usize> = motion.indices.iter().copied().chain(0..2 * n).collect();
-    let (_, all) = motion.linearised(given, &state, &indices);
+    let (values, all) = motion.linearised(given, &state, &indices);
+    // Derivatives do not show where a condition jumps, but values are unknown there.
+    values.bounds(space).entries().iter().all(|bound| bound.is_finite()).then_some(())?;
     let unknowns = motion.indices.len();
     let by_unknown = all.part(space, 0..unknowns, 0..unknowns);
     let by_state = all.part(space, 0..unknowns, unknowns..unknowns + 2 * n);

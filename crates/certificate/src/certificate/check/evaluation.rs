@@ -66,19 +66,7 @@ impl Arithmetic<'_> {
 
     fn unary(&mut self, function: Unary, a: &[f64]) -> Vec<f64> {
         let mut out = self.new_model();
-        match function {
-            Unary::Sin | Unary::Cos => {
-                let mut other = self.new_model();
-                let (sine, cosine) =
-                    if function == Unary::Sin { (&mut out, &mut other) } else { (&mut other, &mut out) };
-                self.space.sin_cos(a, sine, cosine, &mut self.scratch);
-            }
-            Unary::Tan => {
-                let [sine, cosine] = [Unary::Sin, Unary::Cos].map(|part| self.unary(part, a));
-                return self.binary(Binary::Div, &sine, &cosine);
-            }
-            _ => self.space.unary(function, a, &mut out, &mut self.scratch),
-        }
+        self.space.unary(function, a, &mut out, &mut self.scratch);
         out
     }
 
@@ -86,6 +74,36 @@ impl Arithmetic<'_> {
         let mut out = self.new_model();
         self.space.binary(function, a, b, &mut out, &mut self.scratch);
         out
+    }
+
+    fn number(&self, number: f64) -> Vec<f64> {
+        let mut value = self.new_model();
+        value[0] = number;
+        value
+    }
+
+    /// 1 + sign a².
+    fn one_and_square(&mut self, sign: f64, a: &[f64]) -> Vec<f64> {
+        let square = self.binary(Binary::Mul, a, a);
+        let (one, function) = (self.number(1.0), if sign > 0.0 { Binary::Add } else { Binary::Sub });
+        self.binary(function, &one, &square)
+    }
+
+    /// a − 1; without a radius where it is a number that has none.
+    fn one_less(&mut self, a: &[f64]) -> Vec<f64> {
+        let less = a[0] - 1.0;
+        // The difference is exact where it gives the number back.
+        if less + 1.0 == a[0] && a[1..].iter().all(|&c| c == 0.0) {
+            return self.number(less);
+        }
+        let one = self.number(1.0);
+        self.binary(Binary::Sub, a, &one)
+    }
+
+    /// number / a.
+    fn inverse(&mut self, number: f64, a: &[f64]) -> Vec<f64> {
+        let number = self.number(number);
+        self.binary(Binary::Div, &number, a)
     }
 
     fn unknown(&self) -> Dual {
@@ -99,31 +117,39 @@ impl Arithmetic<'_> {
         if a.by.is_empty() {
             return Dual { value, by: BTreeMap::new() };
         }
-        let one = |arithmetic: &Self| {
-            let mut one = arithmetic.new_model();
-            one[0] = 1.0;
-            one
-        };
         let slope = match function {
-            Unary::Neg => self.unary(Unary::Neg, &one(self)),
+            Unary::Neg => self.number(-1.0),
             Unary::Sin => self.unary(Unary::Cos, &a.value),
             Unary::Cos => {
                 let sine = self.unary(Unary::Sin, &a.value);
                 self.unary(Unary::Neg, &sine)
             }
-            Unary::Tan => {
-                let square = self.binary(Binary::Mul, &value, &value);
-                self.binary(Binary::Add, &one(self), &square)
-            }
+            // 1 + h²
+            Unary::Tan => self.one_and_square(1.0, &value),
+            // 1 − h²
+            Unary::Tanh => self.one_and_square(-1.0, &value),
             Unary::Sqrt => {
                 let twice = self.binary(Binary::Add, &value, &value);
-                self.binary(Binary::Div, &one(self), &twice)
+                self.inverse(1.0, &twice)
+            }
+            Unary::Exp => value.clone(),
+            Unary::Log => self.inverse(1.0, &a.value),
+            Unary::Atan => {
+                let size = self.one_and_square(1.0, &a.value);
+                self.inverse(1.0, &size)
+            }
+            Unary::Asin | Unary::Acos => {
+                let square = self.one_and_square(-1.0, &a.value);
+                let root = self.unary(Unary::Sqrt, &square);
+                self.inverse(if function == Unary::Asin { 1.0 } else { -1.0 }, &root)
             }
             Unary::Abs => self.unary(Unary::Sign, &a.value),
-            // Constant where its sign is known, and unknown elsewhere.
-            Unary::Sign => return Dual { value, by: BTreeMap::new() },
-            // No derivative shows a jump, and the others have no enclosure.
-            _ => return self.unknown(),
+            Unary::Spline(spline, order) => self.unary(Unary::Spline(spline, order + 1), &a.value),
+            // Constant where it is known. Elsewhere it jumps with the motion, and no derivative shows it.
+            Unary::Sign if self.space.sign(&a.value).is_some() => return Dual { value, by: BTreeMap::new() },
+            Unary::Sign => return self.unknown(),
+            // No derivative shows a jump.
+            Unary::Floor => return self.unknown(),
         };
         let by = a.by.iter().map(|(&index, own)| (index, self.binary(Binary::Mul, &slope, own))).collect();
         Dual { value, by }
@@ -144,12 +170,8 @@ impl Arithmetic<'_> {
                 }
             }
             Binary::Mul => {
-                for (from, other) in [(a, b), (b, a)] {
-                    for (&index, own) in &from.by {
-                        let product = self.binary(Binary::Mul, own, &other.value);
-                        self.add(&mut by, index, product);
-                    }
-                }
+                self.chain(&mut by, &b.value, a);
+                self.chain(&mut by, &a.value, b);
             }
             Binary::Div => {
                 // (a/b)' = (a' − (a/b) b') / b.
@@ -161,13 +183,53 @@ impl Arithmetic<'_> {
                 }
                 by.values_mut().for_each(|own| *own = self.binary(Binary::Div, own, &b.value));
             }
+            Binary::Pow => {
+                // (aᵇ)' = b aᵇ⁻¹ a' + aᵇ ln a b'.
+                let less = self.one_less(&b.value);
+                let power = self.binary(Binary::Pow, &a.value, &less);
+                let slope = self.binary(Binary::Mul, &b.value, &power);
+                self.chain(&mut by, &slope, a);
+                if !b.by.is_empty() {
+                    let log = self.unary(Unary::Log, &a.value);
+                    let slope = self.binary(Binary::Mul, &value, &log);
+                    self.chain(&mut by, &slope, b);
+                }
+            }
+            Binary::Atan2 => {
+                // atan2(a, b)' = (b a' − a b')/(a² + b²).
+                let squares = [a, b].map(|own| self.binary(Binary::Mul, &own.value, &own.value));
+                let size = self.binary(Binary::Add, &squares[0], &squares[1]);
+                let by_a = self.binary(Binary::Div, &b.value, &size);
+                let by_b = self.binary(Binary::Div, &a.value, &size);
+                let by_b = self.unary(Unary::Neg, &by_b);
+                self.chain(&mut by, &by_a, a);
+                self.chain(&mut by, &by_b, b);
+            }
+            // max(a, b)' = (1 ± s) a'/2 + (1 ∓ s) b'/2, where s is the sign of a − b, or anything between −1 and 1.
+            Binary::Min | Binary::Max => {
+                let difference = self.binary(Binary::Sub, &a.value, &b.value);
+                let sign = self.unary(Unary::Sign, &difference);
+                let half = self.number(0.5);
+                let shift = self.binary(Binary::Mul, &half, &sign);
+                let shares = [Binary::Add, Binary::Sub].map(|side| self.binary(side, &half, &shift));
+                let [first, second] = if function == Binary::Max { [a, b] } else { [b, a] };
+                self.chain(&mut by, &shares[0], first);
+                self.chain(&mut by, &shares[1], second);
+            }
             // Nothing is known of them where the condition has no sign.
             Binary::Select | Binary::SelectElse => {
                 by.extend(b.by.iter().map(|(&index, own)| (index, self.binary(function, &a.value, own))));
             }
-            _ => return self.unknown(),
         }
         Dual { value, by }
+    }
+
+    /// Adds `slope` times the derivatives of a number.
+    fn chain(&mut self, by: &mut BTreeMap<usize, Vec<f64>>, slope: &[f64], of: &Dual) {
+        for (&index, own) in &of.by {
+            let term = self.binary(Binary::Mul, slope, own);
+            self.add(by, index, term);
+        }
     }
 
     fn add(&mut self, by: &mut BTreeMap<usize, Vec<f64>>, index: usize, term: Vec<f64>) {
