@@ -14,7 +14,7 @@ use crate::runge_kutta::solve;
 /// Error of the reference: DOP853's tolerance, gathered over the steps.
 const REFERENCE: f64 = 1e-11;
 
-fn certify(description: Description) -> (Bounds, Option<String>) {
+pub fn certify(description: Description) -> (Bounds, Option<String>) {
     let bounds = BoundsRequest { certified: Some(Certified { proof: Proof::Motion }), ..Default::default() };
     let description = Description { bounds, ..description };
     let options = Options { threads: Some(2), ..Options::default() };
@@ -24,7 +24,7 @@ fn certify(description: Description) -> (Bounds, Option<String>) {
 
 /// Asserts that the band of an output holds the values of samples, a row each; returns by how much it is wider at most.
 #[track_caller]
-fn excess(bounds: &Bounds, name: &str, samples: &[Vec<f64>]) -> f64 {
+pub fn excess(bounds: &Bounds, name: &str, samples: &[Vec<f64>]) -> f64 {
     let certified = band(output(bounds, name), Method::Certified);
     let mut worst = 0.0_f64;
     for row in 0..bounds.times.len() {
@@ -40,7 +40,7 @@ fn excess(bounds: &Bounds, name: &str, samples: &[Vec<f64>]) -> f64 {
 }
 
 /// Numbers between −1 and 1, the ends first.
-fn box_of(count: usize) -> impl Iterator<Item = f64> {
+pub fn box_of(count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |index| if index == 1 { 1.0 } else { -1.0 + 2.0 * index as f64 / count as f64 })
 }
 
@@ -247,6 +247,73 @@ fn the_pendulum_comes_back_after_its_period() {
             assert!(upper - lower < 1e-8, "{name} {row}: [{lower}, {upper}]");
         }
     }
+}
+
+/// Centre of mass of the heavy top (m): Euler's equations about its foot, and the rates of the orientation's parameters.
+fn heavy_top_by_hand(axial: f64, spin: f64, times: &[f64]) -> Vec<Vec<f64>> {
+    let (mass, arm, g) = (15.0, 1.0, 9.81);
+    let inertia = [0.234375 + mass * arm * arm, axial, 0.234375 + mass * arm * arm];
+    let equation = |_: f64, y: &[f64], d: &mut [f64]| {
+        let ([p, a, b, c], w) = ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]]);
+        // The vertical in the top's frame: the last row of its rotation matrix.
+        let up = [2.0 * (a * c - p * b), 2.0 * (b * c + p * a), p * p - a * a - b * b + c * c];
+        // (0, arm, 0) × (−m g up)
+        let torque = [-mass * g * arm * up[2], 0.0, mass * g * arm * up[0]];
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            d[4 + i] = (torque[i] + (inertia[j] - inertia[k]) * w[j] * w[k]) / inertia[i];
+        }
+        d[0] = -0.5 * (a * w[0] + b * w[1] + c * w[2]);
+        d[1] = 0.5 * (p * w[0] + b * w[2] - c * w[1]);
+        d[2] = 0.5 * (p * w[1] + c * w[0] - a * w[2]);
+        d[3] = 0.5 * (p * w[2] + a * w[1] - b * w[0]);
+    };
+    let rows = solve(equation, &[1.0, 0.0, 0.0, 0.0, 0.0, spin, -4.61538], times, 1e-14, 1e-3);
+    let centre = |y: &Vec<f64>| {
+        let [p, a, b, c] = [y[0], y[1], y[2], y[3]];
+        vec![2.0 * (a * b - p * c), p * p - a * a + b * b - c * c, 2.0 * (b * c + p * a)]
+    };
+    rows.iter().map(centre).collect()
+}
+
+/// All parameters of the orientation are given at the start; they fulfil the normalisation but for their rounding.
+#[test]
+fn solutions_of_the_heavy_top_are_held() {
+    let (bounds, failure) = certify(model("heavy_top").duration(0.02).rows_every(0.005));
+    assert_eq!(failure, None);
+    let boxes = box_of(12).flat_map(|a| box_of(12).map(move |b| (a, b)));
+    let solutions: Vec<_> = boxes
+        .map(|(a, b)| heavy_top_by_hand(0.46875 * (1.0 + 5e-3 * a), 150.0 * (1.0 + 5e-3 * b), &bounds.times))
+        .collect();
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let observed: Vec<Vec<f64>> = solutions.iter().map(|rows| rows.iter().map(|row| row[axis]).collect()).collect();
+        assert!(excess(&bounds, name, &observed) < 1e-8, "{name}");
+    }
+}
+
+/// Friction that turns smoothly about rest does so within 17 µs: cells are as short as that at first.
+#[test]
+fn solutions_of_a_stiff_start_are_held() {
+    let (bounds, failure) = certify(read(
+        "
+parameters: { f: { value: 400 N, tolerance: 1% } }
+bodies: { mass: { mass: 0.5, coordinates: [x] } }
+effects:
+  push: { force: { on: mass, value: [f, 0] } }
+  drag: { force: { on: mass, value: [\"-(100 N)*mass.vx/sqrt(mass.vx^2 + (0.01 m/s)^2)\", 0] } }
+initial: { mass.x: 0, mass.vx: 0 }
+outputs: { v: mass.vx }
+simulation: { duration: 0.01, step: 1e-4, output_step: 1e-3 }
+",
+    ));
+    assert_eq!(failure, None);
+    let motion = |xi: f64| {
+        let f = 400.0 * (1.0 + 0.01 * xi);
+        let rate = |_: f64, v: &[f64], d: &mut [f64]| d[0] = (f - 100.0 * v[0] / v[0].hypot(0.01)) / 0.5;
+        solve(rate, &[0.0], &bounds.times, 1e-14, 1e-6).into_iter().map(|row| row[0]).collect()
+    };
+    let observed: Vec<Vec<f64>> = box_of(20).map(motion).collect();
+    assert!(excess(&bounds, "v", &observed) < 1e-6);
 }
 
 #[test]

@@ -20,6 +20,7 @@ mod attained;
 mod bounds_laws;
 mod car_axis;
 mod certify;
+mod certify_functions;
 mod certify_motion;
 mod closed_forms;
 mod composition;

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
-use symdiff::taylor_model::encloses;
 use symdiff::{Builder, Expr, Graph, Scalar};
 
 use super::acting::Acting;
@@ -217,7 +216,7 @@ fn apply_effects<'g>(
     m.add_tooth_forces(&mut applied, false)?;
     let mut effects = Vec::new();
     for (index, effect) in description.effects.iter().enumerate() {
-        let (nodes, sampled) = (g.len(), applied.sampled.len());
+        let nodes = g.len();
         applied.begin();
         effect.kind.apply(&mut Acting { m, effect: index, applied: &mut applied })?;
         m.sensors.extend(applied.measured().iter().map(|&(measure, value)| ((index, measure), value)));
@@ -228,16 +227,12 @@ fn apply_effects<'g>(
             left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
         }
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
-        let graph = g.graph();
-        // What jumps at instants is not enclosed.
-        let enclosed =
-            applied.sampled.len() == sampled && graph.exprs_after(nodes).all(|expr| encloses(graph.node(expr)));
         let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);
         let length = measured.map(|&(_, length)| length.expr());
         let room = applied.room.map(Scalar::expr);
         let overlap = applied.overlap.map(|(gap, deepest)| Overlap { gap: gap.expr(), deepest: deepest.expr() });
-        let expressions = graph.len() - nodes;
-        effects.push(EffectInfo { name, kind, forces, expressions, enclosed, length, room, overlap });
+        let expressions = g.len() - nodes;
+        effects.push(EffectInfo { name, kind, forces, expressions, length, room, overlap });
     }
     Ok((applied, effects))
 }

@@ -115,8 +115,6 @@ pub struct EffectInfo {
     pub forces: usize,
     /// Number of expressions that no earlier effect has.
     pub expressions: usize,
-    /// Whether all of them have an enclosure over a box of parameters.
-    pub enclosed: bool,
     /// The distance of two points along which it acts, where it does.
     pub length: Option<Expr>,
     /// How much room it has, m: none at a start outside of its enclosure.

@@ -1,7 +1,7 @@
 //! The equations as tapes, without a scheme and without elimination: an enclosure of a solution is verified with them.
 
 use rustc_hash::FxHashMap;
-use symdiff::{Expr, Graph, Lowered, SparseMatrix, Tape, lower};
+use symdiff::{Binary, Expr, Graph, Lowered, Node, SparseMatrix, Tape, Unary, lower};
 
 use super::layout::Layout;
 use super::start_equations::Equations;
@@ -42,6 +42,9 @@ pub struct EquationsProgram {
     pub guess: Vec<Option<f64>>,
     /// Whether velocities of zero fulfil all that holds for them, and none is given.
     pub can_rest: bool,
+    /// What conditions and signs in the equations are of, as far as it changes with the motion: registers after
+    /// `conditions`. Derivatives do not show where these jump.
+    pub conditions: Vec<usize>,
     lowered: Lowered,
 }
 
@@ -53,6 +56,7 @@ const GIVEN: usize = 4;
 const RATES_JACOBIAN: usize = 5;
 const CLOSURE: usize = 6;
 const CLOSURE_JACOBIAN: usize = 7;
+const CONDITIONS: usize = 8;
 
 impl Tapes for EquationsProgram {
     fn lowered(&self) -> &Lowered {
@@ -96,6 +100,11 @@ impl EquationsProgram {
         &self.lowered.kernels[CLOSURE_JACOBIAN]
     }
 
+    /// What conditions and signs are of.
+    pub fn conditions(&self) -> &Tape {
+        &self.lowered.kernels[CONDITIONS]
+    }
+
     /// Given positions and velocities of the start.
     pub fn given(&self) -> &Tape {
         &self.lowered.kernels[GIVEN]
@@ -126,6 +135,8 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
     let rates_at_rest = graph.substitute(&closure_rate, &at_rest);
     let can_rest =
         rates_at_rest.iter().all(|&rate| graph.is_zero(rate)) && system.start.velocity.iter().all(Option::is_none);
+    let rows = [&motion[..], &rate_of_rate, &closure, &closure_rate].concat();
+    let conditions = conditions_of_motion(system, &graph, &rows);
     let guess = system.start.guess.iter().map(|&guess| graph.as_constant(guess)).collect();
     let kept = [&system.start.position, &system.start.velocity];
     let given: Vec<Expr> = kept.iter().flat_map(|values| values.iter().flatten().copied()).collect();
@@ -139,6 +150,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         of_rates.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
         free(&[&closure[..], &closure_rate].concat()),
         of_closure.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
+        free(&conditions),
     ];
     let lowered = lower(&graph, &layout.inputs(system), 1, layout.registers() as u32, &kernels);
 
@@ -179,7 +191,26 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         kept,
         guess,
         can_rest,
+        conditions: registers(CONDITIONS).collect(),
         layout,
         lowered,
     }
+}
+
+/// Arguments of conditions and signs in some rows, as far as they change with the motion; each once.
+fn conditions_of_motion(system: &System, graph: &Graph, rows: &[Expr]) -> Vec<Expr> {
+    let motion: Vec<Expr> = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied().collect();
+    let mut found = Vec::new();
+    for expr in graph.reachable(rows) {
+        let argument = match graph.node(expr) {
+            Node::Unary(Unary::Sign, argument) => argument,
+            Node::Binary(Binary::Select | Binary::SelectElse, argument, _) => argument,
+            _ => continue,
+        };
+        let symbols = graph.symbols_of(&[argument]);
+        if !found.contains(&argument) && motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok()) {
+            found.push(argument);
+        }
+    }
+    found
 }

@@ -150,7 +150,26 @@ fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, open: Open
         ranges.extend(models.chunks_exact(space.size()).map(|model| range_of(&mut range, model)));
         between.extend(since.iter().map(|since| known(Range { lower: since.lower(), upper: since.upper() })));
     });
+    widen(&mut ranges, ensemble.outputs());
     Enclosed { piece, ranges, between, lost, proof, before }
+}
+
+/// Gives each output room by its size over all rows: where it passes through zero, a checker's errors are those of what
+/// it is made of.
+fn widen(ranges: &mut [Range], outputs: usize) {
+    let mut sizes = vec![0.0_f64; outputs];
+    for row in ranges.chunks_exact(outputs.max(1)) {
+        for (size, range) in sizes.iter_mut().zip(row) {
+            // NaN is no size.
+            *size = size.max(range.lower.abs()).max(range.upper.abs());
+        }
+    }
+    for row in ranges.chunks_exact_mut(outputs.max(1)) {
+        for (size, range) in sizes.iter().zip(row) {
+            let room = ROOM.size * size;
+            *range = Range { lower: (range.lower - room).next_down(), upper: (range.upper + room).next_up() };
+        }
+    }
 }
 
 /// The hull of all pieces, unknown from where the first is lost.
@@ -244,7 +263,7 @@ fn range_of(range: &mut TaylorRange, model: &[f64]) -> Range {
     let varies = coefficients[1..].iter().any(|&c| c != 0.0);
     let rounding = if varies { 100.0 * f64::EPSILON * size } else { 0.0 };
     // Another checker's last digits differ.
-    let room = ROOM.width * (found.upper - found.lower) + ROOM.size * size + ROOM.radius * radius[0];
+    let room = ROOM.width * (found.upper - found.lower) + ROOM.radius * radius[0];
     let margin = up(rounding + radius[0] + room);
     let wide = Range { lower: (found.lower - margin).next_down(), upper: (found.upper + margin).next_up() };
     known(wide)

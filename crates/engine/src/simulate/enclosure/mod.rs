@@ -34,6 +34,7 @@ use symdiff::{Interval, ModelMemory};
 
 use super::control::Schedule;
 use super::simulator::Simulator;
+use crate::assemble::System;
 use crate::certificate::matrix::Models;
 use crate::certificate::{Certified, Equations};
 use crate::compile::{AtStart, Coefficients, EquationsProgram, Tapes, compile_equations, list_equations};
@@ -62,19 +63,24 @@ pub enum EnclosureError {
 #[derive(Clone, Debug)]
 pub struct Certifier<'s> {
     simulator: &'s Simulator,
+    /// The system, of whose start only as much is given as constraints do not say.
+    system: System,
     program: EquationsProgram,
 }
 
 impl<'s> Certifier<'s> {
     /// Compiles the equations of a mechanism.
     pub fn new(simulator: &'s Simulator) -> Self {
-        Self { simulator, program: compile_equations(&simulator.system) }
+        let mut system = simulator.system.clone();
+        start::leave_to_normalisations(&mut system, &simulator.nominal[simulator.program.layout.q.clone()]);
+        let program = compile_equations(&system);
+        Self { simulator, system, program }
     }
 
     /// The equations, for a certificate.
     fn equations(&self) -> Equations {
-        let system = &self.simulator.system;
-        let layout = &self.program.layout;
+        let Self { system, program, .. } = self;
+        let layout = &program.layout;
         let starts = [(&system.start.position, layout.q.start), (&system.start.velocity, layout.v.start)];
         let mut level = 0..;
         let at_start = starts.map(|(given, first)| {

@@ -4,7 +4,7 @@ use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory, Tape};
 
 use super::EnclosureError;
-use crate::assemble::CoordinateId;
+use crate::assemble::{CoordinateId, ResidualUnit, System};
 use crate::certificate::krawczyk::{self, Image};
 use crate::certificate::matrix::Models;
 use crate::compile::EquationsProgram;
@@ -21,6 +21,8 @@ pub(super) struct Equations<'p> {
     slopes: &'p Tape,
     /// (residual, unknown, register) after `slopes`.
     entries: Vec<(usize, usize, usize)>,
+    /// What conditions and signs are of, and their registers: known where all unknowns are.
+    conditions: Option<(&'p Tape, &'p [usize])>,
 }
 
 /// Leaves the start's q, v, a, w, λ in the memory at t = 0; `shift` is αh. The nominal start selects the solution.
@@ -58,6 +60,7 @@ pub(super) fn assemble(
             residual: vec![program.closure()],
             slopes: program.closure_jacobian(),
             entries,
+            conditions: None,
         };
         equations.solve(space, memory)?;
     }
@@ -88,6 +91,25 @@ pub(super) fn assemble(
     }
     set_time(space, memory, layout.time, 0.0);
     Ok(())
+}
+
+/// Where all parameters of an orientation are given, the one that is largest at the nominal start follows from the
+/// others by the normalisation: given numbers fulfil it but for their rounding.
+pub(super) fn leave_to_normalisations(system: &mut System, nominal: &[f64]) {
+    for (info, &constraint) in system.constraints.iter().zip(&system.constraint) {
+        if info.unit != ResidualUnit::Number || !info.name.ends_with(".norm") {
+            continue;
+        }
+        let symbols = system.graph.symbols_of(&[constraint]);
+        let own: Vec<usize> =
+            (0..system.q.len()).filter(|&index| symbols.binary_search(&system.q[index]).is_ok()).collect();
+        let largest = own.iter().copied().max_by(|&a, &b| nominal[a].abs().total_cmp(&nominal[b].abs()));
+        for given in [&mut system.start.position, &mut system.start.velocity] {
+            if let Some(largest) = largest.filter(|_| own.iter().all(|&index| given[index].is_some())) {
+                given[largest] = None;
+            }
+        }
+    }
 }
 
 /// Coordinates whose position (level 0), or velocity (1), is not given.
@@ -171,6 +193,7 @@ pub(super) fn accelerations(program: &EquationsProgram) -> Equations<'_> {
         residual: vec![program.residual(), program.rates()],
         slopes: program.jacobian(),
         entries,
+        conditions: Some((program.conditions(), &program.conditions)),
     }
 }
 
@@ -218,7 +241,12 @@ impl Equations<'_> {
         });
         let spread = spread.ok_or(EnclosureError::Unproven)?;
         self.set_radii(space, memory, Some(&spread));
-        Ok(())
+        let Some((tape, registers)) = self.conditions.filter(|(_, registers)| !registers.is_empty()) else {
+            return Ok(());
+        };
+        memory.run(tape);
+        let are_known = registers.iter().all(|&register| space.sign(memory.model(register)).is_some());
+        if are_known { Ok(()) } else { Err(EnclosureError::Unproven) }
     }
 
     fn set_radii(&self, space: &ModelSpace, memory: &mut ModelMemory, radii: Option<&[f64]>) {

@@ -22,29 +22,33 @@ pub(super) fn obstacle(simulator: &Simulator, proof: Proof) -> Option<String> {
         let joint = &system.constraints[system.constraint.len()].joint;
         return Some(format!("constraints of velocities, as of joint {joint}"));
     }
-    if let Some(effect) = system.effects.iter().find(|effect| !effect.enclosed) {
-        return Some(format!("effect {} ({})", effect.name, effect.kind));
-    }
-    if proof == Proof::Motion && !system.sampled.is_empty() {
+    if !system.sampled.is_empty() {
         return Some("states that change at instants, as of a controller with a period".to_owned());
     }
-    (proof == Proof::Motion && jumps_with_the_motion(system))
-        .then(|| "`floor` of positions or velocities, where the equations jump".to_owned())
+    let jump = if proof == Proof::Motion { jump_with_the_motion(system) } else { None };
+    jump.map(|what| format!("{what} of positions or velocities, where the equations jump"))
 }
 
-/// Whether `floor` of the motion stands in an equation: the equations jump, and no derivative shows it.
-fn jumps_with_the_motion(system: &System) -> bool {
-    let roots: Vec<Expr> =
-        [&system.inertia, &system.force, &system.constraint].into_iter().flatten().copied().collect();
+/// A function of the motion in an equation that jumps, while no derivative shows it.
+fn jump_with_the_motion(system: &System) -> Option<&'static str> {
     let motion: Vec<Expr> = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied().collect();
-    let jumps = |expr: &Expr| match system.graph.node(*expr) {
-        Node::Unary(Unary::Floor, argument) => {
-            let symbols = system.graph.symbols_of(&[argument]);
-            motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok())
-        }
-        _ => false,
+    let jump = |expr: Expr, differentiated: u8| {
+        let (argument, what) = match system.graph.node(expr) {
+            Node::Unary(Unary::Floor, argument) => (argument, "`floor`"),
+            Node::Unary(Unary::Spline(table, order), argument) => {
+                let jumps = (order..=order + differentiated).any(|order| table.rounding_jumps(order).is_none());
+                jumps.then_some((argument, "a table, or a derivative of one,"))?
+            }
+            _ => return None,
+        };
+        let symbols = system.graph.symbols_of(&[argument]);
+        motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok()).then_some(what)
     };
-    system.graph.reachable(&roots).iter().any(jumps)
+    let of = |roots: &[Expr], differentiated: u8| {
+        system.graph.reachable(roots).into_iter().find_map(|expr| jump(expr, differentiated))
+    };
+    // Constraints hold with their second derivatives.
+    of(&[&system.inertia[..], &system.force].concat(), 0).or_else(|| of(&system.constraint, 2))
 }
 
 /// Why an enclosure ended, with the parameter of which the piece is too wide, where that can be told.

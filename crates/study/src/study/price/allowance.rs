@@ -43,6 +43,11 @@ impl Allowance {
         self.expected.fetch_add((1e3 * seconds) as u64, Ordering::Relaxed);
     }
 
+    /// Lets the run take as long as it does.
+    pub(in crate::study) fn lift(&self) {
+        self.expected.fetch_add((1e3 * FOR_EVER) as u64, Ordering::Relaxed);
+    }
+
     /// Whether the run is to end.
     pub(in crate::study) fn is_spent(&self) -> bool {
         self.is_spent_after(self.begun.elapsed())

@@ -10,6 +10,9 @@ use crate::certificate::spaces::Cell;
 /// Defect of the accelerations, relative to their size, above which a cell is halved.
 const LARGE_DEFECT: f64 = 1e-12;
 
+/// The same above which shorter cells are tried whatever the polynomials' last terms are: a knot of a table is passed.
+pub(super) const HARMFUL_DEFECT: f64 = 1e-9;
+
 /// Last terms in τ, relative to the accelerations, below which they do not matter.
 const SMALL_DEFECT: f64 = 1e-13;
 
@@ -61,14 +64,21 @@ impl Next {
         self.is_coarse() || self.gain > LARGE_GAIN
     }
 
+    /// Whether much shorter cells may be better where one of half the length is not: where a knot lies decides. What
+    /// halving does not make better otherwise is of the parameters, not of the time.
+    pub fn may_help_later(&self) -> bool {
+        self.defect > HARMFUL_DEFECT
+    }
+
     /// Whether a shorter cell has a smaller defect, and needs it.
     fn is_coarse(&self) -> bool {
-        self.defect > LARGE_DEFECT && self.tails[0] > SMALL_DEFECT && self.tails[1] < 0.1 * self.tails[0]
+        let falls = self.tails[0] > SMALL_DEFECT && self.tails[1] < 0.1 * self.tails[0];
+        self.defect > HARMFUL_DEFECT || (self.defect > LARGE_DEFECT && falls)
     }
 
     /// Whether two cells of half the length are better than one.
     pub fn is_better_than(&self, larger: &Self) -> bool {
-        let by_defect = larger.is_coarse() && self.defect < 0.5 * larger.defect;
+        let by_defect = larger.is_coarse() && self.defect < 0.7 * larger.defect;
         by_defect || (larger.gain > LARGE_GAIN && self.gain - 1.0 < HELPFUL * (larger.gain - 1.0))
     }
 

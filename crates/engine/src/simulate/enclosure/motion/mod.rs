@@ -26,7 +26,7 @@ use crate::certificate::spaces::{Cell, Space};
 use crate::certificate::{Piece, ProvenCell};
 use crate::compile::{EquationsProgram, Tapes};
 use approximation::Approximation;
-use cells::{Next, Passed};
+use cells::{HARMFUL_DEFECT, Next, Passed};
 use proof::{Claim, inverse_about};
 
 /// Half the length of the first cell that is tried, s.
@@ -36,7 +36,7 @@ const FIRST_HALF: f64 = 1.0 / 64.0;
 const LONGEST_HALF: f64 = 0.25;
 
 /// Half the length below which a cell is not halved, s.
-const SHORTEST_HALF: f64 = 1.0 / 32768.0;
+const SHORTEST_HALF: f64 = 1.0 / 1_048_576.0;
 
 /// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
 const LARGE_REMAINDER: f64 = 1e-5;
@@ -222,28 +222,29 @@ impl<'s> MotionEnclosure<'s> {
 
     /// Proves the next cell, as long as can be.
     fn pass(&mut self) -> Result<(), EnclosureError> {
-        let mut larger: Option<Next> = None;
+        let mut best: Option<Next> = None;
         loop {
             let cell = Cell { middle: self.time + self.half, half: self.half };
             let can_halve = self.half > SHORTEST_HALF;
-            match self.attempt(cell) {
-                Ok(next) => {
-                    // What halving does not make better is of the parameters, not of the time.
-                    if let Some(before) = larger.take().filter(|before| !next.is_better_than(before)) {
-                        self.accept(before);
-                        return Ok(());
-                    }
-                    if can_halve && next.is_long() {
-                        larger = Some(next);
-                        self.half *= 0.5;
-                        continue;
-                    }
+            let may_help = match (self.attempt(cell), &best) {
+                (Ok(next), Some(before)) if !next.is_better_than(before) => before.may_help_later(),
+                (Ok(next), _) => {
+                    let is_long = next.is_long();
+                    best = Some(next);
+                    is_long
+                }
+                (Err(EnclosureError::Unproven), _) if can_halve => true,
+                (Err(why), None) => return Err(why),
+                (Err(_), Some(_)) => false,
+            };
+            match best.take() {
+                Some(next) if !(can_halve && may_help) => {
                     self.accept(next);
                     return Ok(());
                 }
-                Err(EnclosureError::Unproven) if can_halve => self.half *= 0.5,
-                Err(why) => return Err(why),
+                other => best = other,
             }
+            self.half *= 0.5;
         }
     }
 
@@ -296,11 +297,12 @@ impl<'s> MotionEnclosure<'s> {
         let end = approximation.at(fine, 1.0);
         let frame = self.frame.advance(coarse, &proven.flow, &radii(fine, &end)).ok_or(EnclosureError::Unproven)?;
         let errors = frame.error(&coarse.box_of);
-        if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
-            return Err(EnclosureError::TooWide);
-        }
         let defect =
             proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
+        if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
+            let by_cell = defect > HARMFUL_DEFECT;
+            return Err(if by_cell { EnclosureError::Unproven } else { EnclosureError::TooWide });
+        }
         let tail = |of_power: f64| {
             let rows = (0..n).map(|row| fine.last_in_time(approximation.w.at(row, 0), of_power));
             rows.fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE)
