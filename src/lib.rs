@@ -13,7 +13,7 @@ pub use methods::Method;
 #[doc(inline)]
 pub use results::{
     Convergence, EffectBalance, Exchange, FormulationVerification, GradientParameter, Gradients, OutputGradients,
-    PowerBalance, Quantity, SchemeVerification, Summary, Verification,
+    PowerBalance, Quantity, ReducedGradients, SchemeVerification, Summary, Verification,
 };
 #[doc(inline)]
 pub use syntax::Diagnostics;

@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+import numpy as np
 import xarray as xr
 
 from ._command import invoke
@@ -32,8 +33,9 @@ def gradient(
         threads: number of threads; results do not depend on it.
 
     Returns:
-        ``derivatives`` over (time, output, parameter), ``values`` over (time, output), and ``nominal`` and ``half_width`` of each
-        parameter's interval, all in SI; units are coordinates.
+        ``derivatives`` over (time, output, parameter), ``values`` over (time, output), ``reduced_derivatives`` over (reduced,
+        parameter) and ``reduced_values`` of reduced outputs and of requirements' margins, and ``nominal`` and ``half_width`` of
+        each parameter's interval, all in SI; units are coordinates.
 
     Raises:
         MbintError: the model has errors, or its motion has no derivatives.
@@ -43,20 +45,27 @@ def gradient(
         arguments = ["gradient", str(study.model), "--output", temporary, "--format", "json", "--quiet", *study.options]
         arguments += ["--threads", str(threads)] if threads is not None else []
         found = json.loads(invoke([*arguments, "--color", "never"]).stdout)
-    parameters, outputs = found["parameters"], found["outputs"]
+    parameters, outputs, reduced = found["parameters"], found["outputs"], found["reduced"]
     coords = {
         "time": ("time", found["times"], {"units": "s"}),
         "output": [own["name"] for own in outputs],
         "units": ("output", [own["unit"] for own in outputs]),
         "parameter": [own["name"] for own in parameters],
         "parameter_units": ("parameter", [own["unit"] for own in parameters]),
+        "reduced": [own["name"] for own in reduced],
+        "reduced_units": ("reduced", [own["unit"] for own in reduced]),
     }
     return xr.Dataset(
         {
             "derivatives": (("output", "time", "parameter"), [own["by_parameters"] for own in outputs]),
             "values": (("output", "time"), [own["values"] for own in outputs]),
+            "reduced_derivatives": (
+                ("reduced", "parameter"),
+                np.array([own["by_parameters"] for own in reduced], float).reshape(len(reduced), len(parameters)),
+            ),
+            "reduced_values": ("reduced", [own["value"] for own in reduced]),
             "nominal": ("parameter", [own["value"] for own in parameters]),
             "half_width": ("parameter", [own["half_width"] for own in parameters]),
         },
         coords=coords,
-    ).transpose("time", "output", "parameter")
+    ).transpose("time", "output", "reduced", "parameter")

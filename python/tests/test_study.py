@@ -131,6 +131,14 @@ def test_gradients_are_those_of_free_fall() -> None:
     np.testing.assert_allclose(by_g, -0.5 * found.time.to_numpy() ** 2, atol=1e-9)
     assert found.units.sel(output="y") == "m" and found.parameter_units.sel(parameter="g") == "m/s^2"
     assert float(found.half_width.sel(parameter="g")) == pytest.approx(0.0981)
+    assert found.reduced.size == 0
+    # y = -0.4 at t = sqrt(0.8 / g), and the speed is never more than g / 2.
+    lands = FALL["outputs"] | {"lands": {"when": "ball.y <= -0.4"}}
+    found = mbint.gradient(FALL | {"outputs": lands, "requirements": {"slow": "abs(ball.vy) <= 6 m/s"}})
+    by_g = found["reduced_derivatives"].sel(parameter="g")
+    assert float(by_g.sel(reduced="lands")) == pytest.approx(-0.5 * np.sqrt(0.8) * 9.81**-1.5, rel=1e-6)
+    assert float(by_g.sel(reduced="slow")) == pytest.approx(-0.5)
+    assert float(found["reduced_values"].sel(reduced="slow")) == pytest.approx(6 - 9.81 / 2)
 
 
 def test_declared_units_are_shown_and_numbers_stay_in_si() -> None:

@@ -1,4 +1,4 @@
-//! `mbint gradient`: derivatives of outputs over time by all uncertain parameters.
+//! `mbint gradient`: derivatives of outputs over time, of reduced outputs and of margins by all uncertain parameters.
 
 use super::args::GradientArgs;
 use super::console::{BOLD, Console, file_names};
@@ -8,8 +8,7 @@ use super::table::{Align, Table};
 use super::verdicts::short;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{by_influence, shown_derivative, write_gradients};
-use crate::grammar::display_unit::ShownUnit;
-use crate::results::Gradients;
+use crate::results::{DerivativesAt, Gradients, ReducedGradients};
 use crate::study::{self, GradientError, RunError};
 
 /// Most parameters of an output that are printed.
@@ -35,12 +34,14 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
             }
         })?,
     };
-    let rows: Vec<usize> = (0..found.outputs.len()).map(|output| row(&found, output, args.at)).collect();
+    let outputs = found.outputs.iter().enumerate();
+    let outputs = outputs.map(|(number, output)| output.at(&found.times, row(&found, number, args.at)));
+    let shown: Vec<DerivativesAt> = outputs.chain(found.reduced.iter().map(ReducedGradients::at)).collect();
     interrupt::wait_for(&folder)?;
-    let files = write_gradients(&folder, &found, &rows);
+    let files = write_gradients(&folder, &found, &shown);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
     answer(&found, args.format, args.run.quiet, console, || {
-        overview(&found, &rows) + &format!("  {}: {}\n", folder.display(), file_names(files.iter()))
+        overview(&found, &shown) + &format!("  {}: {}\n", folder.display(), file_names(files.iter()))
     })?;
     Ok(Status::Done)
 }
@@ -52,14 +53,15 @@ fn row(found: &Gradients, output: usize, at: Option<f64>) -> usize {
     (0..found.times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// Prints the derivatives for people, a table an output.
-fn overview(found: &Gradients, rows: &[usize]) -> String {
+/// Prints the derivatives for people, a table a number.
+fn overview(found: &Gradients, shown: &[DerivativesAt<'_>]) -> String {
     let mut text = format!("{BOLD}{}{BOLD:#}: derivatives at the nominal values\n", found.model);
-    for (number, (output, &row)) in found.outputs.iter().zip(rows).enumerate() {
-        let unit = ShownUnit::of(&output.display, &output.unit);
-        let value = format!("{} {}", short(unit.of_si(output.values[row])), unit.text);
-        text += &format!("\n  {} = {} at t = {} s\n", output.name, value.trim_end(), short(found.times[row]));
-        let influences = by_influence(found, number, row);
+    for own in shown {
+        let value = format!("{} {}", short(own.unit.of_si(own.value)), own.unit.text);
+        let margin = if own.is_margin { "margin of " } else { "" };
+        let at = own.time.map_or_else(String::new, |time| format!(" at t = {} s", short(time)));
+        text += &format!("\n  {margin}{} = {}{at}\n", own.name, value.trim_end());
+        let influences = by_influence(&found.parameters, own.by_parameters);
         let mut table = Table::new([
             ("parameter", Align::Left),
             ("derivative", Align::Right),
@@ -69,9 +71,9 @@ fn overview(found: &Gradients, rows: &[usize]) -> String {
         ]);
         for &(parameter, by, influence) in influences.iter().take(MOST) {
             let parameter = &found.parameters[parameter];
-            let (by, of_both) = shown_derivative(output, parameter, by);
-            let influence = short(unit.of_si(influence));
-            table.row([parameter.name.clone(), short(by), of_both, influence, unit.text.to_owned()]);
+            let (by, of_both) = shown_derivative(own.unit, parameter, by);
+            let influence = short(own.unit.of_si(influence));
+            table.row([parameter.name.clone(), short(by), of_both, influence, own.unit.text.to_owned()]);
         }
         text += &table.render(2);
         if influences.len() > MOST {

@@ -147,8 +147,8 @@ fn what_cannot_be_certified_is_refused() {
     );
 }
 
-/// Friction proportional to its reaction is enclosed, and so is a stop as long as the whole box is away from it, whatever
-/// its exponent.
+/// Friction proportional to its reaction is enclosed, and so is a stop of any exponent as long as the whole box is away
+/// from it.
 #[test]
 fn friction_and_stops_that_are_not_reached_are_enclosed() {
     let text = |effect: &str| {

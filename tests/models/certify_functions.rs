@@ -1,5 +1,5 @@
 //! Certified bounds of laws beyond arithmetic: exponentials, logarithms, powers, tables, contacts that are not reached,
-//! and what ends where the equations jump. Solutions are by hand or by Dormand and Prince's method of equations by hand.
+//! and forces that jump. Solutions are by hand, or by Dormand and Prince's method of equations by hand.
 
 use mbint::inner::certificate::{Certificate, check};
 use mbint::inner::results::{Bounds, Method};

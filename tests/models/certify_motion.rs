@@ -249,7 +249,7 @@ fn the_pendulum_comes_back_after_its_period() {
     }
 }
 
-/// Centre of mass of the heavy top (m): Euler's equations about its foot, and the rates of the orientation's parameters.
+/// Centre of mass of the heavy top (m): Euler's equations about its foot, and rates of the orientation's parameters.
 fn heavy_top_by_hand(axial: f64, spin: f64, times: &[f64]) -> Vec<Vec<f64>> {
     let (mass, arm, g) = (15.0, 1.0, 9.81);
     let inertia = [0.234375 + mass * arm * arm, axial, 0.234375 + mass * arm * arm];

@@ -69,6 +69,7 @@ mod questions_apart;
 mod random;
 mod random_excitations;
 mod reduced;
+mod reduced_gradients;
 mod reductions;
 mod reproducibility;
 mod robot_inertia;

@@ -14,8 +14,8 @@ const HALF_UNIT: f64 = 0.51 * f64::EPSILON;
 /// Parts of half a cell in which ranges are found term by term.
 const PARTS: i32 = 32;
 
-/// Polynomials of (τ, ξ) next to those of ξ, of the same order. Signs are ranges: whoever encloses a motion refuses signs
-/// of it that are not known.
+/// Polynomials of (τ, ξ) next to those of ξ, of the same order. Signs are ranges: an enclosure of a motion refuses
+/// signs of it that are not known.
 #[derive(Clone, Debug)]
 pub struct Space {
     /// Of (τ, ξ).

@@ -154,8 +154,8 @@ fn enclose(ensemble: &dyn Ensemble, proof: Proof, space: &ModelSpace, open: Open
     Enclosed { piece, ranges, between, lost, proof, before }
 }
 
-/// Gives each output room by its size over all rows: where it passes through zero, a checker's errors are those of what
-/// it is made of.
+/// Gives each output room by its size over all rows: where it passes through zero, its terms still have their rounding
+/// errors.
 fn widen(ranges: &mut [Range], outputs: usize) {
     let mut sizes = vec![0.0_f64; outputs];
     for row in ranges.chunks_exact(outputs.max(1)) {

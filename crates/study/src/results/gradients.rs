@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::grammar::display_unit::DisplayUnit;
+use crate::grammar::display_unit::{DisplayUnit, ShownUnit};
 
 /// A parameter by which outputs are differentiated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,6 +52,46 @@ impl OutputGradients {
     }
 }
 
+/// The derivatives of a number by the parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct DerivativesAt<'a> {
+    /// Name in the model.
+    pub name: &'a str,
+    /// The unit in which people see it.
+    pub unit: ShownUnit<'a>,
+    /// Its value, SI.
+    pub value: f64,
+    /// The instant of it, s.
+    pub time: Option<f64>,
+    /// Whether it is the margin of a requirement.
+    pub is_margin: bool,
+    /// SI.
+    pub by_parameters: &'a [f64],
+}
+
+impl OutputGradients {
+    /// The output at a row.
+    pub fn at<'a>(&'a self, times: &[f64], row: usize) -> DerivativesAt<'a> {
+        DerivativesAt {
+            name: &self.name,
+            unit: ShownUnit::of(&self.display, &self.unit),
+            value: self.values[row],
+            time: Some(times[row]),
+            is_margin: false,
+            by_parameters: &self.by_parameters[row],
+        }
+    }
+}
+
+impl ReducedGradients {
+    /// The number.
+    pub fn at(&self) -> DerivativesAt<'_> {
+        let Self { name, value, time, is_margin, by_parameters, .. } = self;
+        let unit = ShownUnit::of(&self.display, &self.unit);
+        DerivativesAt { name, unit, value: *value, time: *time, is_margin: *is_margin, by_parameters }
+    }
+}
+
 /// Derivatives of a model's outputs by its uncertain parameters, at one point of the box.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Gradients {
@@ -63,4 +103,26 @@ pub struct Gradients {
     pub parameters: Vec<GradientParameter>,
     /// The outputs.
     pub outputs: Vec<OutputGradients>,
+    /// Reduced outputs and requirements' margins, as far as they follow from the motion and have derivatives.
+    pub reduced: Vec<ReducedGradients>,
+}
+
+/// Derivatives of a reduced output, or of a requirement's margin.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReducedGradients {
+    /// Name in the model.
+    pub name: String,
+    /// SI unit, empty where dimensionless or unknown.
+    pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip)]
+    pub display: Option<DisplayUnit>,
+    /// Whether it is the margin of a requirement.
+    pub is_margin: bool,
+    /// Its value, SI.
+    pub value: f64,
+    /// The instant that decides it, s; `None` where more than one does.
+    pub time: Option<f64>,
+    /// Derivatives by the parameters, SI.
+    pub by_parameters: Vec<f64>,
 }

@@ -42,7 +42,7 @@ pub use effect_cost::{EffectCost, StepInstructions};
 pub use excitations::{ExcitationSummary, FunctionWitness, WitnessFunction};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use fit::{ConsistentSet, Fit, FitAxis, FitOutput, FitParameter, FitProjection, FitRow, SkewPaving, Unexplained};
-pub use gradients::{GradientParameter, Gradients, OutputGradients};
+pub use gradients::{DerivativesAt, GradientParameter, Gradients, OutputGradients, ReducedGradients};
 pub use merge::{Piece, add_methods, bounds_of_pieces, explanation_of_subsystems, summary_of_subsystems};
 pub use motion::{Motion, MotionPolynomials, MovingForce, MovingSample, Poses};
 pub use peaks::PeakSummary;

@@ -33,6 +33,9 @@ enum Course {
 /// Bits of the points' coordinates, and the course between them.
 type Points = (Vec<u64>, Course);
 
+/// Bits of knots and cubics, and whether they repeat.
+type Content = (Vec<u64>, bool);
+
 impl Spline {
     /// Through points (x, y), x ascending.
     ///
@@ -86,8 +89,8 @@ impl Spline {
         Ok(*known.entry((bits, course)).or_insert_with(|| Self::kept(pieces())))
     }
 
-    /// Of knots and cubics as [`pieces`](Self::pieces) tells them; `None` where the knots do not ascend, or the cubics are
-    /// not one more.
+    /// Of knots and cubics as [`pieces`](Self::pieces) has them; `None` where the knots do not ascend, or the cubics
+    /// are not one more.
     pub fn of_pieces(knots: Vec<f64>, cubics: Vec<[f64; 4]>, periodic: bool) -> Option<Self> {
         let is_sound = knots.len() >= 2
             && knots.windows(2).all(|pair| pair[0] < pair[1])
@@ -98,7 +101,7 @@ impl Spline {
 
     /// The one with these pieces.
     fn kept(pieces: Pieces) -> Self {
-        static KNOWN: OnceLock<Mutex<HashMap<(Vec<u64>, bool), Spline>>> = OnceLock::new();
+        static KNOWN: OnceLock<Mutex<HashMap<Content, Spline>>> = OnceLock::new();
         let numbers = pieces.knots.iter().chain(pieces.cubics.as_flattened());
         let bits = numbers.map(|number| number.to_bits()).collect();
         let mut known = KNOWN.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner);

@@ -103,8 +103,8 @@ impl ModelSpace {
         Self { jets, degrees, weights, signs_are_ranges: false }
     }
 
-    /// Where a sign is not known it is between −1 and 1, and not unknown: right for the derivative of a maximum, and for
-    /// the value of a sign of the time. Who takes it sees to it that nothing jumps with what is solved for.
+    /// Signs that are not known are between −1 and 1 instead of unknown: right for the derivative of a maximum, and for
+    /// a sign of the time. The caller makes sure that nothing jumps with the unknowns.
     #[must_use]
     pub fn with_ranges_of_signs(self) -> Self {
         Self { signs_are_ranges: true, ..self }

@@ -1,7 +1,8 @@
 //! Functions of models beyond arithmetic, roots and waves: each from the equation that defines it, like those, or from
 //! others.
 //!
-//! Along the ray to ξ with s from 0 to 1, E multiplies each coefficient by its degree, and ∫ |ρ(s ξ)|/s ds ≤ Σ |ρᵣ|/deg r:
+//! Along the ray to ξ with s from 0 to 1, E multiplies each coefficient by its degree, and
+//! ∫ |ρ(s ξ)|/s ds ≤ Σ |ρᵣ|/deg r:
 //!
 //! ```text
 //! h ≈ eᵃ       (h e⁻ᵃ)' = e⁻ᵃ ρ/s           ρ = E h − h E a
@@ -216,7 +217,8 @@ impl ModelSpace {
         });
     }
 
-    /// `out` = the smaller or the larger of both: the one that is so at most of the box, and how far the other is beyond.
+    /// `out` = the smaller or the larger of both: the one that is so in most of the box, with a radius for how far the
+    /// other is beyond it.
     pub(super) fn extreme(&self, function: Binary, a: &[f64], b: &[f64], out: &mut [f64]) {
         self.sub(a, b, out);
         let difference = self.range(out);

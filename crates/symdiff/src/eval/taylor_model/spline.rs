@@ -11,8 +11,8 @@ use crate::expr::{Spline, SplinePiece};
 const MOST_PIECES: usize = 64;
 
 impl ModelSpace {
-    /// `out` = the derivative of this order of a table at a; unknown where the box reaches too many pieces. The jumps at
-    /// knots that rounding leaves ([`Spline::rounding_jumps`]) are in the radius.
+    /// `out` = the derivative of this order of a table at a; unknown where the box reaches too many pieces. The radius
+    /// has the jumps at knots that rounding leaves ([`Spline::rounding_jumps`]).
     pub(super) fn spline(&self, spline: Spline, order: u8, a: &[f64], out: &mut [f64], scratch: &mut ModelScratch) {
         let range = self.range(a);
         let pieces = spline.pieces_over(range, MOST_PIECES);

@@ -1,12 +1,17 @@
-//! Derivatives of all outputs in all rows by all uncertain parameters, at their nominal values.
+//! Derivatives of all outputs in all rows, of reduced outputs and of requirements' margins by all uncertain parameters,
+//! at their nominal values.
 
-use super::black_box::needs_equations;
-use super::sample::{Chosen, Trajectories, sample};
-use super::{Options, RunError};
+mod curve;
+mod reduced;
+
 use crate::model::{Description, Parameter, ParameterValue};
 use crate::numerics::Sample;
 use crate::results::{GradientParameter, Gradients, OutputGradients};
 use crate::simulate::{NoGradient, SimulationError, Wanted, gradients};
+use crate::study::black_box::needs_equations;
+use crate::study::reduced::expanded;
+use crate::study::sample::{Chosen, Trajectories, sample};
+use crate::study::{Options, RunError};
 
 /// Why a model has no gradients.
 #[derive(Debug, thiserror::Error)]
@@ -29,7 +34,7 @@ pub enum GradientError {
     )]
     NoParameter,
     /// Nothing to differentiate.
-    #[error("the model has no outputs over time")]
+    #[error("the model has no outputs over time, reduced outputs or requirements")]
     NoOutput,
 }
 
@@ -42,11 +47,16 @@ pub fn gradient(description: &Description, options: &Options) -> Result<Gradient
     if description.uncertain().next().is_none() {
         return Err(GradientError::NoParameter);
     }
+    let shown = description.outputs.len();
+    let description = &*expanded(description);
     if description.outputs.is_empty() {
         return Err(GradientError::NoOutput);
     }
     let none = Chosen { count: 0, at: &|_| Vec::new() };
-    sample(description, options, none, |trajectories| of_trajectories(trajectories, description))
+    let mut found = sample(description, options, none, |trajectories| of_trajectories(trajectories, description))?;
+    found.reduced = reduced::of_sources(description, &found.times, &found.outputs);
+    found.outputs.truncate(shown);
+    Ok(found)
 }
 
 /// A parameter as it is differentiated by.
@@ -94,7 +104,8 @@ fn of_trajectories(trajectories: &Trajectories, description: &Description) -> Re
             }
         }
     }
-    Ok(Gradients { model: description.name.clone(), times: trajectories.times.clone(), parameters, outputs })
+    let (model, times) = (description.name.clone(), trajectories.times.clone());
+    Ok(Gradients { model, times, parameters, outputs, reduced: Vec::new() })
 }
 
 impl GradientError {

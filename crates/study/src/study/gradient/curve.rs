@@ -1,0 +1,112 @@
+//! An output and its derivatives over the time: the rows, and between them the cubic through the four nearest.
+
+use crate::results::OutputGradients;
+
+/// Halvings of an interval in which a zero is looked for, and golden sections of one with an extreme.
+const HALVINGS: usize = 60;
+
+/// A course over the rows; scaled by a sign.
+#[derive(Clone, Copy)]
+pub(super) struct Curve<'a> {
+    pub times: &'a [f64],
+    pub of: &'a OutputGradients,
+    /// 1 or −1.
+    pub sign: f64,
+}
+
+impl Curve<'_> {
+    /// Value at an instant.
+    pub fn value(&self, time: f64) -> f64 {
+        self.weights(time).map(|(row, weight)| self.sign * weight * self.of.values[row]).sum()
+    }
+
+    /// Derivatives by the parameters at a fixed instant.
+    pub fn by_parameters(&self, time: f64) -> Vec<f64> {
+        let mut found = vec![0.0; self.of.by_parameters.first().map_or(0, Vec::len)];
+        for (row, weight) in self.weights(time) {
+            let own = found.iter_mut().zip(&self.of.by_parameters[row]);
+            own.for_each(|(sum, by)| *sum += self.sign * weight * by);
+        }
+        found
+    }
+
+    /// Rates of change: of the value, and of that.
+    pub fn rates(&self, time: f64) -> [f64; 2] {
+        let step = 1e-3 * self.spacing();
+        // Within the cubic that holds on both sides.
+        let middle = time.clamp(self.times[0] + step, self.times[self.times.len() - 1] - step);
+        let [before, here, after] = [-step, 0.0, step].map(|shift| self.value(middle + shift));
+        [(after - before) / (2.0 * step), (after - 2.0 * here + before) / (step * step)]
+    }
+
+    fn spacing(&self) -> f64 {
+        match self.times {
+            [first, .., last] => (last - first) / (self.times.len() - 1) as f64,
+            _ => 1.0,
+        }
+    }
+
+    /// Rows and their weights at an instant (Lagrange).
+    fn weights(&self, time: f64) -> impl Iterator<Item = (usize, f64)> + use<'_> {
+        let count = self.times.len();
+        let before = self.times.partition_point(|&row| row <= time).max(1) - 1;
+        let first = before.saturating_sub(1).min(count.saturating_sub(4));
+        let rows = first..(first + 4).min(count);
+        rows.clone().map(move |row| {
+            let others = rows.clone().filter(|&other| other != row);
+            let factor = |other: usize| (time - self.times[other]) / (self.times[row] - self.times[other]);
+            (row, others.map(factor).product())
+        })
+    }
+
+    /// When it is greatest from one instant to another.
+    pub fn highest(&self, from: f64, to: f64) -> f64 {
+        let rows = self.times.iter().copied().filter(|time| (from..=to).contains(time));
+        let candidates = rows.chain([from, to]);
+        let best = candidates.max_by(|a, b| self.value(*a).total_cmp(&self.value(*b))).unwrap_or(from);
+        let (mut low, mut high) = ((best - self.spacing()).max(from), (best + self.spacing()).min(to));
+        let share = 0.5 * (5.0_f64.sqrt() - 1.0);
+        for _ in 0..HALVINGS {
+            let [left, right] = [high - share * (high - low), low + share * (high - low)];
+            if self.value(left) < self.value(right) { low = left } else { high = right }
+        }
+        let found = 0.5 * (low + high);
+        if self.value(found) > self.value(best) { found } else { best }
+    }
+
+    /// The first and the last instant of a span at which it changes its sign, and whether it is not negative at the
+    /// span's ends.
+    pub fn changes(&self, from: f64, to: f64) -> ([Option<f64>; 2], [bool; 2]) {
+        let rows = self.times.iter().copied().filter(|time| from < *time && *time < to);
+        let instants: Vec<f64> = std::iter::once(from).chain(rows).chain([to]).collect();
+        let is_met = |time: f64| self.value(time) >= 0.0;
+        let mut pairs = instants.windows(2).filter(|pair| is_met(pair[0]) != is_met(pair[1]));
+        let zero = |pair: &[f64]| {
+            let (mut low, mut high) = (pair[0], pair[1]);
+            let begins = is_met(low);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if is_met(middle) == begins { low = middle } else { high = middle }
+            }
+            0.5 * (low + high)
+        };
+        let first = pairs.next();
+        let last = pairs.last().or(first);
+        ([first, last].map(|pair| pair.map(zero)), [from, to].map(is_met))
+    }
+
+    /// ∫ f(value, derivatives) dt by Simpson's rule, with a value between each two rows.
+    pub fn integral(&self, from: f64, to: f64, of: impl Fn(f64, &[f64]) -> Vec<f64>) -> Vec<f64> {
+        let rows = self.times.iter().copied().filter(|time| from < *time && *time < to);
+        let instants: Vec<f64> = std::iter::once(from).chain(rows).chain([to]).collect();
+        let at = |time: f64| of(self.value(time), &self.by_parameters(time));
+        let mut sum = vec![0.0; at(from).len()];
+        for pair in instants.windows(2) {
+            let length = pair[1] - pair[0];
+            for (time, weight) in [(pair[0], 1.0), (0.5 * (pair[0] + pair[1]), 4.0), (pair[1], 1.0)] {
+                sum.iter_mut().zip(at(time)).for_each(|(sum, own)| *sum += weight / 6.0 * length * own);
+            }
+        }
+        sum
+    }
+}
