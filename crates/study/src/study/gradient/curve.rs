@@ -91,7 +91,7 @@ impl Curve<'_> {
             0.5 * (low + high)
         };
         let first = pairs.next();
-        let last = pairs.last().or(first);
+        let last = pairs.next_back().or(first);
         ([first, last].map(|pair| pair.map(zero)), [from, to].map(is_met))
     }
 

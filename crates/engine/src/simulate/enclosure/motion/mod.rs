@@ -35,8 +35,9 @@ const FIRST_HALF: f64 = 1.0 / 64.0;
 /// Half the length of the longest cell, s.
 const LONGEST_HALF: f64 = 0.25;
 
-/// Half the length below which a cell is not halved, s.
-const SHORTEST_HALF: f64 = 1.0 / 1_048_576.0;
+/// Half the length below which a cell is not halved, s; below the first one it is where its polynomials in time are far
+/// from the motion.
+const SHORTEST_HALVES: [f64; 2] = [1.0 / 32768.0, 1.0 / 1_048_576.0];
 
 /// Bound of positions' remainders, relative to their scale, above which smaller boxes cost less than shorter cells.
 const LARGE_REMAINDER: f64 = 1e-5;
@@ -82,6 +83,8 @@ pub struct MotionEnclosure<'s> {
     /// Of the next cell, s.
     time: f64,
     half: f64,
+    /// Whether the last terms in τ of the accelerations over the cell that was tried last were large.
+    is_stiff: bool,
     last: Option<Passed>,
     /// Within which each output is since the time before the one that was observed last.
     since: Vec<Interval>,
@@ -157,6 +160,7 @@ impl<'s> MotionEnclosure<'s> {
             frame,
             time: 0.0,
             half: FIRST_HALF,
+            is_stiff: false,
             last: None,
             since: Vec::new(),
             piece,
@@ -225,8 +229,10 @@ impl<'s> MotionEnclosure<'s> {
         let mut best: Option<Next> = None;
         loop {
             let cell = Cell { middle: self.time + self.half, half: self.half };
-            let can_halve = self.half > SHORTEST_HALF;
-            let may_help = match (self.attempt(cell), &best) {
+            let attempt = self.attempt(cell);
+            let [shortest, of_stiff] = SHORTEST_HALVES;
+            let can_halve = self.half > if self.is_stiff { of_stiff } else { shortest };
+            let may_help = match (attempt, &best) {
                 (Ok(next), Some(before)) if !next.is_better_than(before) => before.may_help_later(),
                 (Ok(next), _) => {
                     let is_long = next.is_long();
@@ -276,6 +282,12 @@ impl<'s> MotionEnclosure<'s> {
         if tail > LARGE_TAIL * size(&approximation.v) {
             return Err(EnclosureError::TooWide);
         }
+        let terms = |of_power: f64| {
+            let rows = (0..n).map(|row| fine.last_in_time(approximation.w.at(row, 0), of_power));
+            rows.fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE)
+        };
+        let tails = [1.0, 0.5, 2.0].map(terms);
+        self.is_stiff = tails[0] > HARMFUL_DEFECT;
         let jump = self.jump(&approximation);
         let at_start = self.frame.error(&coarse.box_of);
         let claim = Claim {
@@ -303,11 +315,6 @@ impl<'s> MotionEnclosure<'s> {
             let by_cell = defect > HARMFUL_DEFECT;
             return Err(if by_cell { EnclosureError::Unproven } else { EnclosureError::TooWide });
         }
-        let tail = |of_power: f64| {
-            let rows = (0..n).map(|row| fine.last_in_time(approximation.w.at(row, 0), of_power));
-            rows.fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE)
-        };
-        let tails = [1.0, 0.5, 2.0].map(tail);
         let gain = frame.gain();
         Ok(Next { cell, approximation, proven, end, frame, ranges, defect, tails, gain })
     }
