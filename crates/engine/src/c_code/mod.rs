@@ -1,25 +1,28 @@
-//! A compiled mechanism as C99: the programs of its steps, the nominal start, and Newton's iteration (`runtime.c`).
+//! A compiled mechanism as C99: the programs of its steps, the nominal start, and what integrates them (`runtime`).
 //!
-//! The code repeats the nominal motion of a run with fixed steps of HHT-I3. It has no rank-revealing solve: a
-//! step in a singular configuration fails.
+//! The code repeats the nominal motion of a run, by HHT-I3 under fixed steps or a tolerance, on one level or several, or
+//! by the explicit method. It has no rank-revealing solve: a step in a singular configuration fails.
 
 mod data;
 mod fmi;
+mod functions;
 mod header;
 mod inputs;
+mod method;
+mod tables;
 
 use std::fmt::Write;
 
 use symdiff::CWriter;
 
-use crate::compile::Tapes;
+use self::method::Method;
 use crate::numerics::Sample;
-use crate::simulate::{Integration, Schedule, SimulationError, Simulator};
+use crate::simulate::{Integration, Schedule, SimulationError, Simulator, Steps};
 
 pub use fmi::FmiVersion;
 
-/// The iteration, with names of the model's parts as macros.
-const RUNTIME: &str = include_str!("runtime.c");
+/// Terms of the licence of what is written, on one line.
+const LICENCE: &str = "mbint's runtime in it: MIT OR Apache-2.0; the model in it: its author's terms";
 
 /// A model as C: its files by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,7 +65,7 @@ pub struct CodeRequest<'r> {
     pub version: FmiVersion,
 }
 
-/// A model's code in the making: its sizes, and what runtime and unit offer.
+/// A model's code in the making: its sizes, and how it is integrated.
 struct Code<'c> {
     simulator: &'c Simulator,
     schedule: &'c Schedule,
@@ -70,29 +73,24 @@ struct Code<'c> {
     prefix: &'c str,
     /// Names and units of the outputs.
     outputs: &'c [(&'c str, &'c str)],
-    /// Whether rows solve for accelerations and multipliers.
-    solves: bool,
+    method: Method<'c>,
     /// Number of parameters that its start may have other values of.
     parameters: usize,
 }
 
-impl Code<'_> {
-    /// Whether it has the programs of the start.
-    fn has_solver(&self) -> bool {
-        self.solves || self.parameters > 0
-    }
-}
-
-/// Writes a mechanism under a schedule.
+/// Writes a mechanism under the steps of a run.
 ///
 /// # Errors
-/// Where it takes more than fixed steps of HHT-I3, where the nominal sample has no start, and where an input is none.
-pub fn c_code(simulator: &Simulator, schedule: &Schedule, request: CodeRequest) -> Result<CModel, NoCode> {
-    let system = &simulator.system;
+/// Where the runtime lacks what its analysis or its steps take, where the nominal sample has no start, and where an
+/// input is none.
+pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Result<CModel, NoCode> {
+    let (system, schedule) = (&simulator.system, steps.schedule);
     let refused = [
-        (system.analysis.visits(), "its analysis is not a motion"),
-        (schedule.integration != Integration::Plain, "its steps are combined, explicit or cut at events"),
-        (!system.sampled.is_empty(), "states change at instants"),
+        (system.analysis.visits(), "its analysis is not a motion; only `analysis: dynamics` has steps"),
+        (
+            schedule.integration == Integration::Segments,
+            "its steps are cut at events that samples share; give `scheme: hht`",
+        ),
     ];
     if let Some((_, why)) = refused.into_iter().find(|(is_so, _)| *is_so) {
         return Err(NoCode::NotWritten(why));
@@ -107,53 +105,23 @@ pub fn c_code(simulator: &Simulator, schedule: &Schedule, request: CodeRequest) 
     // An equilibrium is not found anew.
     let parameters = if simulator.equilibrium.is_some() { &[][..] } else { &system.parameters[..] };
     let inputs = inputs::of(system, parameters, request.inputs)?;
-    let solves = !system.lambda.is_empty() && system.observes_accelerations();
-    let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, solves, parameters: parameters.len() };
+    let method = Method::of(simulator, steps, parameters.len())?;
+    let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, method, parameters: parameters.len() };
     let mut writer = CWriter::default();
-    let functions = functions(&code, &mut writer);
-    let mut text = format!("/* {name}: written by mbint. Licence: that of the model. */\n\n");
+    let functions = functions::functions(&code, &mut writer);
+    let mut text = format!("/* {name}: written by mbint. Licence: {LICENCE}. */\n\n");
     let _ =
         write!(text, "#include \"{name}.h\"\n\n#include <math.h>\n#include <string.h>\n\n{}\n", data::macros(&code));
     text += &writer.helpers();
     text += &data::tables(&code, &start);
     text += &functions;
-    text += RUNTIME;
+    text += &code.method.runtime();
     let example = EXAMPLE.replace("NAME", name).replace("PREFIX", &prefix);
     let files = vec![(format!("{name}.h"), header::header(&code)), (format!("{name}.c"), text)];
     let unit = fmi::Unit { name, prefix: &prefix, outputs: &outputs, parameters, inputs: &inputs, schedule };
     let unit = fmi::files(&unit, request.version, &files);
     let files = files.into_iter().chain([(format!("{name}_main.c"), example)]).collect();
     Ok(CModel { files, unit, identifier: prefix })
-}
-
-/// The tapes as functions of the memory.
-fn functions(code: &Code, writer: &mut CWriter) -> String {
-    let (program, start) = (&code.simulator.program, &code.simulator.start);
-    let mut tapes = vec![
-        ("sample", program.sample()),
-        ("step_size", program.step_size()),
-        ("step", program.step()),
-        ("factor", program.factor()),
-        ("first_correction", program.first_correction()),
-        ("correct", program.correct()),
-        ("advance", program.advance()),
-        ("observe", program.observe()),
-    ];
-    if code.has_solver() {
-        tapes.extend([("solver_sample", start.sample()), ("solver_acceleration", start.acceleration())]);
-    }
-    if code.parameters > 0 {
-        tapes.extend([
-            ("solver_given", start.given()),
-            ("solver_position", start.position()),
-            ("solver_velocity", start.velocity()),
-        ]);
-    }
-    let mut text = String::new();
-    for (name, tape) in tapes {
-        let _ = write!(text, "static void {name}(double *r)\n{{\n{}    (void)r;\n}}\n\n", writer.statements(tape));
-    }
-    text
 }
 
 /// The example's source: a table of the outputs.

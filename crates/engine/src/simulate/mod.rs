@@ -29,7 +29,7 @@ mod ensemble;
 mod error;
 mod events;
 mod excitations;
-mod explicit;
+pub(crate) mod explicit;
 mod fast_states;
 mod features;
 mod further;
@@ -55,6 +55,7 @@ pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSc
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
 pub use enclosure::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetBox, JetRun, Observed, Stop};
+pub(crate) use ensemble::{Needs, weights as level_weights};
 pub use error::SimulationError;
 pub use events::{Boundary, SegmentRun, WordsEnd, segment_jets, segments_of};
 pub use explicit::{ExplicitJets, ExplicitObstacle, explicit_schedule};
