@@ -86,7 +86,7 @@ struct Code<'c> {
 pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Result<CModel, NoCode> {
     let (system, schedule) = (&simulator.system, steps.schedule);
     let refused = [
-        (system.analysis.visits(), "its analysis is not a motion; only `analysis: dynamics` has steps"),
+        (system.analysis.visits(), "its analysis has no motion; without the key `analysis` it has one"),
         (
             schedule.integration == Integration::Segments,
             "its steps are cut at events that samples share; give `scheme: hht`",

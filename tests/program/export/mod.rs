@@ -5,6 +5,8 @@ use std::process::Command;
 
 use super::place::Place;
 
+mod steps;
+
 /// Shipped models: planar and spatial linkages, contacts, controllers, beams, cams, belts, redundant constraints and
 /// reactions; with the largest difference that was measured, relative to the output's largest value.
 const MODELS: [&str; 14] = [
@@ -211,7 +213,7 @@ fn a_start_of_other_parameters_is_that_of_a_sample() {
     }
 }
 
-/// A force that changes from row to row moves a mass by parabolas.
+/// A force that changes from row to row moves a mass by parabolas, whatever steps it takes.
 #[test]
 fn inputs_change_forces_during_the_motion() {
     let place = Place::new();
@@ -221,8 +223,19 @@ bodies: { mass: { mass: m, coordinates: [x] } }
 effects: { push: { force: { on: mass, value: [f, 0] } } }
 initial: { mass.x: 0, mass.vx: 0 }
 outputs: { x: mass.x, a: mass.ax }
-simulation: { duration: 1, step: 1e-2, output_step: 0.1 }
+simulation: { duration: 1, STEPS, output_step: 0.1 }
 ";
+    for steps in [
+        "step: 1e-2",
+        "step: 1e-2, extrapolation: 2",
+        "tolerance: 1e-4, scheme: hht",
+        "tolerance: 1e-4, scheme: explicit",
+    ] {
+        follows_inputs(&place, &model.replace("STEPS", steps));
+    }
+}
+
+fn follows_inputs(place: &Place, model: &str) {
     fs::write(place.path().join("mass.yaml"), model).unwrap();
     let (_, message) = place.run("export mass.yaml --c --input m", 2);
     assert!(message.contains("`m` cannot be an input: constraints or masses depend on it"), "{message}");
@@ -264,20 +277,10 @@ simulation: { duration: 1, step: 1e-2, output_step: 0.1 }
 #[test]
 fn what_is_not_written_is_refused() {
     let place = Place::new();
-    let ball = "bodies: { ball: { mass: 1, coordinates: [y] } }
-effects: { weight: { force: { on: ball, value: [0, -9.81] } } }
-initial: { ball.y: 0, ball.vy: 0 }
-outputs: { y: ball.y }
-";
-    for (simulation, why) in [
-        ("{ duration: 1, tolerance: 1e-6, scheme: hht }", "a tolerance chooses its steps; give a fixed `step`"),
-        ("{ duration: 1, step: 1e-2, scheme: explicit }", "its steps are combined, explicit or cut at events"),
-        ("{ duration: 1, step: 1e-2, extrapolation: 2 }", "its steps are combined, explicit or cut at events"),
-    ] {
-        fs::write(place.path().join("ball.yaml"), format!("{ball}simulation: {simulation}\n")).unwrap();
-        let (_, message) = place.run("export ball.yaml --c", 2);
-        assert!(message.contains(why), "{message}");
-    }
-    let (_, message) = place.run("export ball.yaml", 2);
+    let model = format!("{}/models/four_bar_ventilator.yaml", env!("CARGO_MANIFEST_DIR"));
+    let (_, message) = place.run(&format!("export {model} --c"), 2);
+    let expected = "four_bar_ventilator: it cannot be written as C: its analysis has no motion; without the key `analysis` it has one";
+    assert!(message.contains(expected), "{message}");
+    let (_, message) = place.run(&format!("export {model}"), 2);
     assert!(message.contains("--c"), "{message}");
 }
