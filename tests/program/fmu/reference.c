@@ -25,7 +25,7 @@ enum { STATES = 1 };
 static const double starts[] = { 1.0, 1.0 }, step = 0.1;
 #else
 enum { STATES = 0 };
-static const double starts[] = { 0.0, 0.0 }, step = 0.2;
+static const double starts[] = { 0.0, 0.0 }, step = 0.1;
 #endif
 
 static unit *make(const char *resources)

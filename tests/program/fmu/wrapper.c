@@ -35,7 +35,14 @@ int fmi2GetInteger(void *own, const unsigned *of, size_t n, int *v) { for (size_
 int fmi2SetInteger(void *own, const unsigned *of, size_t n, const int *v) { return n == 1 ? set_whole(own, of[0], v[0]) : 3; }
 int fmi2GetBoolean(void *own, const unsigned *of, size_t n, int *v) { for (size_t i = 0; i < n; i++) v[i] = truth(own, of[i]); return 0; }
 int fmi2SetBoolean(void *own, const unsigned *of, size_t n, const int *v) { return n == 1 ? set_truth(own, of[0], v[0]) : 3; }
-int fmi2DoStep(void *own, double t, double h, int keeps) { (void)keeps; return fabs(t - ((unit *)own)->t) > 1e-9 ? 3 : advance(own, h); }
+int fmi2DoStep(void *own, double t, double h, int keeps)
+{
+    int status = fabs(t - ((unit *)own)->t) > 1e-9 ? 3 : advance(own, h);
+    (void)keeps;
+    return status == 0 && ends(own) ? 2 : status;
+}
+int fmi2GetRealStatus(void *own, int kind, double *value) { *value = ((unit *)own)->t; return kind == 2 ? 0 : 3; }
+int fmi2GetBooleanStatus(void *own, int kind, int *value) { *value = ends(own); return kind == 3 ? 0 : 3; }
 int fmi2EnterEventMode(void *own) { (void)own; return 0; }
 int fmi2NewDiscreteStates(void *own, event_info *info)
 {
@@ -76,8 +83,17 @@ int fmi3GetFloat64(void *own, const uint32_t *of, size_t n, double *v, size_t m)
 int fmi3SetFloat64(void *own, const uint32_t *of, size_t n, const double *v, size_t m) { (void)m; for (size_t i = 0; i < n; i++) if (set_real(own, of[i], v[i])) return 3; return 0; }
 int fmi3GetFloat32(void *own, const uint32_t *of, size_t n, float *v, size_t m) { (void)own; (void)of; (void)n; (void)m; *v = 0.5f; return 0; }
 int fmi3SetFloat32(void *own, const uint32_t *of, size_t n, const float *v, size_t m) { (void)own; (void)of; (void)n; (void)v; (void)m; return 3; }
-int fmi3GetInt32(void *own, const uint32_t *of, size_t n, int32_t *v, size_t m) { (void)m; for (size_t i = 0; i < n; i++) v[i] = whole(own, of[i]); return 0; }
-int fmi3SetInt32(void *own, const uint32_t *of, size_t n, const int32_t *v, size_t m) { (void)m; return n == 1 ? set_whole(own, of[0], v[0]) : 3; }
+#define WHOLE(name, type) \
+    int fmi3Get##name(void *own, const uint32_t *of, size_t n, type *v, size_t m) { (void)m; for (size_t i = 0; i < n; i++) v[i] = whole(own, of[i]); return 0; } \
+    int fmi3Set##name(void *own, const uint32_t *of, size_t n, const type *v, size_t m) { (void)m; return n == 1 ? set_whole(own, of[0], v[0]) : 3; }
+WHOLE(Int8, int8_t)
+WHOLE(UInt8, uint8_t)
+WHOLE(Int16, int16_t)
+WHOLE(UInt16, uint16_t)
+WHOLE(Int32, int32_t)
+WHOLE(UInt32, uint32_t)
+WHOLE(Int64, int64_t)
+WHOLE(UInt64, uint64_t)
 int fmi3GetBoolean(void *own, const uint32_t *of, size_t n, bool *v, size_t m) { (void)m; for (size_t i = 0; i < n; i++) v[i] = truth(own, of[i]); return 0; }
 int fmi3SetBoolean(void *own, const uint32_t *of, size_t n, const bool *v, size_t m) { (void)m; return n == 1 ? set_truth(own, of[0], v[0]) : 3; }
 int fmi3DoStep(void *own, double t, double h, bool keeps, bool *events, bool *terminates, bool *early, double *reached)
