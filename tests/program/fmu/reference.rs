@@ -116,7 +116,8 @@ fn covers(unit: &Unit, interface: &str, model: &str, samples: &[Vec<Vec<f64>>]) 
 fn euler<const N: usize>(
     mut x: [f64; N],
     h: f64,
-    (rows, steps): (usize, usize),
+    rows: usize,
+    steps: usize,
     mut go: impl FnMut(&mut [f64; N], f64),
 ) -> Vec<Vec<f64>> {
     let mut values = vec![x.to_vec()];
@@ -137,7 +138,7 @@ bounds: { tolerance: 1e-4 }
     let exact = |k: f64| (0..101).map(|row| vec![(-k * 0.1 * f64::from(row)).exp()]).collect();
     let samples: Vec<_> = between(0.9, 1.1, 201).map(exact).collect();
     covers(&DAHLQUIST, "model_exchange", model, &samples);
-    let of_steps = |k: f64| euler([1.0], 0.1, (101, 1), |x, h| x[0] -= h * k * x[0]);
+    let of_steps = |k: f64| euler([1.0], 0.1, 101, 1, |x, h| x[0] -= h * k * x[0]);
     let samples: Vec<_> = between(0.9, 1.1, 201).map(of_steps).collect();
     covers(&DAHLQUIST, "co_simulation", model, &samples);
 }
@@ -152,7 +153,7 @@ bounds: { tolerance: 1e-3 }
     let slope = |mu: f64, [a, b]: [f64; 2]| [b, mu * (1.0 - a * a) * b - a];
     let moved = |x: [f64; 2], h: f64, d: [f64; 2]| [x[0] + h * d[0], x[1] + h * d[1]];
     let fine = |mu: f64| {
-        euler([2.0, 0.0], 1e-3, (201, 100), |x, h| {
+        euler([2.0, 0.0], 1e-3, 201, 100, |x, h| {
             let a = slope(mu, *x);
             let b = slope(mu, moved(*x, h / 2.0, a));
             let c = slope(mu, moved(*x, h / 2.0, b));
@@ -162,7 +163,7 @@ bounds: { tolerance: 1e-3 }
     };
     let samples: Vec<_> = between(0.95, 1.05, 101).map(fine).collect();
     covers(&VAN_DER_POL, "model_exchange", model, &samples);
-    let of_steps = |mu: f64| euler([2.0, 0.0], 1e-2, (201, 10), |x, h| *x = moved(*x, h, slope(mu, *x)));
+    let of_steps = |mu: f64| euler([2.0, 0.0], 1e-2, 201, 10, |x, h| *x = moved(*x, h, slope(mu, *x)));
     let samples: Vec<_> = between(0.95, 1.05, 101).map(of_steps).collect();
     covers(&VAN_DER_POL, "co_simulation", model, &samples);
 }
@@ -196,7 +197,7 @@ bounds: { chebyshev: { order: 5 } }
     covers(&BALL, "model_exchange", model, &points().map(exact).collect::<Vec<_>>());
     let of_steps = |(e, g): (f64, f64)| {
         let mut rests = false;
-        euler([1.0, 0.0], 1e-3, (101, 30), |x, h| {
+        euler([1.0, 0.0], 1e-3, 101, 30, |x, h| {
             *x = [x[0] + h * x[1], x[1] + if rests { 0.0 } else { h * g }];
             if x[0] <= 0.0 && x[1] < 0.0 {
                 *x = [f64::MIN_POSITIVE, -e * x[1]];
@@ -215,7 +216,7 @@ const fn discrete(name: &'static str) -> Unit {
 }
 
 /// A variable of a type, named as in 3.0, by its number.
-fn variable(version: u32, (name, reference, kind): (&str, u32, &str), causality: &str) -> String {
+fn variable(version: u32, name: &str, reference: u32, kind: &str, causality: &str) -> String {
     let variability = if kind.starts_with("Float") { "continuous" } else { "discrete" };
     let start = if causality == "output" { "" } else { "start=\"0\"" };
     let head = format!(
@@ -251,7 +252,7 @@ fn stairs_go_up_once_a_second() {
 simulation: {{ duration: 10, output_step: 0.5 }}
 "
         );
-        let counter = variable(version, ("counter", 9, "Int32"), "output");
+        let counter = variable(version, "counter", 9, "Int32", "output");
         let bounds = bounds_of(&discrete("STAIR"), version, &counter, &model);
         let expected: Vec<f64> = (0..21).map(|row| f64::from(row / 2)).collect();
         assert_eq!(column(&bounds, "counter.nominal"), expected, "{version} {interface}");
@@ -269,13 +270,13 @@ fn inputs_of_all_types_are_outputs() {
     let kinds = ["Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Enumeration"];
     for (version, kind) in kinds.map(|kind| (3, kind)).into_iter().chain([(2, "Int32"), (2, "Enumeration")]) {
         let variables = [
-            variable(version, ("number in", 0, "Float64"), "input"),
-            variable(version, ("whole in", 9, kind), "input"),
-            variable(version, ("truth in", 10, "Boolean"), "input"),
-            variable(version, ("number", 2, "Float64"), "output"),
-            variable(version, ("whole", 9, kind), "output"),
-            variable(version, ("truth", 10, "Boolean"), "output"),
-            variable(version, ("text", 11, "String"), "output"),
+            variable(version, "number in", 0, "Float64", "input"),
+            variable(version, "whole in", 9, kind, "input"),
+            variable(version, "truth in", 10, "Boolean", "input"),
+            variable(version, "number", 2, "Float64", "output"),
+            variable(version, "whole", 9, kind, "output"),
+            variable(version, "truth", 10, "Boolean", "output"),
+            variable(version, "text", 11, "String", "output"),
         ];
         let model = "parameters: { a: 2.5 ± 10%, b: 100, c: 1 }
 black_box: { fmu: unit.fmu, variables: { a: number in, b: whole in, c: truth in } }
@@ -302,7 +303,7 @@ fn a_unit_reads_its_resources() {
         let model = "black_box: { fmu: unit.fmu, outputs: { y: 1 } }
 simulation: { duration: 1, output_step: 0.5 }
 ";
-        let y = variable(version, ("y", 9, "Int32"), "output");
+        let y = variable(version, "y", 9, "Int32", "output");
         let bounds = bounds_of(&discrete("RESOURCE"), version, &y, model);
         assert_eq!(column(&bounds, "y.nominal"), [f64::from(b'a'); 3], "{version}");
     }
@@ -312,7 +313,7 @@ simulation: { duration: 1, output_step: 0.5 }
 #[test]
 fn a_unit_of_scheduled_execution_alone_is_refused() {
     let unit = discrete("STAIR");
-    let scheduled = description(&unit, 3, &variable(3, ("counter", 9, "Int32"), "output"))
+    let scheduled = description(&unit, 3, &variable(3, "counter", 9, "Int32", "output"))
         .replace("<CoSimulation modelIdentifier=\"unit\"/>", "")
         .replace("ModelExchange", "ScheduledExecution");
     let place = Place::new();

@@ -1,6 +1,6 @@
 //! The header of a model's code.
 
-use super::Code;
+use super::{Code, NOTICE};
 use crate::compile::Tapes;
 use crate::simulate::explicit::WITH_DENSE;
 
@@ -28,7 +28,9 @@ pub(super) fn header(code: &Code) -> String {
  *
  * {prefix}_start, then {prefix}_row for rows 1, 2, … in turn, and {prefix}_outputs whenever outputs are wanted:
  * {}.
- * No function allocates, and models are independent of each other. */
+ * No function allocates, and models are independent of each other.
+ *
+ * {NOTICE} */
 
 #ifndef {guard}
 #define {guard}

@@ -1,7 +1,7 @@
 //! A compiled mechanism as C99: the programs of its steps, the nominal start, and what integrates them (`runtime`).
 //!
-//! The code repeats the nominal motion of a run, by HHT-I3 under fixed steps or a tolerance, on one level or several, or
-//! by the explicit method. It has no rank-revealing solve: a step in a singular configuration fails.
+//! The code repeats the nominal sample, by HHT-I3 under fixed steps or a tolerance, on one level or several, or by the
+//! explicit method. It has no rank-revealing solve: a step in a singular configuration fails.
 
 mod data;
 mod fmi;
@@ -21,8 +21,14 @@ use crate::simulate::{Integration, Schedule, SimulationError, Simulator, Steps};
 
 pub use fmi::FmiVersion;
 
-/// Terms of the licence of what is written, on one line.
-const LICENCE: &str = "mbint's runtime in it: MIT OR Apache-2.0; the model in it: its author's terms";
+/// Terms of the files, on one line.
+const LICENCE: &str = "the model: its author's terms; the runtime, mbint's: MIT OR Apache-2.0";
+
+/// The same at the head of files, with the expression that tools search for.
+const NOTICE: &str =
+    "The model, with its equations and numbers, is its author's, under the author's terms. The runtime beside it is
+ * mbint's: it may be used, changed and passed on with the model, also where that is not open.
+ * SPDX-License-Identifier: MIT OR Apache-2.0";
 
 /// A model as C: its files by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -109,7 +115,7 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, method, parameters: parameters.len() };
     let mut writer = CWriter::default();
     let functions = functions::functions(&code, &mut writer);
-    let mut text = format!("/* {name}: written by mbint. Licence: {LICENCE}. */\n\n");
+    let mut text = format!("/* {name}: written by mbint.\n *\n * {NOTICE} */\n\n");
     let _ =
         write!(text, "#include \"{name}.h\"\n\n#include <math.h>\n#include <string.h>\n\n{}\n", data::macros(&code));
     text += &writer.helpers();

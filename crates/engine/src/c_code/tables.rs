@@ -1,5 +1,4 @@
-//! Tables of what a model's steps take beside those of HHT-I3: the start, closed rows, switches, instants and the explicit
-//! method.
+//! Tables beside those of the steps of HHT-I3: of the start, closed rows, switches, instants and the explicit method.
 
 use std::fmt::Write;
 

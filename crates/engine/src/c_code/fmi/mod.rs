@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use symdiff::c_number;
 
+use super::NOTICE;
 use crate::assemble::UncertainParameter;
 use crate::simulate::Schedule;
 
@@ -54,6 +55,8 @@ pub(super) fn files(unit: &Unit, version: FmiVersion, code: &[(String, String)])
             ("sources/fmi3.c".to_owned(), unit.wrapper(&token, version)),
         ],
     };
+    // Where both versions of the standard have it.
+    files.push(("documentation/licenses/license.txt".to_owned(), format!("{}\n", NOTICE.replace("\n * ", "\n"))));
     files.extend(code.iter().map(|(name, text)| (format!("sources/{name}"), text.clone())));
     files
 }
@@ -79,7 +82,7 @@ impl Unit<'_> {
 
     fn wrapper(&self, token: &str, version: FmiVersion) -> String {
         let Self { name, prefix, outputs, .. } = self;
-        let mut text = format!("#include \"{name}.h\"\n\n#define TOKEN \"{token}\"\n");
+        let mut text = format!("/* {NOTICE} */\n\n#include \"{name}.h\"\n\n#define TOKEN \"{token}\"\n");
         let _ =
             writeln!(text, "#define MODEL_H {}\n#define MODEL_OUTPUT_COUNT {}", c_number(self.step()), outputs.len());
         for (name, own) in [
