@@ -272,6 +272,12 @@ fn follows_inputs(place: &Place, model: &str) {
     assert!(description.contains("name=\"f\" valueReference=\"3\" causality=\"input\""), "{description}");
     assert!(description.contains("name=\"m\" valueReference=\"4\" causality=\"parameter\""), "{description}");
     assert!(description.contains("<Parameter name=\"f\" nominal=\"3"), "{description}");
+    // The terms stand in the unit and in its sources.
+    assert!(description.contains("license=\"the model: its author's terms; the runtime, mbint's: MIT OR Apache-2.0\""));
+    for file in ["documentation/licenses/license.txt", "sources/mass.c", "sources/mass.h", "sources/fmi3.c"] {
+        let text = fs::read_to_string(folder.join("unit").join(file)).unwrap();
+        assert!(text.contains("SPDX-License-Identifier: MIT OR Apache-2.0"), "{file}");
+    }
 }
 
 #[test]

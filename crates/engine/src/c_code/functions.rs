@@ -1,7 +1,5 @@
 //! The tapes as functions of a memory.
 
-use std::fmt::Write;
-
 use symdiff::{CWriter, Tape};
 
 use super::Code;
@@ -9,11 +7,7 @@ use crate::compile::Tapes;
 
 /// Those that the runtime calls.
 pub(super) fn functions(code: &Code, writer: &mut CWriter) -> String {
-    let mut text = String::new();
-    for (name, tape) in tapes(code) {
-        let _ = write!(text, "static void {name}(double *r)\n{{\n{}    (void)r;\n}}\n\n", writer.statements(tape));
-    }
-    text
+    tapes(code).into_iter().map(|(name, tape)| writer.function(name, tape)).collect()
 }
 
 fn tapes<'c>(code: &Code<'c>) -> Vec<(&'static str, &'c Tape)> {
