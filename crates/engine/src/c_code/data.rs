@@ -64,6 +64,7 @@ pub(super) fn macros(code: &Code) -> String {
         ("CLOSURES", simulator.start.constraint.len()),
         ("CLOSURE_RATES", simulator.start.constraint_rate.len()),
         ("EXPLICIT", flag(method.is_explicit)),
+        ("FIXED", flag(code.has_fixed_steps())),
         ("LEVELS", method.levels),
         ("CONTROLLED", flag(method.controller.is_some())),
         ("SWITCHES", method.switches.map_or(0, |program| program.switches.len())),
@@ -165,10 +166,7 @@ pub(super) fn tables(code: &Code, start: &Tile) -> String {
 /// Of the steps of HHT-I3.
 fn of_steps(code: &Code) -> String {
     let program = &code.simulator.program;
-    let mut text = String::from(
-        "typedef struct { int pivot; double largest; int mode, inactive; } watched_pivot;\n\
-         typedef struct { double start, h; int count; } run;\n",
-    );
+    let mut text = String::from("typedef struct { int pivot; double largest; int mode, inactive; } watched_pivot;\n");
     let _ = writeln!(text, "static const int redundant[] = {};", registers(&program.redundant));
     if code.method.closure.is_none() {
         let _ = writeln!(text, "static const int output_registers[] = {};", registers(&program.outputs));
@@ -181,18 +179,40 @@ fn of_steps(code: &Code) -> String {
     });
     let _ = writeln!(text, "static const watched_pivot watched[] = {};", structs(pivots, "{ 0, 0.0, 0, 0 }"));
     text += &constants("constants", program.constants());
-    let rows = runs(code.schedule);
-    let first: Vec<usize> = rows
-        .iter()
-        .scan(0, |next, row| {
-            *next += row.len();
-            Some(*next)
-        })
-        .collect();
+    text += &if code.has_fixed_steps() { of_runs(code.schedule) } else { of_ends(code.schedule) };
+    text
+}
+
+/// Indices of the first of each row, and the end of the last row, by their numbers.
+fn firsts(counts: impl Iterator<Item = usize>) -> String {
+    let ends = counts.scan(0, |next, count| {
+        *next += count;
+        Some(*next)
+    });
+    registers(&std::iter::once(0).chain(ends).collect::<Vec<_>>())
+}
+
+/// Steps of one length, as runs of them.
+fn of_runs(schedule: &Schedule) -> String {
+    let rows = runs(schedule);
     let all = rows.iter().flatten();
     let all = all.map(|run| format!("{{ {}, {}, {} }}", c_number(run.start), c_number(run.h), run.count));
-    let _ = writeln!(text, "static const run runs[] = {};", structs(all, "{ 0.0, 0.0, 0 }"));
-    let first: Vec<usize> = std::iter::once(0).chain(first).collect();
-    let _ = writeln!(text, "static const int row_runs[] = {};", registers(&first));
-    text
+    format!(
+        "typedef struct {{ double start, h; int count; }} run;\n\
+         static const run runs[] = {};\n\
+         static const int row_runs[] = {};\n",
+        structs(all, "{ 0.0, 0.0, 0 }"),
+        firsts(rows.iter().map(Vec::len))
+    )
+}
+
+/// Steps of any lengths, as their ends.
+fn of_ends(schedule: &Schedule) -> String {
+    let rows: Vec<Vec<f64>> =
+        (0..schedule.rows).map(|row| schedule.steps_to(row).map(|(_, end)| end).collect()).collect();
+    format!(
+        "static const double step_ends[] = {};\nstatic const int row_steps[] = {};\n",
+        numbers(&mut rows.iter().flatten().copied()),
+        firsts(rows.iter().map(Vec::len))
+    )
 }

@@ -84,6 +84,13 @@ struct Code<'c> {
     parameters: usize,
 }
 
+impl Code<'_> {
+    /// Whether all steps have one length.
+    fn has_fixed_steps(&self) -> bool {
+        self.schedule.steps_per_row().is_some()
+    }
+}
+
 /// Writes a mechanism under the steps of a run.
 ///
 /// # Errors

@@ -98,6 +98,7 @@ void MODEL_OBSERVE(MODEL *m, double *outputs)
 }
 #endif
 
+#if FIXED
 int MODEL_ROW(MODEL *m, int row)
 {
     int run, k;
@@ -109,5 +110,18 @@ int MODEL_ROW(MODEL *m, int row)
         }
     return 0;
 }
+#else
+int MODEL_ROW(MODEL *m, int row)
+{
+    double begin = row_times[row - 1];
+    int step;
+    for (step = row_steps[row]; step < row_steps[row + 1]; step++) {
+        double end = step_ends[step];
+        if (MODEL_STEP(m, end - begin, end, ACCELERATIONS && step + 1 == row_steps[row + 1])) return 1;
+        begin = end;
+    }
+    return 0;
+}
+#endif
 
 double MODEL_TIME(int row) { return row_times[row]; }
