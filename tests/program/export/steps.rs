@@ -106,6 +106,47 @@ simulation: {{ duration: 1, {steps}, output_step: 0.04 }}
     }
 }
 
+/// A linkage that hangs on springs, and an arm whose controller holds it by an integral.
+const AT_REST: [&str; 2] = [
+    "model: own
+parameters: { k: 200 N/m ± 10%, load: 2 kg ± 10%, l: 0.3 m ± 3% }
+bodies:
+  bar: { mass: load, inertia: load*l^2/12, points: { A: [-l/2, 0], B: [l/2, 0] } }
+  slider: { mass: 0.5, coordinates: [x, y] }
+joints: { pivot: { revolute: [ground, bar.A] }, pin: { revolute: [bar.B, slider] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  spring: { spring_damper: { between: [ground, slider], stiffness: k, damping: 3 N*s/m, free_length: 0.1 } }
+  turn: { torsional_spring_damper: { on: pivot, stiffness: 6, damping: 0.1 } }
+  push: { force: { on: slider, value: [2 N*sin(5*t), 0] } }
+initial: equilibrium
+outputs: { angle: bar.angle, x: slider.x, force: pin.force.y, a: slider.ay }
+simulation: { duration: 0.5, STEPS, output_step: 0.05 }
+",
+    "model: own
+parameters: { load: 2 kg ± 20%, kp: 40 N*m ± 10% }
+bodies: { arm: { mass: load, inertia: 0.05, points: { top: [-0.3, 0] } } }
+joints: { elbow: { revolute: [ground, arm.top] } }
+states:
+  integral: { rate: 0.3 - elbow.angle, initial: 0 }
+  lagged: { rate: (kp*(0.3 - elbow.angle) + 30 N*m/s*integral - lagged)/(20 ms), initial: 0 N*m }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  drive: { torque: { on: elbow, value: lagged - 3 N*m*s*elbow.angular_velocity + 2 N*m*sin(4*t) } }
+initial: equilibrium
+outputs: { angle: elbow.angle, torque: lagged, integral: integral }
+simulation: { duration: 0.5, STEPS, output_step: 0.05 }
+",
+];
+
+#[test]
+fn equilibria_of_other_parameters_are_those_of_samples() {
+    let place = Place::new();
+    for (model, steps) in [(0, "step: 2e-3"), (0, "tolerance: 1e-6, scheme: explicit"), (1, "step: 2e-3")] {
+        repeats_samples(&place, &AT_REST[model].replace("STEPS", steps));
+    }
+}
+
 /// A mass under a held force moves by its difference equation: from instant to instant by parabolas.
 #[test]
 fn a_held_force_moves_a_mass_by_its_difference_equation() {

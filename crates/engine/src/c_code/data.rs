@@ -70,6 +70,7 @@ pub(super) fn macros(code: &Code) -> String {
         ("SWITCHES", method.switches.map_or(0, |program| program.switches.len())),
         ("SAMPLED", simulator.start.sampled.len()),
         ("SOLVER", flag(method.has_solver)),
+        ("EQUILIBRIUM", flag(method.equilibrium.is_some())),
         ("SOLVES", flag(method.solves)),
         ("PROJECTS", flag(method.projects)),
         ("ACCELERATIONS", flag(method.needs.accelerations)),

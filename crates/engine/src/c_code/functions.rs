@@ -36,6 +36,12 @@ fn tapes<'c>(code: &Code<'c>) -> Vec<(&'static str, &'c Tape)> {
     add(has_parameters, "solver_given", start.given());
     add(has_parameters, "solver_position", start.position());
     add(has_parameters, "solver_velocity", start.velocity());
+    if let Some(equilibrium) = method.equilibrium {
+        let program = equilibrium.program();
+        add(true, "balance_sample", program.sample());
+        add(true, "balance_residual", program.residual());
+        add(true, "balance_jacobian", program.jacobian());
+    }
     if let Some(closure) = method.closure {
         let of_rows = method.needs.accelerations;
         add(true, "closure_sample", closure.sample());

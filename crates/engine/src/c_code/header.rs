@@ -85,6 +85,12 @@ fn memory(code: &Code) -> String {
     let closure = method
         .closure
         .map_or(String::new(), |closure| format!("    double closure[{}];\n", closure.registers().max(1)));
+    let balance = method.equilibrium.map_or(String::new(), |equilibrium| {
+        let unknowns = layout.q.len() + layout.lambda.len();
+        let registers = equilibrium.program().registers().max(1);
+        format!("    double balance[{registers}], matrix[{}];\n", unknowns * (unknowns + 1) + 1)
+    });
+    let solver = solver + &balance;
     if method.is_explicit {
         let size = 2 * layout.q.len() + 1;
         return format!(

@@ -2,7 +2,7 @@
 
 use super::NoCode;
 use crate::compile::{StartProgram, SwitchProgram};
-use crate::simulate::{Controller, Integration, Needs, Simulator, Steps};
+use crate::simulate::{Controller, Equilibrium, Integration, Needs, Simulator, Steps};
 
 /// The way in which a model is integrated.
 pub(super) struct Method<'c> {
@@ -16,6 +16,8 @@ pub(super) struct Method<'c> {
     /// Closes rows that are no step's own.
     pub closure: Option<&'c StartProgram>,
     pub needs: Needs,
+    /// Where the start is an equilibrium that other parameters move.
+    pub equilibrium: Option<&'c Equilibrium>,
     /// Whether states change at instants.
     pub is_sampled: bool,
     /// Whether rows of the steps solve for accelerations and multipliers, and make velocities consistent.
@@ -52,6 +54,7 @@ impl<'c> Method<'c> {
             switches: controller.and_then(|_| simulator.switches()),
             closure: if has_closure { Some(simulator.free_closure()?) } else { None },
             needs: Needs::of(simulator),
+            equilibrium: simulator.equilibrium.as_deref().filter(|_| has_parameters),
             is_sampled,
             solves,
             projects,
@@ -89,6 +92,7 @@ impl<'c> Method<'c> {
             (!explicit && controlled, include_str!("runtime/controlled.c")),
             (self.closure.is_some(), include_str!("runtime/closure.c")),
             (explicit, include_str!("runtime/explicit.c")),
+            (self.equilibrium.is_some(), include_str!("runtime/balance.c")),
             (true, include_str!("runtime/start.c")),
             (!explicit, include_str!("runtime/rows.c")),
         ];

@@ -21,6 +21,9 @@ use crate::simulate::{Integration, Schedule, SimulationError, Simulator, Steps};
 
 pub use fmi::FmiVersion;
 
+/// Most coordinates and multipliers of a mechanism whose equilibrium is found anew, by dense equations.
+const MOST_BALANCED: usize = 200;
+
 /// Terms of the files, on one line.
 const LICENCE: &str = "the model: its author's terms; the runtime, mbint's: MIT OR Apache-2.0";
 
@@ -115,8 +118,9 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let prefix = if prefix.starts_with(|c: char| c.is_ascii_digit()) { format!("m_{prefix}") } else { prefix };
     let outputs: Vec<(&str, &str)> =
         system.outputs.iter().map(|output| (output.name.as_str(), output.unit.as_str())).collect();
-    // An equilibrium is not found anew.
-    let parameters = if simulator.equilibrium.is_some() { &[][..] } else { &system.parameters[..] };
+    let unknowns = system.q.len() + system.lambda.len();
+    let is_too_large = simulator.equilibrium.is_some() && unknowns > MOST_BALANCED;
+    let parameters = if is_too_large { &[][..] } else { &system.parameters[..] };
     let inputs = inputs::of(system, parameters, request.inputs)?;
     let method = Method::of(simulator, steps, parameters.len())?;
     let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, method, parameters: parameters.len() };

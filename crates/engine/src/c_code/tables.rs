@@ -7,7 +7,7 @@ use symdiff::c_number;
 use super::Code;
 use crate::compile::{SampledValue, Switch, Tapes};
 use crate::simulate::explicit::{DENSE, STAGES, TIMES, WEIGHTS, WITH_DENSE};
-use crate::simulate::level_weights;
+use crate::simulate::{Equilibrium, level_weights};
 
 /// Tables of a model's way of integration.
 pub(super) fn of_method(code: &Code) -> String {
@@ -42,6 +42,9 @@ pub(super) fn of_method(code: &Code) -> String {
     }
     if method.is_explicit {
         text += &of_explicit(code);
+    }
+    if let Some(equilibrium) = method.equilibrium {
+        text += &of_equilibrium(code, equilibrium);
     }
     text
 }
@@ -105,6 +108,47 @@ fn of_explicit(code: &Code) -> String {
         registers(&first),
         numbers(&mut TIMES.into_iter()),
         numbers(&mut ends.iter().copied()),
+    )
+}
+
+/// Equations at rest: registers of the residuals, and entries of their derivatives by positions and multipliers.
+fn of_equilibrium(code: &Code, equilibrium: &Equilibrium) -> String {
+    let program = equilibrium.program();
+    let layout = &program.layout;
+    let n = layout.q.len();
+    let [by_position, _, _, by_multiplier] = &program.motion_by;
+    let is_redundant = |row: usize| code.simulator.program.redundant.contains(&(layout.lambda.start + row));
+    let of_multipliers = by_multiplier.iter().map(|&(row, column, at)| (row, n + column, at));
+    let of_constraints = program.constraint_by_position.iter().filter(|(row, ..)| !is_redundant(*row));
+    let of_constraints = of_constraints.map(|&(row, column, at)| (n + row, column, at));
+    let entries: Vec<String> = by_position
+        .iter()
+        .copied()
+        .chain(of_multipliers)
+        .chain(of_constraints)
+        .map(|(row, column, at)| format!("{{ {row}, {column}, {at} }}"))
+        .collect();
+    let states: Vec<String> =
+        equilibrium.states().map(|(position, value)| format!("{{ {position}, {value} }}")).collect();
+    let rows: Vec<usize> = program.motion.iter().chain(&program.constraint).copied().collect();
+    // The table is there already where there are steps.
+    let redundant = match code.method.is_explicit {
+        true => format!("static const int redundant[] = {};\n", registers(&code.simulator.program.redundant)),
+        false => String::new(),
+    };
+    format!(
+        "{}{redundant}typedef struct {{ int row, column, at; }} entry;\n\
+         typedef struct {{ int position, value; }} resting_state;\n\
+         enum {{ BALANCE_ENTRIES = {}, BALANCE_STATES = {} }};\n\
+         static const entry balance_entries[] = {};\n\
+         static const resting_state balance_states[] = {};\n\
+         static const int balance_rows[] = {};\n",
+        constants("balance_constants", program.constants()),
+        entries.len(),
+        states.len(),
+        structs(entries.into_iter(), "{ 0, 0, 0 }"),
+        structs(states.into_iter(), "{ 0, 0 }"),
+        registers(&rows),
     )
 }
 

@@ -66,6 +66,7 @@ pub use modal::is_one_number;
 pub use modes::{ExcitedMode, excited_modes};
 pub use simulator::{Assembled, Simulator};
 pub(crate) use start::allowed_residual;
+pub(crate) use statics::Equilibrium;
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;
 pub use unmet_switch::{SwitchSearch, unmet_switch};

@@ -98,10 +98,7 @@ static int assemble(double *r, const double *parameters, int parts)
 {
     int part, i;
     for (part = 1; part <= parts; part++) {
-        for (i = 0; i < PARAMETERS; i++) {
-            double nominal = parameter_values[i];
-            r[PARAMETER + i] = part == parts ? parameters[i] : nominal + (double)part / parts * (parameters[i] - nominal);
-        }
+        set_parameters(r, parameters, part, parts);
         solver_sample(r);
         solver_given(r);
         settle(r, solver_position, Q, N);
@@ -132,12 +129,20 @@ static int is_far(const double *r)
 /* A start that is far from the nominal one is reached by small changes, which keep it on its branch. */
 static int is_assembled(MODEL *m, const double *parameters)
 {
+#if EQUILIBRIUM
+    int at_once = balance_at(m, parameters, 1);
+    if (!at_once || is_far(m->balance))
+        if (!balance_at(m, parameters, START_PARTS) && !(at_once && balance_at(m, parameters, 1))) return 0;
+    keep(m->balance + Q, m->solver + Q, N);
+    return !assemble(m->solver, parameters, 1);
+#else
     int is_open = assemble(m->solver, parameters, 1);
     if (!is_open && !is_far(m->solver)) return 1;
     begin_solver(m);
     if (!assemble(m->solver, parameters, START_PARTS)) return 1;
     begin_solver(m);
     return !is_open && !assemble(m->solver, parameters, 1);
+#endif
 }
 
 int MODEL_START_AT(MODEL *m, const double *parameters)
