@@ -280,6 +280,36 @@ fn follows_inputs(place: &Place, model: &str) {
     }
 }
 
+/// A parallelogram that becomes flat: the C lacks what a step takes there, and the command says so.
+#[test]
+fn singular_configurations_are_announced() {
+    let place = Place::new();
+    let model = "model: flat
+bodies:
+  ground: { points: { b: [2, 0] } }
+  one: { mass: 1, inertia: 0.1, points: { A: [0, 0], B: [1, 0] } }
+  two: { mass: 1, inertia: 0.1, points: { A: [0, 0], B: [1, 0] } }
+  rod: { mass: 1, inertia: 0.3, points: { A: [0, 0], B: [2, 0] } }
+joints:
+  p1: { revolute: [ground, one.A] }
+  p2: { revolute: [ground.b, two.A] }
+  q1: { revolute: [one.B, rod.A] }
+  q2: { revolute: [two.B, rod.B] }
+initial: { one.angle: 1.2, one.angular_velocity: -3 }
+outputs: { a: one.angle }
+simulation: { duration: DURATION, step: 1e-3, output_step: 0.02 }
+";
+    for (duration, is_met) in [("0.2", false), ("1", true)] {
+        fs::write(place.path().join("flat.yaml"), model.replace("DURATION", duration)).unwrap();
+        let (_, message) = place.run("export flat.yaml --c -o out", 0);
+        assert_eq!(
+            message.contains("the nominal motion passes singular configurations (steps there: "),
+            is_met,
+            "{message}"
+        );
+    }
+}
+
 #[test]
 fn what_is_not_written_is_refused() {
     let place = Place::new();

@@ -17,7 +17,7 @@ use symdiff::CWriter;
 
 use self::method::Method;
 use crate::numerics::Sample;
-use crate::simulate::{Integration, Schedule, SimulationError, Simulator, Steps};
+use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulator, Steps, integrator};
 
 pub use fmi::FmiVersion;
 
@@ -42,6 +42,8 @@ pub struct CModel {
     pub unit: Vec<(String, String)>,
     /// Name of the unit and of its library: one of C.
     pub identifier: String,
+    /// Steps of the nominal motion in singular configurations, which the code has no solve for.
+    pub singular_steps: u64,
 }
 
 /// Why a model is not written as C.
@@ -114,6 +116,9 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let name = request.name;
     let nominal: Sample = system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let start = simulator.assemble(1, schedule.first_step(), |_| nominal.clone())?;
+    let mut motion = integrator(simulator, &[nominal], schedule)?;
+    motion.advance(steps, 0..schedule.rows, Observed::Coordinates, &mut Vec::new());
+    let singular_steps = motion.counters().rank_revealing;
     let prefix: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let prefix = if prefix.starts_with(|c: char| c.is_ascii_digit()) { format!("m_{prefix}") } else { prefix };
     let outputs: Vec<(&str, &str)> =
@@ -138,7 +143,7 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let unit = fmi::Unit { name, prefix: &prefix, outputs: &outputs, parameters, inputs: &inputs, schedule };
     let unit = fmi::files(&unit, request.version, &files);
     let files = files.into_iter().chain([(format!("{name}_main.c"), example)]).collect();
-    Ok(CModel { files, unit, identifier: prefix })
+    Ok(CModel { files, unit, identifier: prefix, singular_steps })
 }
 
 /// The example's source: a table of the outputs.
