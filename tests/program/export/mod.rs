@@ -310,6 +310,28 @@ simulation: { duration: DURATION, step: 1e-3, output_step: 0.02 }
     }
 }
 
+/// A motion that does not reach its end is refused with the reason, where it was cut there without a word.
+#[test]
+fn motions_that_stop_are_refused() {
+    let place = Place::new();
+    let model = "model: block
+bodies: { block: { mass: 1, coordinates: [x] } }
+effects:
+  push: { force: { on: block, value: [FORCE, 0] } }
+initial: { block.x: 0, block.vx: 1 }
+outputs: { x: block.x }
+simulation: { duration: 2, STEPS, output_step: 0.02 }
+";
+    let jumps = model.replace("FORCE", "\"-3 N*sign(block.vx) + 2 N*sin(7*t)\"");
+    fs::write(place.path().join("block.yaml"), jumps.replace("STEPS", "tolerance: 1e-5, scheme: hht")).unwrap();
+    let (_, message) = place.run("export block.yaml --c", 1);
+    assert!(message.contains("the tolerance takes more than 20000 steps"), "{message}");
+    let ends = model.replace("FORCE", "\"1 N*sqrt(0.5 - t/(1 s))\"").replace("STEPS", "step: 1e-3");
+    fs::write(place.path().join("block.yaml"), ends).unwrap();
+    let (_, message) = place.run("export block.yaml --c", 2);
+    assert!(message.contains("its nominal motion stops before the end"), "{message}");
+}
+
 #[test]
 fn what_is_not_written_is_refused() {
     let place = Place::new();

@@ -117,7 +117,10 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let nominal: Sample = system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let start = simulator.assemble(1, schedule.first_step(), |_| nominal.clone())?;
     let mut motion = integrator(simulator, &[nominal], schedule)?;
-    motion.advance(steps, 0..schedule.rows, Observed::Coordinates, &mut Vec::new());
+    let stops = motion.advance(steps, 0..schedule.rows, Observed::Coordinates, &mut Vec::new());
+    if !stops.is_empty() {
+        return Err(NoCode::NotWritten("its nominal motion stops before the end; `mbint run` says where and why"));
+    }
     let singular_steps = motion.counters().rank_revealing;
     let prefix: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let prefix = if prefix.starts_with(|c: char| c.is_ascii_digit()) { format!("m_{prefix}") } else { prefix };
