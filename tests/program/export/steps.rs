@@ -147,6 +147,31 @@ fn equilibria_of_other_parameters_are_those_of_samples() {
     }
 }
 
+/// A parallelogram becomes flat with the nominal crank: the first sample passes a singular configuration.
+#[test]
+fn singular_configurations_are_passed_as_samples_do() {
+    let model = "model: own
+parameters: { l: 1 m ± 1% }
+bodies:
+  ground: { points: { b: [2, 0] } }
+  one: { mass: 1, inertia: 0.1, points: { A: [0, 0], B: [l, 0] } }
+  two: { mass: 1, inertia: 0.1, points: { A: [0, 0], B: [1, 0] } }
+  rod: { mass: 1, inertia: 0.3, points: { A: [0, 0], B: [2, 0] } }
+joints:
+  p: { revolute: [ground, one.A] }
+  q: { revolute: [ground.b, two.A] }
+  r: { revolute: [one.B, rod.A] }
+  s: { revolute: [two.B, rod.B] }
+initial: { one.angle: 1.2, one.angular_velocity: -3 }
+outputs: { a: one.angle, b: two.angle }
+simulation: { duration: 1, STEPS, output_step: 0.02 }
+";
+    let place = Place::new();
+    for steps in ["step: 1e-3", "tolerance: 1e-5, scheme: hht"] {
+        repeats_samples(&place, &model.replace("STEPS", steps));
+    }
+}
+
 /// A mass under a held force moves by its difference equation: from instant to instant by parabolas.
 #[test]
 fn a_held_force_moves_a_mass_by_its_difference_equation() {

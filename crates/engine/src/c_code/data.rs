@@ -69,6 +69,7 @@ pub(super) fn macros(code: &Code) -> String {
         ("CONTROLLED", flag(method.controller.is_some())),
         ("SWITCHES", method.switches.map_or(0, |program| program.switches.len())),
         ("SAMPLED", simulator.start.sampled.len()),
+        ("SINGULAR", flag(method.is_singular)),
         ("SOLVER", flag(method.has_solver)),
         ("EQUILIBRIUM", flag(method.equilibrium.is_some())),
         ("SOLVES", flag(method.solves)),

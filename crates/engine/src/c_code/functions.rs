@@ -28,6 +28,7 @@ fn tapes<'c>(code: &Code<'c>) -> Vec<(&'static str, &'c Tape)> {
     let mut add = |is_called: bool, name: &'static str, tape: &'c Tape| tapes.extend(is_called.then_some((name, tape)));
     add(method.closure.is_none(), "observe", program.observe());
     add(method.controller.is_some(), "estimate", program.estimate());
+    add(method.is_singular, "matrix", program.matrix());
     let has_parameters = code.parameters > 0;
     add(method.has_solver, "solver_sample", start.sample());
     add(method.accelerates(), "solver_acceleration", start.acceleration());

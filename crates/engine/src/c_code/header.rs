@@ -110,6 +110,7 @@ typedef struct {{
         ),
         None => ("", String::new()),
     };
+    let singular = if method.is_singular { "    int is_singular;\n" } else { "" };
     let switches =
         method.switches.map_or(String::new(), |own| format!("    double switches[{}];\n", own.registers().max(1)));
     format!(
@@ -117,7 +118,7 @@ typedef struct {{
 typedef struct {{
     double r[{}], now[{unknowns}], before[{unknowns}], before_that[{unknowns}];
     double step_size, prepared_size, size_before, contraction;
-{errors}    int known;
+{errors}{singular}    int known;
     unsigned steps;
 }} {prefix}_stepper;
 

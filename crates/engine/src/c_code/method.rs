@@ -1,7 +1,7 @@
 //! How a model is integrated, and the parts of the runtime that this takes.
 
 use super::NoCode;
-use crate::compile::{StartProgram, SwitchProgram};
+use crate::compile::{Program, StartProgram, SwitchProgram};
 use crate::simulate::{Controller, Equilibrium, Integration, Needs, Simulator, Steps};
 
 /// The way in which a model is integrated.
@@ -16,6 +16,8 @@ pub(super) struct Method<'c> {
     /// Closes rows that are no step's own.
     pub closure: Option<&'c StartProgram>,
     pub needs: Needs,
+    /// Whether steps in singular configurations have a solve of their own.
+    pub is_singular: bool,
     /// Where the start is an equilibrium that other parameters move.
     pub equilibrium: Option<&'c Equilibrium>,
     /// Whether states change at instants.
@@ -27,6 +29,15 @@ pub(super) struct Method<'c> {
     pub has_solver: bool,
     /// Whether its start may have other values of parameters.
     has_parameters: bool,
+}
+
+/// Most equations of a step whose singular configurations have a solve of their own: its matrices are on the stack.
+const MOST_SINGULAR: usize = 64;
+
+/// Whether a pivot can vanish, in equations that are few and have no values of links among them.
+fn may_be_singular(program: &Program) -> bool {
+    let size = program.residual.len();
+    program.size == size && size <= MOST_SINGULAR && program.watched.iter().any(|own| !own.pivots.is_empty())
 }
 
 impl<'c> Method<'c> {
@@ -54,6 +65,7 @@ impl<'c> Method<'c> {
             switches: controller.and_then(|_| simulator.switches()),
             closure: if has_closure { Some(simulator.free_closure()?) } else { None },
             needs: Needs::of(simulator),
+            is_singular: !is_explicit && may_be_singular(&simulator.program),
             equilibrium: simulator.equilibrium.as_deref().filter(|_| has_parameters),
             is_sampled,
             solves,
@@ -88,6 +100,8 @@ impl<'c> Method<'c> {
             (true, include_str!("runtime/memory.c")),
             (self.settles() || self.is_sampled, include_str!("runtime/solve.c")),
             (!explicit, include_str!("runtime/newton.c")),
+            (self.is_singular, include_str!("runtime/singular.c")),
+            (!explicit, include_str!("runtime/step.c")),
             (!explicit && !controlled, include_str!("runtime/substeps.c")),
             (!explicit && controlled, include_str!("runtime/controlled.c")),
             (self.closure.is_some(), include_str!("runtime/closure.c")),

@@ -1,7 +1,7 @@
 //! A compiled mechanism as C99: the programs of its steps, the nominal start, and what integrates them (`runtime`).
 //!
 //! The code repeats the nominal sample, by HHT-I3 under fixed steps or a tolerance, on one level or several, or by the
-//! explicit method. It has no rank-revealing solve: a step in a singular configuration fails.
+//! explicit method. A step in a singular configuration has a solve of its own where equations are few.
 
 mod data;
 mod fmi;
@@ -42,7 +42,7 @@ pub struct CModel {
     pub unit: Vec<(String, String)>,
     /// Name of the unit and of its library: one of C.
     pub identifier: String,
-    /// Steps of the nominal motion in singular configurations, which the code has no solve for.
+    /// Steps of the nominal motion in singular configurations, if the code has no solve for these.
     pub singular_steps: u64,
 }
 
@@ -121,7 +121,6 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     if !stops.is_empty() {
         return Err(NoCode::NotWritten("its nominal motion stops before the end; `mbint run` says where and why"));
     }
-    let singular_steps = motion.counters().rank_revealing;
     let prefix: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let prefix = if prefix.starts_with(|c: char| c.is_ascii_digit()) { format!("m_{prefix}") } else { prefix };
     let outputs: Vec<(&str, &str)> =
@@ -131,6 +130,7 @@ pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Resu
     let parameters = if is_too_large { &[][..] } else { &system.parameters[..] };
     let inputs = inputs::of(system, parameters, request.inputs)?;
     let method = Method::of(simulator, steps, parameters.len())?;
+    let singular_steps = if method.is_singular { 0 } else { motion.counters().rank_revealing };
     let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, method, parameters: parameters.len() };
     let mut writer = CWriter::default();
     let functions = functions::functions(&code, &mut writer);

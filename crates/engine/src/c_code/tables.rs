@@ -5,7 +5,7 @@ use std::fmt::Write;
 use symdiff::c_number;
 
 use super::Code;
-use crate::compile::{SampledValue, Switch, Tapes};
+use crate::compile::{Program, SampledValue, Switch, Tapes};
 use crate::simulate::explicit::{DENSE, STAGES, TIMES, WEIGHTS, WITH_DENSE};
 use crate::simulate::{Equilibrium, level_weights};
 
@@ -13,6 +13,9 @@ use crate::simulate::{Equilibrium, level_weights};
 pub(super) fn of_method(code: &Code) -> String {
     let (start, method) = (&code.simulator.start, &code.method);
     let mut text = String::new();
+    if method.is_singular {
+        text += &of_singular(&code.simulator.program);
+    }
     if method.has_solver {
         text += &constants("solver_constants", start.constants());
     }
@@ -108,6 +111,24 @@ fn of_explicit(code: &Code) -> String {
         registers(&first),
         numbers(&mut TIMES.into_iter()),
         numbers(&mut ends.iter().copied()),
+    )
+}
+
+/// The matrix of a step before its elimination.
+fn of_singular(program: &Program) -> String {
+    let entries = program.matrix_entries.iter().map(|(row, column, at)| format!("{{ {row}, {column}, {at} }}"));
+    format!(
+        "typedef struct {{ int row, column, at; }} matrix_entry;\n\
+         enum {{ MATRIX_ENTRIES = {} }};\n\
+         static const matrix_entry matrix_entries[] = {};\n\
+         static const int matrix_residuals[] = {};\n\
+         static const double equilibration[] = {};\n\
+         static const double constraint_rounding[] = {};\n",
+        program.matrix_entries.len(),
+        structs(entries, "{ 0, 0, 0 }"),
+        registers(&program.residual),
+        numbers(&mut program.equilibration.iter().copied()),
+        numbers(&mut program.rounding.iter().copied()),
     )
 }
 
