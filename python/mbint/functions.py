@@ -159,6 +159,10 @@ class _Answers:
     def _columns(self, found: Any) -> dict[str, Any]:
         """What a function returned, by output."""
         if hasattr(found, "keys"):  # a dictionary, a table or a dataset
+            missing = [name for name in self.outputs if name not in found]
+            if missing:
+                returned = ", ".join(f"`{name}`" for name in found) or "nothing"
+                raise ValueError(f"the function returned {returned}, and no `{missing[0]}`")
             return {name: found[name] for name in self.outputs}
         if len(self.outputs) == 1:
             return {self.outputs[0]: found}

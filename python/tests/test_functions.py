@@ -85,6 +85,11 @@ def test_an_exception_is_a_failed_sample() -> None:
         mbint.bounds(fails, {"k": (1, 2)})
 
 
+def test_an_output_that_is_not_returned_is_named() -> None:
+    with pytest.raises(mbint.MbintError, match="the function returned `y`, and no `x`"):
+        mbint.bounds(lambda k: {"y": k}, {"k": (1, 2)}, outputs={"x": "m"})
+
+
 def test_times_have_equal_distances() -> None:
     with pytest.raises(ValueError, match="equal distances"):
         mbint.bounds(spring, SPRING, times=[0, 1, 3])

@@ -27,6 +27,13 @@ pub(super) fn export(args: &ExportArgs, console: &mut Console) -> Result<Status,
             CodeError::Run(_) => Failure::Failed(message),
         }
     })?;
+    if code.singular_steps > 0 {
+        console.warning(&format!(
+            "{}: the nominal motion passes singular configurations (steps there: {}), and the C has no rank-revealing \
+             solve: such a step is divided, and may fail. A shorter `duration`, or other values by --set, avoid them",
+            model.name, code.singular_steps,
+        ));
+    }
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     interrupt::wait_for(&folder)?;

@@ -55,6 +55,6 @@ pub(in crate::cli) enum UnitVersion {
 }
 
 const EXPORT_HELP: &str = "\
-Writes the compiled programs of the model's steps, the nominal start, and Newton's iteration, which repeat
-the nominal motion of `mbint run`. Steps are fixed ones of HHT-I3: give `step`, and no `tolerance`.
+Writes the compiled programs of the model's steps, the nominal start, and what integrates them, which repeat
+the nominal motion of `mbint sample`: with fixed steps, steps by a tolerance, extrapolated or explicit ones.
 Compile with: cc -std=c99 -O2 NAME.c NAME_main.c -lm";

@@ -7,7 +7,12 @@ use std::process::Command;
 
 use super::place::Place;
 
+mod reference;
+
 const SOURCE: &str = include_str!("unit.c");
+
+/// Functions of the standard for a model's source.
+const WRAPPER: &str = include_str!("wrapper.c");
 
 /// Columns of a table by name.
 fn column(text: &str, name: &str) -> Vec<f64> {
@@ -89,29 +94,34 @@ fn description(version: u32, ball: bool) -> String {
     )
 }
 
-/// Writes `unit.fmu`, compiled here, into a folder.
-fn build(folder: &Path, version: u32, ball: bool) {
+/// Writes `unit.fmu` into a folder: a description, and a source of a model that is compiled here with definitions.
+fn compile(folder: &Path, version: u32, description: &str, source: &str, defined: &[String]) {
     let unit = folder.join(format!("unit{version}"));
     let arch = std::env::consts::ARCH;
     let binaries = if version == 2 { "binaries/linux64".to_owned() } else { format!("binaries/{arch}-linux") };
     fs::create_dir_all(unit.join(&binaries)).unwrap();
-    fs::write(unit.join("modelDescription.xml"), description(version, ball)).unwrap();
-    fs::write(folder.join("unit.c"), SOURCE).unwrap();
-    let (k, m) = if ball { ("10.0", "0.8") } else { ("200.0", "2.0") };
+    fs::create_dir_all(unit.join("resources")).unwrap();
+    fs::write(unit.join("resources/y.txt"), "a").unwrap();
+    fs::write(unit.join("modelDescription.xml"), description).unwrap();
+    fs::write(folder.join("unit.c"), source).unwrap();
+    fs::write(folder.join("wrapper.c"), WRAPPER).unwrap();
     let mut compiler = Command::new("gcc");
     compiler.args(["-std=gnu11", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-O1", "unit.c", "-o"]);
-    compiler.arg(unit.join(binaries).join("unit.so")).args([format!("-DFMI={version}"), format!("-DSTART_K={k}")]);
-    compiler.args([format!("-DSTART_M={m}"), format!("-DINDICATORS={}", u32::from(ball)), "-lm".to_owned()]);
-    compiler.args(ball.then_some("-DBALL")).current_dir(folder);
+    compiler.arg(unit.join(binaries).join("unit.so")).arg(format!("-DFMI={version}"));
+    compiler.args(defined.iter().map(|own| format!("-D{own}"))).arg("-lm").current_dir(folder);
     done(&mut compiler);
     let mut zip = Command::new("python3");
-    zip.args(["-m", "zipfile", "-c", "../unit.fmu", "modelDescription.xml", "binaries"]).current_dir(&unit);
+    zip.args(["-m", "zipfile", "-c", "../unit.fmu", "modelDescription.xml", "binaries", "resources"])
+        .current_dir(&unit);
     done(&mut zip);
 }
 
 fn place(version: u32, ball: bool, model: &str) -> Place {
     let place = Place::new();
-    build(place.path(), version, ball);
+    let (k, m) = if ball { ("10.0", "0.8") } else { ("200.0", "2.0") };
+    let mut defined = vec![format!("START_K={k}"), format!("START_M={m}"), format!("INDICATORS={}", u32::from(ball))];
+    defined.extend(ball.then(|| "BALL".to_owned()));
+    compile(place.path(), version, &description(version, ball), SOURCE, &defined);
     fs::write(place.path().join("model.yaml"), model).unwrap();
     place
 }

@@ -5,6 +5,8 @@ use std::fmt::Write;
 use symdiff::{Tile, c_number};
 
 use super::Code;
+use super::tables::{constants, list, numbers, of_method, registers, structs};
+use crate::compile::tuning::TUNING;
 use crate::compile::{Residual, Tapes};
 use crate::simulate::{Schedule, allowed_residual};
 
@@ -34,12 +36,11 @@ fn runs(schedule: &Schedule) -> Vec<Vec<Run>> {
 
 /// What the runtime calls the model's parts.
 pub(super) fn macros(code: &Code) -> String {
-    let Code { simulator, schedule, prefix, .. } = code;
+    let Code { simulator, schedule, prefix, method, .. } = code;
     let program = &simulator.program;
     let layout = &program.layout;
     let watched: usize = program.watched.iter().map(|own| own.pivots.len()).sum();
-    let (constants, solver) = (program.constants().len(), simulator.start.constants().len());
-    let refines = i32::from(simulator.system.observes_accelerations());
+    let flag = usize::from;
     let mut text = String::new();
     for (name, value) in [
         ("N", layout.q.len()),
@@ -59,25 +60,53 @@ pub(super) fn macros(code: &Code) -> String {
         ("OUTPUTS", program.outputs.len()),
         ("REDUNDANT", program.redundant.len()),
         ("WATCHED", watched),
-        ("CONSTANTS", constants),
-        ("SOLVER_CONSTANTS", solver),
         ("ROWS", schedule.rows),
         ("CLOSURES", simulator.start.constraint.len()),
         ("CLOSURE_RATES", simulator.start.constraint_rate.len()),
+        ("EXPLICIT", flag(method.is_explicit)),
+        ("FIXED", flag(code.has_fixed_steps())),
+        ("LEVELS", method.levels),
+        ("CONTROLLED", flag(method.controller.is_some())),
+        ("SWITCHES", method.switches.map_or(0, |program| program.switches.len())),
+        ("SAMPLED", simulator.start.sampled.len()),
+        ("SINGULAR", flag(method.is_singular)),
+        ("SOLVER", flag(method.has_solver)),
+        ("EQUILIBRIUM", flag(method.equilibrium.is_some())),
+        ("SOLVES", flag(method.solves)),
+        ("PROJECTS", flag(method.projects)),
+        ("ACCELERATIONS", flag(method.needs.accelerations)),
+        ("CLOSES", flag(method.needs.closure)),
+        ("LINEAR", flag(method.is_linear())),
     ] {
         let _ = writeln!(text, "#define {name} {value}");
     }
-    let _ = writeln!(text, "#define SOLVES {}\n#define REFINES {refines}", i32::from(code.solves));
-    let _ = writeln!(text, "#define GAIN {}", c_number(program.coefficients.position_gain(1.0)));
-    let shift = program.coefficients.shift() * schedule.first_step();
-    let _ = writeln!(
-        text,
-        "#define START_SHIFT {}\n#define CLOSED {}",
-        c_number(shift),
-        c_number(allowed_residual(&program.scale))
-    );
+    let coefficients = &program.coefficients;
+    let mut numbers = vec![
+        ("GAIN", coefficients.position_gain(1.0)),
+        ("SHIFT", coefficients.shift()),
+        ("START_SHIFT", coefficients.shift() * schedule.first_step()),
+        ("CLOSED", allowed_residual(&program.scale)),
+        ("INSTANT_ROUNDING", TUNING.instant_rounding),
+    ];
+    if let Some(controller) = method.controller {
+        numbers.extend([
+            ("TOLERANCE", controller.tolerance),
+            ("DURATION", controller.duration),
+            ("LEAST_STEP", controller.least()),
+            ("LEAST_EVENT", controller.event()),
+            ("ERROR_GAIN", coefficients.error_gain(1.0)),
+            ("OF_NEW", coefficients.of_new()),
+            ("OF_OLD", coefficients.of_old()),
+            ("OF_ALGORITHMIC", coefficients.of_algorithmic()),
+        ]);
+    }
+    for (name, value) in numbers {
+        let _ = writeln!(text, "#define {name} {}", c_number(value));
+    }
     for (name, own) in [
         ("MODEL", "model"),
+        ("STEPPER", "stepper"),
+        ("LEVEL", "level"),
         ("MODEL_START", "start"),
         ("MODEL_START_AT", "start_at"),
         ("MODEL_SET", "set"),
@@ -93,52 +122,21 @@ pub(super) fn macros(code: &Code) -> String {
 
 /// The tables that the runtime names.
 pub(super) fn tables(code: &Code, start: &Tile) -> String {
-    let Code { simulator, schedule, prefix, outputs, .. } = code;
+    let Code { simulator, schedule, prefix, outputs, method, .. } = code;
     let program = &simulator.program;
-    let mut text = String::from(
-        "\ntypedef struct { int at; double value; } constant;\n\
-         typedef struct { int pivot; double largest; int mode, inactive; } watched_pivot;\n\
-         typedef struct { double start, h; int count; } run;\n\n",
-    );
-    let numbers = |values: &mut dyn Iterator<Item = f64>| list(values.map(c_number));
+    let mut text = String::from("\ntypedef struct { int at; double value; } constant;\n\n");
     let layout = program.layout.registers();
     let _ = writeln!(
         text,
         "static const double start_values[] = {};",
         numbers(&mut start.values()[..layout].iter().copied())
     );
-    let _ = writeln!(text, "static const double scale[] = {};", numbers(&mut program.scale.iter().copied()));
-    let registers = |values: &[usize]| list(values.iter().map(usize::to_string));
-    let _ = writeln!(text, "static const int redundant[] = {};", registers(&program.redundant));
-    let _ = writeln!(text, "static const int output_registers[] = {};", registers(&program.outputs));
-    let pivots = program.watched.iter().flat_map(|own| {
-        let (mode, inactive) = own.mode.map_or((-1, 0), |mode| (mode.register as i64, i32::from(mode.inactive)));
-        own.pivots.iter().map(move |pivot| {
-            format!("{{ {}, {}, {mode}, {inactive} }}", pivot.register, c_number(pivot.largest_inverse))
-        })
-    });
-    let _ = writeln!(text, "static const watched_pivot watched[] = {};", structs(pivots, "{ 0, 0.0, 0, 0 }"));
-    let constants = |values: &[(u32, f64)]| {
-        structs(values.iter().map(|(at, value)| format!("{{ {at}, {} }}", c_number(*value))), "{ 0, 0.0 }")
-    };
-    let _ = writeln!(text, "static const constant constants[] = {};", constants(program.constants()));
-    if code.has_solver() {
-        let own = constants(simulator.start.constants());
-        let _ = writeln!(text, "static const constant solver_constants[] = {own};");
+    if !method.is_explicit || method.settles() {
+        let _ = writeln!(text, "static const double scale[] = {};", numbers(&mut program.scale.iter().copied()));
     }
-    let rows = runs(schedule);
-    let first: Vec<usize> = rows
-        .iter()
-        .scan(0, |next, row| {
-            *next += row.len();
-            Some(*next)
-        })
-        .collect();
-    let all = rows.iter().flatten();
-    let all = all.map(|run| format!("{{ {}, {}, {} }}", c_number(run.start), c_number(run.h), run.count));
-    let _ = writeln!(text, "static const run runs[] = {};", structs(all, "{ 0.0, 0.0, 0 }"));
-    let first: Vec<usize> = std::iter::once(0).chain(first).collect();
-    let _ = writeln!(text, "static const int row_runs[] = {};", registers(&first));
+    if !method.is_explicit {
+        text += &of_steps(code);
+    }
     let mut times = (0..schedule.rows).map(|row| schedule.time(row));
     let _ = writeln!(text, "static const double row_times[] = {};", numbers(&mut times));
     let quoted = |texts: &mut dyn Iterator<Item = &str>| {
@@ -153,7 +151,7 @@ pub(super) fn tables(code: &Code, start: &Tile) -> String {
         let names = quoted(&mut own.iter().map(|own| own.name.as_str()));
         let units = quoted(&mut own.iter().map(|own| own.unit.as_str()));
         let values = numbers(&mut own.iter().map(|own| own.nominal));
-        let rows = |rows: &[Residual]| list(rows.iter().map(|own| own.register.to_string()));
+        let rows = |rows: &[Residual]| registers(&rows.iter().map(|own| own.register).collect::<Vec<_>>());
         let (closures, rates) = (rows(&simulator.start.constraint), rows(&simulator.start.constraint_rate));
         let _ = writeln!(text, "const char *const {prefix}_parameter_names[] = {names};");
         let _ = writeln!(text, "const char *const {prefix}_parameter_units[] = {units};");
@@ -162,20 +160,61 @@ pub(super) fn tables(code: &Code, start: &Tile) -> String {
         let _ =
             writeln!(text, "static const int closures[] = {closures};\nstatic const int closure_rates[] = {rates};");
     }
+    text += &of_method(code);
     text.push('\n');
     text
 }
 
-/// Values in braces, eight a line; C has no empty ones.
-fn list(values: impl Iterator<Item = String>) -> String {
-    structs(values, "0")
+/// Of the steps of HHT-I3.
+fn of_steps(code: &Code) -> String {
+    let program = &code.simulator.program;
+    let mut text = String::from("typedef struct { int pivot; double largest; int mode, inactive; } watched_pivot;\n");
+    let _ = writeln!(text, "static const int redundant[] = {};", registers(&program.redundant));
+    if code.method.closure.is_none() {
+        let _ = writeln!(text, "static const int output_registers[] = {};", registers(&program.outputs));
+    }
+    let pivots = program.watched.iter().flat_map(|own| {
+        let (mode, inactive) = own.mode.map_or((-1, 0), |mode| (mode.register as i64, i32::from(mode.inactive)));
+        own.pivots.iter().map(move |pivot| {
+            format!("{{ {}, {}, {mode}, {inactive} }}", pivot.register, c_number(pivot.largest_inverse))
+        })
+    });
+    let _ = writeln!(text, "static const watched_pivot watched[] = {};", structs(pivots, "{ 0, 0.0, 0, 0 }"));
+    text += &constants("constants", program.constants());
+    text += &if code.has_fixed_steps() { of_runs(code.schedule) } else { of_ends(code.schedule) };
+    text
 }
 
-fn structs(values: impl Iterator<Item = String>, none: &str) -> String {
-    let mut values: Vec<String> = values.collect();
-    if values.is_empty() {
-        values.push(none.to_owned());
-    }
-    let lines: Vec<String> = values.chunks(8).map(|line| line.join(", ")).collect();
-    format!("{{\n    {}\n}}", lines.join(",\n    "))
+/// Indices of the first of each row, and the end of the last row, by their numbers.
+fn firsts(counts: impl Iterator<Item = usize>) -> String {
+    let ends = counts.scan(0, |next, count| {
+        *next += count;
+        Some(*next)
+    });
+    registers(&std::iter::once(0).chain(ends).collect::<Vec<_>>())
+}
+
+/// Steps of one length, as runs of them.
+fn of_runs(schedule: &Schedule) -> String {
+    let rows = runs(schedule);
+    let all = rows.iter().flatten();
+    let all = all.map(|run| format!("{{ {}, {}, {} }}", c_number(run.start), c_number(run.h), run.count));
+    format!(
+        "typedef struct {{ double start, h; int count; }} run;\n\
+         static const run runs[] = {};\n\
+         static const int row_runs[] = {};\n",
+        structs(all, "{ 0.0, 0.0, 0 }"),
+        firsts(rows.iter().map(Vec::len))
+    )
+}
+
+/// Steps of any lengths, as their ends.
+fn of_ends(schedule: &Schedule) -> String {
+    let rows: Vec<Vec<f64>> =
+        (0..schedule.rows).map(|row| schedule.steps_to(row).map(|(_, end)| end).collect()).collect();
+    format!(
+        "static const double step_ends[] = {};\nstatic const int row_steps[] = {};\n",
+        numbers(&mut rows.iter().flatten().copied()),
+        firsts(rows.iter().map(Vec::len))
+    )
 }

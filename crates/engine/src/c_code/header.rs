@@ -1,27 +1,36 @@
 //! The header of a model's code.
 
-use super::Code;
+use super::{Code, NOTICE};
 use crate::compile::Tapes;
+use crate::simulate::explicit::WITH_DENSE;
 
 /// Text of the header.
 pub(super) fn header(code: &Code) -> String {
-    let Code { simulator, schedule, prefix, outputs, .. } = code;
+    let Code { schedule, prefix, outputs, method, .. } = code;
     let guard = format!("{}_H", prefix.to_uppercase());
-    let solver = if code.has_solver() {
-        format!("\n    double solver[{}];", simulator.start.registers().max(1))
-    } else {
-        String::new()
-    };
-    let unknowns = simulator.program.layout.w.len() + simulator.program.layout.lambda.len() + 1;
     let names: Vec<String> =
         outputs.iter().map(|(name, unit)| format!("{name} [{unit}]").replace("*/", "* /")).collect();
     let parameters = if code.parameters > 0 { of_parameters(code) } else { String::new() };
+    let by = match (method.is_explicit, method.controller, method.levels) {
+        (true, ..) => "Dormand and Prince's explicit method of order 8",
+        (_, Some(_), 1) => "HHT-I3 with steps by a tolerance",
+        (_, Some(_), _) => "HHT-I3 with steps by a tolerance, extrapolated",
+        (_, None, 1) => "fixed steps of HHT-I3",
+        (..) => "fixed steps of HHT-I3, extrapolated",
+    };
+    let step = match method.is_explicit {
+        true => "On to the time `end`, s, by the steps of the run: `h` and `refines` are not used.",
+        false => "One step of h to the time `end`, s; with `refines`, accelerations are as accurate as positions.",
+    };
+    let memory = memory(code);
     format!(
-        "/* The nominal motion of a mechanism, by fixed steps of HHT-I3.
+        "/* The nominal motion of a mechanism, by {by}.
  *
  * {prefix}_start, then {prefix}_row for rows 1, 2, … in turn, and {prefix}_outputs whenever outputs are wanted:
  * {}.
- * No function allocates, and models are independent of each other. */
+ * No function allocates, and models are independent of each other.
+ *
+ * {NOTICE} */
 
 #ifndef {guard}
 #define {guard}
@@ -32,15 +41,7 @@ extern \"C\" {{
 
 enum {{ {prefix}_output_count = {}, {prefix}_rows = {} }};
 
-/* The memory of one motion. */
-typedef struct {{
-    double r[{}];{solver}
-    double now[{unknowns}], before[{unknowns}], before_that[{unknowns}];
-    double step_size, prepared_size, size_before, contraction;
-    int known;
-    unsigned steps;
-}} {prefix}_model;
-
+{memory}
 /* Names and SI units of the outputs. */
 extern const char *const {prefix}_output_names[];
 extern const char *const {prefix}_output_units[];
@@ -51,7 +52,7 @@ void {prefix}_start({prefix}_model *model);
 /* On to a row, from the one before. Returns 0, or 1 where a step does not converge. */
 int {prefix}_row({prefix}_model *model, int row);
 
-/* One step of h to the time `end`, s; with `refines`, accelerations are as accurate as positions. Returns as above. */
+/* {step} Returns as above. */
 int {prefix}_step({prefix}_model *model, double h, double end, int refines);
 
 /* Time of a row, s. */
@@ -69,7 +70,68 @@ void {prefix}_outputs({prefix}_model *model, double *outputs);
         names.join(", "),
         outputs.len(),
         schedule.rows,
-        simulator.program.registers(),
+    )
+}
+
+/// Types of a motion's memory.
+fn memory(code: &Code) -> String {
+    let Code { simulator, prefix, method, .. } = code;
+    let layout = &simulator.program.layout;
+    let unknowns = layout.w.len() + layout.lambda.len() + 1;
+    let solver = match method.has_solver {
+        true => format!("    double solver[{}];\n", simulator.start.registers().max(1)),
+        false => String::new(),
+    };
+    let closure = method
+        .closure
+        .map_or(String::new(), |closure| format!("    double closure[{}];\n", closure.registers().max(1)));
+    let balance = method.equilibrium.map_or(String::new(), |equilibrium| {
+        let unknowns = layout.q.len() + layout.lambda.len();
+        let registers = equilibrium.program().registers().max(1);
+        format!("    double balance[{registers}], matrix[{}];\n", unknowns * (unknowns + 1) + 1)
+    });
+    let solver = solver + &balance;
+    if method.is_explicit {
+        let size = 2 * layout.q.len() + 1;
+        return format!(
+            "/* The memory of one motion. */
+typedef struct {{
+{solver}{closure}    double state[{size}], next[{size}], motion[{size}], rates[{WITH_DENSE}][{size}], dense[7][{size}];
+    double time, open, now;
+    int steps;
+}} {prefix}_model;
+"
+        );
+    }
+    let (errors, alone) = match method.controller {
+        Some(_) => (
+            "    double error, whole_error;\n",
+            format!("    {prefix}_stepper alone;\n    double h;\n    int is_alone, has_switched;\n"),
+        ),
+        None => ("", String::new()),
+    };
+    let singular = if method.is_singular { "    int is_singular;\n" } else { "" };
+    let switches =
+        method.switches.map_or(String::new(), |own| format!("    double switches[{}];\n", own.registers().max(1)));
+    format!(
+        "/* A state with what its iteration knows of the steps before, and the memory of one motion. */
+typedef struct {{
+    double r[{}], now[{unknowns}], before[{unknowns}], before_that[{unknowns}];
+    double step_size, prepared_size, size_before, contraction;
+{errors}{singular}    int known;
+    unsigned steps;
+}} {prefix}_stepper;
+
+typedef struct {{
+    {prefix}_stepper shared;
+{alone}}} {prefix}_level;
+
+typedef struct {{
+    {prefix}_level levels[{}];
+{solver}{closure}{switches}}} {prefix}_model;
+",
+        simulator.program.registers().max(1),
+        method.levels,
     )
 }
 

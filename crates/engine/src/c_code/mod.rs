@@ -1,25 +1,37 @@
-//! A compiled mechanism as C99: the programs of its steps, the nominal start, and Newton's iteration (`runtime.c`).
+//! A compiled mechanism as C99: the programs of its steps, the nominal start, and what integrates them (`runtime`).
 //!
-//! The code repeats the nominal motion of a run with fixed steps of HHT-I3. It has no rank-revealing solve: a
-//! step in a singular configuration fails.
+//! The code repeats the nominal sample, by HHT-I3 under fixed steps or a tolerance, on one level or several, or by the
+//! explicit method. A step in a singular configuration has a solve of its own where equations are few.
 
 mod data;
 mod fmi;
+mod functions;
 mod header;
 mod inputs;
+mod method;
+mod tables;
 
 use std::fmt::Write;
 
 use symdiff::CWriter;
 
-use crate::compile::Tapes;
+use self::method::Method;
 use crate::numerics::Sample;
-use crate::simulate::{Integration, Schedule, SimulationError, Simulator};
+use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulator, Steps, integrator};
 
 pub use fmi::FmiVersion;
 
-/// The iteration, with names of the model's parts as macros.
-const RUNTIME: &str = include_str!("runtime.c");
+/// Most coordinates and multipliers of a mechanism whose equilibrium is found anew, by dense equations.
+const MOST_BALANCED: usize = 200;
+
+/// Terms of the files, on one line.
+const LICENCE: &str = "the model: its author's terms; the runtime, mbint's: MIT OR Apache-2.0";
+
+/// The same at the head of files, with the expression that tools search for.
+const NOTICE: &str =
+    "The model, with its equations and numbers, is its author's, under the author's terms. The runtime beside it is
+ * mbint's: it may be used, changed and passed on with the model, also where that is not open.
+ * SPDX-License-Identifier: MIT OR Apache-2.0";
 
 /// A model as C: its files by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,6 +42,8 @@ pub struct CModel {
     pub unit: Vec<(String, String)>,
     /// Name of the unit and of its library: one of C.
     pub identifier: String,
+    /// Steps of the nominal motion in singular configurations, if the code has no solve for these.
+    pub singular_steps: u64,
 }
 
 /// Why a model is not written as C.
@@ -62,7 +76,7 @@ pub struct CodeRequest<'r> {
     pub version: FmiVersion,
 }
 
-/// A model's code in the making: its sizes, and what runtime and unit offer.
+/// A model's code in the making: its sizes, and how it is integrated.
 struct Code<'c> {
     simulator: &'c Simulator,
     schedule: &'c Schedule,
@@ -70,29 +84,31 @@ struct Code<'c> {
     prefix: &'c str,
     /// Names and units of the outputs.
     outputs: &'c [(&'c str, &'c str)],
-    /// Whether rows solve for accelerations and multipliers.
-    solves: bool,
+    method: Method<'c>,
     /// Number of parameters that its start may have other values of.
     parameters: usize,
 }
 
 impl Code<'_> {
-    /// Whether it has the programs of the start.
-    fn has_solver(&self) -> bool {
-        self.solves || self.parameters > 0
+    /// Whether all steps have one length.
+    fn has_fixed_steps(&self) -> bool {
+        self.schedule.steps_per_row().is_some()
     }
 }
 
-/// Writes a mechanism under a schedule.
+/// Writes a mechanism under the steps of a run.
 ///
 /// # Errors
-/// Where it takes more than fixed steps of HHT-I3, where the nominal sample has no start, and where an input is none.
-pub fn c_code(simulator: &Simulator, schedule: &Schedule, request: CodeRequest) -> Result<CModel, NoCode> {
-    let system = &simulator.system;
+/// Where the runtime lacks what its analysis or its steps take, where the nominal sample has no start, and where an
+/// input is none.
+pub fn c_code(simulator: &Simulator, steps: Steps, request: CodeRequest) -> Result<CModel, NoCode> {
+    let (system, schedule) = (&simulator.system, steps.schedule);
     let refused = [
-        (system.analysis.visits(), "its analysis is not a motion"),
-        (schedule.integration != Integration::Plain, "its steps are combined, explicit or cut at events"),
-        (!system.sampled.is_empty(), "states change at instants"),
+        (system.analysis.visits(), "its analysis has no motion; without the key `analysis` it has one"),
+        (
+            schedule.integration == Integration::Segments,
+            "its steps are cut at events that samples share; give `scheme: hht`",
+        ),
     ];
     if let Some((_, why)) = refused.into_iter().find(|(is_so, _)| *is_so) {
         return Err(NoCode::NotWritten(why));
@@ -100,60 +116,37 @@ pub fn c_code(simulator: &Simulator, schedule: &Schedule, request: CodeRequest) 
     let name = request.name;
     let nominal: Sample = system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let start = simulator.assemble(1, schedule.first_step(), |_| nominal.clone())?;
+    let mut motion = integrator(simulator, &[nominal], schedule)?;
+    let stops = motion.advance(steps, 0..schedule.rows, Observed::Coordinates, &mut Vec::new());
+    if !stops.is_empty() {
+        return Err(NoCode::NotWritten("its nominal motion stops before the end; `mbint run` says where and why"));
+    }
     let prefix: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let prefix = if prefix.starts_with(|c: char| c.is_ascii_digit()) { format!("m_{prefix}") } else { prefix };
     let outputs: Vec<(&str, &str)> =
         system.outputs.iter().map(|output| (output.name.as_str(), output.unit.as_str())).collect();
-    // An equilibrium is not found anew.
-    let parameters = if simulator.equilibrium.is_some() { &[][..] } else { &system.parameters[..] };
+    let unknowns = system.q.len() + system.lambda.len();
+    let is_too_large = simulator.equilibrium.is_some() && unknowns > MOST_BALANCED;
+    let parameters = if is_too_large { &[][..] } else { &system.parameters[..] };
     let inputs = inputs::of(system, parameters, request.inputs)?;
-    let solves = !system.lambda.is_empty() && system.observes_accelerations();
-    let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, solves, parameters: parameters.len() };
+    let method = Method::of(simulator, steps, parameters.len())?;
+    let singular_steps = if method.is_singular { 0 } else { motion.counters().rank_revealing };
+    let code = Code { simulator, schedule, prefix: &prefix, outputs: &outputs, method, parameters: parameters.len() };
     let mut writer = CWriter::default();
-    let functions = functions(&code, &mut writer);
-    let mut text = format!("/* {name}: written by mbint. Licence: that of the model. */\n\n");
+    let functions = functions::functions(&code, &mut writer);
+    let mut text = format!("/* {name}: written by mbint.\n *\n * {NOTICE} */\n\n");
     let _ =
         write!(text, "#include \"{name}.h\"\n\n#include <math.h>\n#include <string.h>\n\n{}\n", data::macros(&code));
     text += &writer.helpers();
     text += &data::tables(&code, &start);
     text += &functions;
-    text += RUNTIME;
+    text += &code.method.runtime();
     let example = EXAMPLE.replace("NAME", name).replace("PREFIX", &prefix);
     let files = vec![(format!("{name}.h"), header::header(&code)), (format!("{name}.c"), text)];
     let unit = fmi::Unit { name, prefix: &prefix, outputs: &outputs, parameters, inputs: &inputs, schedule };
     let unit = fmi::files(&unit, request.version, &files);
     let files = files.into_iter().chain([(format!("{name}_main.c"), example)]).collect();
-    Ok(CModel { files, unit, identifier: prefix })
-}
-
-/// The tapes as functions of the memory.
-fn functions(code: &Code, writer: &mut CWriter) -> String {
-    let (program, start) = (&code.simulator.program, &code.simulator.start);
-    let mut tapes = vec![
-        ("sample", program.sample()),
-        ("step_size", program.step_size()),
-        ("step", program.step()),
-        ("factor", program.factor()),
-        ("first_correction", program.first_correction()),
-        ("correct", program.correct()),
-        ("advance", program.advance()),
-        ("observe", program.observe()),
-    ];
-    if code.has_solver() {
-        tapes.extend([("solver_sample", start.sample()), ("solver_acceleration", start.acceleration())]);
-    }
-    if code.parameters > 0 {
-        tapes.extend([
-            ("solver_given", start.given()),
-            ("solver_position", start.position()),
-            ("solver_velocity", start.velocity()),
-        ]);
-    }
-    let mut text = String::new();
-    for (name, tape) in tapes {
-        let _ = write!(text, "static void {name}(double *r)\n{{\n{}    (void)r;\n}}\n\n", writer.statements(tape));
-    }
-    text
+    Ok(CModel { files, unit, identifier: prefix, singular_steps })
 }
 
 /// The example's source: a table of the outputs.

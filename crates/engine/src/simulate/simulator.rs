@@ -352,12 +352,12 @@ impl Simulator {
 
     /// Whether rows of output solve for their accelerations and multipliers: outputs depend on them, and constraints
     /// disturb those of the steps.
-    pub(super) fn solves_row_accelerations(&self) -> bool {
+    pub(crate) fn solves_row_accelerations(&self) -> bool {
         !self.system.lambda.is_empty() && self.system.observes_accelerations()
     }
 
     /// Whether rows of output make their velocities consistent where steps are controlled.
-    pub(super) fn projects_row_velocities(&self) -> bool {
+    pub(crate) fn projects_row_velocities(&self) -> bool {
         !self.system.lambda.is_empty() && (self.system.observes_velocities() || self.system.observes_accelerations())
     }
 
@@ -365,7 +365,7 @@ impl Simulator {
     ///
     /// # Errors
     /// Where its equations have no factors.
-    pub(super) fn free_closure(&self) -> Result<&StartProgram, SimulationError> {
+    pub(crate) fn free_closure(&self) -> Result<&StartProgram, SimulationError> {
         let compiled = self.free_closure.get_or_init(|| {
             let mut system = self.system.clone();
             let n = system.q.len();

@@ -30,7 +30,7 @@ pub enum Fault {
     #[error("it ends its motion at t = {0} s")]
     Terminated(f64),
     /// A value is not of the variable's type.
-    #[error("{0} is no value of an integer or Boolean variable")]
+    #[error("{0} is no value of an integer or Boolean variable of its type")]
     Value(f64),
     /// Its events have no end.
     #[error("more than {count} events at t = {time} s")]
@@ -45,7 +45,7 @@ pub enum Fault {
 /// What an instance says of its discrete states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Discrete {
-    /// Whether they are to be asked again.
+    /// Whether they are to be asked again: in a new event after a step.
     pub again: bool,
     /// Whether it ends its motion.
     pub terminates: bool,
@@ -61,8 +61,8 @@ pub trait Instance {
     fn get(&mut self, kind: Kind, reference: u32) -> Result<f64, Fault>;
     /// Finds the start of a motion from 0 to `end`, s.
     fn initialise(&mut self, end: f64) -> Result<(), Fault>;
-    /// Moves on by a step, s, in co-simulation.
-    fn step(&mut self, time: f64, size: f64) -> Result<(), Fault>;
+    /// Moves on by a step, s, in co-simulation; whether the unit ends its motion with that step.
+    fn step(&mut self, time: f64, size: f64) -> Result<bool, Fault>;
     /// Enters the mode in which events happen; it begins there.
     fn enter_events(&mut self) -> Result<(), Fault>;
     /// Lets an event happen.
@@ -79,8 +79,8 @@ pub trait Instance {
     fn derivatives(&mut self, into: &mut [f64]) -> Result<(), Fault>;
     /// Event indicators; `into` gets their number.
     fn indicators(&mut self, into: &mut Vec<f64>) -> Result<(), Fault>;
-    /// A step of the integrator is done: whether the unit wants an event.
-    fn completed(&mut self, time: f64) -> Result<bool, Fault>;
+    /// A step of the integrator is done: whether the unit wants an event, or ends its motion.
+    fn completed(&mut self) -> Result<Discrete, Fault>;
 }
 
 /// Makes instances of a unit that is unpacked in a folder.
@@ -132,10 +132,16 @@ fn checked(function: &'static str, status: i32) -> Result<(), Fault> {
     if (0..=1).contains(&status) { Ok(()) } else { Err(Fault::Status { function, status }) }
 }
 
-/// A whole number.
-fn whole(value: f64) -> Result<i32, Fault> {
-    let is_whole = value.fract() == 0.0 && value.abs() <= f64::from(i32::MAX);
-    if is_whole { Ok(value as i32) } else { Err(Fault::Value(value)) }
+/// A whole number of a type; beyond 2^53 a value is not one number.
+fn whole<T: TryFrom<i64>>(value: f64) -> Result<T, Fault> {
+    let is_whole = value.fract() == 0.0 && value.abs() <= 9_007_199_254_740_992.0;
+    let found = if is_whole { T::try_from(value as i64).ok() } else { None };
+    found.ok_or(Fault::Value(value))
+}
+
+/// Whether a time, s, is before another by more than rounding.
+fn is_before(time: f64, end: f64) -> bool {
+    time < end - 1e-9 * (1.0 + end.abs())
 }
 
 /// 0 or 1.

@@ -8,7 +8,7 @@ use std::ptr;
 
 use super::callbacks::log_three;
 use super::library::{call, call_own, functions};
-use super::{Discrete, Fault, Instance, truth, whole};
+use super::{Discrete, Fault, Instance, is_before, truth, whole};
 use crate::unit::{Interface, Kind};
 
 type Own = *mut c_void;
@@ -27,8 +27,22 @@ functions! {
             set_float64 = b"fmi3SetFloat64": fn(Own, *const u32, usize, *const f64, usize) -> c_int;
             get_float32 = b"fmi3GetFloat32": fn(Own, *const u32, usize, *mut f32, usize) -> c_int;
             set_float32 = b"fmi3SetFloat32": fn(Own, *const u32, usize, *const f32, usize) -> c_int;
+            get_int8 = b"fmi3GetInt8": fn(Own, *const u32, usize, *mut i8, usize) -> c_int;
+            set_int8 = b"fmi3SetInt8": fn(Own, *const u32, usize, *const i8, usize) -> c_int;
+            get_uint8 = b"fmi3GetUInt8": fn(Own, *const u32, usize, *mut u8, usize) -> c_int;
+            set_uint8 = b"fmi3SetUInt8": fn(Own, *const u32, usize, *const u8, usize) -> c_int;
+            get_int16 = b"fmi3GetInt16": fn(Own, *const u32, usize, *mut i16, usize) -> c_int;
+            set_int16 = b"fmi3SetInt16": fn(Own, *const u32, usize, *const i16, usize) -> c_int;
+            get_uint16 = b"fmi3GetUInt16": fn(Own, *const u32, usize, *mut u16, usize) -> c_int;
+            set_uint16 = b"fmi3SetUInt16": fn(Own, *const u32, usize, *const u16, usize) -> c_int;
             get_int32 = b"fmi3GetInt32": fn(Own, *const u32, usize, *mut i32, usize) -> c_int;
             set_int32 = b"fmi3SetInt32": fn(Own, *const u32, usize, *const i32, usize) -> c_int;
+            get_uint32 = b"fmi3GetUInt32": fn(Own, *const u32, usize, *mut u32, usize) -> c_int;
+            set_uint32 = b"fmi3SetUInt32": fn(Own, *const u32, usize, *const u32, usize) -> c_int;
+            get_int64 = b"fmi3GetInt64": fn(Own, *const u32, usize, *mut i64, usize) -> c_int;
+            set_int64 = b"fmi3SetInt64": fn(Own, *const u32, usize, *const i64, usize) -> c_int;
+            get_uint64 = b"fmi3GetUInt64": fn(Own, *const u32, usize, *mut u64, usize) -> c_int;
+            set_uint64 = b"fmi3SetUInt64": fn(Own, *const u32, usize, *const u64, usize) -> c_int;
             get_boolean = b"fmi3GetBoolean": fn(Own, *const u32, usize, *mut u8, usize) -> c_int;
             set_boolean = b"fmi3SetBoolean": fn(Own, *const u32, usize, *const u8, usize) -> c_int;
         }
@@ -50,6 +64,23 @@ functions! {
             get_indicators = b"fmi3GetEventIndicators": fn(Own, *mut f64, usize) -> c_int;
         }
     }
+}
+
+/// Sets an integer variable.
+macro_rules! set_whole {
+    ($self:ident, $field:ident: $integer:ty, $symbol:literal, $of:expr, $value:expr) => {{
+        let value: $integer = whole($value)?;
+        call!($self, $field, $symbol, $of, 1, &raw const value, 1)
+    }};
+}
+
+/// An integer variable's value; a large one is rounded.
+macro_rules! get_whole {
+    ($self:ident, $field:ident: $integer:ty, $symbol:literal, $of:expr) => {{
+        let mut value: $integer = 0;
+        call!($self, $field, $symbol, $of, 1, &raw mut value, 1)?;
+        value as f64
+    }};
 }
 
 /// An instance.
@@ -103,10 +134,14 @@ impl Instance for Three<'_> {
                 let value = value as f32;
                 call!(self, set_float32, "fmi3SetFloat32", of, 1, &raw const value, 1)
             }
-            Kind::Int32 => {
-                let value = whole(value)?;
-                call!(self, set_int32, "fmi3SetInt32", of, 1, &raw const value, 1)
-            }
+            Kind::Int8 => set_whole!(self, set_int8: i8, "fmi3SetInt8", of, value),
+            Kind::UInt8 => set_whole!(self, set_uint8: u8, "fmi3SetUInt8", of, value),
+            Kind::Int16 => set_whole!(self, set_int16: i16, "fmi3SetInt16", of, value),
+            Kind::UInt16 => set_whole!(self, set_uint16: u16, "fmi3SetUInt16", of, value),
+            Kind::Int32 => set_whole!(self, set_int32: i32, "fmi3SetInt32", of, value),
+            Kind::UInt32 => set_whole!(self, set_uint32: u32, "fmi3SetUInt32", of, value),
+            Kind::Int64 => set_whole!(self, set_int64: i64, "fmi3SetInt64", of, value),
+            Kind::UInt64 => set_whole!(self, set_uint64: u64, "fmi3SetUInt64", of, value),
             Kind::Boolean => {
                 let value = u8::from(truth(value)?);
                 call!(self, set_boolean, "fmi3SetBoolean", of, 1, &raw const value, 1)
@@ -116,17 +151,21 @@ impl Instance for Three<'_> {
 
     fn get(&mut self, kind: Kind, reference: u32) -> Result<f64, Fault> {
         let of = &raw const reference;
-        let (mut double, mut single, mut integer, mut truth) = (0.0, 0.0_f32, 0, 0);
+        let (mut double, mut single, mut truth) = (0.0, 0.0_f32, 0);
         match kind {
             Kind::Float64 => call!(self, get_float64, "fmi3GetFloat64", of, 1, &raw mut double, 1)?,
             Kind::Float32 => {
                 call!(self, get_float32, "fmi3GetFloat32", of, 1, &raw mut single, 1)?;
                 double = f64::from(single);
             }
-            Kind::Int32 => {
-                call!(self, get_int32, "fmi3GetInt32", of, 1, &raw mut integer, 1)?;
-                double = f64::from(integer);
-            }
+            Kind::Int8 => double = get_whole!(self, get_int8: i8, "fmi3GetInt8", of),
+            Kind::UInt8 => double = get_whole!(self, get_uint8: u8, "fmi3GetUInt8", of),
+            Kind::Int16 => double = get_whole!(self, get_int16: i16, "fmi3GetInt16", of),
+            Kind::UInt16 => double = get_whole!(self, get_uint16: u16, "fmi3GetUInt16", of),
+            Kind::Int32 => double = get_whole!(self, get_int32: i32, "fmi3GetInt32", of),
+            Kind::UInt32 => double = get_whole!(self, get_uint32: u32, "fmi3GetUInt32", of),
+            Kind::Int64 => double = get_whole!(self, get_int64: i64, "fmi3GetInt64", of),
+            Kind::UInt64 => double = get_whole!(self, get_uint64: u64, "fmi3GetUInt64", of),
             Kind::Boolean => {
                 call!(self, get_boolean, "fmi3GetBoolean", of, 1, &raw mut truth, 1)?;
                 double = f64::from(truth);
@@ -140,11 +179,11 @@ impl Instance for Three<'_> {
         call!(self, exit_initialisation, "fmi3ExitInitializationMode")
     }
 
-    fn step(&mut self, time: f64, size: f64) -> Result<(), Fault> {
+    fn step(&mut self, time: f64, size: f64) -> Result<bool, Fault> {
         let (mut event, mut ends, mut early, mut reached) = (false, false, false, time);
         let found = [&raw mut event, &raw mut ends, &raw mut early];
         call_own!(self, do_step, "fmi3DoStep", time, size, true, found[0], found[1], found[2], &raw mut reached)?;
-        if ends { Err(Fault::Terminated(reached)) } else { Ok(()) }
+        if ends && is_before(reached, time + size) { Err(Fault::Terminated(reached)) } else { Ok(ends) }
     }
 
     fn enter_events(&mut self) -> Result<(), Fault> {
@@ -198,9 +237,9 @@ impl Instance for Three<'_> {
         call_own!(self, get_indicators, "fmi3GetEventIndicators", into.as_mut_ptr(), count)
     }
 
-    fn completed(&mut self, time: f64) -> Result<bool, Fault> {
+    fn completed(&mut self) -> Result<Discrete, Fault> {
         let (mut event, mut ends) = (false, false);
         call_own!(self, completed, "fmi3CompletedIntegratorStep", true, &raw mut event, &raw mut ends)?;
-        if ends { Err(Fault::Terminated(time)) } else { Ok(event) }
+        Ok(Discrete { again: event, terminates: ends, next: None })
     }
 }

@@ -7,10 +7,17 @@ use std::path::Path;
 
 use super::callbacks::Callbacks;
 use super::library::{call, call_own, functions};
-use super::{Discrete, Fault, Instance, truth, whole};
+use super::{Discrete, Fault, Instance, is_before, truth, whole};
 use crate::unit::{Interface, Kind};
 
 type Own = *mut c_void;
+
+/// `fmi2Discard`.
+const DISCARD: c_int = 2;
+
+/// `fmi2LastSuccessfulTime` and `fmi2Terminated`, of a step that was discarded.
+const LAST_TIME: c_int = 2;
+const TERMINATED: c_int = 3;
 
 /// `fmi2EventInfo`.
 #[repr(C)]
@@ -42,6 +49,8 @@ functions! {
         }
         co_simulation {
             do_step = b"fmi2DoStep": fn(Own, f64, f64, c_int) -> c_int;
+            real_status = b"fmi2GetRealStatus": fn(Own, c_int, *mut f64) -> c_int;
+            boolean_status = b"fmi2GetBooleanStatus": fn(Own, c_int, *mut c_int) -> c_int;
         }
         model_exchange {
             enter_events = b"fmi2EnterEventMode": fn(Own) -> c_int;
@@ -114,13 +123,13 @@ impl Instance for Two<'_> {
         let of = &raw const reference;
         match kind {
             Kind::Float64 | Kind::Float32 => call!(self, set_real, "fmi2SetReal", of, 1, &raw const value),
-            Kind::Int32 => {
-                let value = whole(value)?;
-                call!(self, set_integer, "fmi2SetInteger", of, 1, &raw const value)
-            }
             Kind::Boolean => {
                 let value = c_int::from(truth(value)?);
                 call!(self, set_boolean, "fmi2SetBoolean", of, 1, &raw const value)
+            }
+            _ => {
+                let value: c_int = whole(value)?;
+                call!(self, set_integer, "fmi2SetInteger", of, 1, &raw const value)
             }
         }
     }
@@ -133,8 +142,9 @@ impl Instance for Two<'_> {
                 call!(self, get_real, "fmi2GetReal", of, 1, &raw mut real)?;
                 return Ok(real);
             }
-            Kind::Int32 => call!(self, get_integer, "fmi2GetInteger", of, 1, &raw mut integer)?,
             Kind::Boolean => call!(self, get_boolean, "fmi2GetBoolean", of, 1, &raw mut integer)?,
+            // All others are integers of one width.
+            _ => call!(self, get_integer, "fmi2GetInteger", of, 1, &raw mut integer)?,
         }
         Ok(f64::from(integer))
     }
@@ -145,8 +155,17 @@ impl Instance for Two<'_> {
         call!(self, exit_initialisation, "fmi2ExitInitializationMode")
     }
 
-    fn step(&mut self, time: f64, size: f64) -> Result<(), Fault> {
-        call_own!(self, do_step, "fmi2DoStep", time, size, 1)
+    fn step(&mut self, time: f64, size: f64) -> Result<bool, Fault> {
+        let done = call_own!(self, do_step, "fmi2DoStep", time, size, 1);
+        let Err(Fault::Status { status: DISCARD, .. }) = done else { return done.map(|()| false) };
+        let (mut terminated, mut reached) = (0, time);
+        let is_known = call_own!(self, boolean_status, "fmi2GetBooleanStatus", TERMINATED, &raw mut terminated).is_ok()
+            && call_own!(self, real_status, "fmi2GetRealStatus", LAST_TIME, &raw mut reached).is_ok();
+        match is_known && terminated != 0 {
+            true if is_before(reached, time + size) => Err(Fault::Terminated(reached)),
+            true => Ok(true),
+            false => done.map(|()| false),
+        }
     }
 
     fn enter_events(&mut self) -> Result<(), Fault> {
@@ -188,9 +207,9 @@ impl Instance for Two<'_> {
         call_own!(self, get_indicators, "fmi2GetEventIndicators", into.as_mut_ptr(), into.len())
     }
 
-    fn completed(&mut self, time: f64) -> Result<bool, Fault> {
+    fn completed(&mut self) -> Result<Discrete, Fault> {
         let (mut event, mut ends): (c_int, c_int) = (0, 0);
         call_own!(self, completed, "fmi2CompletedIntegratorStep", 1, &raw mut event, &raw mut ends)?;
-        if ends != 0 { Err(Fault::Terminated(time)) } else { Ok(event != 0) }
+        Ok(Discrete { again: event != 0, terminates: ends != 0, next: None })
     }
 }

@@ -15,11 +15,17 @@ pub fn run(
     row: &mut dyn FnMut(&mut dyn Instance) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     row(instance)?;
+    let mut ended = None;
     for pair in times.windows(2) {
         let steps = Steps::between(pair[0], pair[1], step);
         for index in 0..steps.count {
+            // Only the last row may be where it ends.
+            if let Some(time) = ended {
+                return Err(Fault::Terminated(time));
+            }
             // Rows at equal distances get steps of one length: a unit's own clock is not asked for a last digit more.
-            instance.step(steps.time(index), steps.size())?;
+            let ends = instance.step(steps.time(index), steps.size())?;
+            ended = ends.then(|| steps.time(index + 1));
         }
         row(instance)?;
     }

@@ -5,7 +5,7 @@
 //! Source: Dormand, Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980) 19-26.
 
 use super::steps::Steps;
-use crate::native::{Fault, Instance};
+use crate::native::{Discrete, Fault, Instance};
 
 /// Rows of the method, without its seventh stage, which only an error would need.
 const STAGES: [&[f64]; 6] = [
@@ -33,6 +33,8 @@ const NOTHING: f64 = 1e-12;
 struct Motion<'i> {
     instance: &'i mut dyn Instance,
     time: f64,
+    /// Time of the last row, s.
+    end: f64,
     states: Vec<f64>,
     /// States of a stage, or of the end of a step.
     trial: Vec<f64>,
@@ -59,6 +61,7 @@ pub fn run(
     let mut motion = Motion {
         instance,
         time: times[0],
+        end: times[times.len() - 1],
         states: zeros(),
         trial: zeros(),
         slopes: std::array::from_fn(|_| zeros()),
@@ -101,7 +104,11 @@ impl Motion<'_> {
                 continue;
             }
             self.arrive(target)?;
-            if self.instance.completed(target)? || is_event {
+            let done = self.instance.completed()?;
+            if self.ends(done)? {
+                return Ok(());
+            }
+            if done.again || is_event {
                 self.event()?;
             }
         }
@@ -152,6 +159,17 @@ impl Motion<'_> {
         self.set_trial()
     }
 
+    /// Whether the unit ends its motion with the last row.
+    ///
+    /// # Errors
+    /// Where it does so before.
+    fn ends(&self, found: Discrete) -> Result<bool, Fault> {
+        match found.terminates && self.end - self.time > NOTHING * self.end {
+            true => Err(Fault::Terminated(self.time)),
+            false => Ok(found.terminates),
+        }
+    }
+
     /// Lets an event happen now.
     fn event(&mut self) -> Result<(), Fault> {
         self.events += 1;
@@ -167,8 +185,9 @@ impl Motion<'_> {
         let mut repetitions = 0;
         loop {
             let found = self.instance.update_discrete()?;
-            if found.terminates {
-                return Err(Fault::Terminated(self.time));
+            // The unit stays in the mode of events: nothing more than values is asked.
+            if self.ends(found)? {
+                return Ok(());
             }
             self.next = found.next;
             if !found.again {

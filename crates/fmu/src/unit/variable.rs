@@ -9,8 +9,22 @@ pub enum Kind {
     Float64,
     /// `Float32`.
     Float32,
-    /// `Integer`, `Enumeration` of FMI 2.0, `Int32`.
+    /// `Integer` and `Enumeration` of FMI 2.0, `Int32`.
     Int32,
+    /// `Int8`.
+    Int8,
+    /// `UInt8`.
+    UInt8,
+    /// `Int16`.
+    Int16,
+    /// `UInt16`.
+    UInt16,
+    /// `UInt32`.
+    UInt32,
+    /// `Int64`, `Enumeration` of FMI 3.0.
+    Int64,
+    /// `UInt64`.
+    UInt64,
     /// `Boolean`: 0 or 1.
     Boolean,
 }

@@ -27,7 +27,7 @@ struct Line {
 
 /// Values of an output: of the only time, or row by row; null is no number.
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "an output is a number, or a list of numbers and nulls")]
 enum Column {
     Rows(Vec<Option<f64>>),
     One(Option<f64>),

@@ -3,7 +3,7 @@
 use super::black_box::needs_mechanism;
 use super::prepared::Prepared;
 use super::problem::Study;
-use super::sample::steps_of_samples;
+use super::sample::steps_and_end;
 use super::{Options, RunError, pool};
 use crate::c_code::{CModel, CodeRequest, FmiVersion, NoCode, c_code};
 use crate::model::Description;
@@ -24,8 +24,8 @@ pub enum CodeError {
 /// are parameters that may change during the motion, `version` is that of its unit of FMI.
 ///
 /// # Errors
-/// Where the model has no motion, where its steps are not fixed ones of HHT-I3, and where an input cannot
-/// be one.
+/// Where the model has no motion, or one that does not reach its end, where the runtime lacks what its steps take, and
+/// where an input cannot be one.
 pub fn code(description: &Description, inputs: &[String], version: FmiVersion) -> Result<CModel, CodeError> {
     needs_mechanism(description, "source code").map_err(RunError::from)?;
     let pool = pool(None).map_err(RunError::from)?;
@@ -33,11 +33,11 @@ pub fn code(description: &Description, inputs: &[String], version: FmiVersion) -
         let Prepared { subsystem, simulator } = Prepared::new(Reduction::joined(description))?;
         let options = Options { methods: Some(Vec::new()), ..Options::default() };
         let study = Study::new(&subsystem.description, simulator, &options)?;
-        let plan = steps_of_samples(&study).map_err(RunError::from)?;
-        if plan.controller.is_some() {
-            return Err(NoCode::NotWritten("a tolerance chooses its steps; give a fixed `step`").into());
+        let (plan, ended) = steps_and_end(&study).map_err(RunError::from)?;
+        if let Some(error) = ended {
+            return Err(RunError::from(error).into());
         }
         let name = description.name.replace('/', "_");
-        Ok(c_code(&study.simulator, &plan.schedule, CodeRequest { name: &name, inputs, version })?)
+        Ok(c_code(&study.simulator, plan.steps(), CodeRequest { name: &name, inputs, version })?)
     })
 }

@@ -263,10 +263,15 @@ fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
 /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a tolerance
 /// those that a run would try first.
 pub(super) fn steps_of_samples(study: &Study) -> Result<StepPlan, SimulationError> {
-    let (plan, _) = planned(study, controlling_samples)?;
+    Ok(steps_and_end(study)?.0)
+}
+
+/// The same, with the error that ended the control of the steps before the last row, if there is one.
+pub(super) fn steps_and_end(study: &Study) -> Result<(StepPlan, Option<SimulationError>), SimulationError> {
+    let (plan, ended) = planned(study, controlling_samples)?;
     if study.request.tolerance.is_some() && study.domain.dimension() > 0 {
         let progress = Progress::new(usize::MAX, study.progress);
-        return Ok(balance(study, &plan, &progress)?.plan);
+        return Ok((balance(study, &plan, &progress)?.plan, ended));
     }
-    Ok(StepPlan { schedule: divided(study, plan.schedule).schedule, ..plan })
+    Ok((StepPlan { schedule: divided(study, plan.schedule).schedule, ..plan }, ended))
 }

@@ -5,6 +5,9 @@ use std::fmt::Write;
 use super::tape::{Op, Operands, Part, Tape};
 use crate::expr::{Binary, Spline, Unary};
 
+/// Statements of a function, at most, but for those of a region: compilers take more than proportionally long for more.
+const PIECE: usize = 2000;
+
 /// Writes tapes over one memory `r` as C, and keeps the tables that they name.
 #[derive(Debug, Default)]
 pub struct CWriter {
@@ -12,18 +15,36 @@ pub struct CWriter {
 }
 
 impl CWriter {
-    /// The statements of a tape: each is the same operation on doubles that an evaluator does; functions are those of
-    /// C's library, and `mb_select`, `mb_sign`, `mb_min`, `mb_max` and `mb_spline`, which [`helpers`](Self::helpers)
-    /// defines.
-    pub fn statements(&mut self, tape: &Tape) -> String {
-        let mut text = String::new();
-        let (mut index, mut ends) = (0, Vec::new());
+    /// A tape as a function `name` of a memory `r`: each statement is the same operation on doubles that an evaluator
+    /// does; functions are those of C's library, and `mb_select`, `mb_sign`, `mb_min`, `mb_max` and `mb_spline`, which
+    /// [`helpers`](Self::helpers) defines. A long tape is several functions that the one of this name calls.
+    pub fn function(&mut self, name: &str, tape: &Tape) -> String {
+        let pieces = self.pieces(tape);
+        let function =
+            |name: &str, body: &str| format!("static void {name}(double *r)\n{{\n{body}    (void)r;\n}}\n\n");
+        if let [body] = &pieces[..] {
+            return function(name, body);
+        }
+        let names: Vec<String> = (1..=pieces.len()).map(|piece| format!("{name}_{piece}")).collect();
+        let mut text: String = names.iter().zip(&pieces).map(|(name, body)| function(name, body)).collect();
+        let calls: String = names.iter().map(|name| format!("    {name}(r);\n")).collect();
+        text += &function(name, &calls);
+        text
+    }
+
+    /// Statements of a tape, in pieces between its regions that a compiler does not take long for.
+    fn pieces(&mut self, tape: &Tape) -> Vec<String> {
+        let (mut pieces, mut text) = (Vec::new(), String::new());
+        let (mut index, mut ends, mut statements) = (0, Vec::new(), 0);
         loop {
             while ends.last() == Some(&index) {
                 ends.pop();
                 text += "    }\n";
             }
-            let Some(part) = tape.part(&mut index) else { return text };
+            let Some(part) = tape.part(&mut index) else {
+                pieces.push(text);
+                return pieces;
+            };
             match part {
                 Part::Region(region) => {
                     let (not, end) = (if region.is_elsewhere() { "" } else { "!" }, region.end());
@@ -33,6 +54,11 @@ impl CWriter {
                 }
                 Part::Run(op, operands) => {
                     for registers in operands.chunks_exact(op.arity()) {
+                        if statements >= PIECE && ends.is_empty() {
+                            pieces.push(std::mem::take(&mut text));
+                            statements = 0;
+                        }
+                        statements += 1;
                         let _ = writeln!(text, "    {}", self.statement(op, Operands::of(registers)));
                     }
                 }

@@ -15,10 +15,12 @@
 
 enum { OK = 0, ERROR = 3 };
 
-/* An instance: the motion, the time that it has come to, its parameters, and how the host hears of failures. */
+/* An instance: the motion, the time that it has come to, the model's row there or -1, its parameters, and how the host hears of
+ * failures. */
 typedef struct {
     MODEL_TYPE model;
     double time, parameters[MODEL_PARAMETER_COUNT + 1];
+    int row;
     bool is_started, runs;
     void *environment;
     LOG log;
@@ -27,6 +29,7 @@ typedef struct {
 static void begin(instance *own)
 {
     own->time = 0.0;
+    own->row = 0;
     own->is_started = own->runs = false;
 #if MODEL_PARAMETER_COUNT
     memcpy(own->parameters, MODEL_PARAMETER_VALUES, MODEL_PARAMETER_COUNT * sizeof *own->parameters);
@@ -52,17 +55,24 @@ static const char *run_from_start(instance *own)
     return start(own);
 }
 
-/* A communication step, in steps of the model's length or a little shorter; returns why it fails. */
+/* Whether two times are one but for rounding. */
+static bool are_same(double a, double b) { return fabs(a - b) <= 1e-9 * (1.0 + fabs(a)); }
+
+/* A communication step: from row to row by the steps of a run, else in steps of the model's length or a little shorter; returns
+ * why it fails. */
 static const char *move_on(instance *own, double now, double size)
 {
     double count = ceil(size / MODEL_H - 1e-9), h, k;
-    if (fabs(now - own->time) > 1e-9 * (1.0 + fabs(now))) return "a step begins where the last one ended";
+    if (!are_same(now, own->time)) return "a step begins where the last one ended";
+    own->time = now + size;
+    if (own->row >= 0 && own->row + 1 < MODEL_ROWS && are_same(MODEL_TIME(own->row + 1), own->time))
+        return MODEL_ROW(&own->model, ++own->row) ? "a step does not converge" : NULL;
+    own->row = -1;
     h = size / count;
     /* The model's own step, to the last bit: another length would make factors anew. */
     if (fabs(h - MODEL_H) <= 1e-12 * MODEL_H) h = MODEL_H;
     for (k = 1.0; k <= count; k += 1.0)
-        if (MODEL_STEP(&own->model, h, k < count ? now + k * h : now + size, k == count)) return "a step does not converge";
-    own->time = now + size;
+        if (MODEL_STEP(&own->model, h, k < count ? now + k * h : own->time, k == count)) return "a step does not converge";
     return NULL;
 }
 

@@ -4,6 +4,7 @@ use symdiff::c_number;
 
 use super::Unit;
 use crate::assemble::UncertainParameter;
+use crate::c_code::LICENCE;
 use crate::grammar::unit;
 
 /// Type of annotations.
@@ -49,7 +50,8 @@ fn listed(own: &Unit, element: impl Fn(&Variable) -> String) -> String {
 
 /// `modelDescription.xml` of 2.0.
 pub fn of_two(own: &Unit, token: &str) -> String {
-    let (name, step) = (escaped(own.name), c_number(own.step()));
+    let name = escaped(own.name);
+    let fixed = fixed_step(own, "step");
     let variables = listed(own, |Variable { reference, name, kind, values }| {
         format!(
             "<ScalarVariable name=\"{name}\" valueReference=\"{reference}\" {kind}><Real{values}/></ScalarVariable>"
@@ -60,7 +62,7 @@ pub fn of_two(own: &Unit, token: &str) -> String {
     let structure: String = (1..=own.outputs.len()).map(output).collect();
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
-<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{name}\" guid=\"{token}\" generationTool=\"mbint {}\" license=\"that of the model\" numberOfEventIndicators=\"0\">
+<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{name}\" guid=\"{token}\" generationTool=\"mbint {}\" license=\"{LICENCE}\" numberOfEventIndicators=\"0\">
   <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\" canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\">
     <SourceFiles>
       <File name=\"{name}.c\"/>
@@ -72,7 +74,7 @@ pub fn of_two(own: &Unit, token: &str) -> String {
   <DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>
   <VendorAnnotations>
     <Tool name=\"mbint\">
-      <Parameters step=\"{step}\">
+      <Parameters{fixed}>
 {}      </Parameters>
     </Tool>
   </VendorAnnotations>
@@ -97,7 +99,8 @@ pub fn of_two(own: &Unit, token: &str) -> String {
 
 /// `modelDescription.xml` of 3.0.
 pub fn of_three(own: &Unit, token: &str) -> String {
-    let (name, step) = (escaped(own.name), c_number(own.step()));
+    let name = escaped(own.name);
+    let fixed = fixed_step(own, "fixedInternalStepSize");
     let variables = listed(own, |Variable { reference, name, kind, values }| {
         format!("<Float64 name=\"{name}\" valueReference=\"{reference}\" {kind}{values}/>")
     });
@@ -108,8 +111,8 @@ pub fn of_three(own: &Unit, token: &str) -> String {
     let (structure, unknowns) = (of_outputs("Output"), of_outputs("InitialUnknown"));
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
-<fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\" generationTool=\"mbint {}\" license=\"that of the model\">
-  <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\" canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" fixedInternalStepSize=\"{step}\"/>
+<fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\" generationTool=\"mbint {}\" license=\"{LICENCE}\">
+  <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\" canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"{fixed}/>
   <UnitDefinitions>
 {}  </UnitDefinitions>
   <DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>
@@ -149,6 +152,11 @@ pub fn of_build(own: &Unit) -> String {
         own.prefix,
         name = escaped(own.name),
     )
+}
+
+/// Attribute of the length of steps, where they have one.
+fn fixed_step(own: &Unit, name: &str) -> String {
+    if own.has_fixed_steps() { format!(" {name}=\"{}\"", c_number(own.step())) } else { String::new() }
 }
 
 /// Name of a parameter, which no output may have.

@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use symdiff::c_number;
 
+use super::NOTICE;
 use crate::assemble::UncertainParameter;
 use crate::simulate::Schedule;
 
@@ -54,6 +55,8 @@ pub(super) fn files(unit: &Unit, version: FmiVersion, code: &[(String, String)])
             ("sources/fmi3.c".to_owned(), unit.wrapper(&token, version)),
         ],
     };
+    // Where both versions of the standard have it.
+    files.push(("documentation/licenses/license.txt".to_owned(), format!("{}\n", NOTICE.replace("\n * ", "\n"))));
     files.extend(code.iter().map(|(name, text)| (format!("sources/{name}"), text.clone())));
     files
 }
@@ -67,19 +70,30 @@ fn token(code: &[(String, String)]) -> String {
 }
 
 impl Unit<'_> {
-    /// Length of the model's steps, s.
+    /// Longest of the model's steps, s.
     fn step(&self) -> f64 {
-        self.schedule.first_step()
+        if self.has_fixed_steps() { self.schedule.first_step() } else { self.schedule.longest_step() }
+    }
+
+    /// Whether all steps have one length.
+    fn has_fixed_steps(&self) -> bool {
+        self.schedule.steps_per_row().is_some()
     }
 
     fn wrapper(&self, token: &str, version: FmiVersion) -> String {
         let Self { name, prefix, outputs, .. } = self;
-        let mut text = format!("#include \"{name}.h\"\n\n#define TOKEN \"{token}\"\n");
+        let mut text = format!("/* {NOTICE} */\n\n#include \"{name}.h\"\n\n#define TOKEN \"{token}\"\n");
         let _ =
             writeln!(text, "#define MODEL_H {}\n#define MODEL_OUTPUT_COUNT {}", c_number(self.step()), outputs.len());
-        for (name, own) in
-            [("MODEL_TYPE", "model"), ("MODEL_START", "start"), ("MODEL_STEP", "step"), ("MODEL_OUTPUTS", "outputs")]
-        {
+        for (name, own) in [
+            ("MODEL_TYPE", "model"),
+            ("MODEL_START", "start"),
+            ("MODEL_STEP", "step"),
+            ("MODEL_ROW", "row"),
+            ("MODEL_ROWS", "rows"),
+            ("MODEL_TIME", "time"),
+            ("MODEL_OUTPUTS", "outputs"),
+        ] {
             let _ = writeln!(text, "#define {name} {prefix}_{own}");
         }
         let _ = writeln!(text, "#define MODEL_PARAMETER_COUNT {}", self.parameters.len());

@@ -35,7 +35,7 @@ use crate::simulate::step::Counters;
 const WIDTH: usize = 32;
 
 /// Weights of the levels, the coarsest first.
-pub(in crate::simulate) fn weights(levels: usize) -> Vec<f64> {
+pub fn weights(levels: usize) -> Vec<f64> {
     let mut weights = vec![1.0];
     for level in 1..levels {
         let power = (1_u32 << (level + 1)) as f64;

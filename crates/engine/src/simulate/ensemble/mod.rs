@@ -12,7 +12,7 @@ mod run;
 mod switch_extents;
 mod tiling;
 
-pub(in crate::simulate) use extrapolated::weights;
+pub(crate) use extrapolated::weights;
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
 pub use jet_states::JetBox;
 pub(in crate::simulate) use jet_states::corrections;
@@ -21,6 +21,7 @@ pub(in crate::simulate) use observed::stops_of_lost;
 pub use observed::{Observed, Stop};
 pub(in crate::simulate) use reduction::Reduction;
 pub use reduction::{Accumulation, Channel};
-pub(in crate::simulate) use row_closure::{JetClosure, Needs, RowClosure};
+pub(crate) use row_closure::Needs;
+pub(in crate::simulate) use row_closure::{JetClosure, RowClosure};
 pub use run::EnsembleRun;
 pub(in crate::simulate) use tiling::{put_lanes, tiles};

@@ -15,7 +15,7 @@ use crate::simulate::start::Assembly;
 
 /// What rows need of a mechanism.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::simulate) struct Needs {
+pub struct Needs {
     /// Whether constraints are to be met.
     pub closure: bool,
     /// Whether outputs depend on accelerations or multipliers.

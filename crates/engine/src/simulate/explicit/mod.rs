@@ -25,3 +25,4 @@ pub(in crate::simulate) use adjoint::{ExplicitAdjoints, ExplicitRow, ExplicitSte
 pub use jets::ExplicitJets;
 pub use run::ExplicitRun;
 pub use steps::{ExplicitObstacle, explicit_schedule};
+pub(crate) use tableau::{DENSE, STAGES, TIMES, WEIGHTS, WITH_DENSE};

@@ -2,21 +2,21 @@
 //! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I* (2nd ed., 1993), II.5 and II.6.
 
 /// Weights of earlier stages: (stage, weight).
-pub(super) type Row = &'static [(usize, f64)];
+pub type Row = &'static [(usize, f64)];
 
 /// Stages of a step; the last is the first of the next step. After them three that dense output needs.
-pub(super) const STAGES: usize = 13;
-pub(super) const WITH_DENSE: usize = 16;
+pub const STAGES: usize = 13;
+pub const WITH_DENSE: usize = 16;
 
 /// Times of the stages as shares of the step.
 #[rustfmt::skip]
-pub(super) const TIMES: [f64; WITH_DENSE] = [
+pub const TIMES: [f64; WITH_DENSE] = [
     0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726, 0.3333333333333333, 0.25, 0.3076923076923077, 0.6512820512820513, 0.6, 0.8571428571428571, 1.0, 1.0, 0.1, 0.2, 0.7777777777777778,
 ];
 
 /// Weights of the stages before each; the thirteenth are those of the step itself.
 #[rustfmt::skip]
-pub(super) const WEIGHTS: [Row; WITH_DENSE] = [
+pub const WEIGHTS: [Row; WITH_DENSE] = [
     &[],
     &[(0, 0.05260015195876773)],
     &[(0, 0.0197250569845379), (1, 0.0591751709536137)],
@@ -45,7 +45,7 @@ pub(super) const THIRD: Row = &[(0, -0.18980075407240762), (5, 4.450312892752409
 
 /// The last four terms of the dense output.
 #[rustfmt::skip]
-pub(super) const DENSE: [Row; 4] = [
+pub const DENSE: [Row; 4] = [
     &[(0, -8.428938276109013), (5, 0.5667149535193777), (6, -3.0689499459498917), (7, 2.38466765651207), (8, 2.117034582445028), (9, -0.871391583777973), (10, 2.2404374302607883), (11, 0.6315787787694688), (12, -0.08899033645133331), (13, 18.148505520854727), (14, -9.194632392478356), (15, -4.436036387594894)],
     &[(0, 10.427508642579134), (5, 242.28349177525817), (6, 165.20045171727028), (7, -374.5467547226902), (8, -22.113666853125306), (9, 7.733432668472264), (10, -30.674084731089398), (11, -9.332130526430229), (12, 15.697238121770845), (13, -31.139403219565178), (14, -9.35292435884448), (15, 35.81684148639408)],
     &[(0, 19.985053242002433), (5, -387.0373087493518), (6, -189.17813819516758), (7, 527.8081592054236), (8, -11.57390253995963), (9, 6.8812326946963), (10, -1.0006050966910838), (11, 0.7777137798053443), (12, -2.778205752353508), (13, -60.19669523126412), (14, 84.32040550667716), (15, 11.99229113618279)],

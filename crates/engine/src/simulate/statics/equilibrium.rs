@@ -85,6 +85,16 @@ impl Equilibrium {
         Self { program, scale, redundant: redundant.to_vec(), states }
     }
 
+    /// The equations at rest.
+    pub fn program(&self) -> &EquationsProgram {
+        &self.program
+    }
+
+    /// Registers of the position of each state's coordinate, and of the state elsewhere.
+    pub fn states(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.states.iter().map(|state| (state.position, state.value))
+    }
+
     /// The equations at rest with these parameters.
     pub fn configuration(&self, parameters: &[f64]) -> Configuration<'_> {
         Configuration::new(&self.program, &self.scale, &self.redundant, parameters)

@@ -5,6 +5,8 @@ use std::process::Command;
 
 use super::place::Place;
 
+mod steps;
+
 /// Shipped models: planar and spatial linkages, contacts, controllers, beams, cams, belts, redundant constraints and
 /// reactions; with the largest difference that was measured, relative to the output's largest value.
 const MODELS: [&str; 14] = [
@@ -211,7 +213,7 @@ fn a_start_of_other_parameters_is_that_of_a_sample() {
     }
 }
 
-/// A force that changes from row to row moves a mass by parabolas.
+/// A force that changes from row to row moves a mass by parabolas, whatever steps it takes.
 #[test]
 fn inputs_change_forces_during_the_motion() {
     let place = Place::new();
@@ -221,8 +223,19 @@ bodies: { mass: { mass: m, coordinates: [x] } }
 effects: { push: { force: { on: mass, value: [f, 0] } } }
 initial: { mass.x: 0, mass.vx: 0 }
 outputs: { x: mass.x, a: mass.ax }
-simulation: { duration: 1, step: 1e-2, output_step: 0.1 }
+simulation: { duration: 1, STEPS, output_step: 0.1 }
 ";
+    for steps in [
+        "step: 1e-2",
+        "step: 1e-2, extrapolation: 2",
+        "tolerance: 1e-4, scheme: hht",
+        "tolerance: 1e-4, scheme: explicit",
+    ] {
+        follows_inputs(&place, &model.replace("STEPS", steps));
+    }
+}
+
+fn follows_inputs(place: &Place, model: &str) {
     fs::write(place.path().join("mass.yaml"), model).unwrap();
     let (_, message) = place.run("export mass.yaml --c --input m", 2);
     assert!(message.contains("`m` cannot be an input: constraints or masses depend on it"), "{message}");
@@ -259,25 +272,83 @@ simulation: { duration: 1, step: 1e-2, output_step: 0.1 }
     assert!(description.contains("name=\"f\" valueReference=\"3\" causality=\"input\""), "{description}");
     assert!(description.contains("name=\"m\" valueReference=\"4\" causality=\"parameter\""), "{description}");
     assert!(description.contains("<Parameter name=\"f\" nominal=\"3"), "{description}");
+    // The terms stand in the unit and in its sources.
+    assert!(description.contains("license=\"the model: its author's terms; the runtime, mbint's: MIT OR Apache-2.0\""));
+    for file in ["documentation/licenses/license.txt", "sources/mass.c", "sources/mass.h", "sources/fmi3.c"] {
+        let text = fs::read_to_string(folder.join("unit").join(file)).unwrap();
+        assert!(text.contains("SPDX-License-Identifier: MIT OR Apache-2.0"), "{file}");
+    }
+}
+
+/// Parallelograms that become flat: of many, the C lacks what a step takes there, and the command says so.
+#[test]
+fn singular_configurations_are_announced() {
+    let place = Place::new();
+    let (mut bodies, mut joints, mut initial) = (String::new(), String::new(), Vec::new());
+    for k in 0..4 {
+        bodies += &format!(
+            "  one{k}: {{ mass: 1, inertia: 0.1, points: {{ A: [0, 0], B: [1, 0] }} }}
+  two{k}: {{ mass: 1, inertia: 0.1, points: {{ A: [0, 0], B: [1, 0] }} }}
+  rod{k}: {{ mass: 1, inertia: 0.3, points: {{ A: [0, 0], B: [2, 0] }} }}
+"
+        );
+        joints += &format!(
+            "  p{k}: {{ revolute: [ground, one{k}.A] }}
+  q{k}: {{ revolute: [ground.b, two{k}.A] }}
+  r{k}: {{ revolute: [one{k}.B, rod{k}.A] }}
+  s{k}: {{ revolute: [two{k}.B, rod{k}.B] }}
+"
+        );
+        initial.push(format!("one{k}.angle: 1.2, one{k}.angular_velocity: -3"));
+    }
+    let model = format!(
+        "model: flat
+bodies:
+  ground: {{ points: {{ b: [2, 0] }} }}
+{bodies}joints:
+{joints}initial: {{ {} }}
+outputs: {{ a: one0.angle + one1.angle + one2.angle + one3.angle }}
+simulation: {{ duration: DURATION, step: 1e-3, output_step: 0.02 }}
+",
+        initial.join(", ")
+    );
+    for (duration, is_met) in [("0.2", false), ("1", true)] {
+        fs::write(place.path().join("flat.yaml"), model.replace("DURATION", duration)).unwrap();
+        let (_, message) = place.run("export flat.yaml --c -o out", 0);
+        let expected = "the nominal motion passes singular configurations (steps there: ";
+        assert_eq!(message.contains(expected), is_met, "{message}");
+    }
+}
+
+/// A motion that does not reach its end is refused with the reason, where it was cut there without a word.
+#[test]
+fn motions_that_stop_are_refused() {
+    let place = Place::new();
+    let model = "model: block
+bodies: { block: { mass: 1, coordinates: [x] } }
+effects:
+  push: { force: { on: block, value: [FORCE, 0] } }
+initial: { block.x: 0, block.vx: 1 }
+outputs: { x: block.x }
+simulation: { duration: 2, STEPS, output_step: 0.02 }
+";
+    let jumps = model.replace("FORCE", "\"-3 N*sign(block.vx) + 2 N*sin(7*t)\"");
+    fs::write(place.path().join("block.yaml"), jumps.replace("STEPS", "tolerance: 1e-5, scheme: hht")).unwrap();
+    let (_, message) = place.run("export block.yaml --c", 1);
+    assert!(message.contains("the tolerance takes more than 20000 steps"), "{message}");
+    let ends = model.replace("FORCE", "\"1 N*sqrt(0.5 - t/(1 s))\"").replace("STEPS", "step: 1e-3");
+    fs::write(place.path().join("block.yaml"), ends).unwrap();
+    let (_, message) = place.run("export block.yaml --c", 2);
+    assert!(message.contains("its nominal motion stops before the end"), "{message}");
 }
 
 #[test]
 fn what_is_not_written_is_refused() {
     let place = Place::new();
-    let ball = "bodies: { ball: { mass: 1, coordinates: [y] } }
-effects: { weight: { force: { on: ball, value: [0, -9.81] } } }
-initial: { ball.y: 0, ball.vy: 0 }
-outputs: { y: ball.y }
-";
-    for (simulation, why) in [
-        ("{ duration: 1, tolerance: 1e-6, scheme: hht }", "a tolerance chooses its steps; give a fixed `step`"),
-        ("{ duration: 1, step: 1e-2, scheme: explicit }", "its steps are combined, explicit or cut at events"),
-        ("{ duration: 1, step: 1e-2, extrapolation: 2 }", "its steps are combined, explicit or cut at events"),
-    ] {
-        fs::write(place.path().join("ball.yaml"), format!("{ball}simulation: {simulation}\n")).unwrap();
-        let (_, message) = place.run("export ball.yaml --c", 2);
-        assert!(message.contains(why), "{message}");
-    }
-    let (_, message) = place.run("export ball.yaml", 2);
+    let model = format!("{}/models/four_bar_ventilator.yaml", env!("CARGO_MANIFEST_DIR"));
+    let (_, message) = place.run(&format!("export {model} --c"), 2);
+    let expected = "four_bar_ventilator: it cannot be written as C: its analysis has no motion; without the key `analysis` it has one";
+    assert!(message.contains(expected), "{message}");
+    let (_, message) = place.run(&format!("export {model}"), 2);
     assert!(message.contains("--c"), "{message}");
 }
