@@ -4,6 +4,7 @@ pub mod adams;
 pub mod closed_forms;
 pub mod dormand_prince;
 pub mod finite_elements;
+pub mod measured;
 pub mod power;
 pub mod random;
 pub mod registry;
@@ -233,6 +234,11 @@ impl Findings {
         if !fine {
             writeln!(self.0, "{what}").unwrap();
         }
+    }
+
+    /// A case of the verification report.
+    pub fn note(&mut self, case: measured::Case) {
+        self.0 += &case.write();
     }
 
     #[track_caller]
