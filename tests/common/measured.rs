@@ -1,7 +1,7 @@
 //! Measurements for the verification report, which `cargo xtask verification` writes.
 //!
-//! With `MBINT_MEASURED=FILE` every case is a line of JSON at the end of FILE, else nothing is written. The limits that a figure keeps
-//! stand beside it: they are what the test asserts, and what the report compares with.
+//! With `MBINT_MEASURED=FILE` every case is a line of JSON at the end of FILE, else nothing is written. The limits that
+//! a figure keeps stand beside it: they are what the test asserts, and what the report compares with.
 
 use std::io::Write as _;
 
@@ -57,8 +57,8 @@ impl Case {
         self.holds((order - theory).abs() <= 0.1, format!("{name}: {order:.3}, not {theory}"))
     }
 
-    /// So many of independent trials, which the report gives an interval of confidence. A limit of the share is for the report to
-    /// compare with that interval.
+    /// So many of independent trials, which the report gives an interval of confidence. A limit of the share is for the
+    /// report to compare with that interval.
     pub fn share(mut self, name: &str, count: usize, of: usize, high: Option<f64>) -> Self {
         self.figures.push(json!({ "name": name, "count": count, "of": of, "high": high }));
         self

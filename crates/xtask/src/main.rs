@@ -3,11 +3,14 @@
 //! - `tidy`: the text of the source (seconds, no build);
 //! - `fast`: format, tidy, lints and one test of each kind (about a minute after a build);
 //! - `gate`: all of `.ci/run`;
-//! - `verification`: the verification report (`docs/verification/`), for a release.
+//! - `verification`: the verification report (`docs/verification/`), for a release;
+//! - `bench`: a row of the performance record (`docs/performance/`), for a release.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::disallowed_methods, reason = "figures of pages have few digits")]
 
+mod bench;
+mod machine;
 mod tidy;
 mod verification;
 
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
             }
         }
         "verification" => verification::run(&root, std::env::args().skip(2)),
+        "bench" => bench::run(&root, &std::env::args().skip(2).collect::<Vec<_>>()),
         "gate" => {
             if succeeds(&root, "bash .ci/run") {
                 ExitCode::SUCCESS
@@ -46,7 +50,7 @@ fn main() -> ExitCode {
             }
         }
         _ => {
-            eprintln!("usage: cargo xtask tidy | fast | gate | verification [OPTION …]");
+            eprintln!("usage: cargo xtask tidy | fast | gate | verification [OPTION …] | bench [OPTION …]");
             ExitCode::from(2)
         }
     }

@@ -137,9 +137,9 @@ pub const CLAIMS: [Claim; 11] = [
         title: "Robots move as in other programs",
         activity: CODE,
         claim: "Robots that are read from MJCF and URDF move as in the programs that these formats are of.",
-        setup: "Recorded motions of MuJoCo and of Pinocchio's algorithm over 1 s; mbint reads the same files. Last come the versions of peers that are installed here, with which motions can be recorded \
-                and timed again (`tests/reference/mjcf/motion.py`, `benches/peers/run`).",
-        acceptance: "At most 1e-4 m or rad apart, with steps of 0.5 and 1 ms; order 2 where steps are halved.",
+        setup: "Recorded motions of MuJoCo and of Pinocchio's algorithm over 1 s; mbint reads the same files. Last come the versions of peers that are installed here; MuJoCo computes recorded motions again \
+                (`tests/reference/mjcf/motion.py`), and Exudyn the slider crank (`benches/peers/exudyn_peer.py`).",
+        acceptance: "At most 1e-4 m or rad apart, with steps of 0.5 and 1 ms; order 2 where steps are halved. What peers compute again is what was recorded.",
         scope: "Without contacts, whose laws differ between programs. Pinocchio's motions are third-party results: they are measured where `MBINT_REFERENCE` names their folder. Times are \
                 [another page](../performance/index.md).",
         sources: &[

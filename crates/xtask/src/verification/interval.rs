@@ -3,8 +3,9 @@
 /// Confidence of the intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Clopper and Pearson's interval of the share of which `count` of `of` trials are seen: the shares that neither tail of the binomial law
-/// refutes at half of the level. It holds the true share in at least that many of all samples, however small they are.
+/// Clopper and Pearson's interval of the share of which `count` of `of` trials are seen: the shares that neither tail
+/// of the binomial law refutes at half of the level. It holds the true share in at least that many of all samples,
+/// however small they are.
 pub fn clopper_pearson(count: u64, of: u64) -> [f64; 2] {
     let half = 0.5 * (1.0 - CONFIDENCE);
     // P(X ≥ count) rises with the share, P(X ≤ count) falls.

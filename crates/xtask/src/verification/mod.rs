@@ -11,15 +11,17 @@
 mod claims;
 mod interval;
 mod pages;
+mod peers;
 mod record;
 mod run_program;
 mod run_tests;
 mod verdict;
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 use std::time::Instant;
 
+use crate::machine;
 use claims::{CLAIMS, Claim, Source, When};
 use record::{Case, Circumstances, Record, Run, Section};
 use run_tests::Built;
@@ -148,7 +150,7 @@ fn measure_claim(root: &Path, built: &Built, claim: &Claim, options: &Options) -
             Source::Modules { binary, filter, .. } => built.run_modules(root, claim.name, binary, filter),
             Source::VerifiedModels => run_program::verified_models(root, &built.program, claim.name, options.quick),
             Source::SameBytes => run_program::same_bytes(root, &built.program, claim.name, options.quick),
-            Source::Peers => run_program::peers(root, claim.name),
+            Source::Peers => peers::peers(root, claim.name, options.quick),
         };
         runs.push(run);
         cases.extend(measured);
@@ -163,20 +165,14 @@ fn third_party(root: &Path) -> Option<PathBuf> {
 }
 
 fn circumstances(root: &Path, options: &Options) -> Circumstances {
-    let said = |program: &str, arguments: &[&str]| {
-        let output = Command::new(program).args(arguments).current_dir(root).output().ok();
-        output.map_or(String::new(), |output| String::from_utf8_lossy(&output.stdout).trim().to_owned())
-    };
-    let processors = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = processors.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    let changed = !said("git", &["status", "--porcelain", "--untracked-files=no"]).is_empty();
+    let profile = if options.release { "release" } else { "dev (optimised a little, with debug assertions)" };
     Circumstances {
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        commit: said("git", &["rev-parse", "--short=12", "HEAD"]) + if changed { "+" } else { "" },
-        date: said("date", &["-u", "+%Y-%m-%d"]),
-        profile: if options.release { "release" } else { "dev (optimised a little, with debug assertions)" }.to_owned(),
-        compiler: said("rustc", &["--version"]),
-        processor: format!("{}, {}", name.map_or(std::env::consts::ARCH, |(_, name)| name), std::env::consts::OS),
+        commit: machine::commit(root),
+        date: machine::date(root),
+        profile: profile.to_owned(),
+        compiler: machine::said(root, "rustc", &["--version"]),
+        processor: machine::processor(),
         quick: options.quick,
     }
 }

@@ -149,35 +149,6 @@ fn verified(output: &Output) -> Result<Case, String> {
     Ok(case)
 }
 
-/// Python packages of peers, and the names of the programs.
-const PEERS: [(&str, &str); 3] = [("mujoco", "MuJoCo"), ("pin", "Pinocchio"), ("exudyn", "Exudyn")];
-
-/// Which peers are installed, in the environments of `benches/peers/run` or beside it.
-pub fn peers(root: &Path, claim: &str) -> (Run, Vec<Case>) {
-    let script = root.join("benches/peers/run");
-    let pinned = std::fs::read_to_string(script).unwrap_or_default();
-    let pythons = ["target/exudyn/bin/python", "target/robots/bin/python"].map(|python| root.join(python));
-    let pythons: Vec<PathBuf> = pythons.into_iter().chain([PathBuf::from("python3")]).collect();
-    let case = |(package, name): (&str, &str)| {
-        let asked = format!("import importlib.metadata as m; print(m.version('{package}'))");
-        let version = pythons.iter().find_map(|python| {
-            let output = Command::new(python).args(["-c", &asked]).output().ok()?;
-            output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
-        });
-        let figures = vec![Figure::words("version", version.as_deref().unwrap_or("not installed"))];
-        let source = Some(format!("last timed with {}", pin(&pinned, package)));
-        Case { claim: claim.to_owned(), case: format!("{name}, installed here"), source, figures, ..Case::default() }
-    };
-    let run = Run { command: "python3 -c 'importlib.metadata.version(PACKAGE)'".to_owned(), ..Run::default() };
-    (run, PEERS.into_iter().map(case).collect())
-}
-
-/// The version of `package==version` in a text.
-fn pin(text: &str, package: &str) -> String {
-    let after = text.split(&format!("\"{package}==")).nth(1).and_then(|rest| rest.split('"').next());
-    after.unwrap_or("never").to_owned()
-}
-
 /// What changes from run to run, but must not change results.
 const OTHERWISE: [(&str, &[&str], Option<&str>); 2] = [
     ("one thread", &["--threads", "1"], None),

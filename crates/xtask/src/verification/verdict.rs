@@ -63,8 +63,8 @@ impl Case {
 }
 
 impl Section {
-    /// Cases that are excepted do not count, unless there are no others. A section whose commands were all left out is not measured; one
-    /// whose commands ran and measured nothing fails, since a claim without a measurement is none.
+    /// Cases that are excepted do not count, unless there are no others. A section whose commands were all left out is
+    /// not measured; one whose commands ran and measured nothing fails, since a claim without a measurement is none.
     pub fn verdict(&self) -> Verdict {
         let is_wrong = |run: &&super::record::Run| run.error.is_some() || run.failed > 0;
         if self.runs.iter().any(|run| is_wrong(&run)) {
