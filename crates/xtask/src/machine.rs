@@ -1,9 +1,9 @@
-//! What a measurement was made on.
+//! The machine of a measurement.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What a program prints, without the white space around; nothing where it cannot be run or fails.
+/// The output of a program, without the white space around; nothing where it cannot be run or fails.
 pub fn said(root: &Path, program: &str, arguments: &[&str]) -> String {
     let output = Command::new(program).args(arguments).current_dir(root).output();
     let output = output.ok().filter(|output| output.status.success());

@@ -76,7 +76,7 @@ pub fn mean_ratio(row: &Row, to: &Row, beginning: &'static str) -> Option<f64> {
 }
 
 /// Instructions of a step of each model with one factorisation, by name, from `docs/reference/instructions.md`: those
-/// of step, factor, first correction and advance. The error names what is missing.
+/// of step, factor, first correction and advance. The error names the missing part.
 pub fn instructions(page: &str) -> Result<BTreeMap<String, u64>, String> {
     let mut rows = page.lines().filter(|line| line.starts_with('|')).map(|line| {
         let cells = line.trim_matches('|').split('|').map(str::trim);

@@ -1,4 +1,4 @@
-//! The pages of the report, from what was measured: nothing else goes into them.
+//! The pages of the report, from the measurements alone.
 
 use std::fmt::Write;
 

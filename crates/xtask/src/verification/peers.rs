@@ -1,5 +1,4 @@
-//! Other programs, where they are installed: their versions, and whether what was recorded of them is what they compute
-//! today.
+//! Other programs, where they are installed: their versions, and whether they still compute their recorded motions.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! What a run of the verification measured: data only, one file of JSON from which all pages are written.
+//! Measurements of a run of the verification: data only, one file of JSON from which all pages are written.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +26,7 @@ pub struct Circumstances {
     pub quick: bool,
 }
 
-/// What was measured for a claim.
+/// Measurements of a claim, and the commands that made them.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Section {
     /// Name of the claim.

@@ -209,7 +209,7 @@ fn compared(program: &Path, model: &Path) -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
-/// All files below a folder, with what is in them.
+/// All files below a folder, with their contents.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];

@@ -1,4 +1,4 @@
-//! Runs tests, and reads what they measured.
+//! Runs tests, and reads their measurements.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub struct Built {
 }
 
 impl Built {
-    /// Builds tests and program; cargo tells where they are. An error says what is missing.
+    /// Builds tests and program; cargo tells where they are. An error names the missing part.
     pub fn new(root: &Path, release: bool) -> Result<Self, String> {
         let mut cargo = Command::new("cargo");
         cargo.args(["test", "--locked", "--no-run", "--message-format=json-render-diagnostics"]);
