@@ -10,6 +10,9 @@ pub const OF_ROW: [&str; 5] = ["version", "date", "commit", "processor", "compil
 pub const INSTRUCTIONS: &str = "instructions ";
 pub const TIME: &str = "time ";
 
+/// Beginning of the names of models that Exudyn ran.
+pub const EXUDYN: &str = "Exudyn ";
+
 /// A release: its cells by column.
 pub type Row = BTreeMap<String, String>;
 
@@ -62,10 +65,16 @@ impl History {
     }
 }
 
-/// The numbers of a row in the columns that begin so, by the rest of the columns' names.
+/// The numbers of mbint in a row's columns that begin so, by the rest of the columns' names.
 pub fn numbers<'r>(row: &'r Row, beginning: &'static str) -> BTreeMap<&'r str, f64> {
     let own = row.iter().filter_map(move |(column, cell)| Some((column.strip_prefix(beginning)?, cell.parse().ok()?)));
-    own.collect()
+    own.filter(|(name, _)| !name.starts_with(EXUDYN)).collect()
+}
+
+/// Times of peers in a row, by their columns without the beginning.
+pub fn peers(row: &Row) -> Vec<(&str, f64)> {
+    let own = row.iter().filter_map(|(column, cell)| Some((column.strip_prefix(TIME)?, cell.parse().ok()?)));
+    own.filter(|(name, _)| name.starts_with(EXUDYN)).collect()
 }
 
 /// Geometric mean of the ratios of a row's numbers to another's, over what both have.

@@ -13,7 +13,7 @@ use std::process::{Command, ExitCode};
 use serde_json::Value;
 
 use crate::machine;
-use history::{History, INSTRUCTIONS, Row, TIME, instructions};
+use history::{EXUDYN, History, INSTRUCTIONS, Row, TIME, instructions};
 
 /// Table, page and drawing stand here.
 const FOLDER: &str = "docs/performance";
@@ -94,9 +94,27 @@ fn row_of_now(root: &Path) -> Result<Row, String> {
     if !output.status.success() {
         return Err("`cargo bench -p mbint-benches --bench record` failed".to_owned());
     }
-    let times = times(&String::from_utf8_lossy(&output.stdout))?;
+    let peers = exudyn(root)?.map(|line| line + "\n").unwrap_or_default();
+    let times = times(&(peers + &String::from_utf8_lossy(&output.stdout)))?;
     row.extend(times.into_iter().map(|(name, turns)| (format!("{TIME}{name}"), turns)));
     Ok(row)
+}
+
+/// A line as those of `benches/record.rs`, of a step of the slider crank by Exudyn where `benches/peers/run` has
+/// installed it: 2000 steps of generalised alpha.
+fn exudyn(root: &Path) -> Result<Option<String>, String> {
+    let python = root.join("target/exudyn/bin/python");
+    if !python.exists() {
+        return Ok(None);
+    }
+    let printed =
+        machine::said(root, &python.display().to_string(), &["-W", "ignore", "benches/peers/exudyn_peer.py", "[2.0]"]);
+    let report: Value =
+        serde_json::from_str(&printed).map_err(|error| format!("benches/peers/exudyn_peer.py: {error}"))?;
+    let read = || Some((report["version"].as_str()?, report["slider"]["seconds"].as_f64()?));
+    let (version, seconds) = read().ok_or("benches/peers/exudyn_peer.py tells no time of the slider crank")?;
+    let case = format!("{EXUDYN}{version}: slider_crank.yaml");
+    Ok(Some(serde_json::json!({ "case": case, "nanoseconds": 1e9 * seconds / 2000.0 }).to_string()))
 }
 
 /// Times in turns of the reference loop, from the lines of `benches/record.rs`.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::history::{History, INSTRUCTIONS, Row, TIME, mean_ratio, numbers};
+use super::history::{History, INSTRUCTIONS, Row, TIME, mean_ratio, numbers, peers};
 
 const HEAD: &str = "# Performance record
 
@@ -43,6 +43,16 @@ fn text(history: &History) -> String {
             "| {version} | {date} | `{commit}` | {processor} | {} | {} |",
             percent(instructions),
             percent(times)
+        );
+    }
+    for (row, (name, time)) in history.rows.iter().flat_map(|row| peers(row).into_iter().map(move |peer| (row, peer))) {
+        let model = name.split_once(": ").map_or(name, |(_, model)| model);
+        let own = numbers(row, TIME).get(model).copied().unwrap_or(f64::NAN);
+        _ = writeln!(
+            page,
+            "\n{}: {name} takes {time} turns of the reference loop a step, {:.0} times those of mbint.",
+            cell(row, "version"),
+            time / own
         );
     }
     let Some((last, before)) = history.rows.split_last() else { return page };
@@ -133,12 +143,15 @@ mod tests {
 
     #[test]
     fn changes_and_curves_are_those_of_the_table() {
-        let text = "version,date,commit,processor,compiler,instructions a.yaml,time a.yaml\n\
-                    0.1.0,2026-12-01,abc,CPU,rustc,200,\n0.2.0,2027-01-02,def,CPU,rustc,220,31.5\n";
+        let text = "version,date,commit,processor,compiler,instructions a.yaml,time a.yaml,time Exudyn 1.13.6: a.yaml\n\
+                    0.1.0,2026-12-01,abc,CPU,rustc,200,,\n0.2.0,2027-01-02,def,CPU,rustc,220,31.5,630\n";
         let history = History::read(text).unwrap();
         let [(_, page), (_, svg)] = all(&history);
         assert!(page.contains("| 0.2.0 | 2027-01-02 | `def` | CPU | 110.0 % | 100.0 % |"), "{page}");
         assert!(page.contains("| a.yaml | 220 | +10.0 % | 31.5 |"), "{page}");
+        let peer =
+            "0.2.0: Exudyn 1.13.6: a.yaml takes 630 turns of the reference loop a step, 20 times those of mbint.";
+        assert!(page.contains(peer), "{page}");
         // From 90 to 120 %: 100 % is two thirds down, 110 % one third, of 210 units from 45 on.
         assert!(svg.contains("<polyline points=\"70.0,185.0 690.0,115.0\" fill=\"none\" stroke=\"#0072b2\""), "{svg}");
         assert!(svg.contains("<polyline points=\"690.0,185.0\" fill=\"none\" stroke=\"#d55e00\""), "{svg}");

@@ -115,7 +115,8 @@ fn apart(one: &str, other: &str) -> f64 {
         return f64::NAN;
     }
     let differences = one.iter().flatten().zip(other.iter().flatten()).map(|(one, other)| (one - other).abs());
-    differences.fold(0.0, |largest, difference| if difference <= largest { largest } else { difference })
+    // A NaN stays.
+    differences.fold(0.0, |largest: f64, own| if largest.is_nan() || own <= largest { largest } else { own })
 }
 
 /// The version of `package==version` in a text.
