@@ -194,7 +194,9 @@ pub fn band(output: &OutputBounds, method: Method) -> &Band {
 
 /// Largest absolute value; NaN where there is one.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |largest, value| if value.abs() <= largest { largest } else { value.abs() })
+    let larger =
+        |largest: f64, value: f64| if largest.is_nan() || value.abs() <= largest { largest } else { value.abs() };
+    values.into_iter().fold(0.0, larger)
 }
 
 /// Largest difference of two curves.
