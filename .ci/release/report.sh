@@ -21,8 +21,14 @@ done
 printf '[book]\ntitle = "Verification report of mbint %s"\n[output.html]\nno-section-label = true\nadditional-css = ["print.css"]\n' \
     "$version" >"$place/book.toml"
 # Tables as wide as the paper.
-echo '@page { size: A4 landscape } .table-wrapper { overflow: visible } table { font-size: 11px } td, th { padding: 2px 6px !important }' \
-    >"$place/print.css"
+cat >"$place/print.css" <<'CSS'
+@page { size: A4 landscape; margin: 15mm }
+html { font-size: 50% }
+:root { --content-max-width: 100% }
+.table-wrapper { overflow: visible }
+table { font-size: 11px; margin: 8px 0 }
+td, th { padding: 2px 6px !important }
+CSS
 mdbook build "$place" >"$place/log" 2>&1 || { cat "$place/log" >&2; exit 1; }
 "$CHROMIUM" --headless --no-sandbox --disable-gpu --no-pdf-header-footer --user-data-dir="$place/browser" \
     --print-to-pdf="$into" "file://$place/book/print.html" 2>"$place/log" || { cat "$place/log" >&2; exit 1; }

@@ -107,8 +107,9 @@ fn write(folder: &Path, record: &Record) -> Result<(), String> {
 }
 
 fn measure(root: &Path, options: &Options) -> Result<Record, String> {
-    let built = Built::new(root, options.release)?;
+    // The commit before files change.
     let mut record = Record { on: circumstances(root, options), sections: Vec::new() };
+    let built = Built::new(root, options.release)?;
     let mut all = Vec::new();
     for claim in &CLAIMS {
         let begun = Instant::now();
