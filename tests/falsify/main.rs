@@ -223,13 +223,10 @@ fn errors_are_honest() {
     assert_eq!(table.failures(), 0, "draws have no bands");
 }
 
-/// How many draws of a question are answered wrongly, for the verification report.
-fn note(question: &str, draws: usize, wrong: &str, count: usize) {
-    Case::new("questions", question)
-        .figure("draws", draws as f64)
-        .text("counted", wrong)
-        .figure("wrong", count as f64)
-        .note();
+/// Draws of a question, and wrong answers, of which there may be so many.
+fn note(question: &str, draws: usize, wrong: &str, count: usize, most: usize) {
+    let case = Case::new("questions", question).figure("draws", draws as f64).text("counted", wrong);
+    case.at_most("wrong", count as f64, most as f64).note();
 }
 
 /// Draws of a question, as many as the environment asks for.
@@ -246,18 +243,17 @@ fn questioned(draws: u64, ask: fn(u64, u64) -> questions::Tally) -> questions::T
 #[ignore = "half a minute"]
 fn shares_that_fail_are_honest() {
     let tally = questioned(known::SHARES.0, questions::shares);
-    note("shares that fail", tally.draws, "outside their interval of 95 %", tally.missed);
     let n = tally.draws as f64;
     let chance = 0.05 * n + 3.1 * (0.05 * 0.95 * n).sqrt();
-    assert!(tally.missed as f64 <= chance.max(known::SHARES.1 as f64), "{tally}");
+    let most = chance.max(known::SHARES.1 as f64).floor();
+    note("shares that fail", tally.draws, "outside their interval of 95 %", tally.missed, most as usize);
 }
 
 #[test]
 #[ignore = "half a minute"]
 fn allocations_are_honest() {
     let tally = questioned(known::ALLOCATIONS.0, questions::allocations);
-    note("allocations", tally.draws, "refuted", tally.missed);
-    assert!(tally.missed <= known::ALLOCATIONS.1, "{tally}");
+    note("allocations", tally.draws, "refuted", tally.missed, known::ALLOCATIONS.1);
 }
 
 /// Bounds of 6 to 40 parameters, which follow gradients.
@@ -265,8 +261,7 @@ fn wide(draws: u64) {
     let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
     let tally = wide::compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
     println!("{tally}");
-    note("6 to 40 parameters", tally.draws, "rows missed", tally.missed);
-    assert_eq!(tally.missed, known::WIDE, "{tally}");
+    note("6 to 40 parameters", tally.draws, "rows missed", tally.missed, known::WIDE);
     assert!(4 * tally.flagged <= tally.rows, "{tally}");
 }
 
@@ -286,8 +281,7 @@ fn excited(name: &str, draws: u64, compare: fn(u64, u64) -> rows::Tally) {
     let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
     let tally = compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
     println!("{tally}");
-    note(name, tally.draws, "rows missed", tally.missed);
-    assert!(tally.missed <= known::EXCITED, "{tally}");
+    note(name, tally.draws, "rows missed", tally.missed, known::EXCITED);
     assert!(4 * tally.flagged <= tally.rows, "{tally}");
 }
 
