@@ -10,7 +10,7 @@ use mbint::inner::simulate::Stepper;
 use mbint::inner::study::prepare;
 
 /// The fastest of so many repetitions counts.
-const REPETITIONS: usize = 9;
+const REPETITIONS: usize = 25;
 
 /// Steps of a repetition, as far as the model's run has them.
 const STEPS: usize = 2000;
