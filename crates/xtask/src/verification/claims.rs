@@ -139,7 +139,7 @@ pub const CLAIMS: [Claim; 11] = [
         claim: "Robots that are read from MJCF and URDF move as in the programs that these formats are of.",
         setup: "Recorded motions of MuJoCo and of Pinocchio's algorithm over 1 s; mbint reads the same files. Last come the versions of peers that are installed here; MuJoCo computes recorded motions again \
                 (`tests/reference/mjcf/motion.py`), and Exudyn the slider crank (`benches/peers/exudyn_peer.py`).",
-        acceptance: "At most 1e-4 m or rad apart, with steps of 0.5 and 1 ms; order 2 where steps are halved. What peers compute again is what was recorded.",
+        acceptance: "At most 1e-4 m or rad apart, with steps of 0.5 and 1 ms; order 2 where steps are halved. Peers compute their recorded motions again.",
         scope: "Without contacts, whose laws differ between programs. Pinocchio's motions are third-party results: they are measured where `MBINT_REFERENCE` names their folder. Times are \
                 [another page](../performance/index.md).",
         sources: &[
@@ -171,7 +171,7 @@ pub const CLAIMS: [Claim; 11] = [
         name: "questions",
         title: "Answers of other analyses hold",
         activity: SOLUTION,
-        claim: "Shares that fail, allocated tolerances, bounds of many parameters and responses to excitations are what they are stated to be.",
+        claim: "Stated shares that fail, allocated tolerances, bounds of many parameters and responses to excitations are true.",
         setup: "Drawn questions whose answers are known: normal and χ² tails, optima on parabolas, integrals of closed forms, sums over frequencies.",
         acceptance: "Shares: no more outside of intervals of 95 % than chance allows in one of a thousand runs; of the others, no more than `tests/falsify/known.rs` lists.",
         scope: "Counts of wrong answers; rows of one draw hang together, so that they have no interval of confidence.",
@@ -192,7 +192,7 @@ pub const CLAIMS: [Claim; 11] = [
         claim: "Certified bands hold every solution; certificates are proven again by a second checker, and changed ones are refused.",
         setup: "Bands of `mbint run --certify` against solutions by DOP853 of equations derived by hand, and of drawn mechanisms; a certificate of which one line is changed at a time.",
         acceptance: "All solutions lie within; the band is hardly wider than they reach; every changed certificate is refused.",
-        scope: "Smooth mechanisms of at most three uncertain parameters ([what is proven](../guides/certify.md)). Solutions are samples: they can refute a proof, not make one.",
+        scope: "Smooth mechanisms of at most three uncertain parameters ([extent of a proof](../guides/certify.md)). Solutions are samples: they can refute a proof, not make one.",
         sources: &[
             tests("models", "certify_motion::solutions_of_the_slider_crank_are_held", Always),
             tests("models", "certify_motion::solutions_of_the_double_pendulum_are_held", Whole),

@@ -59,6 +59,13 @@ impl Options {
         }
         Ok(options)
     }
+
+    /// The command with these options, as far as they matter to measurements.
+    fn command(&self) -> String {
+        let options = [self.quick.then_some(" --quick"), (!self.release).then_some(" --dev")];
+        let draws = if self.quick { String::new() } else { format!(" --draws {}", self.draws) };
+        format!("cargo xtask verification{}{draws}", options.into_iter().flatten().collect::<String>())
+    }
 }
 
 pub fn run(root: &Path, arguments: impl Iterator<Item = String>) -> ExitCode {
@@ -174,6 +181,7 @@ fn circumstances(root: &Path, options: &Options) -> Circumstances {
         profile: profile.to_owned(),
         compiler: machine::said(root, "rustc", &["--version"]),
         processor: machine::processor(),
+        command: options.command(),
         quick: options.quick,
     }
 }

@@ -49,7 +49,7 @@ fn summary(record: &Record) -> String {
         ("day of the run", on.date.clone()),
         ("build", format!("{}, {}", on.profile, on.compiler)),
         ("processor", on.processor.clone()),
-        ("extent", if on.quick { "quick: only what takes seconds" } else { "whole" }.to_owned()),
+        ("command", format!("`{}`", on.command)),
     ];
     page += "| | |\n|---|---|\n";
     rows.iter().for_each(|(name, value)| writeln!(page, "| {name} | {value} |").expect(STRINGS));
@@ -106,6 +106,11 @@ fn section(number: usize, claim: &Claim, record: &Record) -> String {
     }
     if covered.iter().flat_map(|case| &case.figures).any(|figure| figure.count.is_some()) {
         writeln!(page, "\nShares stand with Clopper and Pearson's interval of {} % confidence.", 100.0 * CONFIDENCE)
+            .expect(STRINGS);
+    }
+    let excepted = section.cases.len() - covered.len();
+    if excepted > 0 {
+        writeln!(page, "\nExcepted, with their reasons: {excepted} cases among [known misses]({MISSES}.md).")
             .expect(STRINGS);
     }
     page += "\n## Commands\n\n";
@@ -182,7 +187,7 @@ fn table_of_extremes(cases: &[&Case]) -> String {
 }
 
 fn misses(record: &Record) -> String {
-    let mut page = "# Known misses\n\nWhat the claims do not cover, and where the program is known to be wrong. Kinds of misses and their causes are told in \
+    let mut page = "# Known misses\n\nCases that the claims do not cover, and answers that are known to be wrong. Kinds of misses and their causes are told in \
                     [falsification](../theory/falsification.md) and in [limits of bounds](../guides/bounds.md).\n\n## Missed bands of this run\n\n"
         .to_owned();
     match of(record, MISSES).map(|section| section.cases.iter().collect::<Vec<_>>()) {
@@ -239,13 +244,13 @@ fn limit(figure: &Figure) -> Option<String> {
     }
 }
 
-/// Whole numbers as they are, others to three digits.
+/// Whole numbers as they are, others to three digits, large ones to four.
 fn number(value: f64) -> String {
     let size = value.abs();
     if value.fract() == 0.0 && size < 1e9 {
         format!("{value:.0}")
-    } else if (1e-3..1e5).contains(&size) {
-        let digits = (2 - size.log10().floor() as i32).clamp(0, 5) as usize;
+    } else if (1e-2..1e5).contains(&size) {
+        let digits = if size < 1.0 { 3 } else { 2 };
         format!("{value:.digits$}")
     } else {
         format!("{value:.1e}").replace(".0e", "e")

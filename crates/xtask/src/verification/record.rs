@@ -22,6 +22,8 @@ pub struct Circumstances {
     pub profile: String,
     pub compiler: String,
     pub processor: String,
+    /// The command that measured.
+    pub command: String,
     /// A quick run leaves out all that takes long.
     pub quick: bool,
 }

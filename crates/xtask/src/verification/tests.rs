@@ -99,6 +99,8 @@ fn options_are_read_or_named() {
     let options = read("--quick --dev --draws 12 --into there").unwrap();
     let expected = Options { quick: true, release: false, draws: 12, into: PathBuf::from("there"), pages_only: false };
     assert_eq!(options, expected);
+    assert_eq!(options.command(), "cargo xtask verification --quick --dev");
+    assert_eq!(read("").unwrap().command(), "cargo xtask verification --draws 5000");
     assert_eq!(read("--draws many").unwrap_err(), "--draws: invalid digit found in string");
     assert_eq!(read("--into").unwrap_err(), "--into needs a value");
     assert!(read("--qick").unwrap_err().starts_with("--qick is none of --quick"));
