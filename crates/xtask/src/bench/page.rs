@@ -131,7 +131,7 @@ fn drawing(history: &History) -> String {
         for [x, y] in points {
             _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{colour}\"/>");
         }
-        let at = MARGIN[0] + 140.0 * place as f64;
+        let at = MARGIN[0] + 230.0 * place as f64;
         _ = writeln!(svg, "<text x=\"{at:.1}\" y=\"22\" fill=\"{colour}\">{name}, of the first row's</text>");
     }
     svg + "</svg>\n"
