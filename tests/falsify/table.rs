@@ -195,6 +195,7 @@ impl Table {
             // A family has too few draws for a limit of its own.
             let limit = (family == ALL).then_some(MOST_MISSED);
             let case = Case::new("falsifier", family).source(&format!("seed {seed}"));
+            let asked = if family == ALL { self.draws.values().map(|own| own[0]).sum() } else { self.draws[family][0] };
             let case = case.share("draws with a missed band", with_misses, draws, limit);
             let case = case.figure("bands", line.bands as f64).figure("bands missed", line.missed as f64);
             let case = match family {
@@ -202,7 +203,8 @@ impl Table {
                 _ => case.figure("rows covered, %", line.covered()),
             };
             let case = case.figure("rows flagged, %", line.share_flagged());
-            case.figure("stated / true error", line.mean_excess()).note();
+            let case = case.figure("stated / true error", line.mean_excess());
+            case.figure("draws not judged", asked - draws as f64).note();
         }
     }
 
