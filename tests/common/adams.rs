@@ -5,7 +5,7 @@
 
 use mbint::inner::results::Bounds;
 
-use super::{Findings, Vary, curve, largest, nominal, read, row, rows, third_party};
+use super::{Findings, Vary, curve, largest, measured, nominal, read, row, rows, third_party};
 
 /// A joint `j` or an effect `s` that carries a body `a`.
 pub struct Case {
@@ -30,6 +30,19 @@ const OBSERVED: [(&str, [&str; 3], f64, f64, f64); 6] = [
     ("Aacc", ["a.alpha.x", "a.alpha.y", "a.alpha.z"], 1.0, 2e-2, 0.0),
     ("Rforce", ["j.force.x", "j.force.y", "j.force.z"], -1.0, 1e-3, 1e-2),
 ];
+
+/// What a file has, with its unit.
+fn quantity(file: &str) -> &'static str {
+    match file {
+        "Quat" => "Euler parameters",
+        "Pos" => "position, m",
+        "Vel" => "velocity, m/s",
+        "Acc" => "acceleration, m/s²",
+        "Avel" => "angular velocity, rad/s",
+        "Aacc" => "angular acceleration, rad/s²",
+        _ => "force, N",
+    }
+}
 
 const EULER: [&str; 4] = ["a.p0", "a.p1", "a.p2", "a.p3"];
 
@@ -70,28 +83,29 @@ impl Case {
 
     #[track_caller]
     pub fn over_five_seconds(&self) {
-        let mut findings = Findings::default();
         let bounds = self.observed();
-        let mut compare = |file: &str, formulas: &[&str], sign: f64, absolute: f64, relative: f64| {
+        let mut case = measured::Case::new("adams", self.name.rsplit('/').next().unwrap_or(self.name));
+        let compare = |case: measured::Case, file: &str, formulas: &[&str], sign: f64, absolute: f64, relative: f64| {
             let name = if ["Vel", "Avel"].contains(&file) { self.velocities } else { self.name };
             let rows = rows(&third_party().join(format!("adams_joints/{name}_Case01_ADAMS_{file}.txt")));
             let columns = || rows.iter().flat_map(|row| &row[1..]);
             let allowed = absolute + relative * largest(columns().copied());
-            for (column, formula) in formulas.iter().enumerate() {
+            let worst = largest(formulas.iter().enumerate().map(|(column, formula)| {
                 let found = curve(&bounds, formula);
                 assert_eq!(rows.len(), found.len(), "{file}");
                 let worst = largest(rows.iter().zip(found).map(|(row, found)| row[column + 1] - sign * found));
                 println!("{formula}: {worst:.1e}");
-                findings.check(worst < allowed, format_args!("{formula} is off by {worst:e}"));
-            }
+                worst
+            }));
+            case.at_most(quantity(file), worst, allowed)
         };
-        compare("Quat", &EULER, 1.0, 1e-3, 0.0);
+        case = compare(case, "Quat", &EULER, 1.0, 1e-3, 0.0);
         for (file, formulas, sign, absolute, relative) in OBSERVED {
             if self.has_joint() || file != "Rforce" {
-                compare(file, &formulas, sign, absolute, relative);
+                case = compare(case, file, &formulas, sign, absolute, relative);
             }
         }
-        findings.none();
+        case.note();
     }
 }
 

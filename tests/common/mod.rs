@@ -4,6 +4,7 @@ pub mod adams;
 pub mod closed_forms;
 pub mod dormand_prince;
 pub mod finite_elements;
+pub mod measured;
 pub mod power;
 pub mod random;
 pub mod registry;
@@ -193,7 +194,9 @@ pub fn band(output: &OutputBounds, method: Method) -> &Band {
 
 /// Largest absolute value; NaN where there is one.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |largest, value| if value.abs() <= largest { largest } else { value.abs() })
+    let larger =
+        |largest: f64, value: f64| if largest.is_nan() || value.abs() <= largest { largest } else { value.abs() };
+    values.into_iter().fold(0.0, larger)
 }
 
 /// Largest difference of two curves.
@@ -233,6 +236,11 @@ impl Findings {
         if !fine {
             writeln!(self.0, "{what}").unwrap();
         }
+    }
+
+    /// A case of the verification report.
+    pub fn note(&mut self, case: measured::Case) {
+        self.0 += &case.write();
     }
 
     #[track_caller]

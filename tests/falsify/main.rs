@@ -16,6 +16,10 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
+#[path = "../common/measured.rs"]
+#[allow(dead_code, reason = "shared with the tests of models")]
+mod measured;
+
 mod certified;
 mod draw;
 mod excited;
@@ -44,6 +48,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use draw::Draw;
+use measured::Case;
 use record::Record;
 use table::{Scored, Table};
 use verdict::{Outcome, Verdict, examine};
@@ -134,6 +139,7 @@ fn attack(draw: &Draw, number: u64, findings: &Mutex<Findings>, shown: usize) {
         }
     };
     for missed in verdicts.iter().filter(|verdict| verdict.is_missed()) {
+        note_miss(number, draw.family, missed);
         let enough = {
             let mut findings = lock();
             let so_far = findings.shown.entry((draw.family, missed.label)).or_default();
@@ -151,6 +157,17 @@ fn attack(draw: &Draw, number: u64, findings: &Mutex<Findings>, shown: usize) {
     }
 }
 
+/// Notes a missed band for the verification report.
+fn note_miss(number: u64, family: &str, missed: &Verdict) {
+    let case = Case::new("misses", &format!("draw {number}, {family}: {}", missed.label));
+    let open = missed.rows - missed.flagged;
+    let worst = missed.worst().map_or(f64::NAN, |worst| worst.off / worst.stated);
+    case.figure("rows missed", missed.misses.len() as f64)
+        .figure("of rows", open as f64)
+        .figure("off / stated error", worst)
+        .note();
+}
+
 /// Prints a miss, and writes it where the environment asks for that.
 fn show(draw: &Draw, missed: &Verdict, number: u64) {
     let text = describe(draw, missed, number);
@@ -166,6 +183,7 @@ fn show(draw: &Draw, missed: &Verdict, number: u64) {
 fn errors_of_a_few_draws_are_honest() {
     let table = falsify(7, 0..families::FAMILIES.len() as u64, 0);
     println!("{table}");
+    table.note(7);
     assert_eq!(table.failures(), 0);
 }
 
@@ -181,8 +199,10 @@ fn errors_are_honest() {
     let numbers = only.map_or(first.unwrap_or(0)..draws, |only| only..only + 1);
     // Simplifying takes longer than all the gate's draws.
     let shown = asked("MBINT_FALSIFY_SHOWN").unwrap_or(if only.is_some() { usize::MAX } else { 0 });
-    let table = falsify(seed.unwrap_or(known::SEED), numbers, shown);
+    let seed = seed.unwrap_or(known::SEED);
+    let table = falsify(seed, numbers, shown);
     println!("{table}");
+    table.note(seed);
     if by_hand {
         return;
     }
@@ -203,6 +223,12 @@ fn errors_are_honest() {
     assert_eq!(table.failures(), 0, "draws have no bands");
 }
 
+/// Draws of a question, and wrong answers, of which there may be so many.
+fn note(question: &str, draws: usize, wrong: &str, count: usize, most: usize) {
+    let case = Case::new("questions", question).figure("draws", draws as f64).text("counted", wrong);
+    case.at_most("wrong", count as f64, most as f64).note();
+}
+
 /// Draws of a question, as many as the environment asks for.
 fn questioned(draws: u64, ask: fn(u64, u64) -> questions::Tally) -> questions::Tally {
     let tally =
@@ -219,14 +245,15 @@ fn shares_that_fail_are_honest() {
     let tally = questioned(known::SHARES.0, questions::shares);
     let n = tally.draws as f64;
     let chance = 0.05 * n + 3.1 * (0.05 * 0.95 * n).sqrt();
-    assert!(tally.missed as f64 <= chance.max(known::SHARES.1 as f64), "{tally}");
+    let most = chance.max(known::SHARES.1 as f64).floor();
+    note("shares that fail", tally.draws, "outside their interval of 95 %", tally.missed, most as usize);
 }
 
 #[test]
 #[ignore = "half a minute"]
 fn allocations_are_honest() {
     let tally = questioned(known::ALLOCATIONS.0, questions::allocations);
-    assert!(tally.missed <= known::ALLOCATIONS.1, "{tally}");
+    note("allocations", tally.draws, "refuted", tally.missed, known::ALLOCATIONS.1);
 }
 
 /// Bounds of 6 to 40 parameters, which follow gradients.
@@ -234,7 +261,7 @@ fn wide(draws: u64) {
     let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
     let tally = wide::compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
     println!("{tally}");
-    assert_eq!(tally.missed, known::WIDE, "{tally}");
+    note("6 to 40 parameters", tally.draws, "rows missed", tally.missed, known::WIDE);
     assert!(4 * tally.flagged <= tally.rows, "{tally}");
 }
 
@@ -250,28 +277,28 @@ fn ends_of_many_parameters_are_honest() {
 }
 
 /// Excitations within limits, and random ones.
-fn excited(draws: u64, compare: fn(u64, u64) -> rows::Tally) {
+fn excited(name: &str, draws: u64, compare: fn(u64, u64) -> rows::Tally) {
     let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
     let tally = compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
     println!("{tally}");
-    assert!(tally.missed <= known::EXCITED, "{tally}");
+    note(name, tally.draws, "rows missed", tally.missed, known::EXCITED);
     assert!(4 * tally.flagged <= tally.rows, "{tally}");
 }
 
 #[test]
 fn ends_of_a_few_draws_over_functions_are_honest() {
-    excited(6, excited::functions);
+    excited("bounded excitations", 6, excited::functions);
 }
 
 #[test]
 #[ignore = "half a minute"]
 fn ends_over_functions_are_honest() {
-    excited(80, excited::functions);
+    excited("bounded excitations", 80, excited::functions);
 }
 
 #[test]
 fn root_mean_squares_are_honest() {
-    excited(60, excited::squares);
+    excited("random excitations", 60, excited::squares);
 }
 
 /// Certified bands hold every motion; of some draws there are some.
@@ -279,6 +306,9 @@ fn proven(draws: u64) {
     let seed = asked("MBINT_FALSIFY_SEED").unwrap_or(known::SEED);
     let tally = certified::compare(seed, asked("MBINT_FALSIFY_QUESTIONS").unwrap_or(draws));
     println!("{tally}");
+    let case = Case::new("certified", "drawn mechanisms").source("closed forms, Runge–Kutta of order 8");
+    let case = case.figure("draws proven", tally.proven as f64).figure("rows proven", tally.known as f64);
+    case.at_most("rows missed", tally.missed as f64, 0.0).note();
     assert!(tally.proven > 0 && tally.missed == 0, "{tally}");
 }
 

@@ -3,7 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
+use crate::measured::Case;
 use crate::verdict::{Failure, Outcome, Verdict, is_missed};
+
+/// Share of the draws that may have a missed band, and of the rows that are covered at least, in per cent.
+const MOST_MISSED: f64 = 0.01;
+const LEAST_COVERED: f64 = 99.0;
 
 /// In place of a family's or a method's name.
 const ALL: &str = "all";
@@ -107,6 +112,22 @@ impl Line {
             self.bands_excess.push(score.stated / score.off);
         }
     }
+
+    /// Rows that are covered of those without a flag, in per cent.
+    fn covered(&self) -> f64 {
+        100.0 * (1.0 - self.misses as f64 / (self.rows - self.flagged).max(1) as f64)
+    }
+
+    /// Rows with a flag, in per cent.
+    fn share_flagged(&self) -> f64 {
+        100.0 * self.flagged as f64 / self.rows.max(1) as f64
+    }
+
+    /// Geometric mean over bands of the mean stated over the mean true error.
+    fn mean_excess(&self) -> f64 {
+        let logarithms = self.bands_excess.iter().map(|excess| excess.ln());
+        (logarithms.sum::<f64>() / self.bands_excess.len() as f64).exp()
+    }
 }
 
 fn median(values: &[f64]) -> f64 {
@@ -122,6 +143,8 @@ pub struct Table {
     lines: BTreeMap<(String, String), Line>,
     /// Of every family: draws, refused, panicked, out of time, seconds, the longest.
     draws: BTreeMap<String, [f64; 6]>,
+    /// Draws of every family with a band that is missed.
+    with_misses: BTreeMap<String, usize>,
 }
 
 impl Table {
@@ -131,6 +154,8 @@ impl Table {
         match &scored.outcome {
             Ok((scores, seconds)) => {
                 (draws[4], draws[5]) = (draws[4] + seconds, draws[5].max(*seconds));
+                let is_missed = scores.iter().any(|own| is_missed(own.misses, own.rows - own.flagged));
+                *self.with_misses.entry(scored.family.clone()).or_default() += usize::from(is_missed);
                 for score in scores {
                     let (family, label) = (&*scored.family, &*score.label);
                     for (family, label) in [(family, label), (family, ALL), (ALL, label), (ALL, ALL)] {
@@ -154,6 +179,33 @@ impl Table {
     /// Bands with rows that contradict their own run.
     pub fn contradicted(&self) -> usize {
         self.of_all(ALL).map_or(0, |line| line.contradicted)
+    }
+
+    /// Notes every family, and all of them, for the verification report: bands of one draw hang together, draws do not.
+    pub fn note(&self, seed: u64) {
+        let judged = |[draws, refused, panicked, late, ..]: &[f64; 6]| (draws - refused - panicked - late) as usize;
+        let families = self.draws.iter().map(|(family, draws)| (family.as_str(), judged(draws)));
+        let all = (ALL, self.draws.values().map(judged).sum());
+        for (family, draws) in families.chain([all]) {
+            let Some(line) = self.of_all(family) else { continue };
+            let with_misses = match family {
+                ALL => self.with_misses.values().sum(),
+                own => self.with_misses.get(own).copied().unwrap_or(0),
+            };
+            // A family has too few draws for a limit of its own.
+            let limit = (family == ALL).then_some(MOST_MISSED);
+            let case = Case::new("falsifier", family).source(&format!("seed {seed}"));
+            let asked = if family == ALL { self.draws.values().map(|own| own[0]).sum() } else { self.draws[family][0] };
+            let case = case.share("draws with a missed band", with_misses, draws, limit);
+            let case = case.figure("bands", line.bands as f64).figure("bands missed", line.missed as f64);
+            let case = match family {
+                ALL => case.at_least("rows covered, %", line.covered(), LEAST_COVERED),
+                _ => case.figure("rows covered, %", line.covered()),
+            };
+            let case = case.figure("rows flagged, %", line.share_flagged());
+            let case = case.figure("stated / true error", line.mean_excess());
+            case.figure("draws not judged", asked - draws as f64).note();
+        }
     }
 
     /// Draws that were refused or panicked. (How many are out of time hangs on the machine.)
@@ -189,16 +241,13 @@ impl Display for Table {
 }
 
 fn write_line(f: &mut Formatter, family: &str, method: &str, line: &Line) -> fmt::Result {
-    let Line { bands, missed, rows, flagged, misses, contradicted, rows_excess, bands_excess, .. } = line;
-    let open = rows - flagged;
-    let covered = 100.0 * (1.0 - *misses as f64 / open.max(1) as f64);
-    let share = 100.0 * *flagged as f64 / (*rows).max(1) as f64;
-    let mean = bands_excess.iter().map(|excess| excess.ln()).sum::<f64>() / bands_excess.len() as f64;
+    let Line { bands, missed, contradicted, rows_excess, bands_excess, .. } = line;
+    let (covered, share) = (line.covered(), line.share_flagged());
     writeln!(
         f,
         "| {family} | {method} | {bands} | {missed} | {contradicted} | {covered:.2} % | {share:.1} % | {:.1} | {:.1} | {:.1} |",
         median(rows_excess),
         median(bands_excess),
-        mean.exp()
+        line.mean_excess()
     )
 }

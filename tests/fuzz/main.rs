@@ -10,6 +10,9 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
+#[path = "../common/measured.rs"]
+#[allow(dead_code, reason = "shared with the tests of models")]
+mod measured;
 mod mutate;
 mod targets;
 
@@ -17,6 +20,7 @@ use peak_alloc::PeakAlloc;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
+use measured::Case;
 use mutate::{Corpus, edits, formula};
 
 #[global_allocator]
@@ -26,7 +30,7 @@ static MEMORY: PeakAlloc = PeakAlloc;
 const MOST_MEGABYTES: f32 = 1024.0;
 
 /// Tries as many inputs as were asked for, or `few`.
-fn fuzz(few: u32, inputs: impl Strategy<Value = String>, target: fn(&str)) {
+fn fuzz(name: &str, few: u32, inputs: impl Strategy<Value = String>, target: fn(&str)) {
     let asked = std::env::var("MBINT_FUZZ_INPUTS").ok().map(|number| number.parse().unwrap());
     let config = Config { cases: asked.unwrap_or(few), failure_persistence: None, ..Config::default() };
     let tried = TestRunner::new(config).run(&inputs, |text| {
@@ -36,31 +40,33 @@ fn fuzz(few: u32, inputs: impl Strategy<Value = String>, target: fn(&str)) {
     if let Err(found) = tried {
         panic!("{found}");
     }
-    assert!(MEMORY.peak_usage_as_mb() < MOST_MEGABYTES, "{} MB", MEMORY.peak_usage_as_mb());
+    let case = Case::new("robustness", &format!("fuzzing of {name}")).figure("inputs", f64::from(asked.unwrap_or(few)));
+    case.at_most("memory of all targets at most, MB", f64::from(MEMORY.peak_usage_as_mb()), f64::from(MOST_MEGABYTES))
+        .note();
 }
 
 fn models(few: u32) {
     let corpus = Corpus::of(&["models", "tests/bad_models"], "yaml");
-    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::model);
+    fuzz("models", few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::model);
 }
 
 fn robots(few: u32) {
     let corpus = Corpus::of(&["models", "tests/bad_models"], "urdf");
-    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::robot);
+    fuzz("URDF", few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::robot);
 }
 
 fn mjcf(few: u32) {
     let corpus = Corpus::of(&["models", "tests/bad_models", "tests/reference/mjcf"], "xml");
-    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::mjcf);
+    fuzz("MJCF", few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::mjcf);
 }
 
 fn formulas(few: u32) {
-    fuzz(few, formula(), targets::formula);
+    fuzz("formulas", few, formula(), targets::formula);
 }
 
 fn short_runs(few: u32) {
     let corpus = Corpus::of(&["models"], "yaml");
-    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::short_run);
+    fuzz("short runs", few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::short_run);
 }
 
 mod few {

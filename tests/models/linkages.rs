@@ -1,6 +1,7 @@
 //! Linkages whose positions are trigonometry: the loops must close as the closed forms say, to Newton's tolerance, and
 //! the velocities follow to second order.
 
+use crate::common::measured::Case;
 use crate::common::{Vary, curve, distance_from, largest, model, nominal, order, read, reference, row};
 use std::f64::consts::{PI, TAU};
 
@@ -27,13 +28,16 @@ fn the_rocker_obeys_freudenstein() {
         let bounds = nominal(&description.clone().step(h));
         let rocker = curve(&bounds, "rocker.angle");
         let error = largest(bounds.times.iter().zip(rocker).map(|(&t, &angle)| wrapped(angle - freudenstein(TAU * t))));
-        assert!(error < CLOSED, "h = {h}: the rocker is off by {error:e}");
+        let case =
+            Case::new("textbook", &format!("four-bar, rocker's angle, h = {h:e} s")).source("Freudenstein's equation");
+        case.at_most("largest error", error, CLOSED).note();
         assert!(distance_from(&bounds.times, curve(&bounds, "crank.angle"), |t| TAU * t) < CLOSED);
         let slope = |t: f64| wrapped(freudenstein(TAU * (t + 1e-5)) - freudenstein(TAU * (t - 1e-5))) / 2e-5;
         distance_from(&bounds.times, curve(&bounds, "rocker.angular_velocity"), slope)
     });
     println!("rocker speed: errors {speeds:?}");
-    assert!((order(speeds[0], speeds[1]) - 2.0).abs() < 0.1, "{speeds:?}");
+    let case = Case::new("textbook", "four-bar, rocker's speed").source("Freudenstein's equation, differences");
+    case.order("order", order(speeds[0], speeds[1]), 2.0).figure("largest error", speeds[1]).note();
 }
 
 /// An angle in [−π, π).
@@ -54,8 +58,8 @@ fn the_quick_return_follows_its_geometry() {
     let bounds = nominal(&model("quick_return").observing(&["lever.angle", "ram.x"]));
     let lever = distance_from(&bounds.times, curve(&bounds, "lever.angle"), |t| quick_return(TAU * t).0);
     let ram = distance_from(&bounds.times, curve(&bounds, "ram.x"), |t| quick_return(TAU * t).1);
-    println!("lever {lever:.3e}, ram {ram:.3e}");
-    assert!(lever < CLOSED && ram < CLOSED, "lever off by {lever:e}, ram by {ram:e}");
+    let case = Case::new("textbook", "quick return, lever and ram").source("triangles of the linkage");
+    case.at_most("largest error", lever.max(ram), CLOSED).note();
 }
 
 #[test]
@@ -73,7 +77,8 @@ fn the_quick_return_has_its_time_ratio() {
     let ratio = first.max(second) / first.min(second);
     println!("ratio {ratio}, expected {expected}");
     // The zeros are found by linear interpolation, and speeds are good to O(h²), about 1e-5 of their size.
-    assert!((ratio - expected).abs() < 1e-4, "{ratio} instead of {expected}");
+    let case = Case::new("textbook", "quick return, time ratio").source("(π + 2 asin r/e) / (π − 2 asin r/e)");
+    case.at_most("largest error", (ratio - expected).abs(), 1e-4).note();
     assert!((first + second - 1.0).abs() < 1e-4, "a turn takes {} s", first + second);
 }
 

@@ -1,7 +1,9 @@
 //! Certificates of `mbint run --certify`, and what `mbint verify-certificate` refuses.
 
+use std::cell::Cell;
 use std::fs;
 
+use crate::measured::Case;
 use crate::place::Place;
 
 /// The pendulum of the library of benchmarks over a short time, with its length and a second output that is never
@@ -51,6 +53,11 @@ fn certificates_are_proven_again_and_changed_ones_are_refused() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!((json["valid"].as_bool(), json["bounds"].as_u64()), (Some(true), Some(14)));
 
+    let refused = Cell::new(0);
+    let refuse = |lines: &[String], arguments: &str, status: i32| {
+        refused.set(refused.get() + 1);
+        verified(&place, lines, arguments, status)
+    };
     let change = |at: usize, from: &str, to: &str| {
         let mut changed = lines.clone();
         assert!(changed[at].contains(from), "{} has no {from}", changed[at]);
@@ -65,7 +72,7 @@ fn certificates_are_proven_again_and_changed_ones_are_refused() {
     let coefficient = own["w"][1].as_str().unwrap().split(' ').next().unwrap();
     let (mantissa, exponent) = coefficient.split_once('p').unwrap();
     let nearby = format!("{}000p{exponent}", &mantissa[..8]);
-    let found = verified(&place, &change(cell, coefficient, &nearby), "", 4);
+    let found = refuse(&change(cell, coefficient, &nearby), "", 4);
     assert!(
         found.contains("pendulum: refused") && found.contains("from its polynomials, and the radius is"),
         "{found}"
@@ -74,15 +81,15 @@ fn certificates_are_proven_again_and_changed_ones_are_refused() {
     // A radius that is too small.
     let tube = own["tube"].as_str().unwrap().to_owned();
     let small = ["0x1p-80"; 4].join(" ");
-    let found = verified(&place, &change(cell, &tube, &small), "", 4);
+    let found = refuse(&change(cell, &tube, &small), "", 4);
     assert!(found.contains("cell 1 from 0 s: position 0 may be"), "{found}");
 
     // A cell that is missing, between others and at the end.
     let mut changed = lines.clone();
     changed.remove(cell + 1);
-    let found = verified(&place, &changed, "", 4);
+    let found = refuse(&changed, "", 4);
     assert!(found.contains("cell 2 from") && found.contains("it begins at"), "{found}");
-    let found = verified(&place, &lines[..lines.len() - 1], "", 4);
+    let found = refuse(&lines[..lines.len() - 1], "", 4);
     assert!(found.contains("its cells end at") && found.contains("bounds are stated at 0.4 s"), "{found}");
 
     // A bound that is too narrow.
@@ -90,31 +97,34 @@ fn certificates_are_proven_again_and_changed_ones_are_refused() {
     let parsed: serde_json::Value = serde_json::from_str(&lines[row]).unwrap();
     let bound = parsed["row"]["bounds"][0].as_str().unwrap().to_owned();
     let upper = bound.split(' ').nth(1).unwrap();
-    let found = verified(&place, &change(row, &bound, &format!("{upper} {upper}")), "", 4);
+    let found = refuse(&change(row, &bound, &format!("{upper} {upper}")), "", 4);
     assert!(found.contains("output x at 0.2 s is not proven to be between"), "{found}");
 
     // Parameters in no piece, and a start at another place.
     let piece = first(&lines, "piece");
     let parsed: serde_json::Value = serde_json::from_str(&lines[piece]).unwrap();
     let lower = parsed["piece"]["lower"].as_str().unwrap().to_owned();
-    let found = verified(&place, &change(piece, &lower, "0x1p0"), "", 4);
+    let found = refuse(&change(piece, &lower, "0x1p0"), "", 4);
     assert!(found.contains("do not cover the box"), "{found}");
     let start = parsed["piece"]["q"][0].as_str().unwrap().split(' ').next().unwrap().to_owned();
-    let found = verified(&place, &change(piece, &start, "0x1p-4"), "", 4);
+    let found = refuse(&change(piece, &start, "0x1p-4"), "", 4);
     assert!(found.contains("positions of the start"), "{found}");
 
     // Other equations prove something else: no model has them.
     let system = first(&lines, "system");
-    let found = verified(&place, &change(system, "\"0x1.39eb851eb851fp3\"", "\"0x1.3p3\""), "", 4);
+    let found = refuse(&change(system, "\"0x1.39eb851eb851fp3\"", "\"0x1.3p3\""), "", 4);
     assert!(found.contains("may be"), "{found}");
-    let found = verified(&place, &change(system, "\"0x1p1\"", "\"0x1p2\""), "pendulum.yaml", 4);
+    let found = refuse(&change(system, "\"0x1p1\"", "\"0x1p2\""), "pendulum.yaml", 4);
     assert!(found.contains("the equations are not those of the model"), "{found}");
 
     // No certificate at all.
-    let found = verified(&place, &change(cell, "0x1", "1"), "", 2);
+    let found = refuse(&change(cell, "0x1", "1"), "", 2);
     assert!(found.contains(&format!("line {}: `1", cell + 1)), "{found}");
-    let found = verified(&place, &change(0, "\"version\":1", "\"version\":2"), "", 2);
+    let found = refuse(&change(0, "\"version\":1", "\"version\":2"), "", 2);
     assert!(found.contains("line 1: version 2 is not known, 1 is"), "{found}");
+
+    let case = Case::new("certified", "pendulum, certificate").source("`mbint verify-certificate`");
+    case.figure("bounds proven again", 14.0).figure("changed certificates refused", f64::from(refused.get())).note();
 }
 
 #[test]

@@ -22,6 +22,10 @@ mod faults;
 mod fit;
 mod fmu;
 mod lsp;
+#[path = "../common/measured.rs"]
+#[allow(dead_code, reason = "shared with the tests of models")]
+mod measured;
+mod measurements;
 mod old_models;
 mod parts;
 mod parts_nested;

@@ -2,11 +2,17 @@
 //!
 //! - `tidy`: the text of the source (seconds, no build);
 //! - `fast`: format, tidy, lints and one test of each kind (about a minute after a build);
-//! - `gate`: all of `.ci/run`.
+//! - `gate`: all of `.ci/run`;
+//! - `verification`: the verification report (`docs/verification/`), for a release;
+//! - `bench`: a row of the performance record (`docs/performance/`), for a release.
 
 #![forbid(unsafe_code)]
+#![allow(clippy::disallowed_methods, reason = "figures of pages have few digits")]
 
+mod bench;
+mod machine;
 mod tidy;
+mod verification;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -34,6 +40,8 @@ fn main() -> ExitCode {
                 ExitCode::FAILURE
             }
         }
+        "verification" => verification::run(&root, std::env::args().skip(2)),
+        "bench" => bench::run(&root, &std::env::args().skip(2).collect::<Vec<_>>()),
         "gate" => {
             if succeeds(&root, "bash .ci/run") {
                 ExitCode::SUCCESS
@@ -42,7 +50,7 @@ fn main() -> ExitCode {
             }
         }
         _ => {
-            eprintln!("usage: cargo xtask tidy | fast | gate");
+            eprintln!("usage: cargo xtask tidy | fast | gate | verification [OPTION …] | bench [OPTION …]");
             ExitCode::from(2)
         }
     }

@@ -1,0 +1,126 @@
+//! Measurements of a run of the verification: data only, one file of JSON from which all pages are written.
+
+use serde::{Deserialize, Serialize};
+
+/// All that a run measured, and on what.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Record {
+    pub on: Circumstances,
+    /// In the order of the claims.
+    pub sections: Vec<Section>,
+}
+
+/// Program and machine of a run.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Circumstances {
+    pub version: String,
+    /// Hash of the commit; `+` after it where files differed from it.
+    pub commit: String,
+    /// Day of the run, YYYY-MM-DD, UTC.
+    pub date: String,
+    /// `release`, or `dev` of a build with debug assertions.
+    pub profile: String,
+    pub compiler: String,
+    pub processor: String,
+    /// The command that measured.
+    pub command: String,
+    /// A quick run leaves out all that takes long.
+    pub quick: bool,
+}
+
+/// Measurements of a claim, and the commands that made them.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Section {
+    /// Name of the claim.
+    pub claim: String,
+    pub runs: Vec<Run>,
+    pub cases: Vec<Case>,
+}
+
+/// A command of a section.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Run {
+    pub command: String,
+    /// Tests that passed and failed, for a run of tests.
+    pub passed: usize,
+    pub failed: usize,
+    /// Why it did not run, or did not end well.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// Why it was left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<String>,
+}
+
+/// A case of a claim with its figures: a line that a test writes (`tests/common/measured.rs`).
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Case {
+    pub claim: String,
+    pub case: String,
+    /// Where expected values come from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    #[serde(default)]
+    pub figures: Vec<Figure>,
+    /// Why the claim does not cover the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exception: Option<String>,
+}
+
+/// A number, words, or a share, with the limits that it keeps.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Figure {
+    pub name: String,
+    /// None of a number that is not finite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high: Option<f64>,
+    /// Of a share: so many of so many independent trials.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<u64>,
+}
+
+impl Figure {
+    /// A number within limits.
+    pub fn number(name: &str, value: f64, low: Option<f64>, high: Option<f64>) -> Self {
+        let value = value.is_finite().then_some(value);
+        Self { name: name.to_owned(), value, low, high, ..Self::default() }
+    }
+
+    /// Words.
+    pub fn words(name: &str, text: &str) -> Self {
+        Self { name: name.to_owned(), text: Some(text.to_owned()), ..Self::default() }
+    }
+}
+
+/// Cases from lines of JSON; the error says which line is none.
+pub fn cases(text: &str) -> Result<Vec<Case>, String> {
+    let numbered = text.lines().enumerate().filter(|(_, line)| !line.is_empty());
+    let read = |(number, line): (usize, &str)| {
+        serde_json::from_str(line).map_err(|error| format!("line {} of the measurements: {error}", number + 1))
+    };
+    numbered.map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_tests_are_read_and_others_are_named() {
+        let line = r#"{"case":"a","claim":"c","figures":[{"name":"error","value":null,"high":1},{"name":"n","count":1,"of":29,"high":null}]}"#;
+        let read = cases(&format!("{line}\n\n{line}\n")).unwrap();
+        assert_eq!((read.len(), read[0].figures[0].value, read[0].figures[1].of), (2, None, Some(29)));
+        let error = cases(&format!("{line}\n{{\"case\": \"b\"")).unwrap_err();
+        assert!(error.starts_with("line 2 of the measurements: EOF"), "{error}");
+        let error = cases("{\"case\":\"b\"}").unwrap_err();
+        assert!(error.contains("missing field `claim`"), "{error}");
+    }
+}
