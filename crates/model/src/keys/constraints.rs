@@ -41,7 +41,7 @@ const NONNEGATIVE: &str = "minimum";
 fn of_model(root: &mut Map<String, Value>) {
     let without_time = json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes", "dimensions"] } } });
     let black_box = json!({ "required": ["black_box"] });
-    // Formulas of parameters: nothing of a mechanism, which the reader tells from what is there.
+    // Formulas of parameters: nothing of a mechanism.
     let of_mechanisms = ["bodies", "joints", "effects", "instances", "urdf", "mjcf", "simulation", "black_box"];
     let of_mechanisms: Vec<Value> = of_mechanisms.iter().map(|key| json!({ "required": [key] })).collect();
     let stack = json!({

@@ -44,9 +44,9 @@ impl Extent {
             lower: self.range.lower.min(further.range.lower),
             upper: self.range.upper.max(further.range.upper),
         };
-        for (end, (place, spacing)) in further.places.into_iter().zip(further.spacing).enumerate() {
+        for (end, (index, spacing)) in further.places.into_iter().zip(further.spacing).enumerate() {
             if is_better[end] {
-                (self.places[end], self.spacing[end]) = (place, spacing);
+                (self.places[end], self.spacing[end]) = (index, spacing);
             }
         }
     }

@@ -92,13 +92,13 @@ pub fn instructions(page: &str) -> Result<BTreeMap<String, u64>, String> {
         cells.collect::<Vec<_>>()
     });
     let head = rows.next().ok_or("the page of instructions has no table")?;
-    let place = |stage: &&str| head.iter().position(|cell| cell == stage).ok_or(format!("no column {stage}"));
+    let index = |stage: &&str| head.iter().position(|cell| cell == stage).ok_or(format!("no column {stage}"));
     let stages = ["step", "factor", "first correction", "advance"];
-    let places = stages.iter().map(place).collect::<Result<Vec<usize>, _>>()?;
+    let places = stages.iter().map(index).collect::<Result<Vec<usize>, _>>()?;
     let mut counts = BTreeMap::new();
     for row in rows.skip(1) {
-        let count = |place: &usize| {
-            let cell = row.get(*place).copied().unwrap_or_default();
+        let count = |index: &usize| {
+            let cell = row.get(*index).copied().unwrap_or_default();
             cell.parse::<u64>().map_err(|_| format!("{}: `{cell}` is no number of instructions", row[0]))
         };
         let sum: u64 = places.iter().map(count).sum::<Result<u64, String>>()?;

@@ -127,8 +127,8 @@ fn times(lines: &str) -> Result<Vec<(String, String)>, String> {
     let mut cases = lines
         .map(|line| read(line).ok_or(format!("`{line}` is no measurement")))
         .collect::<Result<Vec<(String, f64)>, String>>()?;
-    let place = cases.iter().position(|(name, _)| name == "reference loop").ok_or("the reference loop is missing")?;
-    let (_, reference) = cases.swap_remove(place);
+    let index = cases.iter().position(|(name, _)| name == "reference loop").ok_or("the reference loop is missing")?;
+    let (_, reference) = cases.swap_remove(index);
     Ok(cases.into_iter().map(|(name, time)| (name, format!("{:.0}", time / reference))).collect())
 }
 

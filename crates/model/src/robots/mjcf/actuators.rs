@@ -1,4 +1,4 @@
-//! Actuators: on what they act, their law, memory and ranges.
+//! Actuators: their targets, their law, memory and ranges.
 
 use super::couplings::Reader;
 use super::document::{Attribute, Item};
