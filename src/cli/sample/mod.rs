@@ -131,7 +131,10 @@ impl Sampling<'_> {
         let chosen =
             Chosen { count: points.count(), at: &|places| points.at(places).into_iter().map(Sample::from).collect() };
         let output = self.output;
+        let mut ended = None;
         let done = study::sample(&description, &options, chosen, |trajectories| {
+            let last = trajectories.times.last().copied().unwrap_or(0.0);
+            ended = trajectories.ended.as_ref().map(|error| (error.to_string(), last));
             let table = SampleTable {
                 count: points.count(),
                 parameters: parameters.clone(),
@@ -168,6 +171,10 @@ impl Sampling<'_> {
             );
             console.warning(&message);
         }
+        if let Some((error, last)) = &ended {
+            let duration = description.simulation.duration;
+            console.warning(&format!("{name}: {error}: there are no rows after t = {last} s of {duration} s"));
+        }
         let is_file = |(path, _): &(&Path, SampleFormat)| *path != Path::new("-");
         if let Some((path, _)) = self.output.filter(is_file).filter(|_| !self.quiet) {
             let samples = count(points.count(), "sample", "samples");
@@ -181,6 +188,6 @@ impl Sampling<'_> {
                 console.print(&format!("  {}\n", kept.found(store)))?;
             }
         }
-        Ok(Status::Done)
+        Ok(if ended.is_some() { Status::Failed } else { Status::Done })
     }
 }

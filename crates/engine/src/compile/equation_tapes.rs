@@ -45,6 +45,8 @@ pub struct EquationsProgram {
     /// What conditions and signs in the equations are of, as far as it changes with the motion: registers after
     /// `conditions`. Derivatives do not show where these jump.
     pub conditions: Vec<usize>,
+    /// Whether a function stands in the equations that has knots or kinks.
+    pub has_knots: bool,
     lowered: Lowered,
 }
 
@@ -137,6 +139,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         rates_at_rest.iter().all(|&rate| graph.is_zero(rate)) && system.start.velocity.iter().all(Option::is_none);
     let rows = [&motion[..], &rate_of_rate, &closure, &closure_rate].concat();
     let conditions = conditions_of_motion(system, &graph, &rows);
+    let has_knots = graph.reachable(&rows).into_iter().any(|expr| is_in_pieces(graph.node(expr)));
     let guess = system.start.guess.iter().map(|&guess| graph.as_constant(guess)).collect();
     let kept = [&system.start.position, &system.start.velocity];
     let given: Vec<Expr> = kept.iter().flat_map(|values| values.iter().flatten().copied()).collect();
@@ -192,6 +195,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         guess,
         can_rest,
         conditions: registers(CONDITIONS).collect(),
+        has_knots,
         layout,
         lowered,
     }
@@ -213,4 +217,17 @@ fn conditions_of_motion(system: &System, graph: &Graph, rows: &[Expr]) -> Vec<Ex
         }
     }
     found
+}
+
+/// Whether a function is made of pieces.
+fn is_in_pieces(node: Node) -> bool {
+    match node {
+        Node::Unary(function, _) => {
+            matches!(function, Unary::Spline(..) | Unary::Abs | Unary::Sign | Unary::Floor)
+        }
+        Node::Binary(function, ..) => {
+            matches!(function, Binary::Min | Binary::Max | Binary::Select | Binary::SelectElse)
+        }
+        Node::Constant(_) | Node::Symbol(_) => false,
+    }
 }

@@ -50,6 +50,8 @@ pub struct Trajectories<'t> {
     pub outputs: Vec<(String, String)>,
     /// Times of the rows, s.
     pub times: Vec<f64>,
+    /// Why the rows end before the motion does, where no step fulfils the tolerance from there on.
+    pub ended: Option<SimulationError>,
 }
 
 /// Compiles a model, chooses its steps as a run does, and gives them to `write`, which asks for the samples by
@@ -82,8 +84,8 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
             Ok(study)
         });
         let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
-        let steps = studies.iter().map(steps_of_samples).collect::<Result<Vec<_>, _>>();
-        let steps = steps.map_err(RunError::from)?;
+        let steps = studies.iter().map(steps_and_end).collect::<Result<Vec<_>, _>>();
+        let (steps, ended): (Vec<StepPlan>, Vec<_>) = steps.map_err(RunError::from)?.into_iter().unzip();
         let rows = steps.iter().map(|plan| plan.schedule.rows).max().unwrap_or(0);
         let times = steps.iter().find(|plan| plan.schedule.rows == rows);
         let times = times.map_or_else(Vec::new, |plan| (0..rows).map(|row| plan.schedule.time(row)).collect());
@@ -106,6 +108,7 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
             columns,
             outputs,
             times,
+            ended: ended.into_iter().flatten().next(),
         })
     })
 }

@@ -51,6 +51,8 @@ pub(super) struct Next {
     pub ranges: Vec<Interval>,
     /// Of the accelerations, relative to their size.
     pub defect: f64,
+    /// Whether that is so large that a knot must be in the cell.
+    pub passes_knot: bool,
     /// Last terms of the accelerations with a power of τ, relative to their size: over this cell, over half of it, and
     /// over twice its length.
     pub tails: [f64; 3],
@@ -67,13 +69,13 @@ impl Next {
     /// Whether much shorter cells may be better where one of half the length is not: where a knot lies decides. What
     /// halving does not make better otherwise is of the parameters, not of the time.
     pub fn may_help_later(&self) -> bool {
-        self.defect > HARMFUL_DEFECT
+        self.passes_knot
     }
 
     /// Whether a shorter cell has a smaller defect, and needs it.
     fn is_coarse(&self) -> bool {
         let falls = self.tails[0] > SMALL_DEFECT && self.tails[1] < 0.1 * self.tails[0];
-        self.defect > HARMFUL_DEFECT || (self.defect > LARGE_DEFECT && falls)
+        self.passes_knot || (self.defect > LARGE_DEFECT && falls)
     }
 
     /// Whether two cells of half the length are better than one.

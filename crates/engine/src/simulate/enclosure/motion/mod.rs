@@ -311,12 +311,12 @@ impl<'s> MotionEnclosure<'s> {
         let errors = frame.error(&coarse.box_of);
         let defect =
             proven.defect[n..].iter().copied().fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE);
+        let passes_knot = self.program.has_knots && defect > HARMFUL_DEFECT;
         if !self.scales.iter().zip(errors).all(|(scale, error)| error <= LARGE_REMAINDER * scale) {
-            let by_cell = defect > HARMFUL_DEFECT;
-            return Err(if by_cell { EnclosureError::Unproven } else { EnclosureError::TooWide });
+            return Err(if passes_knot { EnclosureError::Unproven } else { EnclosureError::TooWide });
         }
         let gain = frame.gain();
-        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, tails, gain })
+        Ok(Next { cell, approximation, proven, end, frame, ranges, defect, passes_knot, tails, gain })
     }
 
     /// Goes on to the end of a cell.
