@@ -33,7 +33,7 @@ outputs:
 requirements:
   short: mass.x <= 0.6
   late: { that: mass.x >= -0.7, from: 2 }
-  there_too: { output: there, max: 1 }
+  there_too: { that: there*2 + k*(0.01 m^2/N) <= 1 m }
 simulation: { duration: 3, step: 2e-4, output_step: 0.01 }
 ",
     );
@@ -76,6 +76,7 @@ fn derivatives_are_those_of_the_closed_forms() {
     is(&found, "beyond", |k| 1.0 / k.sqrt() - 0.1);
     is(&found, "short", |k| 0.6 - 1.0 / k.sqrt());
     is(&found, "late", |k| 0.7 - 1.0 / k.sqrt());
+    is(&found, "there_too", |k| 1.0 - 2.0 * x(k, 1.3) - k / 100.0);
 }
 
 #[test]

@@ -39,7 +39,21 @@ impl NumberFormulas {
 
     /// Their values, given those of the uncertain parameters and of the numbers.
     pub fn values(&self, parameters: &[f64], numbers: &[f64]) -> Vec<f64> {
-        self.graph.evaluate(&self.roots, |symbol| {
+        self.evaluate(&self.graph, &self.roots, parameters, numbers)
+    }
+
+    /// The derivatives of each: by the numbers, then by the uncertain parameters.
+    pub fn derivatives(&self, parameters: &[f64], numbers: &[f64]) -> Vec<Vec<f64>> {
+        let mut graph = self.graph.clone();
+        let symbols: Vec<Expr> = self.numbers.iter().chain(&self.parameters).copied().collect();
+        let of_root =
+            |&root: &Expr| -> Vec<Expr> { symbols.iter().map(|&symbol| graph.derivative(root, symbol)).collect() };
+        let derivatives: Vec<Vec<Expr>> = self.roots.iter().map(of_root).collect();
+        derivatives.iter().map(|own| self.evaluate(&graph, own, parameters, numbers)).collect()
+    }
+
+    fn evaluate(&self, graph: &Graph, roots: &[Expr], parameters: &[f64], numbers: &[f64]) -> Vec<f64> {
+        graph.evaluate(roots, |symbol| {
             let of = |symbols: &[Expr], values: &[f64]| {
                 symbols.iter().position(|own| *own == symbol).and_then(|index| values.get(index).copied())
             };

@@ -4,7 +4,8 @@
 //! instant at which a source passes zero moves by −(∂y/∂p)/ẏ, one at which it is greatest by −(∂ẏ/∂p)/ÿ.
 
 use super::curve::Curve;
-use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
+use crate::assemble::NumberFormulas;
+use crate::model::{Description, Parameter, ParameterValue, ReducedKind, ReducedOutput, Requirement};
 use crate::results::{OutputGradients, ReducedGradients};
 
 /// A number a motion: its value, the instant that decides it, and its derivatives.
@@ -26,11 +27,17 @@ pub(super) fn of_sources(
         let display = description.display.get(&own.name).cloned();
         Some(found.named(own.name.clone(), own.unit.clone(), display, false))
     });
+    let mut all: Vec<ReducedGradients> = reduced.collect();
     let margins = description.requirements.iter().filter(|own| !own.of_results).filter_map(|own| {
-        let found = of_margin(own, description.simulation.duration, &curve)?;
-        Some(found.named(own.name.clone(), own.unit.clone(), own.display.clone(), true))
+        let found = match own.times {
+            Some((from, to)) => of_margin(own, from, to.min(description.simulation.duration), &curve),
+            None => of_values(own, description, &all),
+        };
+        Some(found?.named(own.name.clone(), own.unit.clone(), own.display.clone(), true))
     });
-    reduced.chain(margins).collect()
+    let margins: Vec<ReducedGradients> = margins.collect();
+    all.extend(margins);
+    all
 }
 
 impl Found {
@@ -140,9 +147,33 @@ fn of_reduced<'a>(own: &ReducedOutput, end: f64, curve: &impl Fn(usize, f64) -> 
     })
 }
 
-/// The least slack of a requirement over its time; `None` of one on values.
-fn of_margin<'a>(own: &Requirement, end: f64, curve: &impl Fn(usize, f64) -> Curve<'a>) -> Option<Found> {
-    let (from, to) = own.times.map(|(from, to)| (from, to.min(end)))?;
+/// The least slack of a requirement on reduced outputs and parameters; `None` where one of those has no derivatives.
+fn of_values(own: &Requirement, description: &Description, reduced: &[ReducedGradients]) -> Option<Found> {
+    let reads =
+        |known: &&ReducedOutput| own.slacks.iter().any(|slack| slack.names().any(|(name, _)| name == known.name));
+    let read = description.reduced.iter().filter(reads);
+    let read = read.map(|known| reduced.iter().find(|found| found.name == known.name));
+    let read: Vec<&ReducedGradients> = read.collect::<Option<_>>()?;
+    let names: Vec<&str> = read.iter().map(|found| found.name.as_str()).collect();
+    let numbers: Vec<f64> = read.iter().map(|found| found.value).collect();
+    let nominal = |(_, parameter): (usize, &Parameter)| match parameter.value {
+        ParameterValue::Interval { nominal, .. } => Some(nominal),
+        ParameterValue::Formula(_) => None,
+    };
+    let parameters: Vec<f64> = description.uncertain().filter_map(nominal).collect();
+    let formulas = NumberFormulas::of(&description.parameters, &names, &own.slacks);
+    let slacks = formulas.values(&parameters, &numbers).into_iter().zip(formulas.derivatives(&parameters, &numbers));
+    let (value, derivatives) = slacks.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (by_numbers, by_parameters) = derivatives.split_at(numbers.len());
+    let mut sum = by_parameters.to_vec();
+    for (by_number, found) in by_numbers.iter().zip(read) {
+        sum.iter_mut().zip(&found.by_parameters).for_each(|(sum, by)| *sum += by_number * by);
+    }
+    Some(Found { value, time: None, by_parameters: sum })
+}
+
+/// The least slack of a requirement from one time to another.
+fn of_margin<'a>(own: &Requirement, from: f64, to: f64, curve: &impl Fn(usize, f64) -> Curve<'a>) -> Option<Found> {
     let least = |&output: &usize| {
         let curve = curve(output, -1.0);
         let time = if from < to { curve.highest(from, to) } else { from };
