@@ -187,6 +187,12 @@ class Model:
             return -1
         raise Unknown
 
+    def absolute(self) -> Model:
+        """The absolute value; where the sign changes over the box, the radius has how far the other side is beyond."""
+        beyond = sum(map(abs, self.c[1:])) + self.radius - abs(self.c[0])
+        own = self if self.c[0] >= 0 else -self
+        return own if beyond <= 0 else own.with_radius(own.radius + 2 * beyond)
+
     def _solved(self, divisor: int, known: list[int], other: Model | None) -> list[int]:
         """Coefficients h with h b = a (`other` is b), or h h = a, one after the other."""
         space, h = self.space, known + [0] * (self.space.count - 1)

@@ -333,6 +333,8 @@ def _unary(name: str, a: _Dual) -> _Dual:
         root = value.sqrt()
         return _Dual(root, _scaled(by, space.one() / (root + root)) if by else {})
     if name == "abs":
+        if not by:
+            return _Dual(value.absolute(), {})
         return a if value.sign() > 0 else _unary("neg", a)
     if name == "sign":
         if value.is_zero():
