@@ -103,7 +103,7 @@ effects:
 initial: { bob.angle: 1 }
 outputs: { angle: bob.angle }
 simulation: { duration: 2 s, step: 1e-3, output_step: 0.05 }
-bounds: { scan: { points: 32 }, chebyshev: { order: 3 } }
+bounds: { scan: { points: 40 }, chebyshev: { order: 3 } }
 YAML
 }
 
@@ -132,7 +132,8 @@ lose_processes_of() {
         name=$(ps -o comm= -p "$process") || return 0
         set -- "$1" "${@:2}" "$process"
         [ "$name" != slurmstepd ] || break
-        process=$(ps -o ppid= -p "$process" | tr -d ' ')
+        # It may have ended meanwhile.
+        process=$(ps -o ppid= -p "$process" | tr -d ' ') || return 0
     done
     kill -KILL "${@:2}" || true
 }
