@@ -322,6 +322,11 @@ impl System {
         functions.chain(self.random.iter().flat_map(|random| random.symbols))
     }
 
+    /// Symbols of q, v, w and λ.
+    pub fn motion_symbols(&self) -> Vec<Expr> {
+        [&self.q[..], &self.v, &self.w, &self.lambda].concat()
+    }
+
     /// All equations, outputs and start values.
     pub fn roots(&self) -> Vec<Expr> {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();

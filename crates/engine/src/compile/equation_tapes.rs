@@ -138,8 +138,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
     let can_rest =
         rates_at_rest.iter().all(|&rate| graph.is_zero(rate)) && system.start.velocity.iter().all(Option::is_none);
     let rows = [&motion[..], &rate_of_rate, &closure, &closure_rate].concat();
-    let conditions = conditions_of_motion(system, &graph, &rows);
-    let has_knots = graph.reachable(&rows).into_iter().any(|expr| is_in_pieces(graph.node(expr)));
+    let (conditions, has_knots) = conditions_and_knots(system, &graph, &rows);
     let guess = system.start.guess.iter().map(|&guess| graph.as_constant(guess)).collect();
     let kept = [&system.start.position, &system.start.velocity];
     let given: Vec<Expr> = kept.iter().flat_map(|values| values.iter().flatten().copied()).collect();
@@ -201,33 +200,23 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
     }
 }
 
-/// Arguments of conditions and signs in some rows, as far as they change with the motion; each once.
-fn conditions_of_motion(system: &System, graph: &Graph, rows: &[Expr]) -> Vec<Expr> {
-    let motion: Vec<Expr> = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied().collect();
-    let mut found = Vec::new();
+/// Arguments of conditions and signs in some rows, as far as they change with the motion, each once; and whether a
+/// function that is made of pieces stands in the rows.
+fn conditions_and_knots(system: &System, graph: &Graph, rows: &[Expr]) -> (Vec<Expr>, bool) {
+    let of_motion = graph.depending_on(rows, &system.motion_symbols());
+    let (mut conditions, mut has_knots) = (Vec::new(), false);
     for expr in graph.reachable(rows) {
         let argument = match graph.node(expr) {
-            Node::Unary(Unary::Sign, argument) => argument,
-            Node::Binary(Binary::Select | Binary::SelectElse, argument, _) => argument,
+            Node::Unary(Unary::Sign, argument) => Some(argument),
+            Node::Binary(Binary::Select | Binary::SelectElse, argument, _) => Some(argument),
+            Node::Unary(Unary::Spline(..) | Unary::Abs | Unary::Floor, _) => None,
+            Node::Binary(Binary::Min | Binary::Max, ..) => None,
             _ => continue,
         };
-        let symbols = graph.symbols_of(&[argument]);
-        if !found.contains(&argument) && motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok()) {
-            found.push(argument);
-        }
+        has_knots = true;
+        conditions.extend(argument.filter(|argument| of_motion.contains(argument)));
     }
-    found
-}
-
-/// Whether a function is made of pieces.
-fn is_in_pieces(node: Node) -> bool {
-    match node {
-        Node::Unary(function, _) => {
-            matches!(function, Unary::Spline(..) | Unary::Abs | Unary::Sign | Unary::Floor)
-        }
-        Node::Binary(function, ..) => {
-            matches!(function, Binary::Min | Binary::Max | Binary::Select | Binary::SelectElse)
-        }
-        Node::Constant(_) | Node::Symbol(_) => false,
-    }
+    conditions.sort_unstable();
+    conditions.dedup();
+    (conditions, has_knots)
 }

@@ -128,14 +128,7 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<(Expr, Vec<u
         found.push(argument);
         terms.entry(argument).or_insert(term);
     }
-    let moving: Vec<Expr> = [system.time]
-        .iter()
-        .chain(&system.q)
-        .chain(&system.v)
-        .chain(&system.w)
-        .chain(&system.lambda)
-        .copied()
-        .collect();
+    let moving = [&[system.time][..], &system.motion_symbols()].concat();
     found.sort_unstable();
     found.dedup();
     // What only jumps does so where something else switches.

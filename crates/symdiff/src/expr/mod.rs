@@ -20,4 +20,4 @@ pub(crate) use passes::Choice;
 pub use scalar::{Builder, Scalar};
 pub use spline::Spline;
 pub use spline_error::SplineError;
-pub(crate) use spline_range::SplinePiece;
+pub(crate) use spline_range::{SplinePiece, cubic_about, cubic_derivative};

@@ -60,6 +60,17 @@ impl Graph {
         found
     }
 
+    /// Those nodes that the roots need which depend on some symbols.
+    pub fn depending_on(&self, roots: &[Expr], symbols: &[Expr]) -> FxHashSet<Expr> {
+        let mut found: FxHashSet<Expr> = symbols.iter().copied().collect();
+        for expr in self.reachable(roots) {
+            if self.node(expr).children().any(|child| found.contains(&child)) {
+                found.insert(expr);
+            }
+        }
+        found
+    }
+
     /// Whether an expression changes with a symbol other than by jumps: what stands in `sign`, `floor` or in a
     /// condition alone makes it jump, and is constant between two jumps.
     pub fn changes_steadily(&self, of: Expr, with: &[Expr]) -> bool {

@@ -43,7 +43,8 @@ impl Spline {
             // One more period on either side, as quotients are rounded.
             ((periods[0] as i64 - 1) * per_period, (periods[1] as i64 + 2) * per_period - 1)
         } else {
-            (0, knots.len() as i64)
+            let [first, last] = [range.lower().next_down(), range.upper()];
+            [first, last].map(|x| knots.partition_point(|knot| *knot <= x) as i64).into()
         };
         let pieces = (first..=last).map(|number| self.piece_of(number));
         let mut found = Vec::new();
@@ -92,8 +93,8 @@ impl Spline {
                 _ => [join, join + 1],
             };
             let length = Interval::point(knots[join]) - Interval::point(knots[before.max(1) - 1]);
-            let end = derivative_at(cubics[before], order, length);
-            let start = derivative_at(cubics[after], order, Interval::point(0.0));
+            let [end, ..] = cubic_derivative(cubic_about(cubics[before], length), order);
+            let [start, ..] = cubic_derivative(cubics[after].map(Interval::point), order);
             sum += (end - start).magnitude();
             size = size.max(end.magnitude()).max(start.magnitude());
         }
@@ -101,15 +102,18 @@ impl Spline {
     }
 }
 
-/// The derivative of this order of a cubic.
-fn derivative_at([a, b, c, d]: [f64; 4], order: u8, x: Interval) -> Interval {
-    let [a, b, c, d, two, three] = [a, b, c, d, 2.0, 3.0].map(Interval::point);
-    match order {
-        0 => a + x * (b + x * (c + x * d)),
-        1 => b + x * (two * c + x * three * d),
-        2 => two * c + two * three * x * d,
-        _ => two * three * d,
-    }
+/// Coefficients of a cubic's derivative of this order, lowest first.
+pub(crate) fn cubic_derivative(cubic: [Interval; 4], order: u8) -> [Interval; 4] {
+    let step =
+        |[_, b, c, d]: [Interval; 4]| [b, Interval::point(2.0) * c, Interval::point(3.0) * d, Interval::point(0.0)];
+    (0..order).fold(cubic, |cubic, _| step(cubic))
+}
+
+/// Taylor coefficients of a cubic about a point.
+pub(crate) fn cubic_about(cubic: [f64; 4], point: Interval) -> [Interval; 4] {
+    let ([a, b, c, d], s) = (cubic.map(Interval::point), point);
+    let [two, three] = [2.0, 3.0].map(Interval::point);
+    [a + s * (b + s * (c + s * d)), b + s * (two * c + three * s * d), c + three * s * d, d]
 }
 
 #[cfg(test)]

@@ -31,7 +31,6 @@ pub(super) fn obstacle(simulator: &Simulator, proof: Proof) -> Option<String> {
 
 /// A function of the motion in an equation that jumps, while no derivative shows it.
 fn jump_with_the_motion(system: &System) -> Option<&'static str> {
-    let motion: Vec<Expr> = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied().collect();
     let jump = |expr: Expr, differentiated: u8| {
         let (argument, what) = match system.graph.node(expr) {
             Node::Unary(Unary::Floor, argument) => (argument, "`floor`"),
@@ -41,11 +40,12 @@ fn jump_with_the_motion(system: &System) -> Option<&'static str> {
             }
             _ => return None,
         };
-        let symbols = system.graph.symbols_of(&[argument]);
-        motion.iter().any(|symbol| symbols.binary_search(symbol).is_ok()).then_some(what)
+        Some((argument, what))
     };
     let of = |roots: &[Expr], differentiated: u8| {
-        system.graph.reachable(roots).into_iter().find_map(|expr| jump(expr, differentiated))
+        let of_motion = system.graph.depending_on(roots, &system.motion_symbols());
+        let jumps = system.graph.reachable(roots).into_iter().filter_map(|expr| jump(expr, differentiated));
+        jumps.into_iter().find_map(|(argument, what)| of_motion.contains(&argument).then_some(what))
     };
     // Constraints hold with their second derivatives.
     of(&[&system.inertia[..], &system.force].concat(), 0).or_else(|| of(&system.constraint, 2))

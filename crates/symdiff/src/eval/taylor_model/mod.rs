@@ -281,10 +281,7 @@ impl ModelSpace {
         let (exact_sine, exact_cosine) = Interval::point(x[0]).sin_cos();
         let mut missed = exact_sine.radius_about(sine[0]) + exact_cosine.radius_about(cosine[0]) + e;
         let [slope, residual, _] = &mut scratch.registers;
-        for ((slope, &c), &degree) in slope.iter_mut().zip(x).zip(&self.degrees) {
-            *slope = degree as f64 * c;
-        }
-        *self.split_mut(slope).1 = 0.0;
+        self.slopes(a, slope);
         let slope_norms = self.norms(slope);
         let pairs: [(&[f64], &[f64], f64); 2] = [(sine, cosine, 1.0), (cosine, sine, -1.0)];
         for (this, other, sign) in pairs {

@@ -36,7 +36,7 @@ impl ModelSpace {
     }
 
     /// `out = E a`, rounded; its radius is zero.
-    fn slopes(&self, a: &[f64], out: &mut [f64]) {
+    pub(super) fn slopes(&self, a: &[f64], out: &mut [f64]) {
         for ((slope, &c), &degree) in out.iter_mut().zip(a).zip(&self.degrees) {
             *slope = degree as f64 * c;
         }

@@ -5,7 +5,7 @@
 
 use super::{ModelScratch, ModelSpace, up};
 use crate::eval::interval::Interval;
-use crate::expr::{Spline, SplinePiece};
+use crate::expr::{Spline, SplinePiece, cubic_about, cubic_derivative};
 
 /// Most pieces that a box may reach.
 const MOST_PIECES: usize = 64;
@@ -21,7 +21,7 @@ impl ModelSpace {
         self.with_spare(scratch, |from, product, _| {
             from.copy_from_slice(a);
             self.shift(-own.knot, from);
-            let coefficients = derivative(own.cubic.map(Interval::point), order);
+            let coefficients = cubic_derivative(own.cubic.map(Interval::point), order);
             self.constant(coefficients[3], out);
             for &coefficient in coefficients[..3].iter().rev() {
                 self.mul(out, from, product);
@@ -35,13 +35,6 @@ impl ModelSpace {
     }
 }
 
-/// Coefficients of a cubic's derivative, lowest first.
-fn derivative(cubic: [Interval; 4], order: u8) -> [Interval; 4] {
-    let step =
-        |[_, b, c, d]: [Interval; 4]| [b, Interval::point(2.0) * c, Interval::point(3.0) * d, Interval::point(0.0)];
-    (0..order).fold(cubic, |cubic, _| step(cubic))
-}
-
 /// How far the derivatives of two pieces' cubics are from each other where the range is in the second one.
 fn apart(own: &SplinePiece, other: &SplinePiece, order: u8, range: Interval) -> f64 {
     if own.number == other.number {
@@ -49,17 +42,9 @@ fn apart(own: &SplinePiece, other: &SplinePiece, order: u8, range: Interval) -> 
     }
     // The knot between both, on the other's side.
     let knot = if other.number > own.number { other.knot } else { other.end };
-    let [a, b] = [own, other].map(|piece| derivative(about(piece, knot), order));
+    let [a, b] = [own, other].map(|piece| cubic_derivative(cubic_about(piece.cubic, knot - piece.knot), order));
     let (from, to) = (range.lower().max(other.from), range.upper().min(other.to));
     let beyond = (Interval::new(from, to.max(from)) - knot).magnitude();
     let differences = a.into_iter().zip(b).map(|(a, b)| (a - b).magnitude());
     differences.rev().fold(0.0, |sum, difference| up(sum * beyond + difference))
-}
-
-/// Taylor coefficients of a piece's cubic about a point.
-fn about(piece: &SplinePiece, point: Interval) -> [Interval; 4] {
-    let [a, b, c, d] = piece.cubic.map(Interval::point);
-    let s = point - piece.knot;
-    let [two, three] = [2.0, 3.0].map(Interval::point);
-    [a + s * (b + s * (c + s * d)), b + s * (two * c + three * s * d), c + three * s * d, d]
 }
