@@ -255,4 +255,10 @@ impl Description {
             |(_, parameter): &(usize, &Parameter)| matches!(parameter.value, ParameterValue::Interval { .. });
         self.parameters.iter().enumerate().filter(interval)
     }
+
+    /// The reduced outputs that a formula names, with their indices.
+    pub fn reduced_in(&self, formula: &Formula) -> impl Iterator<Item = (usize, &ReducedOutput)> {
+        let is_named = |(_, own): &(usize, &ReducedOutput)| formula.names().any(|(name, _)| name == own.name);
+        self.reduced.iter().enumerate().filter(is_named)
+    }
 }

@@ -15,6 +15,7 @@
 
 mod along;
 mod bernstein;
+mod bisection;
 mod brink;
 mod cheapest;
 mod chebyshev;
@@ -62,6 +63,7 @@ mod taylor;
 mod tensor;
 mod time_shift;
 
+pub use bisection::bisected;
 pub use brink::to_brinks;
 pub use cheapest::{Linear, Power, cheapest};
 pub use chebyshev_series::ChebyshevSeries;

@@ -1,5 +1,7 @@
 //! Where a function of the time changes its sign within a step.
 
+use crate::numerics::bisected;
+
 /// A cubic's first root is searched for at this many points between the ends of a step, and then by bisection.
 const POINTS: usize = 16;
 const BISECTIONS: usize = 50;
@@ -21,19 +23,6 @@ impl Crossing {
     pub fn is_at_the_end(&self) -> bool {
         !self.hidden && self.share >= AT_THE_END
     }
-}
-
-/// The end beyond a change between a share before it and one beyond it, after so many bisections.
-pub fn bisected(mut before: f64, mut beyond: f64, bisections: usize, is_beyond: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..bisections {
-        let middle = 0.5 * (before + beyond);
-        if is_beyond(middle) {
-            beyond = middle;
-        } else {
-            before = middle;
-        }
-    }
-    beyond
 }
 
 /// Where the cubic through (value, rate) at both ends of a step first changes its sign; the line where rates are

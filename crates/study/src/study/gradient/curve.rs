@@ -1,5 +1,6 @@
 //! An output and its derivatives over the time: the rows, and between them the cubic through the four nearest.
 
+use crate::numerics::bisected;
 use crate::results::OutputGradients;
 
 /// Halvings of an interval in which a zero is looked for, and golden sections of one with an extreme.
@@ -59,11 +60,19 @@ impl Curve<'_> {
         })
     }
 
+    /// The ends of a span, and the rows between them.
+    fn instants(&self, from: f64, to: f64) -> Vec<f64> {
+        let rows = self.times.iter().copied().filter(|time| from < *time && *time < to);
+        std::iter::once(from).chain(rows).chain([to]).collect()
+    }
+
     /// When it is greatest from one instant to another.
     pub fn highest(&self, from: f64, to: f64) -> f64 {
-        let rows = self.times.iter().copied().filter(|time| (from..=to).contains(time));
-        let candidates = rows.chain([from, to]);
-        let best = candidates.max_by(|a, b| self.value(*a).total_cmp(&self.value(*b))).unwrap_or(from);
+        let best = self
+            .instants(from, to)
+            .into_iter()
+            .max_by(|a, b| self.value(*a).total_cmp(&self.value(*b)))
+            .unwrap_or(from);
         let (mut low, mut high) = ((best - self.spacing()).max(from), (best + self.spacing()).min(to));
         let share = 0.5 * (5.0_f64.sqrt() - 1.0);
         for _ in 0..HALVINGS {
@@ -77,18 +86,12 @@ impl Curve<'_> {
     /// The first and the last instant of a span at which it changes its sign, and whether it is not negative at the
     /// span's ends.
     pub fn changes(&self, from: f64, to: f64) -> ([Option<f64>; 2], [bool; 2]) {
-        let rows = self.times.iter().copied().filter(|time| from < *time && *time < to);
-        let instants: Vec<f64> = std::iter::once(from).chain(rows).chain([to]).collect();
+        let instants = self.instants(from, to);
         let is_met = |time: f64| self.value(time) >= 0.0;
         let mut pairs = instants.windows(2).filter(|pair| is_met(pair[0]) != is_met(pair[1]));
         let zero = |pair: &[f64]| {
-            let (mut low, mut high) = (pair[0], pair[1]);
-            let begins = is_met(low);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if is_met(middle) == begins { low = middle } else { high = middle }
-            }
-            0.5 * (low + high)
+            let begins = is_met(pair[0]);
+            bisected(pair[0], pair[1], HALVINGS, |time| is_met(time) != begins)
         };
         let first = pairs.next();
         let last = pairs.next_back().or(first);
@@ -97,8 +100,7 @@ impl Curve<'_> {
 
     /// ∫ f(value, derivatives) dt by Simpson's rule, with a value between each two rows.
     pub fn integral(&self, from: f64, to: f64, of: impl Fn(f64, &[f64]) -> Vec<f64>) -> Vec<f64> {
-        let rows = self.times.iter().copied().filter(|time| from < *time && *time < to);
-        let instants: Vec<f64> = std::iter::once(from).chain(rows).chain([to]).collect();
+        let instants = self.instants(from, to);
         let at = |time: f64| of(self.value(time), &self.by_parameters(time));
         let mut sum = vec![0.0; at(from).len()];
         for pair in instants.windows(2) {

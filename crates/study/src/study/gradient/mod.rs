@@ -54,7 +54,7 @@ pub fn gradient(description: &Description, options: &Options) -> Result<Gradient
     }
     let none = Chosen { count: 0, at: &|_| Vec::new() };
     let mut found = sample(description, options, none, |trajectories| of_trajectories(trajectories, description))?;
-    found.reduced = reduced::of_sources(description, &found.times, &found.outputs);
+    found.reduced = reduced::of_sources(description, &found);
     found.outputs.truncate(shown);
     Ok(found)
 }

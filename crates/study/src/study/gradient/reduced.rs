@@ -3,10 +3,13 @@
 //! Where an extreme is taken, its instant may move with a parameter, but that does not change it to first order. An
 //! instant at which a source passes zero moves by −(∂y/∂p)/ẏ, one at which it is greatest by −(∂ẏ/∂p)/ÿ.
 
+use symdiff::Formula;
+
 use super::curve::Curve;
 use crate::assemble::NumberFormulas;
-use crate::model::{Description, Parameter, ParameterValue, ReducedKind, ReducedOutput, Requirement};
-use crate::results::{OutputGradients, ReducedGradients};
+use crate::grammar::display_unit::DisplayUnit;
+use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
+use crate::results::{Gradients, ReducedGradients};
 
 /// A number a motion: its value, the instant that decides it, and its derivatives.
 struct Found {
@@ -15,12 +18,10 @@ struct Found {
     by_parameters: Vec<f64>,
 }
 
-/// Derivatives of all reduced outputs and margins that are of the motion; `outputs` has their sources.
-pub(super) fn of_sources(
-    description: &Description,
-    times: &[f64],
-    outputs: &[OutputGradients],
-) -> Vec<ReducedGradients> {
+/// Derivatives of all reduced outputs and margins that are of the motion; `found` has their sources among its outputs.
+pub(super) fn of_sources(description: &Description, found: &Gradients) -> Vec<ReducedGradients> {
+    let Gradients { times, outputs, .. } = found;
+    let nominal: Vec<f64> = found.parameters.iter().map(|parameter| parameter.value).collect();
     let curve = |output: usize, sign: f64| Curve { times, of: &outputs[output], sign };
     let reduced = description.reduced.iter().filter(|own| !own.of_results).filter_map(|own| {
         let found = of_reduced(own, description.simulation.duration, &curve)?;
@@ -31,7 +32,7 @@ pub(super) fn of_sources(
     let margins = description.requirements.iter().filter(|own| !own.of_results).filter_map(|own| {
         let found = match own.times {
             Some((from, to)) => of_margin(own, from, to.min(description.simulation.duration), &curve),
-            None => of_values(own, description, &all),
+            None => of_values(own, description, &nominal, &all),
         };
         Some(found?.named(own.name.clone(), own.unit.clone(), own.display.clone(), true))
     });
@@ -41,13 +42,7 @@ pub(super) fn of_sources(
 }
 
 impl Found {
-    fn named(
-        self,
-        name: String,
-        unit: String,
-        display: Option<crate::grammar::display_unit::DisplayUnit>,
-        is_margin: bool,
-    ) -> ReducedGradients {
+    fn named(self, name: String, unit: String, display: Option<DisplayUnit>, is_margin: bool) -> ReducedGradients {
         let Self { value, time, by_parameters } = self;
         ReducedGradients { name, unit, display, is_margin, value, time, by_parameters }
     }
@@ -148,28 +143,30 @@ fn of_reduced<'a>(own: &ReducedOutput, end: f64, curve: &impl Fn(usize, f64) -> 
 }
 
 /// The least slack of a requirement on reduced outputs and parameters; `None` where one of those has no derivatives.
-fn of_values(own: &Requirement, description: &Description, reduced: &[ReducedGradients]) -> Option<Found> {
-    let reads =
-        |known: &&ReducedOutput| own.slacks.iter().any(|slack| slack.names().any(|(name, _)| name == known.name));
-    let read = description.reduced.iter().filter(reads);
-    let read = read.map(|known| reduced.iter().find(|found| found.name == known.name));
-    let read: Vec<&ReducedGradients> = read.collect::<Option<_>>()?;
-    let names: Vec<&str> = read.iter().map(|found| found.name.as_str()).collect();
-    let numbers: Vec<f64> = read.iter().map(|found| found.value).collect();
-    let nominal = |(_, parameter): (usize, &Parameter)| match parameter.value {
-        ParameterValue::Interval { nominal, .. } => Some(nominal),
-        ParameterValue::Formula(_) => None,
+fn of_values(
+    own: &Requirement,
+    description: &Description,
+    nominal: &[f64],
+    reduced: &[ReducedGradients],
+) -> Option<Found> {
+    let of_slack = |slack: &Formula| {
+        let read =
+            description.reduced_in(slack).map(|(_, known)| reduced.iter().find(|found| found.name == known.name));
+        let read: Vec<&ReducedGradients> = read.collect::<Option<_>>()?;
+        let (names, numbers): (Vec<&str>, Vec<f64>) =
+            read.iter().map(|found| (found.name.as_str(), found.value)).unzip();
+        let formulas = NumberFormulas::of(&description.parameters, &names, std::slice::from_ref(slack));
+        let value = formulas.values(nominal, &numbers)[0];
+        let derivatives = formulas.derivatives(nominal, &numbers).swap_remove(0);
+        let (by_numbers, by_parameters) = derivatives.split_at(numbers.len());
+        let mut sum = by_parameters.to_vec();
+        for (by_number, found) in by_numbers.iter().zip(read) {
+            sum.iter_mut().zip(&found.by_parameters).for_each(|(sum, by)| *sum += by_number * by);
+        }
+        Some(Found { value, time: None, by_parameters: sum })
     };
-    let parameters: Vec<f64> = description.uncertain().filter_map(nominal).collect();
-    let formulas = NumberFormulas::of(&description.parameters, &names, &own.slacks);
-    let slacks = formulas.values(&parameters, &numbers).into_iter().zip(formulas.derivatives(&parameters, &numbers));
-    let (value, derivatives) = slacks.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (by_numbers, by_parameters) = derivatives.split_at(numbers.len());
-    let mut sum = by_parameters.to_vec();
-    for (by_number, found) in by_numbers.iter().zip(read) {
-        sum.iter_mut().zip(&found.by_parameters).for_each(|(sum, by)| *sum += by_number * by);
-    }
-    Some(Found { value, time: None, by_parameters: sum })
+    let slacks = own.slacks.iter().map(of_slack).collect::<Option<Vec<Found>>>()?;
+    slacks.into_iter().min_by(|a, b| a.value.total_cmp(&b.value))
 }
 
 /// The least slack of a requirement from one time to another.

@@ -149,14 +149,8 @@ impl Planner<'_> {
             Some(span) => own.outputs.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect(),
             None => {
                 let formula = |slack: &symdiff::Formula| {
-                    let reads = |own: &ReducedOutput| slack.names().any(|(name, _)| name == own.name);
-                    let (reduced, names): (Vec<usize>, Vec<&str>) = description
-                        .reduced
-                        .iter()
-                        .enumerate()
-                        .filter(|(_, own)| reads(own))
-                        .map(|(index, own)| (index, own.name.as_str()))
-                        .unzip();
+                    let (reduced, names): (Vec<usize>, Vec<&str>) =
+                        description.reduced_in(slack).map(|(index, own)| (index, own.name.as_str())).unzip();
                     let formulas = NumberFormulas::of(&description.parameters, &names, std::slice::from_ref(slack));
                     Value::Formulas { formulas: Box::new(formulas), reduced }
                 };

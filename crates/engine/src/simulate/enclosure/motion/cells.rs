@@ -10,8 +10,11 @@ use crate::certificate::spaces::Cell;
 /// Defect of the accelerations, relative to their size, above which a cell is halved.
 const LARGE_DEFECT: f64 = 1e-12;
 
-/// The same above which shorter cells are tried whatever the polynomials' last terms are: a knot of a table is passed.
+/// The same above which a knot must be in the cell, where the equations have any.
 pub(super) const HARMFUL_DEFECT: f64 = 1e-9;
+
+/// Last terms in τ of the accelerations, relative to their size, above which cells may be very short.
+pub(super) const STIFF_TAIL: f64 = 1e-9;
 
 /// Last terms in τ, relative to the accelerations, below which they do not matter.
 const SMALL_DEFECT: f64 = 1e-13;
@@ -51,7 +54,9 @@ pub(super) struct Next {
     pub ranges: Vec<Interval>,
     /// Of the accelerations, relative to their size.
     pub defect: f64,
-    /// Whether that is so large that a knot must be in the cell.
+    /// Whether that is so large that a knot must be in the cell. Much shorter cells may be better then even if one of
+    /// half the length is not: where the knot lies decides. Without a knot, halving that does not help shows that the
+    /// defect is of the parameters, not of the time.
     pub passes_knot: bool,
     /// Last terms of the accelerations with a power of τ, relative to their size: over this cell, over half of it, and
     /// over twice its length.
@@ -64,12 +69,6 @@ impl Next {
     /// Whether shorter cells may be better.
     pub fn is_long(&self) -> bool {
         self.is_coarse() || self.gain > LARGE_GAIN
-    }
-
-    /// Whether much shorter cells may be better where one of half the length is not: where a knot lies decides. What
-    /// halving does not make better otherwise is of the parameters, not of the time.
-    pub fn may_help_later(&self) -> bool {
-        self.passes_knot
     }
 
     /// Whether a shorter cell has a smaller defect, and needs it.

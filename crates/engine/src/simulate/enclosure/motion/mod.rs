@@ -26,7 +26,7 @@ use crate::certificate::spaces::{Cell, Space};
 use crate::certificate::{Piece, ProvenCell};
 use crate::compile::{EquationsProgram, Tapes};
 use approximation::Approximation;
-use cells::{HARMFUL_DEFECT, Next, Passed};
+use cells::{HARMFUL_DEFECT, Next, Passed, STIFF_TAIL};
 use proof::{Claim, inverse_about};
 
 /// Half the length of the first cell that is tried, s.
@@ -233,7 +233,7 @@ impl<'s> MotionEnclosure<'s> {
             let [shortest, of_stiff] = SHORTEST_HALVES;
             let can_halve = self.half > if self.is_stiff { of_stiff } else { shortest };
             let may_help = match (attempt, &best) {
-                (Ok(next), Some(before)) if !next.is_better_than(before) => before.may_help_later(),
+                (Ok(next), Some(before)) if !next.is_better_than(before) => before.passes_knot,
                 (Ok(next), _) => {
                     let is_long = next.is_long();
                     best = Some(next);
@@ -287,7 +287,7 @@ impl<'s> MotionEnclosure<'s> {
             rows.fold(0.0, f64::max) / (size(&approximation.w) + f64::MIN_POSITIVE)
         };
         let tails = [1.0, 0.5, 2.0].map(terms);
-        self.is_stiff = tails[0] > HARMFUL_DEFECT;
+        self.is_stiff = tails[0] > STIFF_TAIL;
         let jump = self.jump(&approximation);
         let at_start = self.frame.error(&coarse.box_of);
         let claim = Claim {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::simulate::events::locate::bisected;
+use crate::numerics::bisected;
 
 /// A place in a piece, as a share of its length, and the value there.
 pub(super) type Place = (f64, f64);
