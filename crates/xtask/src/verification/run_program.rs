@@ -65,31 +65,38 @@ fn name(file: &Path) -> String {
     file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-fn failed(command: &str, error: &str) -> Run {
-    Run { command: command.to_owned(), error: Some(error.to_owned()), ..Run::default() }
-}
-
-/// `mbint verify` of every model, as cases of a claim.
-pub fn verified_models(root: &Path, program: &Path, claim: &str, quick: bool) -> (Run, Vec<Case>) {
-    let command = "mbint verify MODEL --format json";
-    let files = match models(root, quick) {
-        Ok(files) => files,
-        Err(error) => return (failed(command, &error), Vec::new()),
-    };
+/// A case of a claim for every model, by a command on it.
+fn of_models(
+    root: &Path,
+    claim: &str,
+    quick: bool,
+    command: &str,
+    mut measured: impl FnMut(&Path) -> Result<Case, String>,
+) -> (Run, Vec<Case>) {
     let mut run = Run { command: command.to_owned(), ..Run::default() };
+    let files = models(root, quick).unwrap_or_else(|error| {
+        run.error = Some(error);
+        Vec::new()
+    });
     let mut cases = Vec::new();
     for file in files {
-        let output = Command::new(program).arg("verify").arg(&file).args(["--format", "json", "--quiet"]).output();
-        let read = output.map_err(|error| error.to_string()).and_then(|output| verified(&output));
-        match read {
-            Ok(case) => cases.push(unsettled(
-                &name(&file),
-                Case { claim: claim.to_owned(), case: format!("`{}`", name(&file)), ..case },
-            )),
+        match measured(&file) {
+            Ok(case) => {
+                cases.push(Case { claim: claim.to_owned(), case: format!("`{}`", name(&file)), ..case });
+            }
             Err(error) => run.error = Some(format!("{}: {error}", name(&file))),
         }
     }
     (run, cases)
+}
+
+/// `mbint verify` of every model, as cases of a claim.
+pub fn verified_models(root: &Path, program: &Path, claim: &str, quick: bool) -> (Run, Vec<Case>) {
+    of_models(root, claim, quick, "mbint verify MODEL --format json", |file| {
+        let output = Command::new(program).arg("verify").arg(file).args(["--format", "json", "--quiet"]).output();
+        let case = output.map_err(|error| error.to_string()).and_then(|output| verified(&output))?;
+        Ok(unsettled(&name(file), case))
+    })
 }
 
 /// The case of a model; figures of one whose orders are known not to show have no limits.
@@ -157,25 +164,9 @@ const OTHERWISE: [(&str, &[&str], Option<&str>); 2] = [
 
 /// `mbint run` of every model, again and again: how many files differ.
 pub fn same_bytes(root: &Path, program: &Path, claim: &str, quick: bool) -> (Run, Vec<Case>) {
-    let command = "mbint run MODEL --quiet --yes --no-report --output FOLDER";
-    let files = match models(root, quick) {
-        Ok(files) => files,
-        Err(error) => return (failed(command, &error), Vec::new()),
-    };
-    let mut run = Run { command: command.to_owned(), ..Run::default() };
-    let mut cases = Vec::new();
-    for file in files {
-        match compared(program, &file) {
-            Ok(figures) => cases.push(Case {
-                claim: claim.to_owned(),
-                case: format!("`{}`", name(&file)),
-                figures,
-                ..Case::default()
-            }),
-            Err(error) => run.error = Some(format!("{}: {error}", name(&file))),
-        }
-    }
-    (run, cases)
+    of_models(root, claim, quick, "mbint run MODEL --quiet --yes --no-report --output FOLDER", |file| {
+        Ok(Case { figures: compared(program, file)?, ..Case::default() })
+    })
 }
 
 fn compared(program: &Path, model: &Path) -> Result<Vec<Figure>, String> {
