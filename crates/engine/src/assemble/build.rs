@@ -145,6 +145,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
     let declared_parameters = if is_derived { description.parameters.clone() } else { Vec::new() };
     let mass_of_bodies = m.total_mass();
     let inputs = m.inputs.iter().map(MechanismInput::info).collect();
+    let is_excited = m.is_excited.get();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
     let kinds = [constraints.positions, constraints.velocities];
@@ -166,6 +167,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
             graph,
             parameters,
             inputs,
+            is_excited,
             random,
             time,
             q,

@@ -1,5 +1,6 @@
 //! From a description to a mechanism: symbols, parameters and bodies.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use symdiff::{Builder, Formula};
@@ -35,6 +36,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             superelements: superelements(description),
             time,
             inputs: inputs(g, questions, time),
+            is_excited: Cell::new(false),
             random: random_symbols(g, questions),
             uncertain: Vec::new(),
             child_guesses: Vec::new(),

@@ -1,5 +1,6 @@
 //! A mechanism as expressions: symbols, bodies, points and frames.
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap};
 
 use symdiff::{Builder, Expr, Scalar};
@@ -109,6 +110,8 @@ pub struct Mechanism<'g, 'd> {
     pub time: Scalar<'g>,
     /// Excitations that are functions.
     pub inputs: Vec<MechanismInput<'g>>,
+    /// Whether a formula names an excitation within limits.
+    pub is_excited: Cell<bool>,
     /// Random excitations, where vibrations are asked for.
     pub random: Vec<RandomSymbols<'g>>,
     /// The parameters that are symbols.

@@ -116,9 +116,10 @@ impl<'g> Mechanism<'g, '_> {
             return random.values[order as usize];
         }
         let own = self.names.trajectory(trajectory);
+        self.is_excited.set(self.is_excited.get() || own.excitation().is_some());
         let input = self.inputs.iter().find(|input| input.trajectory == trajectory);
         let value = match (own.excitation(), input) {
-            (Some(excitation), Some(input)) => excitation.value(input.value, number),
+            (Some(excitation), Some(input)) => excitation.of_function(input.value, number),
             _ => own.value(self.time, number),
         };
         let value = value.unwrap_or_else(|_| self.g.number(f64::NAN));

@@ -22,6 +22,8 @@ pub struct System {
     pub parameters: Vec<UncertainParameter>,
     /// Excitations that are functions of the time.
     pub inputs: Vec<InputInfo>,
+    /// Whether a formula names an excitation within limits.
+    pub is_excited: bool,
     /// Random excitations about which a mechanism is linearised.
     pub random: Vec<RandomInput>,
     /// t, s.

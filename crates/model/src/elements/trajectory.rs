@@ -118,7 +118,7 @@ impl Trajectory {
         number: impl Fn(&Formula) -> Result<Scalar<'g>, E>,
     ) -> Result<Scalar<'g>, E> {
         if let Some(excitation) = self.excitation() {
-            return excitation.value(excitation.as_constant(number(&excitation.deviation)?, time), number);
+            return excitation.as_constant(time, number);
         }
         if let Timing::Given(formula) = &self.timing {
             return number(formula);

@@ -222,6 +222,13 @@ grammar! {
         rate: Option<Number>,
         /// It is constant over each period of this length, s, and jumps between them.
         held: Option<Number>,
+        /// Its mean over the duration: `0 N`, or an interval of it, `0 N ± 1 N`; a formula of parameters.
+        mean: Option<MeanFile>,
+        /// Largest integral of its squared distance from the middle of its limits, or from 0, over the duration:
+        /// `4 N^2*s`; a formula of parameters.
+        energy: Option<Number>,
+        /// It is a sine of a frequency between these, Hz, or a mixture of such whose amplitudes add up to its limit.
+        band: Option<[Number; 2]>,
         /// It is a stationary random function with this spectrum.
         random: Option<Random>,
         /// Name of a random excitation, which stands before this one, that it repeats: rear wheels meet the road of the

@@ -225,6 +225,14 @@ schema_only! {
     }
 
     #[schemars(untagged, inline)]
+    pub enum MeanFile {
+        /// The least and the largest mean.
+        Ends([Number; 2]),
+        /// `0 N`, `0 N ± 1 N`.
+        Value(Number),
+    }
+
+    #[schemars(untagged, inline)]
     pub enum ParameterFile {
         /// A number, a formula, or a number with its unit, perhaps with its deviation: `0.5 m ± 1%`,
         /// `0.5 m +0.01 -0.02`, `[0.49, 0.51] m`.

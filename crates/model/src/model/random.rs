@@ -40,7 +40,7 @@ const EXAMPLE: &str =
     "give `road: C` with a `speed`, `white: 4 N^2*s` with a `band`, or a table `density: [[0.1, 4 N^2*s], …]`";
 
 /// Keys of limits, which a random function does not have.
-const LIMITS: [&str; 3] = ["within", "rate", "held"];
+const LIMITS: [&str; 6] = ["within", "rate", "held", "mean", "energy", "band"];
 
 /// A random excitation, or one that follows another; `None` also where neither is asked for.
 pub fn read(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Trajectory> {
@@ -265,8 +265,8 @@ fn positive(reader: &mut Reader, node: &Node, dimension: Dimension) -> Option<f6
     Some(value)
 }
 
-/// Frequencies of noise.
-fn band_of(reader: &mut Reader, node: &Node) -> Option<[f64; 2]> {
+/// Least and largest frequency, Hz.
+pub fn band_of(reader: &mut Reader, node: &Node) -> Option<[f64; 2]> {
     band(reader, node, Dimension::FREQUENCY, false)
 }
 

@@ -20,6 +20,8 @@ tuning! {
         trajectory_points: usize = 1000, moves "which models are refused";
         /// Times of a motion at which limits of excitations are compared.
         times_of_limits: usize = 101, moves "which models are refused";
+        /// Share by which rates and means of limits may be beyond them: they are rounded.
+        rounding_of_limits: f64 = 1e-9, moves "which models are refused";
         /// Lines of a random excitation that does not give their number: about 12 % from one to the next on a road, and
         /// less where the density is large.
         lines: usize = 100, moves "realisations of random excitations";

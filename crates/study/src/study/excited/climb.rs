@@ -5,7 +5,8 @@
 //! Else the kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops
 //! growing. A step that is worse is halved.
 
-use crate::numerics::{Cell, FunctionClass, ParameterBox, value};
+use super::motions::ExcitedMotions;
+use crate::numerics::{Cell, value};
 use crate::simulate::Gradient;
 
 /// Halvings of a step that is worse.
@@ -26,11 +27,6 @@ pub struct Point {
 }
 
 impl Point {
-    /// Parameters with all functions in the middle of their limits.
-    pub fn middle(xi: Vec<f64>, inputs: usize, cells: usize) -> Self {
-        Self { xi, functions: vec![vec![[0.0; 2]; cells]; inputs] }
-    }
-
     /// Levels and slopes, cell by cell, input by input.
     pub fn inputs(&self) -> Vec<f64> {
         let cells = self.functions.first().map_or(0, Vec::len);
@@ -131,7 +127,7 @@ impl Climb {
     }
 
     /// Takes the value and the gradient at the point that it went to.
-    pub fn take(&mut self, found: &Gradient, domain: &ParameterBox, ends: &[f64], classes: &[FunctionClass]) {
+    pub fn take(&mut self, found: &Gradient, motions: &ExcitedMotions) {
         let Some(point) = self.next.take() else { return };
         let reached = self.sign * found.value;
         let before = self.reached();
@@ -148,7 +144,7 @@ impl Climb {
             return;
         }
         self.halvings = 0;
-        let (worst, promise, cells) = self.along(found, &point, domain, ends, classes);
+        let (worst, promise, cells) = self.along(found, &point, motions);
         let (_, first) = *self.first.get_or_insert((reached, promise));
         self.next = (promise > WORTH * first).then_some(worst);
         (self.promise, self.cells) = (promise, cells);
@@ -156,29 +152,24 @@ impl Climb {
     }
 
     /// The point to which a gradient points, its promise there, and the cost of cells.
-    fn along(
-        &self,
-        found: &Gradient,
-        from: &Point,
-        domain: &ParameterBox,
-        ends: &[f64],
-        classes: &[FunctionClass],
-    ) -> (Point, f64, f64) {
+    fn along(&self, found: &Gradient, from: &Point, motions: &ExcitedMotions) -> (Point, f64, f64) {
         let mut worst = from.clone();
         let (mut promise, mut cost) = (0.0, 0.0);
         for (axis, by) in found.by_parameters.iter().enumerate() {
-            let by = self.sign * by * domain.half_width(axis);
+            let by = self.sign * by * motions.study.domain.half_width(axis);
             if by != 0.0 {
                 worst.xi[axis] = by.signum();
                 promise += by * (worst.xi[axis] - from.xi[axis]);
             }
         }
+        // Functions of the parameters to go to.
+        let classes = motions.classes(&worst.xi);
         for (input, class) in classes.iter().enumerate() {
             let of_cell = |by: &[f64]| [self.sign * by[2 * input], self.sign * by[2 * input + 1]];
             let functional: Vec<Cell> = found.by_inputs.chunks_exact(2 * classes.len()).map(of_cell).collect();
-            let (largest, function) = class.worst(ends, &functional);
+            let (largest, function) = class.worst(&motions.ends, &functional);
             promise += largest - value(&functional, &from.functions[input]);
-            cost += class.loss_of_cells(ends, &functional);
+            cost += class.loss_of_cells(&motions.ends, &functional);
             worst.functions[input] = function;
         }
         (worst, promise, cost)

@@ -85,12 +85,11 @@ impl Search<'_, '_> {
         let middle = self.motions.middle();
         let asked: Vec<Asked> = some.iter().map(|&(row, output)| (&middle, row, output)).collect();
         let kernels = self.motions.gradients(&asked)?;
-        let classes = self.motions.classes(&middle);
         let mut climbs: Vec<Climb> = Vec::with_capacity(2 * some.len());
         for (&(row, output), kernel) in some.iter().zip(&kernels) {
             for sign in [-1.0, 1.0] {
                 let mut climb = Climb::new(row, output, sign, middle.clone());
-                climb.take(kernel, &self.motions.study.domain, &self.motions.ends, &classes);
+                climb.take(kernel, &self.motions);
                 climbs.push(climb);
             }
         }
@@ -165,9 +164,7 @@ impl Search<'_, '_> {
         let found = self.motions.gradients(&asked)?;
         for (&number, found) in going.iter().zip(found) {
             let climb = &mut climbs[number];
-            let Some(point) = &climb.next else { continue };
-            let classes = self.motions.classes(point);
-            climb.take(&found, &self.motions.study.domain, &self.motions.ends, &classes);
+            climb.take(&found, &self.motions);
         }
         Ok(())
     }
@@ -175,7 +172,6 @@ impl Search<'_, '_> {
     /// Climbs once more from the best functions of the ends around, and from the two constants. Twice, since neighbours
     /// learn from one another.
     fn start_elsewhere(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
-        let cells = self.motions.ends.len();
         for round in 0..ROUNDS {
             let (mut numbers, mut others) = (Vec::new(), Vec::new());
             for (number, climb) in climbs.iter().enumerate() {
@@ -183,10 +179,10 @@ impl Search<'_, '_> {
                 let known = around.filter_map(|other| climbs.get(other)?.best.as_ref());
                 let mut starts: Vec<Point> = known.map(|(point, _)| point.clone()).collect();
                 if let Some((best, _)) = climb.best.as_ref().filter(|_| round == 0) {
-                    let classes = self.motions.classes(best);
+                    let classes = self.motions.classes(&best.xi);
                     starts.extend([-1.0, 1.0].map(|sign| Point {
                         xi: best.xi.clone(),
-                        functions: classes.iter().map(|class| class.constant(sign, cells)).collect(),
+                        functions: classes.iter().map(|class| class.constant(sign, &self.motions.ends)).collect(),
                     }));
                 }
                 numbers.extend(starts.iter().map(|_| number));

@@ -38,13 +38,24 @@ impl<'d> Limits<'d> {
         value.unwrap_or(f64::NAN)
     }
 
-    /// The functions that an excitation may be.
-    pub fn class(&self, excitation: &Excitation) -> FunctionClass {
+    /// The functions that an excitation may be, over cells that end at these times, s.
+    pub fn class(&self, excitation: &Excitation, ends: &[f64]) -> FunctionClass {
+        let number = |formula: &Formula| self.value(formula, 0.0);
         match &excitation.class {
             Class::Bounded => FunctionClass::Bounded,
             Class::Held(period) => FunctionClass::Held(*period),
             Class::Rate => FunctionClass::Rate,
-            Class::BoundedRate(ratio) => FunctionClass::BoundedRate(self.value(ratio, 0.0)),
+            Class::BoundedRate(ratio) => FunctionClass::BoundedRate(number(ratio)),
+            Class::MovingRate(rate) => {
+                let at = |time| [&excitation.middle, &excitation.reach].map(|formula| self.value(formula, time));
+                let limits = std::iter::once(0.0).chain(ends.iter().copied()).map(at).collect();
+                FunctionClass::Moving { limits, rate: number(rate) }
+            }
+            Class::Mean(mean) => FunctionClass::Mean(mean.each_ref().map(number)),
+            Class::Energy { energy, is_bounded, .. } => {
+                FunctionClass::Energy { energy: number(energy), bounded: *is_bounded }
+            }
+            Class::Band(band) => FunctionClass::Band(*band),
         }
     }
 

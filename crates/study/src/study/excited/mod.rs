@@ -16,18 +16,14 @@ use super::formulation::compiled;
 use super::problem::Study;
 use crate::assemble::Questions;
 use crate::methods::MethodResult;
-use crate::model::{Formulation, Trajectory, deviation_of};
+use crate::model::Formulation;
 use crate::simulate::{Schedule, SimulationError};
 use ends::ends;
 pub(super) use limits::Limits;
 
-/// Whether something of the study is an excitation.
+/// Whether an excitation acts.
 pub(super) fn is_excited(study: &Study) -> bool {
-    let is_input = |own: &Trajectory| {
-        let name = deviation_of(&own.name);
-        own.excitation().is_some() && study.simulator.system.parameters.iter().any(|known| known.name == name)
-    };
-    !study.simulator.system.analysis.visits() && study.description.trajectories.iter().any(is_input)
+    !study.simulator.system.analysis.visits() && study.simulator.system.is_excited
 }
 
 /// Searches the ends of all outputs over all functions; `None` where no excitation acts, and at an interruption.

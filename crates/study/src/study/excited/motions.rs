@@ -2,7 +2,7 @@
 
 use super::climb::Point;
 use super::limits::Limits;
-use crate::model::Excitation;
+use crate::model::{Class, Excitation};
 use crate::numerics::{FunctionClass, Sample};
 use crate::simulate::{
     Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Under, Wanted, gradients_under,
@@ -31,9 +31,8 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         let trajectories = &study.description.trajectories;
         let of_input = |input: &crate::assemble::InputInfo| trajectories[input.trajectory].excitation();
         let excitations: Vec<&Excitation> = simulator.system.inputs.iter().filter_map(of_input).collect();
-        let nominal = Limits::of(study.description, &study.domain.nominal);
-        let periods = excitations.iter().filter_map(|own| match nominal.class(own) {
-            FunctionClass::Held(period) => Some(period),
+        let periods = excitations.iter().filter_map(|own| match own.class {
+            Class::Held(period) => Some(period),
             _ => None,
         });
         let schedule = schedule.ending_at_multiples(&periods.collect::<Vec<f64>>());
@@ -53,7 +52,9 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
 
     /// Whether there are uncertain parameters beside those that excitations are as constants.
     pub fn has_parameters(&self) -> bool {
-        self.simulator.system.parameters.len() > self.excitations.len()
+        let of_excitations: Vec<String> =
+            self.excitations.iter().flat_map(|own| own.deviation.names().map(|(name, _)| name.to_owned())).collect();
+        self.simulator.system.parameters.iter().any(|own| !of_excitations.contains(&own.name))
     }
 
     /// Indices of the trajectories that inputs are.
@@ -64,7 +65,9 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     /// The nominal parameters with all functions in the middle of their limits.
     pub fn middle(&self) -> Point {
         let domain = &self.study.domain;
-        Point::middle(domain.xi(&domain.nominal), self.excitations.len(), self.ends.len())
+        let xi = domain.xi(&domain.nominal);
+        let functions = self.classes(&xi).iter().map(|class| class.middle(&self.ends)).collect();
+        Point { xi, functions }
     }
 
     /// The parameters at a point.
@@ -72,10 +75,10 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
         self.study.domain.sample(&point.xi)
     }
 
-    /// The functions that each excitation may be at a point.
-    pub fn classes(&self, point: &Point) -> Vec<FunctionClass> {
-        let limits = Limits::of(self.study.description, &self.sample(point));
-        self.excitations.iter().map(|own| limits.class(own)).collect()
+    /// The functions that each excitation may be at parameters (ξ).
+    pub fn classes(&self, xi: &[f64]) -> Vec<FunctionClass> {
+        let limits = Limits::of(self.study.description, &self.study.domain.sample(xi));
+        self.excitations.iter().map(|own| limits.class(own, &self.ends)).collect()
     }
 
     /// Values and gradients.

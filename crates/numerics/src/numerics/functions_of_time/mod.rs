@@ -1,0 +1,186 @@
+//! The function of a class that makes a linear functional largest: the end of an output over all functions of the time
+//! within limits, as far as the output is linear in them.
+//!
+//! Functions are u(t) = level + slope · t over cells of the time; the functional is Σ gₖ levelₖ + sₖ slopeₖ.
+//!
+//! - *Bounded*, |u| ≤ 1: levelₖ = sign gₖ, and the largest value is Σ |gₖ|, in the limit ∫ |h(t, τ)| dτ.
+//! - *Held*, constant over each period: the same with sums of gₖ over periods.
+//! - *Rate*, |u̇| ≤ 1 and u(0) = 0: in terms of slopes the functional has the coefficients
+//!   cₖ = sₖ − gₖ tₖ₋₁ + dₖ Σⱼ﹥ₖ gⱼ, and slopeₖ = sign cₖ.
+//! - *Bounded rate*, between limits with |u̇| ≤ ρ: a chain of values, by dynamic programming (`rate`).
+//! - *Mean* and *energy* over the whole time: `budget`.
+//! - *Band*: sines of a band of frequencies and their mixtures (`band`).
+//!
+//! Balakrishnan & Boyd, Syst. Control Lett. 19 (1992) 265 has the first.
+
+mod band;
+mod budget;
+mod jumps;
+mod rate;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use self::rate::Limits;
+
+/// Functions within limits.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FunctionClass {
+    /// |u| ≤ 1.
+    Bounded,
+    /// The same, constant over each period, s.
+    Held(f64),
+    /// |u̇| ≤ 1, u(0) = 0.
+    Rate,
+    /// |u| ≤ 1, and |u̇| at most this, 1/s.
+    BoundedRate(f64),
+    /// |u| ≤ 1 between limits that move, x = middle + reach · u, and |ẋ| at most `rate`.
+    Moving {
+        /// Middle and reach at the beginning, and at the end of each cell. They move no faster than `rate`.
+        limits: Arc<[[f64; 2]]>,
+        /// Of x, by s.
+        rate: f64,
+    },
+    /// |u| ≤ 1, with a mean over the whole time between these.
+    Mean([f64; 2]),
+    /// ∫ u² dt is at most `energy` (s) over the whole time; `bounded` ones have |u| ≤ 1 too.
+    Energy {
+        /// s
+        energy: f64,
+        /// Whether |u| ≤ 1.
+        bounded: bool,
+    },
+    /// Mixtures of sines of frequencies between these (Hz), whose amplitudes add up to 1 at most.
+    Band([f64; 2]),
+}
+
+/// Level and slope (1/s) in a cell; or the functional's coefficients of both.
+pub type Cell = [f64; 2];
+
+impl FunctionClass {
+    /// The function in the middle of the class, over cells that end at these times (s, ascending, the first begins at
+    /// 0).
+    pub fn middle(&self, ends: &[f64]) -> Vec<Cell> {
+        match self {
+            Self::Mean([least, most]) => vec![[0.5 * (least + most), 0.0]; ends.len()],
+            _ => vec![[0.0; 2]; ends.len()],
+        }
+    }
+
+    /// The function that goes as far as it can, upwards (1) or downwards (−1), as soon as it can and for the whole
+    /// time, over such cells.
+    pub fn constant(&self, sign: f64, ends: &[f64]) -> Vec<Cell> {
+        let level = |level: f64| vec![[level, 0.0]; ends.len()];
+        match self {
+            Self::Rate => vec![[0.0, sign]; ends.len()],
+            Self::Mean(mean) => level(mean[usize::from(sign > 0.0)]),
+            Self::Energy { energy, bounded } => {
+                let most = (energy / ends.last().copied().unwrap_or(0.0)).sqrt();
+                level(sign * if *bounded { most.min(1.0) } else { most })
+            }
+            Self::Band([least, _]) => level(if *least > 0.0 { 0.0 } else { sign }),
+            Self::Bounded | Self::Held(_) | Self::BoundedRate(_) | Self::Moving { .. } => level(sign),
+        }
+    }
+
+    /// The function that makes the functional largest, cell by cell, and the functional's value.
+    pub fn worst(&self, ends: &[f64], functional: &[Cell]) -> (f64, Vec<Cell>) {
+        let function = match self {
+            Self::Bounded => jumps::with_signs(functional.iter().map(|[level, _]| *level)),
+            Self::Held(period) => jumps::held(*period, ends, functional),
+            Self::Rate => rate::from_zero(ends, functional),
+            Self::BoundedRate(ratio) => rate::between(*ratio, &rate::Still, ends, functional),
+            Self::Moving { limits, rate } => rate::between(*rate, limits, ends, functional),
+            Self::Mean(mean) => budget::with_mean(*mean, ends, functional).0,
+            Self::Energy { energy, bounded } => budget::with_energy(*energy, *bounded, ends, functional).0,
+            Self::Band(band) => band::worst_sine(*band, ends, functional).0,
+        };
+        (value(functional, &function), function)
+    }
+
+    /// What cells cost, within which no function changes: at most as much as a kernel costs that is straight in them.
+    /// Periods end where cells do, and cost nothing; of functions that are bounded with their rate it is what joining
+    /// cells in pairs costs; of sines, by how much their chords are smaller.
+    pub fn loss_of_cells(&self, ends: &[f64], functional: &[Cell]) -> f64 {
+        let levels = || functional.iter().map(|[level, _]| *level);
+        match self {
+            Self::Bounded => at_changes(ends, &levels().collect::<Vec<f64>>()),
+            Self::Held(_) => 0.0,
+            Self::Rate => at_changes(ends, &rate::by_slopes(ends, functional)),
+            Self::BoundedRate(ratio) => in_pairs(*ratio, &rate::Still, ends, functional),
+            Self::Moving { limits, rate } => in_pairs(*rate, limits, ends, functional),
+            Self::Mean(mean) => {
+                let (_, multiplier) = budget::with_mean(*mean, ends, functional);
+                let beyond =
+                    levels().enumerate().map(|(cell, level)| level - multiplier * (ends[cell] - begin(ends, cell)));
+                at_changes(ends, &beyond.collect::<Vec<f64>>())
+            }
+            Self::Energy { energy, bounded } => {
+                let (function, factor) = budget::with_energy(*energy, *bounded, ends, functional);
+                if factor.is_finite() {
+                    budget::loss_by_energy(factor, ends, functional, &function)
+                } else {
+                    at_changes(ends, &levels().collect::<Vec<f64>>())
+                }
+            }
+            Self::Band(band) => {
+                let (function, frequency) = band::worst_sine(*band, ends, functional);
+                value(functional, &function) * band::share_of_chords(frequency, ends)
+            }
+        }
+    }
+}
+
+/// What joining cells in pairs costs functions between limits that have a limited rate.
+fn in_pairs(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) -> f64 {
+    // From the end, where the kernel is largest as a rule.
+    let joined = |pair: &[Cell]| pair.iter().fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
+    let mut pairs: Vec<Cell> = functional.rchunks(2).map(joined).collect();
+    let mut of_pairs: Vec<f64> = ends.rchunks(2).map(|pair| pair[pair.len() - 1]).collect();
+    pairs.reverse();
+    of_pairs.reverse();
+    let every_other = rate::EveryOther { limits, alone: ends.len() % 2 };
+    let all = value(functional, &rate::between(rate, limits, ends, functional));
+    (all - value(&pairs, &rate::between(rate, &every_other, &of_pairs, &pairs))).max(0.0)
+}
+
+/// What cells cost in which a kernel changes its sign, given its integrals over them. A straight one of slope s costs
+/// s d² min(x, 1 − x)² where its zero is at the share x of a cell of length d.
+fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
+    let length = |cell: usize| ends[cell] - begin(ends, cell);
+    let cost = |cell: usize| {
+        let [before, after] = [length(cell - 1), length(cell)];
+        let slope = (integrals[cell] / after - integrals[cell - 1] / before) / (0.5 * (before + after));
+        0.25 * slope.abs() * before.max(after).powi(2)
+    };
+    let changes = (1..integrals.len()).filter(|&cell| integrals[cell] * integrals[cell - 1] <= 0.0);
+    changes.map(cost).sum()
+}
+
+/// The functional's value for a function.
+pub fn value(functional: &[Cell], function: &[Cell]) -> f64 {
+    functional.iter().zip(function).map(|(by, of)| by[0] * of[0] + by[1] * of[1]).sum()
+}
+
+/// 1, −1, or 0 of zero.
+fn sign(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}
+
+/// When a cell begins, s.
+fn begin(ends: &[f64], cell: usize) -> f64 {
+    cell.checked_sub(1).map_or(0.0, |before| ends[before])
+}
+
+/// The cell of a function that goes straight from a value to another.
+fn straight(ends: &[f64], cell: usize, from: f64, to: f64) -> Cell {
+    let begin = begin(ends, cell);
+    let slope = (to - from) / (ends[cell] - begin);
+    [from - slope * begin, slope]
+}
+
+/// The function that is straight between values at the ends of cells; the first is that at the beginning.
+fn along(ends: &[f64], value: impl Fn(usize) -> f64) -> Vec<Cell> {
+    (0..ends.len()).map(|cell| straight(ends, cell, value(cell), value(cell + 1))).collect()
+}
