@@ -9,7 +9,7 @@ use super::{Failure, Status};
 use crate::export::{Suite, write_junit};
 use crate::grammar::display_unit::ShownUnit;
 use crate::model::{is_standard_input, shown};
-use crate::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict, foremost};
+use crate::results::{NearestCase, ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict, foremost};
 
 /// Where verdicts are collected for a file.
 pub(super) struct Junit {
@@ -180,16 +180,23 @@ fn notes(all: &[RequirementSummary]) -> String {
         match own.verdict {
             Verdict::Holds => (),
             Verdict::Violated => {
-                let Some(nearest) = nearest else { continue };
+                let unit = ShownUnit::of(&own.display, &own.unit);
+                let by = |margin: f64| format!("by {} {}", short(-unit.of_si(margin)), unit.text).trim_end().to_owned();
+                let fails = |nearest: &&NearestCase| nearest.margin.is_nan() || nearest.margin < 0.0;
+                let Some(nearest) = nearest.filter(fails) else {
+                    text += &format!(
+                        "  {} is violated, {}, under functions of excitations: see its witness\n",
+                        own.name,
+                        by(own.margin)
+                    );
+                    continue;
+                };
                 let time = nearest.time.map_or_else(String::new, |time| format!(" at {} s", short(time)));
                 let command =
                     if nearest.command.is_empty() { nearest.settings.join(", ") } else { nearest.command.clone() };
                 let margin = match nearest.margin.is_nan() {
                     true => "has no value".to_owned(),
-                    false => {
-                        let unit = ShownUnit::of(&own.display, &own.unit);
-                        format!("by {} {}", short(-unit.of_si(nearest.margin)), unit.text).trim_end().to_owned()
-                    }
+                    false => by(nearest.margin),
                 };
                 text += &format!("  {} is violated{time}, {margin}: {command}\n", own.name);
             }

@@ -49,7 +49,7 @@ mod time_functions;
 mod unmet_switch;
 mod visit;
 
-pub use adjoint::{Functions, Gradient, NoGradient, Under, Wanted, gradients, gradients_under};
+pub use adjoint::{Functional, Functions, Gradient, NoGradient, Term, Under, Wanted, gradients, gradients_under};
 pub use closure::{Closure, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};

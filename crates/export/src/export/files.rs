@@ -69,9 +69,9 @@ pub fn write_results(
         files.add("witnesses.csv", &witnesses_csv(bounds, &summary.parameters)?)?;
         files.add(POINTS, &points_csv(bounds, &summary.parameters)?)?;
     }
-    let outputs = bounds.functions.iter().map(|own| bounds.outputs[own.output].name.as_str());
-    for (stem, own) in unique_stems(outputs).into_iter().zip(&bounds.functions) {
-        let text = function_witness_csv(bounds, own, &summary.parameters);
+    let names = bounds.functions.iter().map(|own| own.name.as_str());
+    for (stem, own) in unique_stems(names).into_iter().zip(&bounds.functions) {
+        let text = function_witness_csv(own, &summary.parameters);
         files.add(&format!("witness.{stem}.csv"), text.as_bytes())?;
     }
     let is_alone = bounds.is_of_one_configuration();

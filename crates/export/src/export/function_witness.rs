@@ -1,19 +1,20 @@
-//! `witness.NAME.csv`: the functions of excitations under which an output goes the furthest.
+//! `witness.NAME.csv`: the functions of excitations under which an output or a reduced output goes the furthest,
+//! or a requirement fails.
 
 use crate::grammar::display_unit::ShownUnit;
 use crate::model::deviation_of;
-use crate::results::{Bounds, FunctionWitness, ParameterSummary};
+use crate::results::{FunctionWitness, ParameterSummary};
 
 use super::csv::number;
 
 /// A table with a column for each excitation, which `mbint run --witness` replays and `tables` read (`interpolation:
 /// linear`). Comments name the output, and have the values of parameters.
-pub fn function_witness_csv(bounds: &Bounds, witness: &FunctionWitness, parameters: &[ParameterSummary]) -> String {
-    let output = &bounds.outputs[witness.output];
-    let unit = ShownUnit::of(&output.display, &output.unit);
-    let (value, time) = (number(unit.of_si(witness.value)), number(witness.time));
+pub fn function_witness_csv(witness: &FunctionWitness, parameters: &[ParameterSummary]) -> String {
+    let unit = ShownUnit::of(&witness.display, &witness.unit);
+    let value = number(unit.of_si(witness.value));
+    let time = witness.time.map_or_else(String::new, |time| format!(" at t = {} s", number(time)));
     let value = format!("{value} {}", unit.text);
-    let mut text = format!("# {} is {} at t = {time} s under these functions\n", output.name, value.trim_end());
+    let mut text = format!("# {} is {}{time} under these functions\n", witness.name, value.trim_end());
     for (parameter, value) in parameters.iter().zip(&witness.parameters) {
         // What an excitation is as a constant has no value here.
         let is_excitation = witness.functions.iter().any(|own| parameter.name == deviation_of(&own.name));
@@ -50,16 +51,23 @@ fn at(points: &[(f64, f64)], time: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{OutputBounds, WitnessFunction};
+    use crate::results::WitnessFunction;
 
     #[test]
     fn functions_share_their_times() {
-        let output = OutputBounds { name: "x".into(), unit: "m".into(), display: None, nominal: vec![], bands: vec![] };
-        let bounds = Bounds { outputs: vec![output], ..Bounds::default() };
         let function =
             |name: &str, points: &[(f64, f64)]| WitnessFunction { name: name.into(), points: points.to_vec() };
         let functions = vec![function("road", &[(0.0, 0.0), (2.0, 1.0)]), function("gust", &[(0.0, 5.0), (1.0, 5.0)])];
-        let witness = FunctionWitness { output: 0, time: 2.0, value: 0.5, parameters: vec![3.0, 0.0], functions };
+        let witness = FunctionWitness {
+            name: "x".into(),
+            unit: "m".into(),
+            display: None,
+            output: Some(0),
+            time: Some(2.0),
+            value: 0.5,
+            parameters: vec![3.0, 0.0],
+            functions,
+        };
         let parameter = |name: &str| ParameterSummary {
             name: name.into(),
             unit: String::new(),
@@ -68,7 +76,7 @@ mod tests {
             lower: 0.0,
             upper: 4.0,
         };
-        let text = function_witness_csv(&bounds, &witness, &[parameter("k"), parameter("road.deviation")]);
+        let text = function_witness_csv(&witness, &[parameter("k"), parameter("road.deviation")]);
         let expected =
             "# x is 0.5 m at t = 2 s under these functions\n# parameter k = 3\nt,road,gust\n0,0,5\n1,0.5,5\n2,1,5\n";
         assert_eq!(text, expected);

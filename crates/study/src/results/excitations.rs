@@ -24,14 +24,20 @@ pub struct ExcitationSummary {
     pub value: f64,
 }
 
-/// The functions under which an output goes the furthest.
+/// The functions under which an output or a reduced output goes the furthest, or under which a requirement fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FunctionWitness {
-    /// Number of the output.
-    pub output: usize,
-    /// When it is there, s.
-    pub time: f64,
-    /// The output there, SI.
+    /// Its name.
+    pub name: String,
+    /// Its SI unit; that of the margin of a requirement.
+    pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    pub display: Option<DisplayUnit>,
+    /// Number of the output; `None` of reduced outputs and requirements.
+    pub output: Option<usize>,
+    /// When it is there, s; `None` of what has no instant.
+    pub time: Option<f64>,
+    /// The output there, or the margin, SI.
     pub value: f64,
     /// All uncertain parameters, SI.
     pub parameters: Vec<f64>,

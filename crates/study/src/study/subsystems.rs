@@ -188,7 +188,10 @@ impl<'a> Whole<'a> {
     /// The same of functions of excitations.
     fn functions(&self, done: &Done) -> Vec<FunctionWitness> {
         let of_whole = |own: &FunctionWitness| {
-            let output = *done.subsystem.outputs.get(own.output)?;
+            let output = match own.output {
+                Some(output) => Some(*done.subsystem.outputs.get(output)?),
+                None => None,
+            };
             let parameters = self.spread(done.subsystem, &own.parameters, &self.domain.nominal);
             Some(FunctionWitness { output, parameters, ..own.clone() })
         };

@@ -24,9 +24,9 @@ mod tiles;
 pub use cells::Functions;
 pub(in crate::simulate) use cells::{TileInputs, TileKernel};
 pub(in crate::simulate) use path::{Path, Stepping};
-pub(in crate::simulate) use rows::RowAdjoints;
+pub(in crate::simulate) use rows::{LaneTerm, RowAdjoints};
 pub(in crate::simulate) use start::StartAdjoints;
-pub use tiles::{Gradient, NoGradient, Under, Wanted, gradients, gradients_under};
+pub use tiles::{Functional, Gradient, NoGradient, Term, Under, Wanted, gradients, gradients_under};
 
 /// Adds values times a factor.
 pub(in crate::simulate) fn add(to: &mut [f64], factor: f64, values: &[f64]) {

@@ -7,6 +7,16 @@ use crate::simulate::ensemble::{Needs, corrections};
 use crate::simulate::simulator::Simulator;
 use symdiff::Tile;
 
+/// A term of a lane in a row.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::simulate) struct LaneTerm {
+    pub lane: usize,
+    /// Index among the lane's terms.
+    pub index: usize,
+    pub output: usize,
+    pub weight: f64,
+}
+
 /// A row's outputs as functions of its state, and backwards.
 #[derive(Debug)]
 pub(in crate::simulate) struct RowAdjoints<'s> {
@@ -55,9 +65,9 @@ impl<'s> RowAdjoints<'s> {
         &self.kernel
     }
 
-    /// Adjoints of a state (q, v, a, w, λ) of the outputs there, one of each lane, if any; the outputs' values are
-    /// added to `values` (lane by lane).
-    pub fn pull(&mut self, time: f64, state: &[f64], outputs: &[Option<usize>], values: &mut [f64]) -> Vec<f64> {
+    /// Adjoints of a state (q, v, a, w, λ) of the terms there; the outputs' values are noted in `values` (by lane and
+    /// term).
+    pub fn pull(&mut self, time: f64, state: &[f64], terms: &[LaneTerm], values: &mut [Vec<f64>]) -> Vec<f64> {
         let (program, layout) = (self.memory.program(), self.memory.layout());
         if let Some(inputs) = self.inputs {
             self.memory.set_inputs(inputs.values(inputs.cell(time)));
@@ -69,15 +79,11 @@ impl<'s> RowAdjoints<'s> {
             assembly.accelerate();
         }
         assembly.observe();
-        for (lane, output) in outputs.iter().enumerate() {
-            if let Some(output) = output {
-                values[lane] += assembly.tile().lane(program.outputs[*output])[lane];
-            }
+        for term in terms {
+            values[term.lane][term.index] = assembly.tile().lane(program.outputs[term.output])[term.lane];
         }
-        for (lane, output) in outputs.iter().enumerate() {
-            if let Some(output) = output {
-                self.memory.adjoints().lane_mut(program.outputs[*output])[lane] += 1.0;
-            }
+        for term in terms {
+            self.memory.adjoints().lane_mut(program.outputs[term.output])[term.lane] += term.weight;
         }
         self.memory.pull(program.observe());
         if self.accelerates {

@@ -7,9 +7,10 @@ use super::add;
 use super::cells::{Functions, TileInputs, TileKernel};
 use super::formulas::derivatives_of_formulas;
 use super::path::Path;
-use super::rows::RowAdjoints;
+use super::rows::{LaneTerm, RowAdjoints};
 use super::start::StartAdjoints;
 use super::steps::{StepAdjoints, Steps};
+use crate::assemble::System;
 use crate::compile::Tapes;
 use crate::model::Analysis;
 use crate::numerics::Sample;
@@ -35,11 +36,46 @@ pub struct Wanted {
     pub output: usize,
 }
 
-/// An output in a row of a sample, and its derivatives.
+/// A weighted sum of outputs in rows of a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Functional {
+    /// Number of the sample.
+    pub sample: usize,
+    /// Its terms, one at least.
+    pub terms: Vec<Term>,
+}
+
+/// An output in a row, with its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    /// Row of output.
+    pub row: usize,
+    /// Number of the output.
+    pub output: usize,
+    /// Its factor in the sum.
+    pub weight: f64,
+}
+
+impl From<Wanted> for Functional {
+    fn from(Wanted { sample, row, output }: Wanted) -> Self {
+        Self { sample, terms: vec![Term { row, output, weight: 1.0 }] }
+    }
+}
+
+impl Functional {
+    /// The last row that it needs.
+    fn last_row(&self) -> usize {
+        self.terms.iter().map(|term| term.row).max().unwrap_or(0)
+    }
+}
+
+/// A functional of a sample, and its derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
-    /// The output there, SI.
+    /// The weighted sum, SI.
     pub value: f64,
+    /// The output of each term, SI.
+    pub terms: Vec<f64>,
     /// By each parameter (k), SI. Not finite where the output has no derivative.
     pub by_parameters: Vec<f64>,
     /// By the inputs in each cell, where functions of the time are given.
@@ -79,7 +115,8 @@ pub fn gradients(
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
     let under = Under { functions: None, backwards: true };
-    gradients_under(simulator, schedule, samples, wanted, under, interruption)
+    let wanted: Vec<Functional> = wanted.iter().copied().map(Functional::from).collect();
+    gradients_under(simulator, schedule, samples, &wanted, under, interruption)
 }
 
 /// Functions of the time that motions are under, and whether these are followed backwards.
@@ -91,7 +128,7 @@ pub struct Under<'f> {
     pub backwards: bool,
 }
 
-/// Gradients under functions of the time.
+/// Gradients of functionals, under functions of the time.
 ///
 /// # Errors
 /// As for [`gradients`].
@@ -99,17 +136,12 @@ pub fn gradients_under(
     simulator: &Simulator,
     schedule: &Schedule,
     samples: &[Sample],
-    wanted: &[Wanted],
+    wanted: &[Functional],
     Under { functions, backwards }: Under<'_>,
     interruption: Interruption<'_>,
 ) -> Result<Vec<Gradient>, NoGradient> {
     if simulator.system.analysis == Analysis::Dimensions {
-        let asked = wanted.iter().map(|wanted| (wanted.sample, wanted.output));
-        let found = derivatives_of_formulas(&simulator.system, samples, asked);
-        return Ok(found
-            .into_iter()
-            .map(|(value, by_parameters)| Gradient { value, by_parameters, by_inputs: Vec::new(), lost: None })
-            .collect());
+        return Ok(of_formulas(&simulator.system, samples, wanted));
     }
     if simulator.system.analysis.visits() {
         return Err(NoGradient::NoMotion { analysis: simulator.system.analysis.name() });
@@ -119,14 +151,14 @@ pub fn gradients_under(
     }
     // Lanes of a tile end in rows that are near each other.
     let mut order: Vec<usize> = (0..wanted.len()).collect();
-    order.sort_by_key(|&number| wanted[number].row);
+    order.sort_by_key(|&number| wanted[number].last_row());
     let tiles = tiles(wanted.len(), MEMORIES * simulator.program.registers(), rayon::current_num_threads());
     let parts = tiles.into_par_iter().map(|(first, count, width)| {
         if interruption.is_asked() {
             return Err(NoGradient::from(SimulationError::Interrupted));
         }
         let numbers: Vec<usize> = (0..width).map(|lane| order[first + lane.min(count - 1)]).collect();
-        let lanes = numbers.iter().map(|&number| wanted[number]).collect();
+        let lanes = numbers.iter().map(|&number| &wanted[number]).collect();
         let inputs = functions.map(|functions| TileInputs::of(&functions, &numbers));
         let tile = TileOf { simulator, schedule, samples, lanes, lost: vec![None; width], inputs, backwards };
         let mut of_lanes = tile.gradients()?;
@@ -140,12 +172,29 @@ pub fn gradients_under(
     Ok(numbered.into_iter().map(|(_, gradient)| gradient).collect())
 }
 
+/// Functionals of results by formulas, which need no motion.
+fn of_formulas(system: &System, samples: &[Sample], wanted: &[Functional]) -> Vec<Gradient> {
+    let asked = wanted.iter().flat_map(|own| own.terms.iter().map(|term| (own.sample, term.output)));
+    let mut found = derivatives_of_formulas(system, samples, asked).into_iter();
+    let of_functional = |own: &Functional| {
+        let (mut value, mut by_parameters) = (0.0, vec![0.0; system.parameters.len()]);
+        let mut terms = Vec::with_capacity(own.terms.len());
+        for (term, (of_term, by)) in own.terms.iter().zip(&mut found) {
+            value += term.weight * of_term;
+            add(&mut by_parameters, term.weight, &by);
+            terms.push(of_term);
+        }
+        Gradient { value, terms, by_parameters, by_inputs: Vec::new(), lost: None }
+    };
+    wanted.iter().map(of_functional).collect()
+}
+
 /// One gradient a lane.
 struct TileOf<'a> {
     simulator: &'a Simulator,
     schedule: &'a Schedule,
     samples: &'a [Sample],
-    lanes: Vec<Wanted>,
+    lanes: Vec<&'a Functional>,
     lost: Vec<Option<f64>>,
     inputs: Option<TileInputs>,
     backwards: bool,
@@ -160,7 +209,7 @@ impl TileOf<'_> {
     /// # Errors
     /// Where a lane cannot be assembled.
     fn gradients(mut self) -> Result<Vec<Gradient>, NoGradient> {
-        let mut values = vec![0.0; self.lanes.len()];
+        let mut values: Vec<Vec<f64>> = self.lanes.iter().map(|lane| vec![0.0; lane.terms.len()]).collect();
         // Lost lanes are noted while the functions are borrowed.
         let inputs = self.inputs.take();
         let (by_parameters, kernel) = match self.schedule.integration {
@@ -168,14 +217,16 @@ impl TileOf<'_> {
             Integration::Extrapolated { levels } => self.of_scheme(levels, &mut values, inputs.as_ref()),
             Integration::Explicit | Integration::Segments => self.of_explicit(&mut values, inputs.as_ref()),
         }?;
-        let of_lane = |(lane, value): (usize, f64)| {
+        let of_lane = |(lane, terms): (usize, Vec<f64>)| {
+            let value = self.lanes[lane].terms.iter().zip(&terms).map(|(term, value)| term.weight * value).sum();
             let by_parameters = by_parameters.iter().skip(lane).step_by(self.lanes.len()).copied();
             let by_inputs = kernel.of_lane(lane, self.lanes.len());
             match self.lost[lane] {
-                None => Gradient { value, by_parameters: by_parameters.collect(), by_inputs, lost: None },
+                None => Gradient { value, terms, by_parameters: by_parameters.collect(), by_inputs, lost: None },
                 lost => {
                     let by_parameters = by_parameters.map(|_| f64::NAN).collect();
-                    Gradient { value: f64::NAN, by_parameters, by_inputs, lost }
+                    let terms = vec![f64::NAN; terms.len()];
+                    Gradient { value: f64::NAN, terms, by_parameters, by_inputs, lost }
                 }
             }
         };
@@ -189,23 +240,33 @@ impl TileOf<'_> {
 
     /// The rows that are asked for, the last first.
     fn rows(&self) -> Vec<usize> {
-        let mut rows: Vec<usize> = self.lanes.iter().map(|wanted| wanted.row).collect();
+        let mut rows: Vec<usize> = self.lanes.iter().flat_map(|lane| lane.terms.iter().map(|term| term.row)).collect();
         rows.sort_unstable();
         rows.dedup();
         rows.reverse();
         rows
     }
 
-    /// The output of each lane that is asked for in a row.
-    fn outputs(&self, row: usize) -> Vec<Option<usize>> {
-        self.lanes.iter().map(|wanted| (wanted.row == row).then_some(wanted.output)).collect()
+    /// The terms of all lanes in a row.
+    fn terms(&self, row: usize) -> Vec<LaneTerm> {
+        let of_lane = |(lane, functional): (usize, &&Functional)| {
+            let terms: Vec<LaneTerm> = functional
+                .terms
+                .iter()
+                .enumerate()
+                .filter(|(_, term)| term.row == row)
+                .map(|(index, term)| LaneTerm { lane, index, output: term.output, weight: term.weight })
+                .collect();
+            terms
+        };
+        self.lanes.iter().enumerate().flat_map(of_lane).collect()
     }
 
     /// By the scheme on so many levels.
     fn of_scheme(
         &mut self,
         levels: usize,
-        values: &mut [f64],
+        values: &mut [Vec<f64>],
         inputs: Option<&TileInputs>,
     ) -> Result<ByAll, NoGradient> {
         let Self { simulator, schedule, .. } = *self;
@@ -248,7 +309,7 @@ impl TileOf<'_> {
         .under(inputs);
         let mut by_motions = Vec::with_capacity(rows.len());
         for (&row, motion) in rows.iter().zip(&motions) {
-            by_motions.push(observer.pull(schedule.time(row), motion, &self.outputs(row), values));
+            by_motions.push(observer.pull(schedule.time(row), motion, &self.terms(row), values));
         }
         if !self.backwards {
             return Ok(self.nothing());
@@ -274,13 +335,13 @@ impl TileOf<'_> {
     }
 
     /// By the explicit method.
-    fn of_explicit(&self, values: &mut [f64], inputs: Option<&TileInputs>) -> Result<ByAll, NoGradient> {
+    fn of_explicit(&self, values: &mut [Vec<f64>], inputs: Option<&TileInputs>) -> Result<ByAll, NoGradient> {
         let Self { simulator, schedule, .. } = *self;
         let start = self.assemble(0.0)?;
         let rows: Vec<ExplicitRow> = self
             .rows()
             .into_iter()
-            .map(|row| ExplicitRow { time: schedule.time(row), outputs: self.outputs(row) })
+            .map(|row| ExplicitRow { time: schedule.time(row), terms: self.terms(row) })
             .collect();
         let last = rows.first().map_or(0.0, |row| row.time);
         let mut ends = schedule.ending_at(Instants::of(simulator)).ends();

@@ -8,7 +8,7 @@ use symdiff::Tile;
 
 use super::runge_kutta::RungeKutta;
 use super::tableau::{DENSE, Row, STAGES, TIMES, WEIGHTS, WITH_DENSE};
-use crate::simulate::adjoint::{Path, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, add};
+use crate::simulate::adjoint::{LaneTerm, Path, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, add};
 use crate::simulate::ensemble::{Needs, RowClosure};
 use crate::simulate::error::SimulationError;
 use crate::simulate::sampling::Instants;
@@ -77,11 +77,11 @@ impl Stepping for ExplicitSteps<'_> {
     }
 }
 
-/// A row: its time, s, and the output of each lane that is asked for in it, if any.
+/// A row: its time, s, and the terms of lanes in it.
 #[derive(Clone, Debug)]
 pub(in crate::simulate) struct ExplicitRow {
     pub time: f64,
-    pub outputs: Vec<Option<usize>>,
+    pub terms: Vec<LaneTerm>,
 }
 
 /// Corrections that close a step's end: each squares its distance from the constraints.
@@ -132,16 +132,16 @@ impl<'s> ExplicitAdjoints<'s> {
         })
     }
 
-    /// From the rows, the last first, to the start; the outputs' values are added to `values` (lane by lane). Returns
+    /// From the rows, the last first, to the start; the outputs' values are noted in `values` (by lane and term). Returns
     /// adjoints of the start's positions and velocities (2n lines).
-    pub fn pull(&mut self, rows: &[ExplicitRow], closing: &mut RowAdjoints, values: &mut [f64]) -> Vec<f64> {
+    pub fn pull(&mut self, rows: &[ExplicitRow], closing: &mut RowAdjoints, values: &mut [Vec<f64>]) -> Vec<f64> {
         let mut adjoints = vec![0.0; self.path.start().len()];
         let mut rows = rows.iter().peekable();
         for step in (0..self.path.steps()).rev() {
             let (begin, end) = (self.path.stepping().begin(step), self.path.stepping().ends[step]);
             let inputs = self.path.stepping().inputs;
             let mut of_row = |row: &ExplicitRow, motion: &[f64]| {
-                let mut by_motion = closing.pull(row.time, motion, &row.outputs, values);
+                let mut by_motion = closing.pull(row.time, motion, &row.terms, values);
                 by_motion.truncate(motion.len());
                 by_motion
             };
@@ -201,7 +201,7 @@ impl<'s> ExplicitAdjoints<'s> {
         }
         let start = self.path.start().to_vec();
         for row in rows {
-            let mut by_motion = closing.pull(row.time, &start, &row.outputs, values);
+            let mut by_motion = closing.pull(row.time, &start, &row.terms, values);
             by_motion.truncate(start.len());
             add(&mut adjoints, 1.0, &by_motion);
         }

@@ -32,20 +32,48 @@ pub fn excitations(study: &Study, bounded: &Bounded, bounds: &Bounds) -> Vec<Exc
     bounds.outputs.iter().enumerate().filter_map(of_output).collect()
 }
 
-/// The functions under which each output goes the furthest.
+/// The functions under which each output and reduced output goes the furthest, and under which requirements fail.
 pub fn function_witnesses(study: &Study, bounded: &Bounded) -> Vec<FunctionWitness> {
     let Some(functions) = &bounded.functions else { return Vec::new() };
-    let of_output = |(output, worst): (usize, &Option<(f64, WorstFunction)>)| {
-        let (_, worst) = worst.as_ref()?;
-        Some(FunctionWitness {
-            output,
-            time: bounded.plan.schedule.time(worst.row),
-            value: worst.value,
-            parameters: worst.sample.to_vec(),
-            functions: of_excitations(study, functions, worst, bounded.plan.schedule.time(worst.row)),
-        })
+    let description = study.description;
+    let (schedule, duration) = (&bounded.plan.schedule, description.simulation.duration);
+    let witness = |name: &str, unit: &str, time: Option<f64>, worst: &WorstFunction| FunctionWitness {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        display: description.display.get(name).cloned(),
+        output: None,
+        time,
+        value: worst.value,
+        parameters: worst.sample.to_vec(),
+        functions: of_excitations(study, functions, worst, time.unwrap_or(duration)),
     };
-    functions.worst.iter().enumerate().filter_map(of_output).collect()
+    let of_output = |(output, worst): (usize, &Option<(f64, WorstFunction)>)| {
+        let (own, (_, worst)) = (&description.outputs[output], worst.as_ref()?);
+        let time = Some(schedule.time(worst.row));
+        Some(FunctionWitness { output: Some(output), ..witness(&own.name, &own.unit, time, worst) })
+    };
+    let mut all: Vec<FunctionWitness> = functions.worst.iter().enumerate().filter_map(of_output).collect();
+    let values = functions.of_values.as_deref();
+    for (own, worst) in description.reduced.iter().zip(values.iter().flat_map(|values| &values.worst)) {
+        all.extend(worst.as_ref().map(|(_, worst)| witness(&own.name, &own.unit, None, worst)));
+    }
+    for (number, own) in description.requirements.iter().enumerate() {
+        let lowest = match own.times {
+            Some(_) => own.outputs.iter().filter_map(|&output| functions.lowest[output].as_ref()).collect(),
+            None => lowest_parts(study, values, number),
+        };
+        let lowest = lowest.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
+        let Some(lowest) = lowest.filter(|lowest| lowest.value < 0.0) else { continue };
+        let time = own.times.map(|_| schedule.time(lowest.row));
+        all.push(FunctionWitness { display: own.display.clone(), ..witness(&own.name, &own.unit, time, lowest) });
+    }
+    all
+}
+
+/// The functions under which the parts of a requirement's margin are least.
+fn lowest_parts<'f>(study: &Study, values: Option<&'f FunctionEnds>, requirement: usize) -> Vec<&'f WorstFunction> {
+    let (Some(store), Some(values)) = (study.store.get(), values) else { return Vec::new() };
+    store.plan.values.parts(requirement).filter_map(|part| values.lowest[part].as_ref()).collect()
 }
 
 /// The excitations up to a time, s.

@@ -34,10 +34,14 @@ pub struct FunctionEnds {
     steps: Vec<Option<f64>>,
     /// By output, with how far it goes from the middle of all limits.
     pub worst: Vec<Option<(f64, WorstFunction)>>,
+    /// By output, the function under which it is least in some row.
+    pub lowest: Vec<Option<WorstFunction>>,
     /// The excitation that each input is, by index of its trajectory.
     pub inputs: Vec<usize>,
     /// Times at which cells end, s.
     pub ends_of_cells: Vec<f64>,
+    /// Of reduced outputs and margins, as outputs of one row, where there are any.
+    pub of_values: Option<Box<Self>>,
 }
 
 impl FunctionEnds {
@@ -45,7 +49,16 @@ impl FunctionEnds {
     pub fn new(rows: usize, outputs: usize, inputs: Vec<usize>, ends_of_cells: Vec<f64>) -> Self {
         let unknown = FunctionEnd { value: f64::NAN, open: f64::NAN };
         let (ends, steps) = (vec![[unknown; 2]; rows * outputs], vec![None; rows * outputs]);
-        Self { outputs, ends, steps, worst: vec![None; outputs], inputs, ends_of_cells }
+        Self {
+            outputs,
+            ends,
+            steps,
+            worst: vec![None; outputs],
+            lowest: vec![None; outputs],
+            inputs,
+            ends_of_cells,
+            of_values: None,
+        }
     }
 
     /// Notes an end.
@@ -64,6 +77,14 @@ impl FunctionEnds {
         let worst = &mut self.worst[output];
         if worst.as_ref().is_none_or(|(known, _)| gain > *known) {
             *worst = Some((gain, function()));
+        }
+    }
+
+    /// Notes a function under which an output has a value, if none has a smaller one.
+    pub fn note_lowest(&mut self, output: usize, value: f64, function: impl FnOnce() -> WorstFunction) {
+        let lowest = &mut self.lowest[output];
+        if lowest.as_ref().is_none_or(|known| value < known.value) {
+            *lowest = Some(function());
         }
     }
 

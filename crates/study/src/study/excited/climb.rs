@@ -5,7 +5,7 @@
 //! Else the kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops
 //! growing. A step that is worse is halved.
 
-use super::motions::ExcitedMotions;
+use super::motions::{Asked, ExcitedMotions, in_row};
 use crate::numerics::{Cell, value};
 use crate::simulate::Gradient;
 
@@ -55,6 +55,8 @@ pub struct Climb {
     /// The best point, the value there (upwards), and what gradients promise from there on.
     pub best: Option<(Point, f64)>,
     pub promise: f64,
+    /// The same before halved steps have told that it is less.
+    pub promised: f64,
     /// The value at its start, upwards, and what the gradient promised there.
     first: Option<(f64, f64)>,
     /// What cells cost at the best point.
@@ -75,6 +77,7 @@ impl Climb {
             sign,
             best: None,
             promise: f64::NAN,
+            promised: f64::NAN,
             first: None,
             cells: f64::NAN,
             improved: 0.0,
@@ -94,8 +97,8 @@ impl Climb {
     }
 
     /// The point to go to, with the output that is asked for there.
-    pub fn asked(&self) -> Option<(&Point, usize, usize)> {
-        self.next.as_ref().map(|point| (point, self.row, self.output))
+    pub fn asked(&self) -> Option<Asked<'_>> {
+        self.next.as_ref().map(|point| (point, in_row(self.row, self.output)))
     }
 
     /// The best value, upwards.
@@ -123,6 +126,7 @@ impl Climb {
         if gain > 0.0 {
             self.improved = self.improved.max(if gain.is_finite() { gain } else { 0.0 });
             (self.best, self.promise, self.cells) = (other.best, other.promise, other.cells);
+            self.promised = other.promised;
         }
     }
 
@@ -147,7 +151,7 @@ impl Climb {
         let (worst, promise, cells) = self.along(found, &point, motions);
         let (_, first) = *self.first.get_or_insert((reached, promise));
         self.next = (promise > WORTH * first).then_some(worst);
-        (self.promise, self.cells) = (promise, cells);
+        (self.promise, self.promised, self.cells) = (promise, promise, cells);
         self.best = Some((point, reached));
     }
 

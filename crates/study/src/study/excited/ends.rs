@@ -7,7 +7,8 @@
 //! these.
 
 use super::climb::{Climb, Point};
-use super::motions::{Asked, ExcitedMotions};
+use super::motions::{Asked, ExcitedMotions, in_row};
+use super::values::ends_of_values;
 use crate::numerics::step_error;
 use crate::simulate::{Schedule, SimulationError, Simulator};
 use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
@@ -20,7 +21,7 @@ const AT_ONCE: usize = 128;
 const FOLLOWED: usize = 8;
 
 /// Steps of a climb, and of one from a neighbour's function.
-const STEPS: usize = 24;
+pub(super) const STEPS: usize = 24;
 const LEARNT: usize = 8;
 
 /// How often ends are climbed to from elsewhere.
@@ -30,10 +31,10 @@ const ROUNDS: usize = 2;
 const CHECKED: usize = 16;
 
 /// Error of steps over the change by halved ones where a function jumps: by the scheme, a jump takes a step.
-const FIRST_ORDER: f64 = 2.0;
+pub(super) const FIRST_ORDER: f64 = 2.0;
 
 /// Factor by which these estimates may be wrong, as with validation samples.
-const SAFETY: f64 = 1.25;
+pub(super) const SAFETY: f64 = 1.25;
 
 /// An end of an output that is not linear in the functions.
 struct Bent {
@@ -64,7 +65,11 @@ pub fn ends(
     }
     search.follow_bent()?;
     search.found.spread_steps();
-    Ok((search.found, search.motions.count))
+    let Search { mut motions, mut found, .. } = search;
+    if let Some(store) = study.store.get() {
+        found.of_values = Some(Box::new(ends_of_values(&mut motions, &found, store)?));
+    }
+    Ok((found, motions.count))
 }
 
 /// Some rows, ascending, the last of all among them.
@@ -83,7 +88,7 @@ impl Search<'_, '_> {
     /// Ends of some outputs in rows that are linear in the functions; the others are noted as bent.
     fn straight(&mut self, some: &[(usize, usize)], checked: &[usize]) -> Result<(), SimulationError> {
         let middle = self.motions.middle();
-        let asked: Vec<Asked> = some.iter().map(|&(row, output)| (&middle, row, output)).collect();
+        let asked: Vec<Asked> = some.iter().map(|&(row, output)| (&middle, in_row(row, output))).collect();
         let kernels = self.motions.gradients(&asked)?;
         let mut climbs: Vec<Climb> = Vec::with_capacity(2 * some.len());
         for (&(row, output), kernel) in some.iter().zip(&kernels) {
@@ -232,7 +237,7 @@ impl Search<'_, '_> {
         let point = |climb: &&'_ Climb| climb.best.as_ref().map(|(point, _)| point.clone());
         let points: Vec<Point> = known.iter().filter_map(point).collect();
         let asked: Vec<Asked> =
-            points.iter().zip(&known).map(|(point, climb)| (point, climb.row, climb.output)).collect();
+            points.iter().zip(&known).map(|(point, climb)| (point, in_row(climb.row, climb.output))).collect();
         let halved = self.motions.values(&asked, 2)?;
         let jumps = self.motions.jumps();
         for (climb, halved) in known.into_iter().zip(halved) {
@@ -250,7 +255,11 @@ impl Search<'_, '_> {
         let Some((point, reached)) = &climb.best else { return };
         let value = sign * reached;
         self.found.note(row, output, sign > 0.0, FunctionEnd { value, open: climb.open() });
-        let (sample, cells) = (self.motions.sample(point), &point.functions);
-        self.found.note_worst(output, climb.gain(), || WorstFunction { row, value, sample, cells: cells.clone() });
+        let function =
+            || WorstFunction { row, value, sample: self.motions.sample(point), cells: point.functions.clone() };
+        self.found.note_worst(output, climb.gain(), function);
+        if sign < 0.0 {
+            self.found.note_lowest(output, value, function);
+        }
     }
 }

@@ -3,12 +3,14 @@
 //! As a constant, an excitation is an uncertain parameter, and methods bound it with the others. As a function, it is
 //! an input of equations that are compiled once more: a level and a slope in each step (`motions`). The gradient of an
 //! output in a row by all of them is its kernel, from one run backwards. It names the worst function (`climb`) of a
-//! class that `limits` evaluates. Every end is attained by a function (`ends`); it widens the methods' bands.
+//! class that `limits` evaluates. Every end is attained by a function (`ends`); it
+//! widens the methods' bands. `values` has ends of reduced outputs.
 
 mod climb;
 mod ends;
 mod limits;
 mod motions;
+mod values;
 
 use super::RunError;
 use super::bounding::{FunctionEnds, Outcome, timed};

@@ -5,12 +5,17 @@ use super::limits::Limits;
 use crate::model::{Class, Excitation};
 use crate::numerics::{FunctionClass, Sample};
 use crate::simulate::{
-    Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Under, Wanted, gradients_under,
+    Functional, Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Term, Under, gradients_under,
 };
 use crate::study::problem::Study;
 
-/// An output in a row at a point.
-pub type Asked<'p> = (&'p Point, usize, usize);
+/// A weighted sum of outputs in rows at a point.
+pub type Asked<'p> = (&'p Point, Vec<Term>);
+
+/// An output in a row.
+pub fn in_row(row: usize, output: usize) -> Vec<Term> {
+    vec![Term { row, output, weight: 1.0 }]
+}
 
 /// The equations with excitations as inputs, and the steps.
 pub struct ExcitedMotions<'s, 'm> {
@@ -95,16 +100,23 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     /// # Errors
     /// As for gradients.
     pub fn values(&mut self, asked: &[Asked], parts: usize) -> Result<Vec<f64>, SimulationError> {
+        Ok(self.all_values(asked, parts)?.into_iter().map(|found| found.value).collect())
+    }
+
+    /// The same, with the values of all terms.
+    ///
+    /// # Errors
+    /// As for gradients.
+    pub fn all_values(&mut self, asked: &[Asked], parts: usize) -> Result<Vec<Gradient>, SimulationError> {
         self.count += asked.len();
-        let found = self.run(&self.schedule.refined(parts), asked, false)?;
-        Ok(found.into_iter().map(|found| found.value).collect())
+        self.run(&self.schedule.refined(parts), asked, false)
     }
 
     fn run(&self, schedule: &Schedule, asked: &[Asked], backwards: bool) -> Result<Vec<Gradient>, SimulationError> {
-        let samples: Vec<Sample> = asked.iter().map(|(point, ..)| self.sample(point)).collect();
-        let wanted = |(sample, &(_, row, output)): (usize, &Asked)| Wanted { sample, row, output };
-        let wanted: Vec<Wanted> = asked.iter().enumerate().map(wanted).collect();
-        let values: Vec<Vec<f64>> = asked.iter().map(|(point, ..)| point.inputs()).collect();
+        let samples: Vec<Sample> = asked.iter().map(|(point, _)| self.sample(point)).collect();
+        let wanted = |(sample, (_, terms)): (usize, &Asked)| Functional { sample, terms: terms.clone() };
+        let wanted: Vec<Functional> = asked.iter().enumerate().map(wanted).collect();
+        let values: Vec<Vec<f64>> = asked.iter().map(|(point, _)| point.inputs()).collect();
         let under = Under { functions: Some(Functions { ends: &self.ends, values: &values }), backwards };
         let found = gradients_under(self.simulator, schedule, &samples, &wanted, under, self.study.interruption);
         found.map_err(simulation)

@@ -4,6 +4,7 @@
 mod curve;
 mod reduced;
 
+pub(super) use self::reduced::{InRows, in_rows};
 use crate::model::{Description, Parameter, ParameterValue};
 use crate::numerics::Sample;
 use crate::results::{GradientParameter, Gradients, OutputGradients};

@@ -9,7 +9,8 @@ use super::curve::Curve;
 use crate::assemble::NumberFormulas;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
-use crate::results::{Gradients, ReducedGradients};
+use crate::results::{Gradients, OutputGradients, ReducedGradients};
+use crate::simulate::Term;
 
 /// A number a motion: its value, the instant that decides it, and its derivatives.
 struct Found {
@@ -72,6 +73,48 @@ impl Found {
         let by_parameters = self.by_parameters.iter().map(|by| factor * by).collect();
         Self { value: factor * self.value, by_parameters, ..self }
     }
+}
+
+/// A reduced output of a motion, with its derivatives by its sources in all rows.
+pub struct InRows {
+    /// Its value, SI.
+    pub value: f64,
+    /// The derivatives that are not zero.
+    pub terms: Vec<Term>,
+}
+
+/// A reduced output of outputs in rows at these times, s, by its derivatives there; `series` has an output's rows.
+/// `None` where it has none.
+pub fn in_rows<'s>(
+    own: &ReducedOutput,
+    duration: f64,
+    times: &[f64],
+    series: impl Fn(usize) -> &'s [f64],
+) -> Option<InRows> {
+    let mut sources = own.outputs.clone();
+    sources.dedup();
+    let (rows, count) = (times.len(), times.len() * sources.len());
+    let unit = |index: usize| {
+        let mut by = vec![0.0; count];
+        by[index] = 1.0;
+        by
+    };
+    let of_source = |(number, output): (usize, &usize)| OutputGradients {
+        name: String::new(),
+        unit: String::new(),
+        display: None,
+        values: series(*output).to_vec(),
+        by_parameters: (0..rows).map(|row| unit(number * rows + row)).collect(),
+    };
+    let of: Vec<OutputGradients> = sources.iter().enumerate().map(of_source).collect();
+    let curve = |output: usize, sign: f64| {
+        let number = sources.iter().position(|own| *own == output).unwrap_or(0);
+        Curve { times, of: &of[number], sign }
+    };
+    let found = of_reduced(own, duration, &curve)?;
+    let term = |(index, weight): (usize, f64)| Term { row: index % rows, output: sources[index / rows], weight };
+    let terms = found.by_parameters.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0).map(term).collect();
+    Some(InRows { value: found.value, terms })
 }
 
 /// `None` where a reduced output has no derivatives here: a path's straightness, and an instant that is not there.

@@ -16,7 +16,7 @@ use crate::results::{
     Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
 };
 use crate::simulate::{Schedule, SimulationError};
-use crate::study::bounding::{Bounded, Doubts, Outcome, bands, contributions, simulation_error, timed};
+use crate::study::bounding::{Bounded, Doubts, FunctionEnds, Outcome, bands, contributions, simulation_error, timed};
 use crate::study::ensemble::Progress;
 use crate::study::problem::{Study, problem};
 use crate::study::stepping::{StepPlan, divided};
@@ -80,9 +80,12 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
     let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(odd) };
     let mut results = bounds_of(study, ensembles, plan, halved)?;
-    // Samples are of constants, and say nothing of excitations that are functions.
-    let unreliable = rows.unreliable_from().is_some() || rows.functions.is_some();
-    let kept = kept_reduced(study, &mut results, &store.plan.values, unreliable);
+    let unreliable = rows.unreliable_from().is_some();
+    // What is evaluated after the run is of constants, and says nothing of excitations that are functions.
+    let kept = kept_reduced(study, &mut results, &store.plan.values, unreliable || rows.functions.is_some());
+    if let Some(functions) = rows.functions.as_ref().and_then(|own| own.of_values.as_deref()) {
+        bound_by_functions(&mut results, functions);
+    }
     results.note(&direct);
     let values = Evaluated::new(study, &results, unreliable, store);
     (study.stage)("requirements");
@@ -105,6 +108,20 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
         ..MethodSummary::default()
     });
     Ok(Found { reduced, requirements, summary, kept })
+}
+
+/// Ends over functions stand for those of constants, which are some of them: over constants, peaks have kinks in which
+/// polynomials are off.
+fn bound_by_functions(results: &mut Bounded, functions: &FunctionEnds) {
+    for (_, Outcome { result, .. }) in &mut results.methods {
+        for (index, bands) in result.bands.iter_mut().enumerate() {
+            if functions.open(0, index).is_finite() {
+                bands[0] = functions.range(0, index);
+                result.surrogate[index][0] = 0.0;
+            }
+        }
+    }
+    results.functions = Some(functions.clone());
 }
 
 /// What each sampled method finds of all values.
@@ -208,6 +225,8 @@ fn summary_of(
     contributions.sort_by(|a, b| b.total.total_cmp(&a.total));
     let known = || values.samples.iter().filter(|(_, values)| !values[index].is_nan());
     let case = |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[index] };
+    // Those are of constants.
+    let known_of_functions = values.bounded.functions.is_some();
     let least = known().min_by(|a, b| a.1[index].total_cmp(&b.1[index])).map(case);
     let greatest = known().max_by(|a, b| a.1[index].total_cmp(&b.1[index])).map(case);
     let absent = values.samples.iter().find(|(_, values)| values[index].is_nan());
@@ -221,7 +240,7 @@ fn summary_of(
         nominal: values.bounded.nominal.result.bands[index][0].lower,
         bands: bands(study, values.bounded, index, 1).into_iter().map(band).collect(),
         contributions,
-        worst: least.zip(greatest).map(|(least, greatest)| [least, greatest]),
+        worst: least.zip(greatest).filter(|_| !known_of_functions).map(|(least, greatest)| [least, greatest]),
         occurs: (occurs.samples < occurs.of).then_some(occurs),
     }
 }
