@@ -36,6 +36,9 @@ pub struct FunctionEnds {
     pub worst: Vec<Option<(f64, WorstFunction)>>,
     /// By output, the function under which it is least in some row.
     pub lowest: Vec<Option<WorstFunction>>,
+    /// By row and output: how far each parameter, then each input moves it either way, to first order from the middle of
+    /// all limits.
+    parts: Vec<Vec<f64>>,
     /// The excitation that each input is, by index of its trajectory.
     pub inputs: Vec<usize>,
     /// Times at which cells end, s.
@@ -55,6 +58,7 @@ impl FunctionEnds {
             steps,
             worst: vec![None; outputs],
             lowest: vec![None; outputs],
+            parts: vec![Vec::new(); rows * outputs],
             inputs,
             ends_of_cells,
             of_values: None,
@@ -64,6 +68,18 @@ impl FunctionEnds {
     /// Notes an end.
     pub fn note(&mut self, row: usize, output: usize, is_upper: bool, end: FunctionEnd) {
         self.ends[row * self.outputs + output][usize::from(is_upper)] = end;
+    }
+
+    /// Adds how far parameters and inputs move an output one way.
+    pub fn note_parts(&mut self, row: usize, output: usize, parts: &[f64]) {
+        let known = &mut self.parts[row * self.outputs + output];
+        known.resize(parts.len(), 0.0);
+        known.iter_mut().zip(parts).for_each(|(known, own)| *known += own);
+    }
+
+    /// How far parameters and inputs move an output.
+    pub fn parts(&self, row: usize, output: usize) -> &[f64] {
+        &self.parts[row * self.outputs + output]
     }
 
     /// Notes the error of the steps of an output in a row; the largest counts.

@@ -59,6 +59,8 @@ pub struct Climb {
     pub promised: f64,
     /// The value at its start, upwards, and what the gradient promised there.
     first: Option<(f64, f64)>,
+    /// What each parameter, then each input had of that promise.
+    pub parts: Vec<f64>,
     /// What cells cost at the best point.
     pub cells: f64,
     /// By how much starts from elsewhere have improved the end.
@@ -79,6 +81,7 @@ impl Climb {
             promise: f64::NAN,
             promised: f64::NAN,
             first: None,
+            parts: Vec::new(),
             cells: f64::NAN,
             improved: 0.0,
             next: Some(start),
@@ -148,22 +151,28 @@ impl Climb {
             return;
         }
         self.halvings = 0;
-        let (worst, promise, cells) = self.along(found, &point, motions);
+        let (worst, parts, cells) = self.along(found, &point, motions);
+        let promise: f64 = parts.iter().sum();
         let (_, first) = *self.first.get_or_insert((reached, promise));
+        if self.parts.is_empty() {
+            self.parts = parts;
+        }
         self.next = (promise > WORTH * first).then_some(worst);
         (self.promise, self.promised, self.cells) = (promise, promise, cells);
         self.best = Some((point, reached));
     }
 
-    /// The point to which a gradient points, its promise there, and the cost of cells.
-    fn along(&self, found: &Gradient, from: &Point, motions: &ExcitedMotions) -> (Point, f64, f64) {
+    /// The point to which a gradient points, what it promises there by each parameter and each input, and the cost of
+    /// cells.
+    fn along(&self, found: &Gradient, from: &Point, motions: &ExcitedMotions) -> (Point, Vec<f64>, f64) {
         let mut worst = from.clone();
-        let (mut promise, mut cost) = (0.0, 0.0);
+        let mut parts = vec![0.0; found.by_parameters.len()];
+        let mut cost = 0.0;
         for (axis, by) in found.by_parameters.iter().enumerate() {
             let by = self.sign * by * motions.study.domain.half_width(axis);
             if by != 0.0 {
                 worst.xi[axis] = by.signum();
-                promise += by * (worst.xi[axis] - from.xi[axis]);
+                parts[axis] = by * (worst.xi[axis] - from.xi[axis]);
             }
         }
         // Functions of the parameters to go to.
@@ -172,10 +181,10 @@ impl Climb {
             let of_cell = |by: &[f64]| [self.sign * by[2 * input], self.sign * by[2 * input + 1]];
             let functional: Vec<Cell> = found.by_inputs.chunks_exact(2 * classes.len()).map(of_cell).collect();
             let (largest, function) = class.worst(&motions.ends, &functional);
-            promise += largest - value(&functional, &from.functions[input]);
+            parts.push(largest - value(&functional, &from.functions[input]));
             cost += class.loss_of_cells(&motions.ends, &functional);
             worst.functions[input] = function;
         }
-        (worst, promise, cost)
+        (worst, parts, cost)
     }
 }

@@ -95,6 +95,7 @@ impl Search<'_, '_> {
             for sign in [-1.0, 1.0] {
                 let mut climb = Climb::new(row, output, sign, middle.clone());
                 climb.take(kernel, &self.motions);
+                self.found.note_parts(row, output, &climb.parts);
                 climbs.push(climb);
             }
         }

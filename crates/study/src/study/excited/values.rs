@@ -291,6 +291,8 @@ impl Values<'_, '_, '_> {
         };
         let (index, value) = &self.all[*number];
         let index = *index;
+        // From the middle of all limits, with which climbs begin.
+        found.note_parts(0, index, &climbs[0].climb.parts);
         // A peak that is made small has kinks, at which halved steps tell nothing: of a linear output the gradient's
         // whole promise holds.
         let by_gradient = climb.promised.max(0.0) + climb.cells;
