@@ -68,6 +68,12 @@ pub struct Climb {
     /// The point to go to.
     pub next: Option<Point>,
     halvings: i32,
+    /// Derivatives by the parameters (ξ) at the best point, upwards.
+    slopes: Vec<f64>,
+    /// By parameter: ξ and the derivative beyond its best value, as far as that is known.
+    beyond: Vec<Option<(f64, f64)>>,
+    /// What the gradient at the best point promises, by parameter and input.
+    promises: Vec<f64>,
 }
 
 impl Climb {
@@ -86,6 +92,9 @@ impl Climb {
             improved: 0.0,
             next: Some(start),
             halvings: 0,
+            slopes: Vec::new(),
+            beyond: Vec::new(),
+            promises: Vec::new(),
         }
     }
 
@@ -129,7 +138,8 @@ impl Climb {
         if gain > 0.0 {
             self.improved = self.improved.max(if gain.is_finite() { gain } else { 0.0 });
             (self.best, self.promise, self.cells) = (other.best, other.promise, other.cells);
-            self.promised = other.promised;
+            (self.promised, self.promises) = (other.promised, other.promises);
+            (self.slopes, self.beyond) = (other.slopes, other.beyond);
         }
     }
 
@@ -140,26 +150,57 @@ impl Climb {
         let before = self.reached();
         // A point that cannot be simulated is no better.
         let is_better = reached > before;
+        let scaled = |(axis, by): (usize, &f64)| self.sign * by * motions.study.domain.half_width(axis);
+        let slopes: Vec<f64> = found.by_parameters.iter().enumerate().map(scaled).collect();
         if !is_better {
-            let halved = self.best.as_ref().map(|(best, _)| best.halfway(&point));
-            self.halvings += 1;
-            self.next = halved.filter(|_| self.halvings <= HALVINGS);
-            if self.next.is_none() {
-                // A part of the step that gains nothing bounds what the whole of it does, along its line.
-                self.promise *= 0.5_f64.powi(self.halvings - 1);
-            }
+            self.step_back(&point, &slopes);
             return;
         }
         self.halvings = 0;
+        let passed = |axis: usize| self.slopes[axis] * slopes[axis] < 0.0;
+        let before = self.best.as_ref().map(|(best, _)| &best.xi);
+        self.beyond = match before {
+            Some(xi) => (0..slopes.len())
+                .map(|axis| if passed(axis) { Some((xi[axis], self.slopes[axis])) } else { self.beyond[axis] })
+                .collect(),
+            None => vec![None; slopes.len()],
+        };
+        self.slopes = slopes;
         let (worst, parts, cells) = self.along(found, &point, motions);
         let promise: f64 = parts.iter().sum();
         let (_, first) = *self.first.get_or_insert((reached, promise));
         if self.parts.is_empty() {
-            self.parts = parts;
+            self.parts.clone_from(&parts);
         }
         self.next = (promise > WORTH * first).then_some(worst);
         (self.promise, self.promised, self.cells) = (promise, promise, cells);
+        self.promises = parts;
         self.best = Some((point, reached));
+    }
+
+    /// From a point that is no better: halfway to it, of parameters that have passed their best value to where the secant
+    /// of their derivatives is zero.
+    fn step_back(&mut self, point: &Point, slopes: &[f64]) {
+        let Some((best, _)) = &self.best else { return };
+        self.halvings += 1;
+        let mut next = best.halfway(point);
+        for (axis, (own, other)) in self.slopes.iter().zip(slopes).enumerate() {
+            if own * other < 0.0 && (point.xi[axis] - best.xi[axis]) * own > 0.0 {
+                self.beyond[axis] = Some((point.xi[axis], *other));
+            }
+            if let Some((target, promise)) = secant(best.xi[axis], *own, self.beyond[axis]) {
+                next.xi[axis] = target;
+                self.promises[axis] = promise;
+            }
+        }
+        self.promise = self.promises.iter().sum();
+        self.promised = self.promise;
+        if self.halvings <= HALVINGS {
+            self.next = Some(next);
+        } else {
+            // A part of the step that gains nothing bounds what the whole of it does, along its line.
+            self.promise *= 0.5_f64.powi(self.halvings - 1);
+        }
     }
 
     /// The point to which a gradient points, what it promises there by each parameter and each input, and the cost of
@@ -168,12 +209,9 @@ impl Climb {
         let mut worst = from.clone();
         let mut parts = vec![0.0; found.by_parameters.len()];
         let mut cost = 0.0;
-        for (axis, by) in found.by_parameters.iter().enumerate() {
-            let by = self.sign * by * motions.study.domain.half_width(axis);
-            if by != 0.0 {
-                worst.xi[axis] = by.signum();
-                parts[axis] = by * (worst.xi[axis] - from.xi[axis]);
-            }
+        for (axis, &by) in self.slopes.iter().enumerate().filter(|(_, by)| **by != 0.0) {
+            let to_corner = (by.signum(), by * (by.signum() - from.xi[axis]));
+            (worst.xi[axis], parts[axis]) = secant(from.xi[axis], by, self.beyond[axis]).unwrap_or(to_corner);
         }
         // Functions of the parameters to go to.
         let classes = motions.classes(&worst.xi);
@@ -187,4 +225,12 @@ impl Climb {
         }
         (worst, parts, cost)
     }
+}
+
+/// Where the secant of two derivatives is zero, and what a parabola gains there; of a parameter at `xi` with a
+/// derivative `slope`, whose sign is another `beyond`.
+fn secant(xi: f64, slope: f64, beyond: Option<(f64, f64)>) -> Option<(f64, f64)> {
+    let (other, by) = beyond.filter(|(other, by)| slope * by < 0.0 && (other - xi) * slope > 0.0)?;
+    let target = xi + slope * (other - xi) / (slope - by);
+    Some((target, 0.5 * slope * (target - xi)))
 }
