@@ -9,6 +9,9 @@ use crate::simulate::sampling::Instants;
 /// Times that differ by this share of the output step are the same.
 const ROUNDING: f64 = 1e-9;
 
+/// Shortest part of a step that ends at a chosen time, as a share of the step: multipliers of shorter ones are rounding.
+const SHORTEST: f64 = 0.01;
+
 impl Schedule {
     /// The same with steps that end at all multiples of periods, s, too.
     #[must_use]
@@ -18,24 +21,43 @@ impl Schedule {
         self.ending_at(Instants::at(&multiples)).into_owned()
     }
 
+    /// The same with steps that end at some times, s, too, unless they end near them.
+    #[must_use]
+    pub fn ending_at_times(&self, times: &[f64]) -> Self {
+        let parts = |h: f64, end: f64| {
+            let near = SHORTEST * h;
+            let within = times.iter().copied().filter(move |time| *time > end - h + near && *time < end - near);
+            let mut ends: Vec<f64> = within.collect();
+            ends.sort_by(f64::total_cmp);
+            ends.dedup_by(|later, earlier| *later - *earlier < near);
+            ends.push(end);
+            ends
+        };
+        self.divided(&parts)
+    }
+
     /// The same with each step divided at the instants in it, so that all parts of a step that are halved later end
     /// there too.
     pub(in crate::simulate) fn ending_at(&self, instants: Instants<'_>) -> Cow<'_, Self> {
-        let steps = || (1..self.rows).flat_map(|row| self.steps_to(row));
-        if instants.is_empty() || steps().all(|(h, end)| instants.between(end - h, end).is_none()) {
+        let mut steps = (1..self.rows).flat_map(|row| self.steps_to(row));
+        if instants.is_empty() || steps.all(|(h, end)| instants.between(end - h, end).is_none()) {
             return Cow::Borrowed(self);
         }
+        Cow::Owned(self.divided(&|h, end| instants.divide(h, end).map(|(_, end)| end).collect()))
+    }
+
+    /// The same with each step (its length and end, s) divided into parts with these ends.
+    fn divided(&self, parts: &dyn Fn(f64, f64) -> Vec<f64>) -> Self {
         let (duration, output_step) = (self.end(), self.output_step);
-        let ends = |steps: &mut dyn Iterator<Item = (f64, f64)>| {
-            steps.flat_map(|(h, end)| instants.divide(h, end)).map(|(_, end)| end).collect::<Vec<f64>>()
-        };
+        let ends = |row: usize| self.steps_to(row).flat_map(|(h, end)| parts(h, end)).collect::<Vec<f64>>();
         let divided = if self.passes_rows() {
-            let at_rows = ends(&mut steps()).into_iter().map(|end| Self::at_row(end, duration, output_step)).collect();
+            let ends = (1..self.rows).flat_map(ends);
+            let at_rows = ends.map(|end| Self::at_row(end, duration, output_step)).collect();
             Self::passing(duration, output_step, at_rows, Vec::new())
         } else {
-            Self::listed(self.output_step, (1..self.rows).map(|row| ends(&mut self.steps_to(row))).collect())
+            Self::listed(self.output_step, (1..self.rows).map(ends).collect())
         };
-        Cow::Owned(divided.taken(self.integration))
+        divided.taken(self.integration)
     }
 
     /// An instant, or the time of the row that it is but for rounding, so that the row comes after what changes there;

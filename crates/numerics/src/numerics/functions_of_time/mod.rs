@@ -99,29 +99,44 @@ impl FunctionClass {
         (value(functional, &function), function)
     }
 
+    /// Times, s, at which the best function would switch, if it could within cells: zeros of the kernel, which is
+    /// straight between the middles of cells. Empty of functions that do not switch anywhere.
+    pub fn switches(&self, ends: &[f64], functional: &[Cell]) -> Vec<f64> {
+        self.switching(ends, functional).map_or_else(Vec::new, |integrals| zeros(ends, &integrals))
+    }
+
+    /// Integrals over cells of a kernel at whose zeros the best function switches.
+    fn switching(&self, ends: &[f64], functional: &[Cell]) -> Option<Vec<f64>> {
+        let levels = || functional.iter().map(|[level, _]| *level);
+        match self {
+            Self::Bounded => Some(levels().collect()),
+            Self::Rate => Some(rate::by_slopes(ends, functional)),
+            Self::Mean(mean) => {
+                let (_, multiplier) = budget::with_mean(*mean, ends, functional);
+                let length = |cell: usize| ends[cell] - begin(ends, cell);
+                Some(levels().enumerate().map(|(cell, level)| level - multiplier * length(cell)).collect())
+            }
+            _ => None,
+        }
+    }
+
     /// What cells cost, within which no function changes: at most as much as a kernel costs that is straight in them.
     /// Periods end where cells do, and cost nothing; of functions that are bounded with their rate it is what joining
     /// cells in pairs costs; of sines, by how much their chords are smaller.
     pub fn loss_of_cells(&self, ends: &[f64], functional: &[Cell]) -> f64 {
-        let levels = || functional.iter().map(|[level, _]| *level);
+        if let Some(integrals) = self.switching(ends, functional) {
+            return at_changes(ends, &integrals);
+        }
         match self {
-            Self::Bounded => at_changes(ends, &levels().collect::<Vec<f64>>()),
-            Self::Held(_) => 0.0,
-            Self::Rate => at_changes(ends, &rate::by_slopes(ends, functional)),
+            Self::Bounded | Self::Rate | Self::Mean(_) | Self::Held(_) => 0.0,
             Self::BoundedRate(ratio) => in_pairs(*ratio, &rate::Still, ends, functional),
             Self::Moving { limits, rate } => in_pairs(*rate, limits, ends, functional),
-            Self::Mean(mean) => {
-                let (_, multiplier) = budget::with_mean(*mean, ends, functional);
-                let beyond =
-                    levels().enumerate().map(|(cell, level)| level - multiplier * (ends[cell] - begin(ends, cell)));
-                at_changes(ends, &beyond.collect::<Vec<f64>>())
-            }
             Self::Energy { energy, bounded } => {
                 let (function, factor) = budget::with_energy(*energy, *bounded, ends, functional);
                 if factor.is_finite() {
                     budget::loss_by_energy(factor, ends, functional, &function)
                 } else {
-                    at_changes(ends, &levels().collect::<Vec<f64>>())
+                    at_changes(ends, &functional.iter().map(|[level, _]| *level).collect::<Vec<f64>>())
                 }
             }
             Self::Band(band) => {
@@ -145,17 +160,40 @@ fn in_pairs(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) 
     (all - value(&pairs, &rate::between(rate, &every_other, &of_pairs, &pairs))).max(0.0)
 }
 
-/// What cells cost in which a kernel changes its sign, given its integrals over them. A straight one of slope s costs
-/// s d² min(x, 1 − x)² where its zero is at the share x of a cell of length d.
+/// Share of a cell by which the zero of a kernel may be off, which is straight between the cells' middles.
+const OFF: f64 = 0.05;
+
+/// What it costs that a function switches where a cell begins, and not at the zero of its kernel, given the kernel's
+/// integrals over cells: s δ² of a straight one of slope s whose zero is δ away.
 fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
     let length = |cell: usize| ends[cell] - begin(ends, cell);
     let cost = |cell: usize| {
         let [before, after] = [length(cell - 1), length(cell)];
-        let slope = (integrals[cell] / after - integrals[cell - 1] / before) / (0.5 * (before + after));
-        0.25 * slope.abs() * before.max(after).powi(2)
+        let (distance, longest) = (0.5 * (before + after), before.max(after));
+        let slope = (integrals[cell] / after - integrals[cell - 1] / before) / distance;
+        // Where there is a jump, or nothing on one side, the zero may be anywhere.
+        let zero = if integrals[cell] * integrals[cell - 1] < 0.0 {
+            middle(ends, cell - 1) - integrals[cell - 1] / before / slope
+        } else {
+            f64::INFINITY
+        };
+        let away = ((zero - begin(ends, cell)).abs() + OFF * longest).min(0.5 * longest);
+        slope.abs() * away * away
     };
     let changes = (1..integrals.len()).filter(|&cell| integrals[cell] * integrals[cell - 1] <= 0.0);
     changes.map(cost).sum()
+}
+
+/// Zeros of a kernel, given its integrals over cells, that is straight between the cells' middles; within the two cells.
+fn zeros(ends: &[f64], integrals: &[f64]) -> Vec<f64> {
+    let density = |cell: usize| integrals[cell] / (ends[cell] - begin(ends, cell));
+    let changes = (1..integrals.len()).filter(|&cell| integrals[cell] * integrals[cell - 1] < 0.0);
+    let zero = |cell: usize| {
+        let ([from, to], [a, b]) =
+            ([cell - 1, cell].map(|cell| middle(ends, cell)), [density(cell - 1), density(cell)]);
+        from + (to - from) * a / (a - b)
+    };
+    changes.map(zero).collect()
 }
 
 /// The functional's value for a function.
@@ -171,6 +209,11 @@ fn sign(value: f64) -> f64 {
 /// When a cell begins, s.
 fn begin(ends: &[f64], cell: usize) -> f64 {
     cell.checked_sub(1).map_or(0.0, |before| ends[before])
+}
+
+/// The middle of a cell, s.
+fn middle(ends: &[f64], cell: usize) -> f64 {
+    0.5 * (begin(ends, cell) + ends[cell])
 }
 
 /// The cell of a function that goes straight from a value to another.

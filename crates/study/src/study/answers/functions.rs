@@ -59,7 +59,7 @@ pub fn function_witnesses(study: &Study, bounded: &Bounded) -> Vec<FunctionWitne
     }
     for (number, own) in description.requirements.iter().enumerate() {
         let lowest = match own.times {
-            Some(_) => own.outputs.iter().filter_map(|&output| functions.lowest[output].as_ref()).collect(),
+            Some(_) => own.outputs.iter().filter_map(|&output| functions.extremes[output][0].as_ref()).collect(),
             None => lowest_parts(study, values, number),
         };
         let lowest = lowest.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
@@ -73,7 +73,7 @@ pub fn function_witnesses(study: &Study, bounded: &Bounded) -> Vec<FunctionWitne
 /// The functions under which the parts of a requirement's margin are least.
 fn lowest_parts<'f>(study: &Study, values: Option<&'f FunctionEnds>, requirement: usize) -> Vec<&'f WorstFunction> {
     let (Some(store), Some(values)) = (study.store.get(), values) else { return Vec::new() };
-    store.plan.values.parts(requirement).filter_map(|part| values.lowest[part].as_ref()).collect()
+    store.plan.values.parts(requirement).filter_map(|part| values.extremes[part][0].as_ref()).collect()
 }
 
 /// The excitations up to a time, s.
@@ -85,7 +85,7 @@ fn of_excitations(study: &Study, functions: &FunctionEnds, worst: &WorstFunction
         let excitation = own.excitation()?;
         let mut points: Vec<(f64, f64)> = Vec::new();
         let mut begin = 0.0;
-        for (cell, &to) in cells.iter().zip(&functions.ends_of_cells) {
+        for (cell, &to) in cells.iter().zip(&*worst.ends) {
             if begin >= end * (1.0 - JUMP) && begin > 0.0 {
                 break;
             }

@@ -1,5 +1,7 @@
 //! Ends of outputs over functions of the time: what a search found of excitations of which only limits are known.
 
+use std::sync::Arc;
+
 use crate::numerics::{Cell, Range, Sample, largest};
 
 /// An end that a function attains.
@@ -22,6 +24,8 @@ pub struct WorstFunction {
     pub sample: Sample,
     /// Of each input of the equations, its cells.
     pub cells: Vec<Vec<Cell>>,
+    /// Times at which cells end, s.
+    pub ends: Arc<[f64]>,
 }
 
 /// What a search over functions found.
@@ -34,22 +38,20 @@ pub struct FunctionEnds {
     steps: Vec<Option<f64>>,
     /// By output, with how far it goes from the middle of all limits.
     pub worst: Vec<Option<(f64, WorstFunction)>>,
-    /// By output, the function under which it is least in some row.
-    pub lowest: Vec<Option<WorstFunction>>,
+    /// By output, the functions under which it is least and greatest in some row.
+    pub extremes: Vec<[Option<WorstFunction>; 2]>,
     /// By row and output: how far each parameter, then each input moves it either way, to first order from the middle of
     /// all limits.
     parts: Vec<Vec<f64>>,
     /// The excitation that each input is, by index of its trajectory.
     pub inputs: Vec<usize>,
-    /// Times at which cells end, s.
-    pub ends_of_cells: Vec<f64>,
     /// Of reduced outputs and margins, as outputs of one row, where there are any.
     pub of_values: Option<Box<Self>>,
 }
 
 impl FunctionEnds {
     /// Of so many rows and outputs, of which nothing is known.
-    pub fn new(rows: usize, outputs: usize, inputs: Vec<usize>, ends_of_cells: Vec<f64>) -> Self {
+    pub fn new(rows: usize, outputs: usize, inputs: Vec<usize>) -> Self {
         let unknown = FunctionEnd { value: f64::NAN, open: f64::NAN };
         let (ends, steps) = (vec![[unknown; 2]; rows * outputs], vec![None; rows * outputs]);
         Self {
@@ -57,10 +59,9 @@ impl FunctionEnds {
             ends,
             steps,
             worst: vec![None; outputs],
-            lowest: vec![None; outputs],
+            extremes: vec![[None, None]; outputs],
             parts: vec![Vec::new(); rows * outputs],
             inputs,
-            ends_of_cells,
             of_values: None,
         }
     }
@@ -96,12 +97,24 @@ impl FunctionEnds {
         }
     }
 
-    /// Notes a function under which an output has a value, if none has a smaller one.
-    pub fn note_lowest(&mut self, output: usize, value: f64, function: impl FnOnce() -> WorstFunction) {
-        let lowest = &mut self.lowest[output];
-        if lowest.as_ref().is_none_or(|known| value < known.value) {
-            *lowest = Some(function());
+    /// Notes a function under which an output has a value, if it has no value further that way under another.
+    pub fn note_extreme(
+        &mut self,
+        output: usize,
+        is_upper: bool,
+        function: impl FnOnce() -> WorstFunction,
+        value: f64,
+    ) {
+        let known = &mut self.extremes[output][usize::from(is_upper)];
+        let further = |known: &WorstFunction| if is_upper { value > known.value } else { value < known.value };
+        if known.as_ref().is_none_or(further) {
+            *known = Some(function());
         }
+    }
+
+    /// How far an end of an output in a row is, and how much further it may be.
+    pub fn end(&self, row: usize, output: usize, is_upper: bool) -> FunctionEnd {
+        self.ends[row * self.outputs + output][usize::from(is_upper)]
     }
 
     /// Gives each row the largest of the steps' errors that are measured in it and in the rows next to it on both
@@ -146,7 +159,7 @@ mod tests {
     #[test]
     fn an_end_of_which_nothing_is_known_is_not_covered_by_the_other() {
         for known in [false, true] {
-            let mut ends = FunctionEnds::new(1, 1, Vec::new(), Vec::new());
+            let mut ends = FunctionEnds::new(1, 1, Vec::new());
             ends.note(0, 0, known, FunctionEnd { value: 1.0, open: 0.5 });
             assert!(ends.open(0, 0).is_nan(), "{known}");
             ends.note(0, 0, !known, FunctionEnd { value: -1.0, open: 0.25 });

@@ -8,10 +8,11 @@
 
 use super::climb::{Climb, Point};
 use super::motions::{Asked, ExcitedMotions, in_row};
+use super::switches::settle_switches;
 use super::values::ends_of_values;
 use crate::numerics::step_error;
 use crate::simulate::{Schedule, SimulationError, Simulator};
-use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
+use crate::study::bounding::{FunctionEnd, FunctionEnds};
 use crate::study::problem::Study;
 
 /// Outputs and rows whose kernels are in memory at once.
@@ -56,7 +57,7 @@ pub fn ends(
 ) -> Result<(FunctionEnds, usize), SimulationError> {
     let motions = ExcitedMotions::new(study, simulator, schedule);
     let (rows, outputs) = (motions.schedule.rows, motions.outputs());
-    let found = FunctionEnds::new(rows, outputs, motions.inputs(), motions.ends.clone());
+    let found = FunctionEnds::new(rows, outputs, motions.inputs());
     let mut search = Search { motions, found, bent: Vec::new() };
     let checked: Vec<usize> = checked(rows);
     let all: Vec<(usize, usize)> = (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output))).collect();
@@ -66,6 +67,7 @@ pub fn ends(
     search.follow_bent()?;
     search.found.spread_steps();
     let Search { mut motions, mut found, .. } = search;
+    settle_switches(&mut motions, &mut found)?;
     if let Some(store) = study.store.get() {
         found.of_values = Some(Box::new(ends_of_values(&mut motions, &found, store)?));
     }
@@ -256,11 +258,8 @@ impl Search<'_, '_> {
         let Some((point, reached)) = &climb.best else { return };
         let value = sign * reached;
         self.found.note(row, output, sign > 0.0, FunctionEnd { value, open: climb.open() });
-        let function =
-            || WorstFunction { row, value, sample: self.motions.sample(point), cells: point.functions.clone() };
+        let function = || self.motions.function(row, value, point);
         self.found.note_worst(output, climb.gain(), function);
-        if sign < 0.0 {
-            self.found.note_lowest(output, value, function);
-        }
+        self.found.note_extreme(output, sign > 0.0, function, value);
     }
 }

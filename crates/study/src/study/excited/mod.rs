@@ -4,12 +4,14 @@
 //! an input of equations that are compiled once more: a level and a slope in each step (`motions`). The gradient of an
 //! output in a row by all of them is its kernel, from one run backwards. It names the worst function (`climb`) of a
 //! class that `limits` evaluates. Every end is attained by a function (`ends`); it
-//! widens the methods' bands. `values` has ends of reduced outputs.
+//! widens the methods' bands. `switches` has the instants of the farthest ones, `values` ends of
+//! reduced outputs.
 
 mod climb;
 mod ends;
 mod limits;
 mod motions;
+mod switches;
 mod values;
 
 use super::RunError;

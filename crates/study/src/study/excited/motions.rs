@@ -1,5 +1,7 @@
 //! Motions under functions of the time, and their gradients.
 
+use std::sync::Arc;
+
 use super::climb::Point;
 use super::limits::Limits;
 use crate::model::{Class, Excitation};
@@ -7,6 +9,7 @@ use crate::numerics::{FunctionClass, Sample};
 use crate::simulate::{
     Functional, Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Term, Under, gradients_under,
 };
+use crate::study::bounding::WorstFunction;
 use crate::study::problem::Study;
 
 /// A weighted sum of outputs in rows at a point.
@@ -25,7 +28,7 @@ pub struct ExcitedMotions<'s, 'm> {
     /// Of each input.
     excitations: Vec<&'s Excitation>,
     /// Times at which cells end, s.
-    pub ends: Vec<f64>,
+    pub ends: Arc<[f64]>,
     /// Simulations and gradients so far.
     pub count: usize,
 }
@@ -41,8 +44,15 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
             _ => None,
         });
         let schedule = schedule.ending_at_multiples(&periods.collect::<Vec<f64>>());
-        let ends = schedule.ends();
+        let ends = schedule.ends().into();
         Self { study, simulator, schedule, excitations, ends, count: 0 }
+    }
+
+    /// The same with steps that end at some times, s, too.
+    pub fn ending_at_times(&self, times: &[f64]) -> Self {
+        let schedule = self.schedule.ending_at_times(times);
+        let ends = schedule.ends().into();
+        Self { schedule, ends, excitations: self.excitations.clone(), count: 0, ..*self }
     }
 
     /// Number of outputs.
@@ -78,6 +88,12 @@ impl<'s, 'm> ExcitedMotions<'s, 'm> {
     /// The parameters at a point.
     pub fn sample(&self, point: &Point) -> Sample {
         self.study.domain.sample(&point.xi)
+    }
+
+    /// The functions of a point, under which an output has a value in a row.
+    pub fn function(&self, row: usize, value: f64, point: &Point) -> WorstFunction {
+        let (sample, cells) = (self.sample(point), point.functions.clone());
+        WorstFunction { row, value, sample, cells, ends: self.ends.clone() }
     }
 
     /// The functions that each excitation may be at parameters (ξ).

@@ -11,7 +11,7 @@ use crate::assemble::NumberFormulas;
 use crate::model::ReducedKind;
 use crate::numerics::{largest, step_error};
 use crate::simulate::{Gradient, SimulationError, Term};
-use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
+use crate::study::bounding::{FunctionEnd, FunctionEnds};
 use crate::study::gradient::{InRows, in_rows};
 use crate::study::reduced::Store;
 
@@ -68,7 +68,7 @@ pub fn ends_of_values(
     let mut sources: Vec<usize> = description.reduced.iter().flat_map(|own| own.outputs.iter().copied()).collect();
     sources.sort_unstable();
     sources.dedup();
-    let found = FunctionEnds::new(1, store.plan.values.count(), motions.inputs(), motions.ends.clone());
+    let found = FunctionEnds::new(1, store.plan.values.count(), motions.inputs());
     let times = (0..motions.schedule.rows).map(|row| motions.schedule.time(row)).collect();
     let mut values = Values { motions, times, rows, all, sources };
     values.search(found)
@@ -305,16 +305,10 @@ impl Values<'_, '_, '_> {
         // Nobody asks how much further the upper end of a margin may be.
         let open = if is_upper && matches!(value, Value::Slack { .. }) { 0.0 } else { open };
         found.note(0, index, is_upper, FunctionEnd { value: climb.sign * reached, open });
-        let function = || WorstFunction {
-            row: self.times.len() - 1,
-            value: climb.sign * reached,
-            sample: self.motions.sample(point),
-            cells: point.functions.clone(),
-        };
+        let (last, value) = (self.times.len() - 1, climb.sign * reached);
+        let function = || self.motions.function(last, value, point);
         found.note_worst(index, climb.gain(), function);
-        if !is_upper {
-            found.note_lowest(index, -reached, function);
-        }
+        found.note_extreme(index, is_upper, function, value);
         let points = std::slice::from_ref(point);
         let mut at = |parts: usize, every: usize| -> Result<f64, SimulationError> {
             let found = self.linear(points, &[*number], parts, every)?;

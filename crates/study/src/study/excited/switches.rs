@@ -1,0 +1,100 @@
+//! Newton's method on the instants at which the farthest functions switch.
+//!
+//! Functions of cells switch where cells end. At an instant τ at which one switches, an end changes by twice the kernel
+//! there; the kernel is straight between the middles of cells, and its zero is the next τ. Steps then end there, as long
+//! as the end grows.
+
+use super::climb::{Climb, Point};
+use super::motions::{ExcitedMotions, in_row};
+use crate::numerics::Cell;
+use crate::simulate::{Gradient, SimulationError};
+use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
+
+/// Iterations of Newton's method: each takes the square of what is left.
+const ROUNDS: usize = 3;
+
+/// Settles the switches of the functions under which each output is least, greatest and furthest.
+///
+/// # Errors
+/// As for gradients.
+pub fn settle_switches(motions: &mut ExcitedMotions, found: &mut FunctionEnds) -> Result<(), SimulationError> {
+    for output in 0..motions.outputs() {
+        for is_upper in [false, true] {
+            let Some(own) = found.extremes[output][usize::from(is_upper)].clone() else { continue };
+            let known = found.end(own.row, output, is_upper);
+            let Some((function, end)) = settled(motions, &own, output, is_upper)? else { continue };
+            let open = end.open.min(known.open);
+            found.note(own.row, output, is_upper, FunctionEnd { open, ..end });
+            let is_worst = |worst: &WorstFunction| worst.row == own.row && worst.value == own.value;
+            if let Some((gain, worst)) = found.worst[output].as_mut().filter(|(_, worst)| is_worst(worst)) {
+                *gain += (end.value - own.value).abs();
+                *worst = function.clone();
+            }
+            found.extremes[output][usize::from(is_upper)] = Some(function);
+        }
+    }
+    Ok(())
+}
+
+/// A function with its switches between the ends of cells, and the end there; `None` where it is no further.
+fn settled(
+    motions: &mut ExcitedMotions,
+    own: &WorstFunction,
+    output: usize,
+    is_upper: bool,
+) -> Result<Option<(WorstFunction, FunctionEnd)>, SimulationError> {
+    let sign = if is_upper { 1.0 } else { -1.0 };
+    let mut point = Point { xi: motions.study.domain.xi(&own.sample), functions: own.cells.clone() };
+    let mut ends = own.ends.clone();
+    let mut found: Option<(WorstFunction, FunctionEnd)> = None;
+    let mut gradient = motions.gradients(&[(&point, in_row(own.row, output))])?.swap_remove(0);
+    for _ in 0..ROUNDS {
+        let times = switches(motions, &gradient, &ends, &point, sign);
+        let mut finer = motions.ending_at_times(&times);
+        if times.is_empty() || finer.ends.len() == motions.ends.len() {
+            break;
+        }
+        point.functions = point.functions.iter().map(|cells| moved(cells, &ends, &finer.ends)).collect();
+        ends = finer.ends.clone();
+        let mut climb = Climb::new(own.row, output, sign, point.clone());
+        // The kernel on these cells, then the function of its signs.
+        for _ in 0..2 {
+            let Some(asked) = climb.asked() else { break };
+            gradient = finer.gradients(&[asked])?.swap_remove(0);
+            climb.take(&gradient, &finer);
+        }
+        motions.count += finer.count;
+        let Some((best, reached)) = climb.best.clone() else { break };
+        let before = found.as_ref().map_or(sign * own.value, |(_, end)| sign * end.value);
+        // NaN ends it too.
+        if reached.partial_cmp(&before) != Some(std::cmp::Ordering::Greater) {
+            break;
+        }
+        let value = sign * reached;
+        found = Some((finer.function(own.row, value, &best), FunctionEnd { value, open: climb.open() }));
+        point = best;
+    }
+    Ok(found)
+}
+
+/// When the kernel says that functions switch, s.
+fn switches(motions: &ExcitedMotions, found: &Gradient, ends: &[f64], point: &Point, sign: f64) -> Vec<f64> {
+    let classes = motions.classes(&point.xi);
+    let of_input = |(input, class): (usize, &crate::numerics::FunctionClass)| {
+        let of_cell = |by: &[f64]| [sign * by[2 * input], sign * by[2 * input + 1]];
+        let functional: Vec<Cell> = found.by_inputs.chunks_exact(2 * classes.len()).map(of_cell).collect();
+        class.switches(ends, &functional)
+    };
+    classes.iter().enumerate().flat_map(of_input).collect()
+}
+
+/// A function over other cells: in each, that of the cell which holds its middle.
+fn moved(cells: &[Cell], ends: &[f64], others: &[f64]) -> Vec<Cell> {
+    let mut begin = 0.0;
+    let of_cell = |&end: &f64| {
+        let middle = 0.5 * (begin + end);
+        begin = end;
+        cells[ends.partition_point(|own| *own < middle).min(cells.len() - 1)]
+    };
+    others.iter().map(of_cell).collect()
+}
