@@ -31,6 +31,15 @@ fn interval(name: &str, [lower, upper]: [f64; 2]) -> String {
 /// One to three oscillators x″ + 2δx′ + ω²x = a b u under one function; the output is the sum of positions, or of
 /// velocities.
 fn function(random: &mut Random) -> Drawn {
+    excited(random, [0, 2])
+}
+
+/// The same of functions with a mean, an energy, or a band.
+fn class(random: &mut Random) -> Drawn {
+    excited(random, [3, 6])
+}
+
+fn excited(random: &mut Random, [least, most]: [usize; 2]) -> Drawn {
     let count = random.whole(1, 3);
     let rows = random.whole(4, 12);
     let duration = random.scale(0.5, 20.0);
@@ -47,11 +56,27 @@ fn function(random: &mut Random) -> Drawn {
     let by_speed = random.chance(0.4);
     let factor = about_one(random);
     let held = digits(row * f64::from(random.pick(&[1, 2, 3])) / random.pick(&[1.0, 2.0]), 6);
-    let class = random.whole(0, 2);
+    let class = random.whole(least, most);
+    let full = digits(row * rows as f64, 12);
+    let mean = if class == 3 { digits(random.between(-0.8, 0.8), 2) } else { 0.0 };
+    let energy = if class > 3 { digits(full * random.scale(0.05, 0.8), 3) } else { 0.0 };
+    let band = match class {
+        6 => {
+            let from = if random.chance(0.3) { 0.0 } else { digits(random.scale(0.2, 2.0) * turns / duration, 3) };
+            [from, digits(from + random.scale(0.2, 2.0) * turns / duration, 3)]
+        }
+        _ => [0.0; 2],
+    };
+    // The first order of the steps shows where a kernel ends with a jump, along which energy is spent.
+    let steps = if by_speed && matches!(class, 4 | 5) { 5 * steps } else { steps };
     let limits = match class {
         0 => "within: ± 1".to_owned(),
         1 => format!("within: ± 1, held: {held:?}"),
-        _ => "rate: 1".to_owned(),
+        2 => "rate: 1".to_owned(),
+        3 => format!("within: ± 1, mean: {mean:?}"),
+        4 => format!("energy: {energy:?} s"),
+        5 => format!("within: ± 1, energy: {energy:?} s"),
+        _ => format!("within: ± 1, band: {band:?}"),
     };
     let mut yaml = format!("parameters:\n{}excitations: {{ u: {{ {limits} }} }}\nbodies:\n", interval("b", factor));
     for place in 0..count {
@@ -78,6 +103,7 @@ fn function(random: &mut Random) -> Drawn {
         let one = |[square, delta, a]: &[f64; 3]| a * decay(*square, *delta, 0.0, 1.0, t)[usize::from(by_speed)];
         oscillators.iter().map(one).sum()
     };
+    let kernel_of_mean = kernel.clone();
     let reach = move |time: f64| {
         let h = time / POINTS as f64;
         let at = |index: usize| h * kernel((index as f64 + 0.5) * h);
@@ -96,6 +122,9 @@ fn function(random: &mut Random) -> Drawn {
                 }
                 sums.iter().map(|sum: &f64| sum.abs()).sum()
             }
+            4 => (energy * (0..POINTS).map(|index| at(index) * at(index) / h).sum::<f64>()).sqrt(),
+            5 => with_energy(energy, h, &(0..POINTS).map(|index| at(index) / h).collect::<Vec<f64>>()),
+            6 => largest_sine(band, h, &(0..POINTS).map(at).collect::<Vec<f64>>()),
             _ => {
                 let mut response = 0.0;
                 let rising = (0..POINTS).map(|index| {
@@ -107,12 +136,88 @@ fn function(random: &mut Random) -> Drawn {
             }
         }
     };
-    let size = reach(digits(row * rows as f64, 12)) * factor[1];
+    // The ends of a function with a mean are not symmetrical: what it does after a row may make up for it.
+    let of_mean = move |time: f64, sign: f64| {
+        let h = time / POINTS as f64;
+        let values: Vec<f64> = (0..POINTS).map(|index| sign * kernel_of_mean((index as f64 + 0.5) * h)).collect();
+        let left = full - time;
+        with_integral([mean * full - left, mean * full + left], h, values)
+    };
+    let ends = move |time: f64| -> [f64; 2] {
+        if time == 0.0 {
+            return [0.0; 2];
+        }
+        if class == 3 { [-of_mean(time, -1.0), of_mean(time, 1.0)] } else { [-reach(time), reach(time)] }
+    };
+    let size = ends(full).iter().fold(0.0, |most: f64, end| most.max(end.abs())) * factor[1];
     let truth = move |time: f64| {
-        let end = factor[1] * reach(time);
-        Range { lower: -end, upper: end }
+        let [lower, upper] = ends(time);
+        let [least, most] = factor;
+        Range { lower: (least * lower).min(most * lower), upper: (least * upper).max(most * upper) }
     };
     Drawn { yaml, output: "o", truth: Box::new(truth), rounding: ACCURACY * size }
+}
+
+/// max ∫ hu with |u| ≤ 1 and ∫ u between two, of values of h at points that are `step` apart.
+fn with_integral([least, most]: [f64; 2], step: f64, mut values: Vec<f64>) -> f64 {
+    values.sort_by(|a, b| b.total_cmp(a));
+    // u is 1 up to some value of h, and −1 below it: the largest integral is at the last positive one, if it may be there.
+    let whole = values.len() as f64 * step;
+    let positive = values.iter().filter(|value| **value > 0.0).count() as f64;
+    let share = ((2.0 * positive * step - whole).clamp(least.max(-whole), most.min(whole)) + whole) / (2.0 * step);
+    let u = |index: usize| 2.0 * (share - index as f64).clamp(0.0, 1.0) - 1.0;
+    values.iter().enumerate().map(|(index, value)| step * value * u(index)).sum()
+}
+
+/// max ∫ hu with |u| ≤ 1 and ∫ u² ≤ E: u = λh, cut off.
+fn with_energy(energy: f64, step: f64, values: &[f64]) -> f64 {
+    let u = |factor: f64, value: f64| (factor * value).clamp(-1.0, 1.0);
+    let spent = |factor: f64| values.iter().map(|value| step * u(factor, *value).powi(2)).sum::<f64>();
+    let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let (mut from, mut to) = (0.0, 1e9 / largest);
+    for _ in 0..80 {
+        // Factors range over many orders.
+        let middle = if from == 0.0 { 1e-6 * to } else { (from * to).sqrt() };
+        if spent(middle) < energy {
+            from = middle
+        } else {
+            to = middle
+        }
+        if from == 0.0 && to < 1e-12 / largest {
+            break;
+        }
+    }
+    values.iter().map(|value| step * value * u(to, *value)).sum()
+}
+
+/// max |∫ h exp(iωτ)| over a band, by ever finer grids.
+fn largest_sine([mut from, mut to]: [f64; 2], step: f64, parts: &[f64]) -> f64 {
+    let size = |frequency: f64| {
+        let turn = TAU * frequency * step;
+        let sums = parts.iter().enumerate().fold([0.0; 2], |[sine, cosine], (index, part)| {
+            let angle = turn * (index as f64 + 0.5);
+            [sine + part * angle.sin(), cosine + part * angle.cos()]
+        });
+        sums[0].hypot(sums[1])
+    };
+    let mut best = 0.0_f64;
+    let mut count = 8.0 * ((to - from) * step * parts.len() as f64).ceil().max(1.0);
+    for _ in 0..3 {
+        let all: Vec<(f64, f64)> = (0..=count as usize)
+            .map(|number| from + (to - from) * number as f64 / count)
+            .map(|frequency| (size(frequency), frequency))
+            .collect();
+        let (largest, at) = all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, from));
+        let width = (to - from) / count;
+        best = best.max(largest);
+        (from, to, count) = ((at - width).max(from), (at + width).min(to), 10.0);
+    }
+    best
+}
+
+/// Ends over functions with a mean, an energy, or a band.
+pub fn classes(seed: u64, draws: u64) -> Tally {
+    rows::compare(seed, draws, class)
 }
 
 /// Ends over functions.

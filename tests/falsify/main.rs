@@ -297,6 +297,17 @@ fn ends_over_functions_are_honest() {
 }
 
 #[test]
+fn ends_of_a_few_draws_over_classes_of_functions_are_honest() {
+    excited("excitations with a mean, an energy or a band", 4, excited::classes);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn ends_over_classes_of_functions_are_honest() {
+    excited("excitations with a mean, an energy or a band", 80, excited::classes);
+}
+
+#[test]
 fn root_mean_squares_are_honest() {
     excited("random excitations", 60, excited::squares);
 }

@@ -30,6 +30,7 @@ mod deep_trees;
 mod design;
 mod design_cost;
 mod drawing_linkages;
+mod excitation_classes;
 mod excitations;
 mod explicit;
 mod extrapolation;

@@ -3,9 +3,11 @@
 
 use std::time::Instant;
 
+use super::RunError;
 use super::answers::Results;
 use super::bounding::{Bounded, Doubts, Outcome, bound, note_nominal, simulation_error, timed, validation_summary};
 use super::ensemble::{Progress, nominal};
+use super::excited::excited;
 use super::problem::Study;
 use super::reduced::{Found, reduced};
 use super::stepping::tuning::TUNING;
@@ -17,7 +19,7 @@ use crate::numerics::{Ledger, Range};
 use crate::simulate::{Divided, Schedule, SimulationError};
 
 /// Every sampled method's bounds are the nominal motion.
-pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, SimulationError> {
+pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, RunError> {
     let StepPlan { schedule, controller } = plan;
     let progress = Progress::new(3 * schedule.rows, study.progress);
     let explicit = match study.request.tolerance.filter(|_| may_be_explicit(study) && !schedule.passes_rows()) {
@@ -76,6 +78,8 @@ pub(super) fn deterministic(study: &Study, plan: &StepPlan) -> Result<Results, S
             }
         }
         results.bounded.validation = Some((validation, summary));
+        // Functions of which no constant is one.
+        (results.searched, results.bounded.functions) = excited(study, schedule)?.unzip();
         results.found = reduced(study, &results.bounded, &progress)?;
         return Ok(results);
     }

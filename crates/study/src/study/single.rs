@@ -54,7 +54,7 @@ pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
 fn methods(study: &Study, plan: StepPlan) -> Result<Results, RunError> {
     plan_reduction(study, &plan)?;
     if study.domain.dimension() == 0 {
-        return Ok(deterministic(study, &plan)?);
+        return deterministic(study, &plan);
     }
     let progress = Progress::new(total_work(study, &plan.schedule), study.progress);
     let mut internal = Vec::new();

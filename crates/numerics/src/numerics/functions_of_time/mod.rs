@@ -100,9 +100,20 @@ impl FunctionClass {
     }
 
     /// Times, s, at which the best function would switch, if it could within cells: zeros of the kernel, which is
-    /// straight between the middles of cells. Empty of functions that do not switch anywhere.
+    /// straight between the middles of cells. Empty of functions that do not switch anywhere, and of those with a mean:
+    /// they switch where the kernel is not zero, and steps of different lengths smear that differently.
     pub fn switches(&self, ends: &[f64], functional: &[Cell]) -> Vec<f64> {
-        self.switching(ends, functional).map_or_else(Vec::new, |integrals| zeros(ends, &integrals))
+        match self {
+            Self::Mean(_) => Vec::new(),
+            _ => self.switching(ends, functional).map_or_else(Vec::new, |integrals| zeros(ends, &integrals)),
+        }
+    }
+
+    /// What steps cost a function with a mean: they smear a switch over a cell, and so change the mean.
+    fn loss_of_mean(&self, ends: &[f64], functional: &[Cell]) -> f64 {
+        let Self::Mean(mean) = self else { return 0.0 };
+        let longest = (0..ends.len()).map(|cell| ends[cell] - begin(ends, cell)).fold(0.0, f64::max);
+        budget::with_mean(*mean, ends, functional).1.abs() * longest
     }
 
     /// Integrals over cells of a kernel at whose zeros the best function switches.
@@ -125,7 +136,7 @@ impl FunctionClass {
     /// cells in pairs costs; of sines, by how much their chords are smaller.
     pub fn loss_of_cells(&self, ends: &[f64], functional: &[Cell]) -> f64 {
         if let Some(integrals) = self.switching(ends, functional) {
-            return at_changes(ends, &integrals);
+            return at_changes(ends, &integrals) + self.loss_of_mean(ends, functional);
         }
         match self {
             Self::Bounded | Self::Rate | Self::Mean(_) | Self::Held(_) => 0.0,

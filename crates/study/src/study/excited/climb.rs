@@ -98,9 +98,14 @@ impl Climb {
         }
     }
 
+    /// The value at its start, upwards.
+    pub fn start(&self) -> Option<f64> {
+        self.first.map(|(start, _)| start)
+    }
+
     /// How far the best point is from the start.
     pub fn gain(&self) -> f64 {
-        self.best.as_ref().zip(self.first).map_or(0.0, |((_, reached), (start, _))| reached - start)
+        self.best.as_ref().zip(self.start()).map_or(0.0, |((_, reached), start)| reached - start)
     }
 
     /// How much further the end may be.

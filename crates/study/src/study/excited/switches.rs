@@ -56,13 +56,16 @@ fn settled(
         }
         point.functions = point.functions.iter().map(|cells| moved(cells, &ends, &finer.ends)).collect();
         ends = finer.ends.clone();
+        // The kernel on these cells names the function: the one before may be none of the class on them.
         let mut climb = Climb::new(own.row, output, sign, point.clone());
-        // The kernel on these cells, then the function of its signs.
-        for _ in 0..2 {
-            let Some(asked) = climb.asked() else { break };
+        gradient = finer.gradients(&[(&point, in_row(own.row, output))])?.swap_remove(0);
+        climb.take(&gradient, &finer);
+        let Some(next) = climb.next else { break };
+        let mut climb = Climb::new(own.row, output, sign, next);
+        if let Some(asked) = climb.asked() {
             gradient = finer.gradients(&[asked])?.swap_remove(0);
-            climb.take(&gradient, &finer);
         }
+        climb.take(&gradient, &finer);
         motions.count += finer.count;
         let Some((best, reached)) = climb.best.clone() else { break };
         let before = found.as_ref().map_or(sign * own.value, |(_, end)| sign * end.value);

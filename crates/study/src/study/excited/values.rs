@@ -307,7 +307,8 @@ impl Values<'_, '_, '_> {
         found.note(0, index, is_upper, FunctionEnd { value: climb.sign * reached, open });
         let (last, value) = (self.times.len() - 1, climb.sign * reached);
         let function = || self.motions.function(last, value, point);
-        found.note_worst(index, climb.gain(), function);
+        let from_middle = climbs[0].climb.start().map_or(0.0, |start| reached - start);
+        found.note_worst(index, from_middle, function);
         found.note_extreme(index, is_upper, function, value);
         let points = std::slice::from_ref(point);
         let mut at = |parts: usize, every: usize| -> Result<f64, SimulationError> {
