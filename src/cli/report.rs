@@ -7,8 +7,9 @@ use super::meshes::{MOST_TRIANGLES, read_meshes};
 use super::request::Job;
 use super::{Failure, Status};
 use crate::export::{ReportParts, write_report};
+use crate::results::FunctionWitness;
 use crate::simulate::Interruption;
-use crate::study::{self, MotionOptions};
+use crate::study::{self, MotionOptions, RunError};
 
 /// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
 const SIZE: usize = 300_000;
@@ -21,10 +22,14 @@ pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status,
 }
 
 /// What a report shows of a job beside its results. The page says so where a motion cannot be simulated.
-pub(super) fn parts(job: &Job, threads: Option<usize>) -> ReportParts {
+pub(super) fn parts(job: &Job, worst: &[FunctionWitness], threads: Option<usize>) -> ReportParts {
     let options =
         MotionOptions { threads, size: SIZE / job.share.max(1), interruption: Interruption::new(&interrupt::asked) };
-    let motion = study::caught("the report's motion", || study::motion(&job.model, options));
+    let motion = study::caught("the report's motion", || {
+        let mut motion = study::motion(&job.model, options)?;
+        study::add_worst_motions(&job.model, &mut motion, worst, options)?;
+        Ok::<_, RunError>(motion)
+    });
     let motion = match motion {
         Ok(found) => found.map_err(|error| error.to_string()),
         Err(error) => Err(error.to_string()),

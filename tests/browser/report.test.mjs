@@ -208,6 +208,27 @@ test('a slider moves a ghost, a swept region appears, and so does what is hidden
   await context.close();
 });
 
+test('the worst functions of excitations play beside the nominal motion', async () => {
+  const { page, wrong, context } = await open(browser, report('all/half_car_on_a_road'));
+  await frames(page, 3);
+  const names = await page.locator('#worst select option').allTextContents();
+  assert.equal(names[0], 'nothing');
+  assert.ok(names.some((name) => /^heave at [0-9.]+ s$/.test(name)) && names.includes('hardest'), names.join());
+  await seek(page, 0.7);
+  const before = await canvas(page);
+  await page.selectOption('#worst select', { label: 'hardest' });
+  await frames(page, 3);
+  const worst = await canvas(page);
+  assert.notEqual(worst, before);
+  await seek(page, 0.9);
+  assert.notEqual(await canvas(page), worst);
+  await page.selectOption('#worst select', { label: 'nothing' });
+  await seek(page, 0.7);
+  assert.equal(await canvas(page), before);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
 test('values with units stand under the plot, and a stretch of time fills it', async () => {
   const { page, context } = await open(browser, report('four_bar'));
   const svg = page.locator('figure:not(.hidden) .plot svg').first();

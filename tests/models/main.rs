@@ -32,6 +32,7 @@ mod design_cost;
 mod drawing_linkages;
 mod excitation_classes;
 mod excitations;
+mod excited_half_car;
 mod explicit;
 mod extrapolation;
 mod far;

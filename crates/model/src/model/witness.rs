@@ -71,6 +71,21 @@ pub enum WitnessError {
 }
 
 impl Witness {
+    /// Of functions by their points, and of values of parameters, SI.
+    ///
+    /// # Errors
+    /// Where points do not make a function.
+    pub fn new<'p>(
+        functions: impl IntoIterator<Item = (&'p str, &'p [(f64, f64)])>,
+        parameters: Vec<(String, f64)>,
+    ) -> Result<Self, WitnessError> {
+        let function = |(name, points): (&str, &[(f64, f64)])| match Spline::linear(points) {
+            Ok(spline) => Ok((name.to_owned(), spline)),
+            Err(error) => Err(WitnessError::Points { name: name.to_owned(), error }),
+        };
+        Ok(Self { functions: functions.into_iter().map(function).collect::<Result<_, _>>()?, parameters })
+    }
+
     /// Reads a file.
     ///
     /// # Errors
@@ -101,12 +116,8 @@ impl Witness {
                 points.push((time, number(cell)?));
             }
         }
-        let function = |(name, points): (String, Vec<(f64, f64)>)| match Spline::linear(&points) {
-            Ok(spline) => Ok((name, spline)),
-            Err(error) => Err(WitnessError::Points { name, error }),
-        };
-        let functions = names.into_iter().zip(points).map(function).collect::<Result<_, _>>()?;
-        Ok(Self { functions, parameters })
+        let functions = names.iter().map(String::as_str).zip(points.iter().map(Vec::as_slice));
+        Self::new(functions, parameters)
     }
 
     /// Gives a model's excitations these functions, and its parameters these values.

@@ -44,7 +44,7 @@ pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut
 pub use fit::{ConsistentSet, Fit, FitAxis, FitOutput, FitParameter, FitProjection, FitRow, SkewPaving, Unexplained};
 pub use gradients::{DerivativesAt, GradientParameter, Gradients, OutputGradients, ReducedGradients};
 pub use merge::{Piece, add_methods, bounds_of_pieces, explanation_of_subsystems, summary_of_subsystems};
-pub use motion::{Motion, MotionPolynomials, MovingForce, MovingSample, Poses};
+pub use motion::{Motion, MotionPolynomials, MovingForce, MovingSample, Poses, WorstMotion};
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};

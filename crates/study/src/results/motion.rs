@@ -28,6 +28,8 @@ pub struct Motion {
     pub forces: Vec<MovingForce>,
     /// Motions at samples of the box.
     pub samples: Vec<MovingSample>,
+    /// Motions under the worst functions of excitations.
+    pub worst: Vec<WorstMotion>,
     /// Samples that cannot be assembled or do not move to the end.
     pub stopped: usize,
     /// The motion as a function of the parameters; `None` where there are none, or where a sample that it needs stops.
@@ -60,6 +62,17 @@ pub struct MovingForce {
 pub struct MovingSample {
     /// Values of the parameters.
     pub values: Vec<f64>,
+    /// The motion.
+    pub poses: Poses,
+}
+
+/// The motion under the functions of excitations under which something goes furthest.
+#[derive(Clone, Debug)]
+pub struct WorstMotion {
+    /// Name of the output, reduced output or requirement.
+    pub name: String,
+    /// When it goes there, s: the motion stands still behind that. `None` of what has no instant.
+    pub time: Option<f64>,
     /// The motion.
     pub poses: Poses,
 }

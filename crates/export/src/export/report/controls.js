@@ -90,6 +90,12 @@ export function options(view) {
   const forces = checkbox('forces', 'Forces', view.forces, (forces) => view.set({ forces }));
   const shown = [...(movie.duration > 0 ? [traced] : []), ...(movie.forces.length > 0 ? [forces] : [])];
   holder.append(element('div', { class: 'row' }, [swept, ...shown, button('⤢', 'Whole mechanism (0)', () => view.resetCamera())]));
+  if (movie.worst.length > 0) {
+    const named = movie.worst.map(({ name, time }) => (time === undefined ? name : `${name} at ${digits(time)} s`));
+    const worst = choice('Worst functions for', ['nothing', ...named], (place) => view.set({ worst: place - 1 }));
+    worst.id = 'worst';
+    holder.append(element('div', { class: 'row' }, [worst]));
+  }
   if (movie.polynomials) holder.append(sliders(view));
   return holder;
 }

@@ -5,6 +5,7 @@ import { normalised } from './vectors.js';
 
 /** @typedef {import('./data.js').PackedMotion} PackedMotion */
 /** @typedef {{values: number[], bodies: Float32Array, points: Float32Array}} Moving */
+/** @typedef {{name: string, time?: number, bodies: Float32Array, points: Float32Array}} Worst */
 /** @typedef {{name: string, reaction: boolean, at: number[], force: number[]}} Force */
 /** @typedef {{pose: Float64Array, points: Float32Array}} Instant */
 
@@ -23,6 +24,8 @@ export class Movie {
     this.lines = this.bodies.length / this.times.length;
     /** Differences from the nominal motion. @type {Moving[]} */
     this.samples = data.samples.map((sample) => ({ values: sample.values, bodies: unpack(sample.bodies), points: floats(sample.points) }));
+    /** Under the worst functions of excitations. @type {Worst[]} */
+    this.worst = (data.worst || []).map(({ name, time, bodies, points }) => ({ name, time, bodies: unpack(bodies), points: floats(points) }));
     /** Of the nominal motion: six numbers a time. */
     this.forces = (data.forces || []).map(({ name, reaction, values }) => ({ name, reaction, values: unpack(values) }));
     /** How many times differences from the nominal motion are shown. */
@@ -64,7 +67,11 @@ export class Movie {
   /** The motion of a sample, the nominal one where it has no number. @param {number} time @param {number} [sample] @returns {Instant} */
   at(time, sample) {
     if (sample === undefined) return { pose: this.interpolated(time, () => 0), points: this.points };
-    const { bodies, points } = this.samples[sample];
+    return this.beside(time, this.samples[sample]);
+  }
+
+  /** A motion by its differences from the nominal one. @param {number} time @param {{bodies: Float32Array, points: Float32Array}} differences @returns {Instant} */
+  beside(time, { bodies, points }) {
     return { pose: this.interpolated(time, (place) => bodies[place]), points: this.points.map((value, place) => value + this.exaggeration * points[place]) };
   }
 

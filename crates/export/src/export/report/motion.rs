@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::packing::{Packed, floats};
 use super::visuals::{Visual, visuals};
 use crate::export::drawing::drawing_svg;
-use crate::results::{Drawing, Motion, MotionPolynomials, MovingForce, ParameterSummary, Poses};
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingForce, ParameterSummary, Poses, WorstMotion};
 
 /// Its name.
 pub(in crate::export) const MOTION: &str = "motion.json";
@@ -56,6 +56,8 @@ struct PackedMotion<'m> {
     nominal: PackedNominal,
     forces: Vec<PackedForce<'m>>,
     samples: Vec<PackedSample<'m>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    worst: Vec<PackedWorst<'m>>,
     stopped: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     polynomials: Option<PackedPolynomials<'m>>,
@@ -77,6 +79,15 @@ struct PackedForce<'m> {
 #[derive(Serialize)]
 struct PackedSample<'m> {
     values: &'m [f64],
+    bodies: Packed,
+    points: String,
+}
+
+#[derive(Serialize)]
+struct PackedWorst<'m> {
+    name: &'m str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time: Option<f64>,
     bodies: Packed,
     points: String,
 }
@@ -111,10 +122,13 @@ fn packed(motion: &Motion) -> PackedMotion<'_> {
     let beside = |values: &[f64], nominal: &[f64]| -> Vec<f64> {
         values.iter().zip(nominal).map(|(value, nominal)| value - nominal).collect()
     };
-    let sample = |values, poses: &Poses| PackedSample {
-        values,
-        bodies: Packed::new(&beside(&poses.bodies, &nominal.bodies), lines),
-        points: floats(&beside(&poses.points, &nominal.points)),
+    let packed = |poses: &Poses| {
+        let bodies = Packed::new(&beside(&poses.bodies, &nominal.bodies), lines);
+        (bodies, floats(&beside(&poses.points, &nominal.points)))
+    };
+    let sample = |values, poses: &Poses| {
+        let (bodies, points) = packed(poses);
+        PackedSample { values, bodies, points }
     };
     PackedMotion {
         visuals: motion.drawing.solids.iter().flat_map(visuals).collect(),
@@ -128,6 +142,14 @@ fn packed(motion: &Motion) -> PackedMotion<'_> {
         nominal: PackedNominal { bodies: floats(&nominal.bodies), points: floats(&nominal.points) },
         forces: motion.forces.iter().map(force).collect(),
         samples: motion.samples.iter().map(|moving| sample(&moving.values, &moving.poses)).collect(),
+        worst: motion
+            .worst
+            .iter()
+            .map(|WorstMotion { name, time, poses }| {
+                let (bodies, points) = packed(poses);
+                PackedWorst { name, time: *time, bodies, points }
+            })
+            .collect(),
         stopped: motion.stopped,
         polynomials: motion.polynomials.as_ref().map(|found| polynomials(found, nominal, lines)),
     }

@@ -10,7 +10,7 @@ import { dot, norm, times } from './vectors.js';
 
 /** @typedef {import('./motion.js').Movie} Movie */
 /** @typedef {import('./clock.js').Clock} Clock */
-/** @typedef {{ghosts?: boolean, colorBy?: number, swept?: number, xi?: number[] | null, exaggeration?: number, forces?: boolean, traced?: boolean}} Choices */
+/** @typedef {{ghosts?: boolean, colorBy?: number, swept?: number, xi?: number[] | null, worst?: number, exaggeration?: number, forces?: boolean, traced?: boolean}} Choices */
 
 /** From the least to the greatest value, apart for the colour-blind too. */
 const [LOW, MIDDLE, HIGH] = [[0.05, 0.36, 0.78], [0.72, 0.72, 0.72], [0.88, 0.45, 0]];
@@ -36,6 +36,7 @@ export class View {
     this.swept = -1;
     /** @type {number[] | null} */
     this.xi = null;
+    this.worst = -1;
     /** @type {import('./renderer.js').Flat[]} */
     this.region = [];
     this.forces = false;
@@ -105,6 +106,11 @@ export class View {
     if (this.xi) {
       const color = dark ? [1, 0.85, 1] : [0.42, 0.12, 0.5];
       items.push(...mechanism.solids(movie.anywhere(clock.time, this.xi), { color, alpha: 0.38, shift: -20, symbols: false }, dark));
+    }
+    const worst = movie.worst[this.worst];
+    if (worst) {
+      const color = dark ? [1, 0.45, 0.4] : [0.72, 0.1, 0.08];
+      items.push(...mechanism.solids(movie.beside(clock.time, worst), { color, alpha: 0.5, shift: -30, symbols: false }, dark));
     }
     this.tips = [];
     if (this.forces) {

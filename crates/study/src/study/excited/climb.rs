@@ -46,6 +46,29 @@ impl Point {
     }
 }
 
+impl Point {
+    /// The functions later by a time, s, over cells that end at some times; they begin as before.
+    pub fn later(&self, by: f64, ends: &[f64]) -> Self {
+        let moved = |cells: &Vec<Cell>| -> Vec<Cell> {
+            let mut begin = 0.0;
+            let of_cell = |&end: &f64| {
+                let middle = 0.5 * (begin + end) - by;
+                begin = end;
+                let [level, slope] = cells[ends.partition_point(|own| *own < middle).min(cells.len() - 1)];
+                [level - slope * by, slope]
+            };
+            ends.iter().map(of_cell).collect()
+        };
+        Self { xi: self.xi.clone(), functions: self.functions.iter().map(moved).collect() }
+    }
+
+    /// The opposite functions.
+    pub fn opposite(&self) -> Self {
+        let of_function = |cells: &Vec<Cell>| cells.iter().map(|[level, slope]| [-level, -slope]).collect();
+        Self { xi: self.xi.clone(), functions: self.functions.iter().map(of_function).collect() }
+    }
+}
+
 /// A climb to an end.
 pub struct Climb {
     pub row: usize,
@@ -68,6 +91,8 @@ pub struct Climb {
     /// The point to go to.
     pub next: Option<Point>,
     halvings: i32,
+    /// Whether the point to go to is no end.
+    is_guided: bool,
     /// Derivatives by the parameters (ξ) at the best point, upwards.
     slopes: Vec<f64>,
     /// By parameter: ξ and the derivative beyond its best value, as far as that is known.
@@ -92,10 +117,16 @@ impl Climb {
             improved: 0.0,
             next: Some(start),
             halvings: 0,
+            is_guided: false,
             slopes: Vec::new(),
             beyond: Vec::new(),
             promises: Vec::new(),
         }
+    }
+
+    /// From where the gradient at a point says. The point may be none of the class: it is no end itself.
+    pub fn guided(row: usize, output: usize, sign: f64, guide: Point) -> Self {
+        Self { is_guided: true, ..Self::new(row, output, sign, guide) }
     }
 
     /// The value at its start, upwards.
@@ -180,6 +211,10 @@ impl Climb {
         self.next = (promise > WORTH * first).then_some(worst);
         (self.promise, self.promised, self.cells) = (promise, promise, cells);
         self.promises = parts;
+        if std::mem::take(&mut self.is_guided) {
+            self.first = None;
+            return;
+        }
         self.best = Some((point, reached));
     }
 

@@ -26,7 +26,7 @@ pub(super) const STEPS: usize = 24;
 const LEARNT: usize = 8;
 
 /// How often ends are climbed to from elsewhere.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 3;
 
 /// Rows in which the steps' error of ends that are not followed is measured.
 const CHECKED: usize = 16;
@@ -177,24 +177,30 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Climbs once more from the best functions of the ends around, and from the two constants. Twice, since neighbours
-    /// learn from one another.
+    /// Climbs once more from the best functions of the ends around, as they are and moved by the time between, from the
+    /// opposite function and from the two constants. More than once, since neighbours learn from one another.
     fn start_elsewhere(&mut self, climbs: &mut [Climb]) -> Result<(), SimulationError> {
         for round in 0..ROUNDS {
             let (mut numbers, mut others) = (Vec::new(), Vec::new());
             for (number, climb) in climbs.iter().enumerate() {
                 let around = [number.checked_sub(1), Some(number + 1)].into_iter().flatten();
-                let known = around.filter_map(|other| climbs.get(other)?.best.as_ref());
-                let mut starts: Vec<Point> = known.map(|(point, _)| point.clone()).collect();
+                let mut starts: Vec<Climb> = around
+                    .filter_map(|other| climbs.get(other))
+                    .filter(|other| other.output == climb.output && other.sign == climb.sign)
+                    .flat_map(|other| self.of_neighbour(climb.row, other))
+                    .collect();
                 if let Some((best, _)) = climb.best.as_ref().filter(|_| round == 0) {
                     let classes = self.motions.classes(&best.xi);
-                    starts.extend([-1.0, 1.0].map(|sign| Point {
+                    let constant = |sign: f64| Point {
                         xi: best.xi.clone(),
                         functions: classes.iter().map(|class| class.constant(sign, &self.motions.ends)).collect(),
-                    }));
+                    };
+                    let start = |point: Point| Climb::new(climb.row, climb.output, climb.sign, point);
+                    starts.extend([-1.0, 1.0].map(constant).map(start));
+                    starts.push(Climb::guided(climb.row, climb.output, climb.sign, best.opposite()));
                 }
                 numbers.extend(starts.iter().map(|_| number));
-                others.extend(starts.into_iter().map(|start| Climb::new(climb.row, climb.output, climb.sign, start)));
+                others.extend(starts);
             }
             self.follow(&mut others, STEPS)?;
             climbs.iter_mut().for_each(|climb| climb.improved = 0.0);
@@ -203,24 +209,30 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Bent ends between those that are followed. Where the kernel settled at once, starts from elsewhere improve them
-    /// by no more than their neighbours, as far as is known. Others are climbed to from their neighbours' functions.
+    /// Climbs to the same end in another row: from its function, and from that moved by the time between the rows.
+    fn of_neighbour(&self, row: usize, other: &Climb) -> Vec<Climb> {
+        let Some((point, _)) = &other.best else { return Vec::new() };
+        let by = self.motions.schedule.time(row) - self.motions.schedule.time(other.row);
+        vec![
+            Climb::new(row, other.output, other.sign, point.clone()),
+            Climb::guided(row, other.output, other.sign, point.later(by, &self.motions.ends)),
+        ]
+    }
+
+    /// Bent ends between those that are followed: those of which the kernel settled at once, and climbs from their
+    /// neighbours' functions. They may be as far off as starts from elsewhere improve their neighbours.
     fn learn(&mut self, some: &[Bent], followed: &[Climb]) -> Result<(), SimulationError> {
         let (mut numbers, mut climbs) = (Vec::new(), Vec::new());
+        let mut improved = vec![0.0_f64; some.len()];
         for (number, own) in some.iter().enumerate() {
             let mut alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
             let after = alike.clone().find(|climb| climb.row > own.row);
             let before = alike.rfind(|climb| climb.row < own.row);
-            let around = [before, after].into_iter().flatten();
-            if let Some((reached, open)) = own.settled {
-                let improved = around.map(|climb| climb.improved).fold(0.0, f64::max);
-                let end = FunctionEnd { value: own.sign * reached, open: open + improved };
-                self.found.note(own.row, own.output, own.sign > 0.0, end);
-                continue;
-            }
-            for (start, _) in around.filter_map(|climb| climb.best.as_ref()) {
-                numbers.push(number);
-                climbs.push(Climb::new(own.row, own.output, own.sign, start.clone()));
+            for other in [before, after].into_iter().flatten() {
+                improved[number] = improved[number].max(other.improved);
+                let starts = self.of_neighbour(own.row, other);
+                numbers.extend(starts.iter().map(|_| number));
+                climbs.extend(starts);
             }
         }
         self.follow(&mut climbs, LEARNT)?;
@@ -230,7 +242,18 @@ impl Search<'_, '_> {
                 best[number] = Some(climb);
             }
         }
-        best.iter().flatten().for_each(|climb| self.note(climb));
+        for ((own, best), improved) in some.iter().zip(best).zip(improved) {
+            let settled =
+                own.settled.filter(|(reached, _)| best.as_ref().is_none_or(|best| *reached >= best.reached()));
+            match (settled, best) {
+                (Some((reached, open)), _) => {
+                    let end = FunctionEnd { value: own.sign * reached, open: open + improved };
+                    self.found.note(own.row, own.output, own.sign > 0.0, end);
+                }
+                (None, Some(best)) => self.note(&best),
+                (None, None) => {}
+            }
+        }
         Ok(())
     }
 

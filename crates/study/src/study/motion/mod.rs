@@ -7,6 +7,7 @@ mod forces;
 mod rows;
 mod samples;
 mod thinning;
+mod worst;
 
 use super::drawing::asked::{Asked, AskedBody, Values};
 use super::drawing::{drawn, extent, has_ground};
@@ -18,6 +19,7 @@ use crate::simulate::Interruption;
 use rows::Rows;
 use samples::Samples;
 use thinning::Thinning;
+pub use worst::add_worst_motions;
 
 /// Straight lines between poses are near enough at this share of the model's size.
 const NEAR: f64 = 2e-4;
@@ -151,6 +153,7 @@ impl<'a> Posed<'a> {
             nominal,
             stopped: wanted.len() - 1 - nodes.len() - samples.len(),
             samples,
+            worst: Vec::new(),
             polynomials,
             forces: forces::forces(description, &found_times, self.rows.interruption),
             drawing: self.with_ground(description, drawing, &recorded[0].rows)?,
