@@ -136,7 +136,7 @@ fn excited(random: &mut Random, [least, most]: [usize; 2]) -> Drawn {
             }
         }
     };
-    // The ends of a function with a mean are not symmetrical: what it does after a row may make up for it.
+    // The ends of a function with a mean are not symmetrical: its values after a row may make up for those before it.
     let of_mean = move |time: f64, sign: f64| {
         let h = time / POINTS as f64;
         let values: Vec<f64> = (0..POINTS).map(|index| sign * kernel_of_mean((index as f64 + 0.5) * h)).collect();
@@ -161,7 +161,7 @@ fn excited(random: &mut Random, [least, most]: [usize; 2]) -> Drawn {
 /// max ∫ hu with |u| ≤ 1 and ∫ u between two, of values of h at points that are `step` apart.
 fn with_integral([least, most]: [f64; 2], step: f64, mut values: Vec<f64>) -> f64 {
     values.sort_by(|a, b| b.total_cmp(a));
-    // u is 1 up to some value of h, and −1 below it: the largest integral is at the last positive one, if it may be there.
+    // u is 1 down to some value of h, and −1 below it: at best to the last positive one, if it may be there.
     let whole = values.len() as f64 * step;
     let positive = values.iter().filter(|value| **value > 0.0).count() as f64;
     let share = ((2.0 * positive * step - whole).clamp(least.max(-whole), most.min(whole)) + whole) / (2.0 * step);

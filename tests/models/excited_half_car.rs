@@ -1,5 +1,5 @@
-//! Half a car with stops and tyres that lift off, over any road of a limited slope: its worst roads against random ones,
-//! and replayed, by the classical Runge and Kutta method. `MBINT_SAMPLES` is the number of random roads.
+//! Half a car with stops and tyres that lift off, over any road of a limited slope: its worst roads against random
+//! ones, and replayed, by the classical Runge and Kutta method. `MBINT_SAMPLES` is the number of random roads.
 
 use rayon::prelude::*;
 

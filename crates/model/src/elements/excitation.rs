@@ -95,7 +95,7 @@ impl Excitation {
         Ok(number(&self.middle)? + number(&self.reach)? * u)
     }
 
-    /// x(t) as a constant: of a number of the class, or of what grows at a constant rate.
+    /// x(t) as a constant: of a number of the class, or of a function that grows at a constant rate.
     ///
     /// # Errors
     /// Whatever `number` says.

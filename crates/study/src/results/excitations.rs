@@ -35,7 +35,7 @@ pub struct FunctionWitness {
     pub display: Option<DisplayUnit>,
     /// Number of the output; `None` of reduced outputs and requirements.
     pub output: Option<usize>,
-    /// When it is there, s; `None` of what has no instant.
+    /// When it is there, s; `None` without an instant.
     pub time: Option<f64>,
     /// The output there, or the margin, SI.
     pub value: f64,

@@ -71,7 +71,7 @@ pub struct MovingSample {
 pub struct WorstMotion {
     /// Name of the output, reduced output or requirement.
     pub name: String,
-    /// When it goes there, s: the motion stands still behind that. `None` of what has no instant.
+    /// When it goes there, s: the motion stands still behind that. `None` without an instant.
     pub time: Option<f64>,
     /// The motion.
     pub poses: Poses,

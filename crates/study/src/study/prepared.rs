@@ -39,7 +39,7 @@ impl Prepared {
         let mut unused = simulator.system.unused_parameters();
         unused.retain(|&number| !is_required[number]);
         if simulator.system.is_excited && !unused.is_empty() {
-            // As a constant, an excitation may be nothing but its middle, with no share of what it acts through.
+            // As a constant, an excitation may be nothing but its middle, so that parameters of its force do nothing.
             let as_functions = Questions { formulation, as_functions: true, ..questions(&subsystem) };
             let of_functions = assemble::in_absolute_coordinates(&as_functions)?.unused_parameters();
             unused.retain(|number| of_functions.contains(number));

@@ -9,7 +9,8 @@ use crate::simulate::sampling::Instants;
 /// Times that differ by this share of the output step are the same.
 const ROUNDING: f64 = 1e-9;
 
-/// Shortest part of a step that ends at a chosen time, as a share of the step: multipliers of shorter ones are rounding.
+/// Shortest part of a step that ends at a chosen time, as a share of the step: multipliers of shorter ones are
+/// rounding.
 const SHORTEST: f64 = 0.01;
 
 impl Schedule {

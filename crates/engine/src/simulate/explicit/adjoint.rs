@@ -132,8 +132,8 @@ impl<'s> ExplicitAdjoints<'s> {
         })
     }
 
-    /// From the rows, the last first, to the start; the outputs' values are noted in `values` (by lane and term). Returns
-    /// adjoints of the start's positions and velocities (2n lines).
+    /// From the rows, the last first, to the start; the outputs' values are noted in `values` (by lane and term).
+    /// Returns adjoints of the start's positions and velocities (2n lines).
     pub fn pull(&mut self, rows: &[ExplicitRow], closing: &mut RowAdjoints, values: &mut [Vec<f64>]) -> Vec<f64> {
         let mut adjoints = vec![0.0; self.path.start().len()];
         let mut rows = rows.iter().peekable();

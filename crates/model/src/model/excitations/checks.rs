@@ -1,4 +1,4 @@
-//! What is known of limits once all of the model is: whether they cross, keep their rates and hold their mean.
+//! Checks of limits against the whole model: whether they cross, keep their rates and hold their mean.
 
 use symdiff::{Binary, Formula};
 
@@ -31,7 +31,7 @@ pub fn check_limits(reader: &mut Reader, fields: &Fields) {
     }
 }
 
-/// The key of what is wrong with an excitation, and the message.
+/// A problem of an excitation: the key at fault, and the message.
 fn problem(reader: &Reader, own: &Excitation) -> Option<(&'static str, String)> {
     let first = |formula: &Formula, fails: &dyn Fn(f64) -> bool| first(reader, formula, fails);
     let when = |formula: &Formula, time: f64| {

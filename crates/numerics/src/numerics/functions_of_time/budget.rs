@@ -74,7 +74,7 @@ pub fn with_energy(energy: f64, bounded: bool, ends: &[f64], functional: &[Cell]
 /// Share of a cell's part that is added where a kernel ends: a sixth of 3/8, and as much again.
 const SMEARED: f64 = 0.15;
 
-/// What cells cost where not all of them are at their limit: λ s² d³/24 of a kernel that is straight in one with a
+/// Cost of cells where not all of them are at their limit: λ s² d³/24 of a kernel that is straight in one with a
 /// slope s. Where the kernel ends, steps smear it over a cell, of which halved steps show five sixths. `factor` is λ.
 pub fn loss_by_energy(factor: f64, ends: &[f64], functional: &[Cell], function: &[Cell]) -> f64 {
     let lengths = lengths(ends);

@@ -109,7 +109,7 @@ impl FunctionClass {
         }
     }
 
-    /// What steps cost a function with a mean: they smear a switch over a cell, and so change the mean.
+    /// Cost of steps to a function with a mean: they smear a switch over a cell, and so change the mean.
     fn loss_of_mean(&self, ends: &[f64], functional: &[Cell]) -> f64 {
         let Self::Mean(mean) = self else { return 0.0 };
         let longest = (0..ends.len()).map(|cell| ends[cell] - begin(ends, cell)).fold(0.0, f64::max);
@@ -131,9 +131,9 @@ impl FunctionClass {
         }
     }
 
-    /// What cells cost, within which no function changes: at most as much as a kernel costs that is straight in them.
-    /// Periods end where cells do, and cost nothing; of functions that are bounded with their rate it is what joining
-    /// cells in pairs costs; of sines, by how much their chords are smaller.
+    /// Cost of cells, within which no function changes: at most as much as a kernel costs that is straight in them.
+    /// Periods end where cells do, and cost nothing; of functions that are bounded with their rate it is that of
+    /// joining cells in pairs; of sines, by how much their chords are smaller.
     pub fn loss_of_cells(&self, ends: &[f64], functional: &[Cell]) -> f64 {
         if let Some(integrals) = self.switching(ends, functional) {
             return at_changes(ends, &integrals) + self.loss_of_mean(ends, functional);
@@ -158,7 +158,7 @@ impl FunctionClass {
     }
 }
 
-/// What joining cells in pairs costs functions between limits that have a limited rate.
+/// Cost of joining cells in pairs, of functions between limits with a limited rate.
 fn in_pairs(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) -> f64 {
     // From the end, where the kernel is largest as a rule.
     let joined = |pair: &[Cell]| pair.iter().fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
@@ -174,7 +174,7 @@ fn in_pairs(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) 
 /// Share of a cell by which the zero of a kernel may be off, which is straight between the cells' middles.
 const OFF: f64 = 0.05;
 
-/// What it costs that a function switches where a cell begins, and not at the zero of its kernel, given the kernel's
+/// Cost of a switch where a cell begins, and not at the zero of the kernel, given the kernel's
 /// integrals over cells: s δ² of a straight one of slope s whose zero is δ away.
 fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
     let length = |cell: usize| ends[cell] - begin(ends, cell);
@@ -195,7 +195,7 @@ fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
     changes.map(cost).sum()
 }
 
-/// Zeros of a kernel, given its integrals over cells, that is straight between the cells' middles; within the two cells.
+/// Zeros of a kernel that is straight between the cells' middles, given its integrals over cells.
 fn zeros(ends: &[f64], integrals: &[f64]) -> Vec<f64> {
     let density = |cell: usize| integrals[cell] / (ends[cell] - begin(ends, cell));
     let changes = (1..integrals.len()).filter(|&cell| integrals[cell] * integrals[cell - 1] < 0.0);

@@ -66,7 +66,7 @@ impl Side {
         self.points.front().map_or(self.limit, |(point, _)| (point + self.shift).min(self.limit))
     }
 
-    /// Moves the maximum outwards, until slopes have changed by so much: what it passes goes to the other side.
+    /// Moves the maximum outwards, until slopes have changed by so much: points that it passes go to the other side.
     fn climb(&mut self, mut slope: f64, other: &mut Self) {
         while slope > 0.0 {
             let (point, change) = match self.points.pop_front() {
@@ -87,7 +87,7 @@ impl Side {
         }
     }
 
-    /// Cuts off what lies beyond a limit of the other side, `least` outwards: the function rises there at once.
+    /// Cuts off the part beyond a limit of the other side, `least` outwards: the function rises there at once.
     fn cut(&mut self, least: f64) {
         let mut rise = 0.0;
         while let Some(&(_, change)) = self.points.front().filter(|(point, _)| point + self.shift < least) {
@@ -100,8 +100,8 @@ impl Side {
     }
 }
 
-/// Limits at the ends of cells, at 0 those of the beginning: their middle and half of their distance. A function u between
-/// −1 and 1 is x = middle + reach · u between them.
+/// Limits at the ends of cells, at 0 those of the beginning: their middle and half of their distance. A function u
+/// between −1 and 1 is x = middle + reach · u between them.
 pub trait Limits {
     /// Those at the end of the cell before this number.
     fn at(&self, number: usize) -> [f64; 2];

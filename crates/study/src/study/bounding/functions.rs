@@ -40,8 +40,8 @@ pub struct FunctionEnds {
     pub worst: Vec<Option<(f64, WorstFunction)>>,
     /// By output, the functions under which it is least and greatest in some row.
     pub extremes: Vec<[Option<WorstFunction>; 2]>,
-    /// By row and output: how far each parameter, then each input moves it either way, to first order from the middle of
-    /// all limits.
+    /// By row and output: how far each parameter, then each input moves it either way, to first order from the middle
+    /// of all limits.
     parts: Vec<Vec<f64>>,
     /// The excitation that each input is, by index of its trajectory.
     pub inputs: Vec<usize>,

@@ -97,7 +97,7 @@ pub struct Climb {
     slopes: Vec<f64>,
     /// By parameter: ξ and the derivative beyond its best value, as far as that is known.
     beyond: Vec<Option<(f64, f64)>>,
-    /// What the gradient at the best point promises, by parameter and input.
+    /// Promise of the gradient at the best point, by parameter and input.
     promises: Vec<f64>,
 }
 
@@ -218,8 +218,8 @@ impl Climb {
         self.best = Some((point, reached));
     }
 
-    /// From a point that is no better: halfway to it, of parameters that have passed their best value to where the secant
-    /// of their derivatives is zero.
+    /// From a point that is no better: halfway to it. Parameters that have passed their best value go to the zero of
+    /// the secant of their derivatives.
     fn step_back(&mut self, point: &Point, slopes: &[f64]) {
         let Some((best, _)) = &self.best else { return };
         self.halvings += 1;
@@ -243,8 +243,7 @@ impl Climb {
         }
     }
 
-    /// The point to which a gradient points, what it promises there by each parameter and each input, and the cost of
-    /// cells.
+    /// The point to which a gradient points, its promise there by each parameter and each input, and the cost of cells.
     fn along(&self, found: &Gradient, from: &Point, motions: &ExcitedMotions) -> (Point, Vec<f64>, f64) {
         let mut worst = from.clone();
         let mut parts = vec![0.0; found.by_parameters.len()];

@@ -1,8 +1,8 @@
 //! Newton's method on the instants at which the farthest functions switch.
 //!
 //! Functions of cells switch where cells end. At an instant τ at which one switches, an end changes by twice the kernel
-//! there; the kernel is straight between the middles of cells, and its zero is the next τ. Steps then end there, as long
-//! as the end grows.
+//! there; the kernel is straight between the middles of cells, and its zero is the next τ. Steps then end there, as
+//! long as the end grows.
 
 use super::climb::{Climb, Point};
 use super::motions::{ExcitedMotions, in_row};
@@ -10,7 +10,7 @@ use crate::numerics::Cell;
 use crate::simulate::{Gradient, SimulationError};
 use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
 
-/// Iterations of Newton's method: each takes the square of what is left.
+/// Iterations of Newton's method: each squares the error.
 const ROUNDS: usize = 3;
 
 /// Settles the switches of the functions under which each output is least, greatest and furthest.

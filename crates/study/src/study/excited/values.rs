@@ -20,7 +20,7 @@ enum Value {
     /// A reduced output, by its index.
     Reduced(usize),
     /// A slack of a requirement on reduced outputs (by their indices) and parameters.
-    Slack { formulas: NumberFormulas, reduced: Vec<usize> },
+    Slack { formulas: Box<NumberFormulas>, reduced: Vec<usize> },
 }
 
 /// A value with its derivatives by outputs in rows and by parameters.
@@ -61,7 +61,7 @@ pub fn ends_of_values(
         for (index, slack) in store.plan.values.parts(number).zip(&own.slacks) {
             let (reduced, names): (Vec<usize>, Vec<&str>) =
                 description.reduced_in(slack).map(|(index, own)| (index, own.name.as_str())).unzip();
-            let formulas = NumberFormulas::of(&description.parameters, &names, std::slice::from_ref(slack));
+            let formulas = Box::new(NumberFormulas::of(&description.parameters, &names, std::slice::from_ref(slack)));
             all.push((index, Value::Slack { formulas, reduced }));
         }
     }
@@ -167,8 +167,8 @@ impl Values<'_, '_, '_> {
         rows.map(of_row).filter(|(value, _)| value.is_finite()).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// How far a value can go at most by the ends of its source in the rows and by what is open there, upwards by the
-    /// sign. `None` where these do not tell.
+    /// How far a value can go at most by the ends of its source in the rows with their errors, upwards by the sign.
+    /// `None` where these do not tell.
     fn limit(&self, value: &Value, sign: f64) -> Option<Limit> {
         let Value::Reduced(index) = value else { return None };
         let own = &self.motions.study.description.reduced[*index];

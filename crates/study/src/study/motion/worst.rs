@@ -9,8 +9,8 @@ use crate::study::{RunError, pool};
 /// Most of them.
 const MOST: usize = 8;
 
-/// Adds the motions under the functions of a run to that of a report, at its times. One that cannot be simulated is left
-/// out.
+/// Adds the motions under the functions of a run to that of a report, at its times. One that cannot be simulated is
+/// left out.
 ///
 /// # Errors
 /// At an interruption, and where threads cannot be had.

@@ -81,7 +81,7 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(odd) };
     let mut results = bounds_of(study, ensembles, plan, halved)?;
     let unreliable = rows.unreliable_from().is_some();
-    // What is evaluated after the run is of constants, and says nothing of excitations that are functions.
+    // Evaluations after the run are of constants, and say nothing of excitations that are functions.
     let kept = kept_reduced(study, &mut results, &store.plan.values, unreliable || rows.functions.is_some());
     if let Some(functions) = rows.functions.as_ref().and_then(|own| own.of_values.as_deref()) {
         bound_by_functions(&mut results, functions);
