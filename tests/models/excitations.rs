@@ -90,21 +90,26 @@ fn the_explicit_method_finds_the_same_end() {
     assert!((end - expected).abs() < 1e-4 * expected && (end - expected).abs() <= error, "{end} {expected} {error}");
 }
 
+fn quarter_car(steps: &str) -> String {
+    format!(
+        "
+excitations: {{ road: {{ rate: 0.1 m/s }} }}
+bodies: {{ wheel: {{ mass: 40, coordinates: [y] }}, body: {{ mass: 350, coordinates: [y] }} }}
+effects:
+  tyre: {{ spring_damper: {{ between: [ground, wheel], along: y, stiffness: 180 kN/m, force: -180e3*road }} }}
+  suspension: {{ spring_damper: {{ between: [wheel, body], along: y, stiffness: 20 kN/m, damping: 1.5 kN*s/m }} }}
+outputs: {{ shake: body.ay }}
+simulation: {{ duration: 6, {steps}, output_step: 1 }}
+bounds: {{ chebyshev: {{ order: 2 }} }}
+"
+    )
+}
+
 /// Road of a limited slope under the shipped quarter car, 0.1 ∫|h| over six seconds by another program
 /// (the classical Runge and Kutta method over 60 000 steps): 2.573452 m/s².
 #[test]
 fn a_road_of_limited_slope_shakes_a_quarter_car_by_a_known_number() {
-    let text = "
-excitations: { road: { rate: 0.1 m/s } }
-bodies: { wheel: { mass: 40, coordinates: [y] }, body: { mass: 350, coordinates: [y] } }
-effects:
-  tyre: { spring_damper: { between: [ground, wheel], along: y, stiffness: 180 kN/m, force: -180e3*road } }
-  suspension: { spring_damper: { between: [wheel, body], along: y, stiffness: 20 kN/m, damping: 1.5 kN*s/m } }
-outputs: { shake: body.ay }
-simulation: { duration: 6, step: 2.5e-4, output_step: 1 }
-bounds: { chebyshev: { order: 2 } }
-";
-    let (_, bounds, _) = run(text);
+    let (_, bounds, _) = run(&quarter_car("step: 2.5e-4"));
     let (end, error) = last_end(&bounds, 0);
     assert!((end - 2.573_452).abs() < 1e-4 && error < 3e-4, "{end} ± {error}");
 }
@@ -112,17 +117,7 @@ bounds: { chebyshev: { order: 2 } }
 /// The same with switches between the ends of steps of 1 ms.
 #[test]
 fn farthest_functions_switch_between_the_ends_of_steps() {
-    let text = "
-excitations: { road: { rate: 0.1 m/s } }
-bodies: { wheel: { mass: 40, coordinates: [y] }, body: { mass: 350, coordinates: [y] } }
-effects:
-  tyre: { spring_damper: { between: [ground, wheel], along: y, stiffness: 180 kN/m, force: -180e3*road } }
-  suspension: { spring_damper: { between: [wheel, body], along: y, stiffness: 20 kN/m, damping: 1.5 kN*s/m } }
-outputs: { shake: body.ay }
-simulation: { duration: 6, step: 1e-3, scheme: explicit, output_step: 1 }
-bounds: { chebyshev: { order: 2 } }
-";
-    let (_, bounds, _) = run(text);
+    let (_, bounds, _) = run(&quarter_car("step: 1e-3, scheme: explicit"));
     let (end, _) = last_end(&bounds, 0);
     assert!((end - 2.573_452).abs() < 1e-5, "{end}");
     assert!(bounds.functions[0].functions[0].points.len() < 100, "switches alone are points");

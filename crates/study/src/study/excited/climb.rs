@@ -44,11 +44,10 @@ impl Point {
             functions: self.functions.iter().zip(&other.functions).map(of_function).collect(),
         }
     }
-}
 
-impl Point {
-    /// The functions later by a time, s, over cells that end at some times; they begin as before.
-    pub fn later(&self, by: f64, ends: &[f64]) -> Self {
+    /// The functions later by a time, s, over cells that end at some times; they begin as before. Where there are fewer
+    /// cells than before, they may be none of their class.
+    pub fn later(&self, by: f64, ends: &[f64], others: &[f64]) -> Self {
         let moved = |cells: &Vec<Cell>| -> Vec<Cell> {
             let mut begin = 0.0;
             let of_cell = |&end: &f64| {
@@ -57,7 +56,7 @@ impl Point {
                 let [level, slope] = cells[ends.partition_point(|own| *own < middle).min(cells.len() - 1)];
                 [level - slope * by, slope]
             };
-            ends.iter().map(of_cell).collect()
+            others.iter().map(of_cell).collect()
         };
         Self { xi: self.xi.clone(), functions: self.functions.iter().map(moved).collect() }
     }

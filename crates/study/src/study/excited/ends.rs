@@ -215,7 +215,7 @@ impl Search<'_, '_> {
         let by = self.motions.schedule.time(row) - self.motions.schedule.time(other.row);
         vec![
             Climb::new(row, other.output, other.sign, point.clone()),
-            Climb::guided(row, other.output, other.sign, point.later(by, &self.motions.ends)),
+            Climb::guided(row, other.output, other.sign, point.later(by, &self.motions.ends, &self.motions.ends)),
         ]
     }
 

@@ -6,7 +6,7 @@
 
 use super::climb::{Climb, Point};
 use super::motions::{ExcitedMotions, in_row};
-use crate::numerics::Cell;
+use crate::numerics::{Cell, FunctionClass};
 use crate::simulate::{Gradient, SimulationError};
 use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
 
@@ -54,7 +54,7 @@ fn settled(
         if times.is_empty() || finer.ends.len() == motions.ends.len() {
             break;
         }
-        point.functions = point.functions.iter().map(|cells| moved(cells, &ends, &finer.ends)).collect();
+        point = point.later(0.0, &ends, &finer.ends);
         ends = finer.ends.clone();
         // The kernel on these cells names the function: the one before may be none of the class on them.
         let mut climb = Climb::new(own.row, output, sign, point.clone());
@@ -83,21 +83,10 @@ fn settled(
 /// When the kernel says that functions switch, s.
 fn switches(motions: &ExcitedMotions, found: &Gradient, ends: &[f64], point: &Point, sign: f64) -> Vec<f64> {
     let classes = motions.classes(&point.xi);
-    let of_input = |(input, class): (usize, &crate::numerics::FunctionClass)| {
+    let of_input = |(input, class): (usize, &FunctionClass)| {
         let of_cell = |by: &[f64]| [sign * by[2 * input], sign * by[2 * input + 1]];
         let functional: Vec<Cell> = found.by_inputs.chunks_exact(2 * classes.len()).map(of_cell).collect();
         class.switches(ends, &functional)
     };
     classes.iter().enumerate().flat_map(of_input).collect()
-}
-
-/// A function over other cells: in each, that of the cell which holds its middle.
-fn moved(cells: &[Cell], ends: &[f64], others: &[f64]) -> Vec<Cell> {
-    let mut begin = 0.0;
-    let of_cell = |&end: &f64| {
-        let middle = 0.5 * (begin + end);
-        begin = end;
-        cells[ends.partition_point(|own| *own < middle).min(cells.len() - 1)]
-    };
-    others.iter().map(of_cell).collect()
 }

@@ -6,7 +6,7 @@
 
 use super::climb::{Climb, Point};
 use super::ends::{FIRST_ORDER, SAFETY, STEPS};
-use super::motions::{Asked, ExcitedMotions, in_row};
+use super::motions::{Asked, ExcitedMotions};
 use crate::assemble::NumberFormulas;
 use crate::model::ReducedKind;
 use crate::numerics::{largest, step_error};
@@ -93,15 +93,20 @@ struct Start {
     /// The output that goes furthest there; `None` of those for all values.
     of: Option<usize>,
     point: Point,
+    /// Whether it may be no function of its class.
+    is_guide: bool,
 }
 
 impl Values<'_, '_, '_> {
     fn search(&mut self, mut found: FunctionEnds) -> Result<FunctionEnds, SimulationError> {
-        let starts = self.starts()?;
+        let starts = self.starts();
         let mut climbs: Vec<OfValue> = Vec::new();
         for (number, (_, value)) in self.all.iter().enumerate() {
             for sign in [-1.0, 1.0] {
-                let climb = |start: &Start| OfValue { number, climb: Climb::new(0, number, sign, start.point.clone()) };
+                let climb = |Start { point, is_guide, .. }: &Start| {
+                    let begin = if *is_guide { Climb::guided } else { Climb::new };
+                    OfValue { number, climb: begin(0, number, sign, point.clone()) }
+                };
                 let own = self.sources_of(value);
                 climbs.extend(starts.iter().filter(|start| start.of.is_none_or(|of| own.contains(&of))).map(climb));
             }
@@ -128,33 +133,23 @@ impl Values<'_, '_, '_> {
     }
 
     /// The middle of all limits, both constants, and the functions under which each source goes furthest either way.
-    fn starts(&mut self) -> Result<Vec<Start>, SimulationError> {
+    fn starts(&self) -> Vec<Start> {
         let middle = self.motions.middle();
         let classes = self.motions.classes(&middle.xi);
         let constant = |sign: f64| Point {
             xi: middle.xi.clone(),
             functions: classes.iter().map(|class| class.constant(sign, &self.motions.ends)).collect(),
         };
-        let mut starts: Vec<Start> = [middle.clone(), constant(-1.0), constant(1.0)]
-            .into_iter()
-            .map(|point| Start { of: None, point })
-            .collect();
-        let (mut asked, mut sides): (Vec<Asked>, Vec<(usize, f64)>) = (Vec::new(), Vec::new());
+        let for_all = |point: Point| Start { of: None, point, is_guide: false };
+        let mut starts: Vec<Start> = [middle.clone(), constant(-1.0), constant(1.0)].map(for_all).into();
         for &output in &self.sources {
-            for sign in [-1.0, 1.0] {
-                if let Some((_, row)) = self.furthest(output, sign, f64::NEG_INFINITY, f64::INFINITY) {
-                    asked.push((&middle, in_row(row, output)));
-                    sides.push((output, sign));
-                }
+            for own in self.rows.extremes[output].iter().flatten() {
+                let point = Point { xi: self.motions.study.domain.xi(&own.sample), functions: own.cells.clone() };
+                let point = point.later(0.0, &own.ends, &self.motions.ends);
+                starts.push(Start { of: Some(output), point, is_guide: own.ends != self.motions.ends });
             }
         }
-        let kernels = self.motions.gradients(&asked)?;
-        for ((output, sign), kernel) in sides.into_iter().zip(kernels) {
-            let mut climb = Climb::new(0, 0, sign, middle.clone());
-            climb.take(&kernel, self.motions);
-            starts.extend(climb.next.map(|point| Start { of: Some(output), point }));
-        }
-        Ok(starts)
+        starts
     }
 
     /// The farthest end of an output, upwards by the sign, in rows from a time to another, and its row.
