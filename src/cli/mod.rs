@@ -25,7 +25,6 @@ mod listing;
 mod load;
 mod lsp;
 mod man;
-mod meshes;
 mod methods;
 mod new;
 mod overview;

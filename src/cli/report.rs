@@ -3,10 +3,9 @@
 use super::args::ReportArgs;
 use super::console::Console;
 use super::interrupt;
-use super::meshes::{MOST_TRIANGLES, read_meshes};
 use super::request::Job;
 use super::{Failure, Status};
-use crate::export::{ReportParts, write_report};
+use crate::export::{MOST_TRIANGLES, ReportParts, read_meshes, write_report};
 use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions};
 
