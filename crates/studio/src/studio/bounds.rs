@@ -1,0 +1,168 @@
+//! The model as it is typed: read, and bounded, the coarse first.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::desk::{Current, Desk, Finished, Reading};
+use super::language::uri;
+use crate::export::{results_article, write_results};
+use crate::methods::{BoundsRequest, Chebyshev, Taylor};
+use crate::model::{Description, Opened, read_open};
+use crate::results::{Bounds, Provenance, Summary};
+use crate::study::{self, Options, RunError};
+
+/// Most uncertain parameters for which coarse bounds are polynomials through the corners of the box.
+const FEW: usize = 4;
+
+/// Progress is told by this share.
+const SHARE: f64 = 0.01;
+
+/// A study of a series: each takes longer than the one before, and says more.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Nominal,
+    Coarse,
+    Asked,
+}
+
+impl Stage {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Coarse => "coarse",
+            Self::Asked => "asked",
+        }
+    }
+
+    /// The model with the bounds of this stage.
+    fn of(self, description: &Description) -> Description {
+        let mut model = description.clone();
+        if self == Self::Asked {
+            return model;
+        }
+        model.statistics.asked = false;
+        let k = description.uncertain().count();
+        model.bounds = BoundsRequest { budget: description.bounds.budget, ..BoundsRequest::default() };
+        match self {
+            Self::Coarse if k <= FEW => model.bounds.chebyshev = Some(Chebyshev::of_order(1, k)),
+            Self::Coarse => model.bounds.taylor = Some(Taylor { order: 1, ..Taylor::default() }),
+            _ => {}
+        }
+        model
+    }
+}
+
+/// Reads and bounds the model, anew with each change, until the end.
+pub fn work(desk: &Desk) {
+    let mut seen = 0;
+    while let Some(reading) = desk.next_change(seen) {
+        seen = reading.change;
+        let opened = study::caught("reading", || read_open(&reading.path, &reading.overlay, desk.root.as_deref()));
+        match opened {
+            Err(error) => desk.board.put("model", json!({ "state": "wrong", "error": error.to_string() })),
+            Ok(opened) => study_of(desk, &reading, opened),
+        }
+    }
+}
+
+fn study_of(desk: &Desk, reading: &Reading, opened: Opened) {
+    let sources = opened.reading.diagnostics.sources.all();
+    let named = sources.map(|source| PathBuf::from(&source.name)).filter(|path| path.is_file());
+    let named: Vec<PathBuf> = named.collect();
+    let files = desk.texts(|texts| {
+        texts.consists_of(named);
+        texts.files()
+    });
+    let files: Vec<Value> = files.iter().map(|path| file(path)).collect();
+    let names: Vec<&str> = opened.reading.scenes.iter().map(|scene| scene.name.as_str()).collect();
+    let scene = reading.scene.as_deref().filter(|name| names.contains(name)).or(names.first().copied());
+    let scenes = opened.reading.scenes.iter();
+    let chosen = scenes.filter(|own| Some(own.name.as_str()) == scene).map(|own| &own.description).next();
+    let Some(description) = chosen.or(opened.reading.description.as_ref()) else {
+        desk.board.put("progress", Value::Null);
+        return desk.board.put("model", json!({ "state": "wrong", "files": files }));
+    };
+    let (parameters, _) = study::uncertain(description);
+    let model = json!({
+        "state": "valid",
+        "number": reading.change,
+        "name": description.name,
+        "files": files,
+        "scenes": names,
+        "scene": scene,
+        "parameters": parameters,
+        "duration": description.simulation.duration,
+    });
+    let starts_a_program = description.black_box.is_some() && !reading.is_allowed;
+    desk.board.put("model", model);
+    if starts_a_program {
+        let why = "The model asks a program, which is started when you allow it.";
+        desk.board.put("mechanism", json!({ "number": reading.change, "absent": why }));
+        desk.board.put("progress", Value::Null);
+        let note = json!({ "number": reading.change, "stage": "asked", "error": why, "waits": true });
+        return desk.board.put("bounds", note);
+    }
+    let current = desk.publish(reading.change, description.clone());
+    let done = study::caught("the bounds", || stages(desk, &current, reading));
+    if let Err(error) = done {
+        desk.board.put("bounds", json!({ "number": current.number, "stage": "asked", "error": error.to_string() }));
+    }
+    if !desk.is_old(reading.change) {
+        desk.board.put("progress", Value::Null);
+    }
+}
+
+fn file(path: &Path) -> Value {
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    json!({ "path": path, "name": name, "uri": uri(path) })
+}
+
+/// Bounds a model, stage by stage, until its text changes.
+fn stages(desk: &Desk, current: &std::sync::Arc<Current>, reading: &Reading) {
+    let number = current.number;
+    let first = if current.description.uncertain().next().is_some() { Stage::Nominal } else { Stage::Asked };
+    let all = [Stage::Nominal, Stage::Coarse, Stage::Asked];
+    for stage in all.into_iter().skip_while(|stage| *stage != first) {
+        let found = run(desk, &stage.of(&current.description), reading, stage);
+        if desk.is_old(reading.change) {
+            return;
+        }
+        let (bounds, summary) = match found {
+            Ok(found) => found,
+            // Some models cannot be expanded, or have no such bounds; the next stage says what is wrong with one.
+            Err(_) if stage == Stage::Coarse => continue,
+            Err(error) => {
+                let waits = matches!(error, RunError::Costly(_));
+                let note =
+                    json!({ "number": number, "stage": stage.name(), "error": error.to_string(), "waits": waits });
+                return desk.board.put("bounds", note);
+            }
+        };
+        let folder = desk.folder.join(stage.name());
+        let provenance = Provenance::default();
+        let article = write_results(&folder, &bounds, &summary.without_seconds(), &provenance, false, None)
+            .and_then(|_| results_article(&folder));
+        let note = match article {
+            Ok(html) => json!({ "number": number, "stage": stage.name(), "html": html }),
+            Err(error) => json!({ "number": number, "stage": stage.name(), "error": error.to_string() }),
+        };
+        if stage == Stage::Asked {
+            desk.finish(Finished { current: std::sync::Arc::clone(current), bounds, summary });
+        }
+        desk.board.put("bounds", note);
+    }
+}
+
+fn run(desk: &Desk, model: &Description, reading: &Reading, stage: Stage) -> Result<(Bounds, Summary), RunError> {
+    let tell = |fraction: f64| {
+        let fraction = (fraction / SHARE).floor() * SHARE;
+        let note = json!({ "number": reading.change, "stage": stage.name(), "fraction": fraction });
+        desk.board.put("progress", note);
+    };
+    tell(0.0);
+    let interrupted = || desk.is_old(reading.change);
+    let options =
+        Options { costly: reading.is_allowed, progress: &tell, interrupted: &interrupted, ..Options::default() };
+    study::run(model, options)
+}
