@@ -56,7 +56,8 @@ export class Assist {
   /** @param {InputEvent} event */
   typed(event) {
     this.tip.hidden = true;
-    const isWord = event.inputType === 'insertText' && /[\w.]/.test(event.data || '');
+    // A key, not a change that was made at once.
+    const isWord = event.inputType === 'insertText' && /^[\w.]$/.test(event.data || '');
     if (isWord || !this.list.hidden) this.complete();
   }
 

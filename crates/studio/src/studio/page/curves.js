@@ -78,7 +78,8 @@ export class Bounds {
     if (!curves) return;
     for (const { svg, data } of this.plots) {
       const place = curves.sample.outputs.findIndex(({ name }) => name === data.output);
-      if (place < 0 || data.across) continue;
+      // Shares of parameters have no nominal curve.
+      if (place < 0 || data.across || !data.series.some(({ kind }) => kind === 'nominal')) continue;
       const { values } = curves.sample.outputs[place];
       const nominal = curves.nominal?.outputs[place].values;
       const [value, deviation] = /** @type {Data} */ (data).panels;

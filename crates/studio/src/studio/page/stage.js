@@ -57,7 +57,7 @@ export class Stage {
     this.note = element('output', { class: 'hand', 'aria-live': 'polite' });
     this.back = /** @type {HTMLButtonElement} */ (element('button', { type: 'button', hidden: '' }, ['Back to the motion']));
     this.back.addEventListener('click', () => this.release());
-    this.pull = latest((/** @type {any} */ question) => post('drag', question), (held) => this.hold(held), (error) => this.tell(error.message));
+    this.pull = latest((/** @type {any} */ question) => post('drag', question), (held, { place }) => this.hold(held, place), (error) => this.tell(error.message));
     this.sample = latest((/** @type {number[]} */ wanted) => post('motion', { number: this.number, values: wanted }), (motion) => this.follow(new Movie(motion)), (error) => this.tell(error.message));
   }
 
@@ -172,6 +172,7 @@ export class Stage {
     event.stopPropagation();
     event.preventDefault();
     canvas.setPointerCapture(event.pointerId);
+    view.label.hidden = true;
     this.clock.pause();
     this.isDriven = false;
     this.drag = { grip: best.grip, place: this.where(best.grip), from: this.last ? null : [...instant.pose] };
@@ -195,8 +196,8 @@ export class Stage {
     this.drag = null;
   }
 
-  /** @param {Held} held */
-  hold(held) {
+  /** @param {Held} held @param {number[]} wanted */
+  hold(held, wanted) {
     const { movie, drag } = this;
     if (!movie) return;
     if (held.freedom === 0) {
@@ -207,7 +208,7 @@ export class Stage {
     this.last = held;
     movie.held = { pose: Float64Array.from(held.pose), points: Float32Array.from(held.points) };
     this.back.hidden = false;
-    const away = drag ? norm(minus(drag.place, held.at)) : 0;
+    const away = norm(minus(wanted, held.at));
     const reach = sizeOf(movie);
     const place = held.at.slice(0, movie.drawing.spatial ? 3 : 2).map((x) => x.toFixed(4)).join(', ');
     this.tell(`${drag ? `${drag.grip.name} ` : ''}${place} m, closed to ${held.residual.toExponential(0)}${away > 1e-3 * reach ? ': as near as it can come' : ''}`);

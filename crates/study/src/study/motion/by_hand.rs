@@ -173,6 +173,18 @@ simulation: { duration: 1, step: 0.01 }
         assert!(hand.drag(Grip { body: 1, point: 9 }, &sample, [0.0; 3]).is_none());
     }
 
+    #[test]
+    fn what_is_driven_stays_where_it_is() {
+        let text = CRANK.replace("joints:", "joints:\n  drive: { equation: crank.angle = 1 }");
+        let text = text.replace("initial: { crank.angle: 60 deg }\n", "");
+        let model = model::load_str("crank.yaml", &text, &[]).unwrap();
+        let movable = Movable::new(&model, Interruption::default()).unwrap();
+        let (sample, mut hand) = (movable.nominal(), movable.hand());
+        let Held { at, freedom, .. } = hand.drag(Grip { body: 1, point: 1 }, &sample, [0.0, 1.0, 0.0]).unwrap();
+        assert_eq!(freedom, 0);
+        assert!((at[0] - 1.0_f64.cos()).hypot(at[1] - 1.0_f64.sin()) < 1e-10, "{at:?}");
+    }
+
     /// The hand takes the mechanism to any instant of a motion.
     #[test]
     fn a_pose_of_a_motion_is_found_again() {

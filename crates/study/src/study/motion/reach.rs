@@ -108,6 +108,9 @@ impl<'s> Reach<'s> {
                 residual: base.residual,
                 freedom: moved.len(),
             };
+            if moved.is_empty() {
+                return now;
+            }
             // Per step of DIFFERENCE; a coordinate that cannot be changed stays.
             let slope = |own: &Configuration| {
                 let of = if own.is_closed { wanted(&own.outputs) } else { away.clone() };
