@@ -14,6 +14,8 @@ export class Bounds {
   constructor(holder, tabs) {
     this.holder = holder;
     this.tabs = tabs;
+    /** Number of the model. */
+    this.number = 0;
     /** The output that is looked at. */
     this.chosen = '';
     /** @type {import('./plots.js').Plot[]} */

@@ -286,6 +286,7 @@ function showMechanism(found) {
 function showBounds(found) {
   if (found.number !== model?.number) return;
   byId('stage-name').textContent = STAGES[/** @type {keyof STAGES} */ (found.stage)];
+  bounds.number = found.number;
   if (found.html) bounds.show(found.html, clock);
   else bounds.say(found.error, found.waits ? [button('Run it', () => post('allow').catch((error) => notice(error.message)))] : []);
   report.disabled = !(found.stage === 'asked' && found.html);
