@@ -1,13 +1,10 @@
 // The studio in a browser. MBINT is the program.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { launch } from './browser.mjs';
-
-const MBINT = resolve(process.env.MBINT || 'target/release/mbint');
+import { launch, studioOf } from './browser.mjs';
 
 const CRANK = `model: crank
 description: "</title><script>document.title = 'taken over'</script>"
@@ -23,7 +20,7 @@ joints:
 effects: { drive: { torque: { on: crank, value: torque } } }
 initial: { crank.angle: 60 deg, crank.angular_velocity: 0 }
 outputs: { x: slider.x }
-simulation: { duration: 0.4, step: 1e-3, output_step: 0.01 }
+simulation: { duration: 0.4, step: 4e-3, output_step: 0.02 }
 bounds: { chebyshev: { order: 2 } }
 `;
 
@@ -39,8 +36,8 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'mbint-studio-'));
   file = join(folder, 'crank.yaml');
   writeFileSync(file, CRANK);
-  studio = spawn(MBINT, ['studio', file, '--no-open'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  const address = await new Promise((done) => studio.stdout.on('data', (text) => /^http/.test(String(text)) && done(String(text).split('\n')[0])));
+  const { program, address } = await studioOf(file);
+  studio = program;
   browser = await launch();
   page = await (await browser.newContext({ viewport: { width: 1700, height: 900 } })).newPage();
   page.setDefaultTimeout(60_000);

@@ -136,10 +136,10 @@ impl<'s> Closure<'s> {
             let values = |registers: &mut dyn Iterator<Item = usize>, lane: usize| -> Vec<f64> {
                 registers.map(|register| tile.lane(register)[lane]).collect()
             };
-            for lane in 0..count {
+            for (lane, &is_closed) in closed.iter().enumerate().take(count) {
                 let gaps = values(&mut self.program.constraint.iter().map(|residual| residual.register), lane);
                 found.push(Configuration {
-                    is_closed: closed[lane],
+                    is_closed,
                     positions: values(&mut self.program.layout.q.clone(), lane),
                     outputs: values(&mut self.program.outputs.iter().copied(), lane),
                     residual: gaps.into_iter().map(f64::abs).fold(0.0, f64::max),

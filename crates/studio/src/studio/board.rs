@@ -1,4 +1,4 @@
-//! What the page is told: the latest of each topic, with a number by which a page asks for what it has not seen.
+//! Notes for the page: the latest of each topic, numbered, so that a page asks for the new ones alone.
 
 use std::collections::BTreeMap;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};

@@ -1,6 +1,8 @@
 //! The model as it is typed: read, and bounded, the coarse first.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
@@ -14,6 +16,9 @@ use crate::study::{self, Options, RunError};
 
 /// Most uncertain parameters for which coarse bounds are polynomials through the corners of the box.
 const FEW: usize = 4;
+
+/// How long coarse bounds may take: later they are no news beside those that the model asks for.
+const COARSE: Duration = Duration::from_secs(10);
 
 /// Progress is told by this share.
 const SHARE: f64 = 0.01;
@@ -35,21 +40,26 @@ impl Stage {
         }
     }
 
-    /// The model with the bounds of this stage.
-    fn of(self, description: &Description) -> Description {
+    /// The model with the bounds of this stage; `None` where the stage says nothing of it.
+    fn of(self, description: &Description) -> Option<Description> {
         let mut model = description.clone();
+        let k = description.uncertain().count();
         if self == Self::Asked {
-            return model;
+            return Some(model);
+        }
+        // Random excitations are bounded in another way where no statistics are asked for.
+        if k == 0 || self == Self::Coarse && model.statistics.asked {
+            return None;
         }
         model.statistics.asked = false;
-        let k = description.uncertain().count();
         model.bounds = BoundsRequest { budget: description.bounds.budget, ..BoundsRequest::default() };
         match self {
             Self::Coarse if k <= FEW => model.bounds.chebyshev = Some(Chebyshev::of_order(1, k)),
             Self::Coarse => model.bounds.taylor = Some(Taylor { order: 1, ..Taylor::default() }),
-            _ => {}
+            // Without bounds there are no verdicts.
+            _ => model.requirements.clear(),
         }
-        model
+        Some(model)
     }
 }
 
@@ -119,19 +129,19 @@ fn file(path: &Path) -> Value {
 }
 
 /// Bounds a model, stage by stage, until its text changes.
-fn stages(desk: &Desk, current: &std::sync::Arc<Current>, reading: &Reading) {
+fn stages(desk: &Desk, current: &Arc<Current>, reading: &Reading) {
     let number = current.number;
-    let first = if current.description.uncertain().next().is_some() { Stage::Nominal } else { Stage::Asked };
-    let all = [Stage::Nominal, Stage::Coarse, Stage::Asked];
-    for stage in all.into_iter().skip_while(|stage| *stage != first) {
-        let found = run(desk, &stage.of(&current.description), reading, stage);
+    for stage in [Stage::Nominal, Stage::Coarse, Stage::Asked] {
+        let Some(model) = stage.of(&current.description) else { continue };
+        let found = run(desk, &model, reading, stage);
         if desk.is_old(reading.change) {
             return;
         }
         let (bounds, summary) = match found {
-            Ok(found) => found,
-            // Some models cannot be expanded, or have no such bounds; the next stage says what is wrong with one.
+            // Some models cannot be expanded, or have no such bounds; the next stage reports the errors of a model.
+            Ok((_, summary)) if stage == Stage::Coarse && summary.is_cut => continue,
             Err(_) if stage == Stage::Coarse => continue,
+            Ok(found) => found,
             Err(error) => {
                 let waits = matches!(error, RunError::Costly(_));
                 let note =
@@ -148,7 +158,7 @@ fn stages(desk: &Desk, current: &std::sync::Arc<Current>, reading: &Reading) {
             Err(error) => json!({ "number": number, "stage": stage.name(), "error": error.to_string() }),
         };
         if stage == Stage::Asked {
-            desk.finish(Finished { current: std::sync::Arc::clone(current), bounds, summary });
+            desk.finish(Finished { current: Arc::clone(current), bounds, summary });
         }
         desk.board.put("bounds", note);
     }
@@ -161,7 +171,9 @@ fn run(desk: &Desk, model: &Description, reading: &Reading, stage: Stage) -> Res
         desk.board.put("progress", note);
     };
     tell(0.0);
-    let interrupted = || desk.is_old(reading.change);
+    let begun = Instant::now();
+    let is_late = || stage == Stage::Coarse && begun.elapsed() > COARSE;
+    let interrupted = || desk.is_old(reading.change) || is_late();
     let options =
         Options { costly: reading.is_allowed, progress: &tell, interrupted: &interrupted, ..Options::default() };
     study::run(model, options)

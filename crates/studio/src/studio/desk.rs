@@ -1,4 +1,4 @@
-//! What the page and the workers share: the texts, the model as it could be read last, and what is said of both.
+//! The state that page and workers share: the texts, the last model without errors, its results, notes and questions.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -33,7 +33,7 @@ pub struct Finished {
     pub current: Arc<Current>,
     /// Its results.
     pub bounds: Bounds,
-    /// What is known of them.
+    /// Their summary.
     pub summary: Summary,
 }
 
@@ -116,7 +116,7 @@ impl Desk {
         self.bell.notify_all();
     }
 
-    /// Changes a text; what was allowed, was allowed of another.
+    /// Changes a text. A permission holds for one text only.
     ///
     /// # Errors
     /// Where it is not open.

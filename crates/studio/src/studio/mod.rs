@@ -1,5 +1,5 @@
-//! A session on a page: `serve` is the entrance. `guard` says who is answered, `routes` how; `desk` is shared by the page
-//! and three workers: `bounds` reads and bounds the model, `samples` simulates outputs, and `moves` the mechanism.
+//! A session on a page; `serve` is the entrance. `guard` admits requests, `routes` answers them. Three workers share
+//! `desk` with the page: `bounds` reads and bounds the model, `samples` simulates outputs, `moves` the mechanism.
 
 mod answer;
 mod board;

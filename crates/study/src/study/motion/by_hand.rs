@@ -69,8 +69,8 @@ impl<'m> Hand<'m> {
         self.now = self.reach.towards(&self.now, sample, &wanted);
     }
 
-    /// Takes a point of the mechanism, of this sample, towards a place, m: there, or to the nearest place on the way that
-    /// the closure lets it come to. `None` where there is no such point.
+    /// Moves a point of the mechanism, of this sample, to a place, m, or to the nearest place that the closure allows.
+    /// `None` where there is no such point.
     pub fn drag(&mut self, grip: Grip, sample: &Sample, place: [f64; 3]) -> Option<Held> {
         let local = self.local(grip)?;
         let (posed, drawing) = (self.posed, self.drawing);

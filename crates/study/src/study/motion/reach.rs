@@ -73,7 +73,8 @@ impl<'s> Reach<'s> {
         Self { simulator, closures: HashMap::new() }
     }
 
-    /// Goes from a configuration towards one where all `wanted` of the outputs, m, vanish. Stays where no step comes nearer.
+    /// Moves from a configuration towards one where all `wanted` of the outputs, m, vanish; ends where no step comes
+    /// nearer.
     pub fn towards(&mut self, from: &Reached, sample: &Sample, wanted: &dyn Fn(&[f64]) -> Vec<f64>) -> Reached {
         let scale: Vec<f64> = self.simulator.system.coordinates.iter().map(|own| own.scale).collect();
         let mut now = from.clone();
