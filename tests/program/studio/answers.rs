@@ -105,6 +105,28 @@ fn a_hand_keeps_the_loop_closed() {
     }
 }
 
+/// A model that asks a program does not start it by being looked at.
+#[cfg(unix)]
+#[test]
+fn a_program_is_started_when_it_is_allowed() {
+    let text = "\
+model: asked
+parameters: { m: { value: 2, unit: kg, tolerance: 5% } }
+black_box: { command: [sh, -c, \"touch started; exit 1\"], outputs: { x: m } }
+simulation: { duration: 1, output_step: 0.5 }
+";
+    let (place, mut session) = session(text);
+    let bounds = session.until("bounds", |bounds| bounds["waits"] == true);
+    assert!(bounds["error"].as_str().unwrap().contains("when you allow it"), "{bounds}");
+    let number = session.model(0)["number"].as_u64().unwrap();
+    let sample = session.post("sample", &json!({ "number": number, "values": [2] }));
+    assert_eq!(sample.status, 409, "{}", sample.body);
+    assert!(!place.path().join("started").exists());
+    assert_eq!(session.post("allow", &json!({})).status, 200);
+    session.until("bounds", |bounds| bounds["number"].as_u64() > Some(number) && bounds["error"].as_str().is_some());
+    assert!(place.path().join("started").exists());
+}
+
 /// A study that would take hours ends when the text changes, and the next one begins.
 #[test]
 fn a_change_begins_the_bounds_anew() {

@@ -71,6 +71,28 @@ fn a_file_is_saved_when_asked_and_not_over_a_change_of_another() {
     assert_eq!(session.post("save", &json!({ "path": path })).status, 200);
 }
 
+/// What another program writes is followed, where the page has not changed the text.
+#[test]
+fn a_change_on_the_disk_is_followed() {
+    let (place, mut session) = session(CRANK);
+    let path = place.path().canonicalize().unwrap().join("m.yaml");
+    let key = path.to_str().unwrap();
+    open(&session, &path);
+    session.until("bounds", |bounds| bounds["stage"] == "asked");
+    // The files have been looked at before.
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    let other = CRANK.replace("model: crank", "model: other");
+    fs::write(&path, &other).unwrap();
+    let disk = session.until("disk", |disk| disk[key]["text"].as_str().is_some());
+    assert_eq!(disk[key]["text"], other);
+    session.until("model", |model| model["name"] == "other");
+    change(&session, &path, &other.replace("model: other", "model: mine"));
+    fs::write(&path, format!("# by another program\n{CRANK}")).unwrap();
+    session.until("disk", |disk| disk[key]["text"].is_null());
+    session.until("model", |model| model["name"] == "mine");
+    assert!(open(&session, &path)["text"].as_str().unwrap().contains("model: mine"));
+}
+
 /// Files of the model alone are read and written, and none that it may not name.
 #[test]
 fn no_file_but_those_of_the_model() {

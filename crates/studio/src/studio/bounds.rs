@@ -78,12 +78,13 @@ pub fn work(desk: &Desk) {
 
 fn study_of(desk: &Desk, reading: &Reading, opened: Opened) {
     let sources = opened.reading.diagnostics.sources.all();
-    let named = sources.map(|source| PathBuf::from(&source.name)).filter(|path| path.is_file());
-    let named: Vec<PathBuf> = named.collect();
-    let files = desk.texts(|texts| {
-        texts.consists_of(named);
-        texts.files()
-    });
+    let sources: Vec<PathBuf> =
+        sources.map(|source| PathBuf::from(&source.name)).filter(|path| path.is_file()).collect();
+    // Tables and robots are no texts of the language.
+    let is_text = |path: &&PathBuf| path.extension().is_some_and(|own| own == "yaml" || own == "yml");
+    let texts = sources.iter().filter(is_text).cloned().collect();
+    desk.was_read_from(sources, texts);
+    let files = desk.texts(|texts| texts.files());
     let files: Vec<Value> = files.iter().map(|path| file(path)).collect();
     let names: Vec<&str> = opened.reading.scenes.iter().map(|scene| scene.name.as_str()).collect();
     let scene = reading.scene.as_deref().filter(|name| names.contains(name)).or(names.first().copied());

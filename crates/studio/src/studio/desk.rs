@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::board::Board;
 use super::questions::{Move, Values};
 use super::requests::Requests;
-use super::texts::{TextError, Texts};
+use super::texts::{Followed, TextError, Texts};
 use crate::model::Description;
 use crate::results::{Bounds, Summary};
 use crate::syntax::within::OpenTexts;
@@ -58,6 +58,8 @@ struct State {
     is_allowed: bool,
     current: Option<Arc<Current>>,
     finished: Option<Arc<Finished>>,
+    /// All files that the model was read from.
+    sources: Vec<PathBuf>,
 }
 
 /// The shared state of a session.
@@ -84,8 +86,8 @@ pub struct Desk {
 impl Desk {
     /// With the texts of a model.
     pub fn new(texts: Texts, root: Option<PathBuf>, folder: PathBuf) -> Self {
-        let (scene, current, finished) = (None, None, None);
-        let state = State { texts, changed: Instant::now(), scene, is_allowed: false, current, finished };
+        let (scene, current, finished, sources) = (None, None, None, Vec::new());
+        let state = State { texts, changed: Instant::now(), scene, is_allowed: false, current, finished, sources };
         Self {
             board: Board::default(),
             samples: Requests::default(),
@@ -138,6 +140,32 @@ impl Desk {
         state.is_allowed = false;
         self.changed(&mut state);
         Ok(())
+    }
+
+    /// Takes what another program has written.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn follow(&self, path: &Path) -> Result<Followed, TextError> {
+        let mut state = self.lock();
+        let followed = state.texts.follow(path)?;
+        if matches!(followed, Followed::Loaded(_) | Followed::Other) {
+            state.is_allowed = false;
+            self.changed(&mut state);
+        }
+        Ok(followed)
+    }
+
+    /// All files that the model was read from.
+    pub fn sources(&self) -> Vec<PathBuf> {
+        self.lock().sources.clone()
+    }
+
+    /// Says from which files the model was read, and which of them are texts of the language.
+    pub fn was_read_from(&self, sources: Vec<PathBuf>, texts: Vec<PathBuf>) {
+        let mut state = self.lock();
+        state.texts.consists_of(texts);
+        state.sources = sources;
     }
 
     /// Allows what takes long, or starts a program, of the model as it is.

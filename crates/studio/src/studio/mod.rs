@@ -1,5 +1,6 @@
-//! A session on a page; `serve` is the entrance. `guard` admits requests, `routes` answers them. Three workers share
-//! `desk` with the page: `bounds` reads and bounds the model, `samples` simulates outputs, `moves` the mechanism.
+//! A session on a page; `serve` is the entrance. `guard` admits requests, `routes` answers them. Workers share `desk`
+//! with the page: `bounds` reads and bounds the model, `samples` simulates outputs, `moves` the mechanism, and `watch`
+//! follows files that other programs change.
 
 mod answer;
 mod board;
@@ -17,5 +18,6 @@ mod routes;
 mod samples;
 mod serve;
 mod texts;
+mod watch;
 
 pub use serve::{Options, StudioError, serve};

@@ -18,7 +18,7 @@ use super::guard::Guard;
 use super::language::Language;
 use super::routes::Routes;
 use super::texts::{TextError, Texts};
-use super::{bounds, moves, samples};
+use super::{bounds, moves, samples, watch};
 use crate::study;
 
 /// Between two questions whether to end.
@@ -88,6 +88,8 @@ pub fn serve(options: Options) -> Result<(), StudioError> {
         // They end with the desk, and at the latest with the program.
         thread::spawn(move || work(&desk));
     }
+    let (watched, listening) = (Arc::clone(&desk), Arc::clone(&language));
+    thread::spawn(move || watch::work(&watched, &listening));
     let routes = Arc::new(Routes { desk: Arc::clone(&desk), language });
     let page = guard.address();
     thread::spawn(move || listen(&listener, &Arc::new(guard), &routes));

@@ -31,6 +31,19 @@ pub enum TextError {
     Unwritten(String, io::Error),
 }
 
+/// What became of a text whose file has changed.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Followed {
+    /// The file holds the text that it held.
+    Same,
+    /// It is no open text, but the model may depend on it.
+    Other,
+    /// The text is now this one.
+    Loaded(String),
+    /// The page has changed it: it stays.
+    Kept,
+}
+
 /// A file that is open.
 struct Open {
     /// As it was on the disk when it was read or written.
@@ -114,6 +127,24 @@ impl Texts {
         Ok(())
     }
 
+    /// Takes the text of a file that has changed, where the page has not changed it.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn follow(&mut self, path: &Path) -> Result<Followed, TextError> {
+        let Some(own) = self.open.get(path) else { return Ok(Followed::Other) };
+        let there = read_text(path, TUNING.file_bytes);
+        let there = there.map_err(|error| TextError::Unreadable(name(path), error.message.clone()))?;
+        if there == own.stored {
+            return Ok(Followed::Same);
+        }
+        if self.is_unsaved(path) {
+            return Ok(Followed::Kept);
+        }
+        self.load(path)?;
+        Ok(Followed::Loaded(self.open(path)?.to_owned()))
+    }
+
     /// Changes a text.
     ///
     /// # Errors
@@ -184,9 +215,17 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "other");
         texts.load(&path).unwrap();
         assert_eq!(texts.open(&path).unwrap(), "other");
+        assert_eq!(texts.follow(&path).unwrap(), Followed::Same);
+        fs::write(&path, "new\r\n").unwrap();
+        assert_eq!(texts.follow(&path).unwrap(), Followed::Loaded("new\n".to_owned()));
+        texts.change(&path, "mine\n".to_owned()).unwrap();
+        fs::write(&path, "newer").unwrap();
+        assert_eq!(texts.follow(&path).unwrap(), Followed::Kept);
+        assert_eq!(texts.open(&path).unwrap(), "mine\n");
         let beside = folder.path().join("beside.yaml");
         fs::write(&beside, "x").unwrap();
         assert!(matches!(texts.open(&beside), Err(TextError::Foreign(_))));
+        assert_eq!(texts.follow(&beside).unwrap(), Followed::Other);
         assert!(matches!(texts.save(&beside), Err(TextError::Foreign(_))));
         texts.consists_of([beside.clone()]);
         assert_eq!(texts.open(&beside).unwrap(), "x");

@@ -16,6 +16,8 @@ export class Editor {
     holder.append(this.holder);
     /** @type {Problem[]} */
     this.problems = [];
+    /** Of a letter, where it was measured. @type {{width: number, height: number} | null} */
+    this.size = null;
     this.area.addEventListener('input', () => {
       this.draw();
       changed();
@@ -28,10 +30,10 @@ export class Editor {
     return this.area.value;
   }
 
-  /** Another document. @param {string} text @param {number} [scroll] */
-  show(text, scroll = 0) {
+  /** Another document. @param {string} text @param {number} [scroll] @param {number} [caret] */
+  show(text, scroll = 0, caret = 0) {
     this.area.value = text;
-    this.area.setSelectionRange(0, 0);
+    this.area.setSelectionRange(caret, caret);
     this.area.scrollTop = scroll;
     this.draw();
   }
@@ -121,6 +123,11 @@ export class Editor {
 
   /** Size of a letter, px. */
   letter() {
+    this.size ||= this.measured();
+    return this.size;
+  }
+
+  measured() {
     const line = element('div', { class: 'line' }, ['0'.repeat(100)]);
     line.style.cssText = 'position: absolute; visibility: hidden; width: max-content';
     this.overlay.holder.append(line);

@@ -32,6 +32,8 @@ let current = '';
 let model = null;
 /** @type {Record<string, import('./overlay.js').Problem[]>} */
 let diagnostics = {};
+/** Changes on the disk that were told, by path. @type {Map<string, number>} */
+const followed = new Map();
 let clock = new Clock(0);
 /** @type {{number: number, curves: any} | null} */
 let nominal = null;
@@ -209,6 +211,21 @@ function list() {
   problems.show(named.flatMap(({ uri, name }) => (diagnostics[uri] || []).map((problem) => ({ uri, name, problem }))));
 }
 
+/** Texts that another program has changed on the disk. @param {Record<string, {change: number, text: string | null}>} found */
+function follow(found) {
+  for (const [path, { change: number, text }] of Object.entries(found)) {
+    const open = files.get(path);
+    if (!open || followed.get(path) === number) continue;
+    followed.set(path, number);
+    if (text === null || open.unsaved) {
+      notice(`${open.file.name} has changed on the disk, and your text is not saved. `, [button('Load it from the disk', () => load(open))]);
+    } else if (open.text !== text) {
+      open.text = text;
+      if (path === current) editor.show(text, editor.area.scrollTop, editor.area.selectionStart);
+    }
+  }
+}
+
 // The sample of the sliders.
 
 const simulate = latest(
@@ -322,6 +339,7 @@ listen(
       list();
       outline();
     } else if ('model' in topics) list();
+    if ('disk' in topics) follow(topics.disk);
     if ('mechanism' in topics) showMechanism(topics.mechanism);
     if ('bounds' in topics) showBounds(topics.bounds);
     if ('progress' in topics) showProgress(topics.progress);
