@@ -1,4 +1,4 @@
-//! What the studio computes: bounds, samples, and the mechanism in a hand.
+//! Results of the studio: bounds, samples, and the mechanism in a hand.
 
 use std::fs;
 

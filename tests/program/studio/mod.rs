@@ -1,4 +1,4 @@
-//! `mbint studio` by plain HTTP: who is answered, and with what. A browser tests the page (`tests/browser`).
+//! `mbint studio` by plain HTTP: admission of requests, and answers. A browser tests the page (`tests/browser`).
 
 mod answers;
 mod texts;
@@ -177,7 +177,7 @@ fn only_the_own_page_with_its_token_is_answered() {
     assert_eq!(status("GET", &base, &format!("{host}Sec-Fetch-Site: cross-site\r\n")), 403);
     let headers = format!("{host}Origin: http://localhost:{port}\r\nSec-Fetch-Site: same-origin\r\n");
     assert_eq!(status("GET", &format!("{base}events?after=0"), &headers), 200);
-    // What there is not.
+    // Missing parts.
     for path in ["nothing", "../../../etc/passwd", "..%2f..%2fetc/passwd", "studio.js/", "/etc/passwd"] {
         assert_eq!(session.get(path).status, 404, "{path}");
     }

@@ -16,7 +16,7 @@ fn change(session: &Session, path: &Path, text: &str) {
     assert_eq!(session.post("text", &json!({ "path": path, "text": text })).status, 200);
 }
 
-/// Errors stand in their places, with what puts them right, and the page goes on.
+/// Errors have their places and fixes, and the page goes on.
 #[test]
 fn errors_are_told_and_a_text_that_is_right_again_is_bounded() {
     let (place, mut session) = session(CRANK);
@@ -71,7 +71,7 @@ fn a_file_is_saved_when_asked_and_not_over_a_change_of_another() {
     assert_eq!(session.post("save", &json!({ "path": path })).status, 200);
 }
 
-/// What another program writes is followed, where the page has not changed the text.
+/// A change by another program is followed, where the page has not changed the text.
 #[test]
 fn a_change_on_the_disk_is_followed() {
     let (place, mut session) = session(CRANK);

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-/// What the studio's page may load and do: its own scripts, and requests to its own address.
+/// Policy of the studio's page: its own scripts, and requests to its own address.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src data:; \
                       connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -36,7 +36,7 @@ impl Answer {
         Self::part("application/json", value.to_string())
     }
 
-    /// An error: its status and what to say.
+    /// An error: its status and its message.
     pub fn error(status: u16, why: &str) -> Self {
         Self { status, ..Self::json(&json!({ "error": why })) }
     }

@@ -30,7 +30,7 @@ impl Board {
         self.notes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Replaces what there is on a topic, where that is another.
+    /// Replaces the note on a topic, where the new one differs.
     pub fn put(&self, topic: &'static str, note: Value) {
         let mut notes = self.lock();
         if notes.topics.get(topic).is_some_and(|(_, known)| *known == note) {

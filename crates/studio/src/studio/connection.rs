@@ -108,7 +108,7 @@ impl Connection {
     /// Reads the body, a text.
     ///
     /// # Errors
-    /// What to answer where there is none.
+    /// An answer that says why there is none.
     pub fn body(&mut self) -> Result<String, Answer> {
         let head = &self.head;
         if head.header("transfer-encoding").is_some() {

@@ -37,7 +37,7 @@ pub struct Finished {
     pub summary: Summary,
 }
 
-/// What a reader of the model starts from.
+/// The texts and choices that a reading of the model starts from.
 pub struct Reading {
     /// Number of the change that is read.
     pub change: u64,
@@ -47,7 +47,7 @@ pub struct Reading {
     pub overlay: OpenTexts,
     /// The scene that was chosen.
     pub scene: Option<String>,
-    /// Whether what takes long, or starts a program, was allowed.
+    /// Whether long studies and programs of this text are allowed.
     pub is_allowed: bool,
 }
 
@@ -64,7 +64,7 @@ struct State {
 
 /// The shared state of a session.
 pub struct Desk {
-    /// What the page is told.
+    /// Notes for the page.
     pub board: Board,
     /// Samples that the page wants.
     pub samples: Requests<Values>,
@@ -142,7 +142,7 @@ impl Desk {
         Ok(())
     }
 
-    /// Takes what another program has written.
+    /// Takes the text of a file that another program has written.
     ///
     /// # Errors
     /// Where it cannot be read.
@@ -168,7 +168,7 @@ impl Desk {
         state.sources = sources;
     }
 
-    /// Allows what takes long, or starts a program, of the model as it is.
+    /// Allows a long study, or the start of a program, for the present text.
     pub fn allow(&self) {
         let mut state = self.lock();
         state.is_allowed = true;

@@ -5,7 +5,7 @@ use data_encoding::HEXLOWER;
 /// Bytes of a token: nobody guesses 128 bits.
 const BYTES: usize = 16;
 
-/// What a request is refused for.
+/// Reasons to refuse a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// The name of another host: a page elsewhere may have it point at this machine.
@@ -56,7 +56,7 @@ impl Guard {
         format!("http://{}/{}/", self.hosts[0], self.token)
     }
 
-    /// What a request asks for, behind the token: path, and query or nothing.
+    /// The part of an admitted request's address behind the token: path, and query or nothing.
     ///
     /// # Errors
     /// Where it is not answered.

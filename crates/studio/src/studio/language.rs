@@ -62,7 +62,7 @@ impl Language {
         let language = Self { connection, waiting, last: AtomicI32::new(0), version: AtomicI32::new(1) };
         let capabilities =
             json!({ "textDocument": { "completion": { "completionItem": { "snippetSupport": false } } } });
-        // What the server can is known here.
+        // Its capabilities are known here.
         let _ = language.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": capabilities }));
         language.tell("initialized", json!({}));
         Arc::new(language)

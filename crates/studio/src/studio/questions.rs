@@ -1,4 +1,4 @@
-//! What the page asks the workers.
+//! Questions of the page to the workers.
 
 use crate::numerics::Sample;
 use crate::study::Grip;
@@ -11,7 +11,7 @@ pub struct Values {
     pub sample: Sample,
 }
 
-/// What the page wants of the mechanism.
+/// A question about the mechanism.
 pub enum Move {
     /// Its motion at a sample: the model's number, and values of the uncertain parameters.
     Motion(u64, Sample),

@@ -31,7 +31,7 @@ pub enum TextError {
     Unwritten(String, io::Error),
 }
 
-/// What became of a text whose file has changed.
+/// Outcome of a change of a text's file.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Followed {
     /// The file holds the text that it held.
