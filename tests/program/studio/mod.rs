@@ -194,7 +194,8 @@ fn only_the_own_page_with_its_token_is_answered() {
 fn nothing_is_served_of_what_cannot_be() {
     let place = Place::new();
     let failed = |arguments: &str| place.run(&format!("studio --no-open {arguments}"), 2).1;
-    assert!(failed("missing.yaml").contains("missing.yaml: No such file"));
+    assert!(failed("missing.yaml").contains("missing.yaml cannot be read: "));
+    assert!(failed(".").contains("this is a directory"));
     assert!(failed("-").contains("standard input cannot be saved"));
     fs::write(place.path().join("a.urdf"), "<robot name='a'/>").unwrap();
     assert!(failed("a.urdf").contains("name it in a model"));

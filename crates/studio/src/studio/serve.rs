@@ -47,9 +47,9 @@ pub enum StudioError {
     /// The model's file cannot be read.
     #[error(transparent)]
     Text(#[from] TextError),
-    /// The model's path leads nowhere.
-    #[error("{0}: {1}")]
-    Path(String, io::Error),
+    /// The model's path has no full form.
+    #[error("the model's path cannot be completed: {0}")]
+    Path(io::Error),
     /// There is no such port.
     #[error("port {0} of this machine cannot be listened at: {1}. Choose another by --port, or none")]
     Port(u16, io::Error),
@@ -67,7 +67,7 @@ pub enum StudioError {
 /// Where the file cannot be read, or the port cannot be listened at.
 pub fn serve(options: Options) -> Result<(), StudioError> {
     let Options { model, root, port, started, is_ended } = options;
-    let path = model.canonicalize().map_err(|error| StudioError::Path(crate::model::shown(model), error))?;
+    let path = std::path::absolute(model).map_err(StudioError::Path)?;
     let texts = Texts::new(path)?;
     let folder = tempfile::tempdir().map_err(StudioError::Folder)?;
     let failed = |error| StudioError::Port(port, error);

@@ -205,13 +205,17 @@ export class Stage {
       this.tell(this.clock.duration > 0 ? 'Every coordinate is driven: dragging goes along the motion' : 'Nothing is free to move');
       return;
     }
+    // A search that has not ended goes on while the point is held.
+    const before = this.last ? norm(minus(wanted, this.last.at)) : Infinity;
+    const far = norm(minus(wanted, held.at));
+    if (drag && drag.place === wanted && far > 1e-6 * sizeOf(movie) && far < 0.99 * before) {
+      this.pull({ number: this.number, values: this.values(), body: drag.grip.body, point: drag.grip.point, place: wanted, from: null });
+    }
     this.last = held;
     movie.held = { pose: Float64Array.from(held.pose), points: Float32Array.from(held.points) };
     this.back.hidden = false;
-    const away = norm(minus(wanted, held.at));
-    const reach = sizeOf(movie);
     const place = held.at.slice(0, movie.drawing.spatial ? 3 : 2).map((x) => x.toFixed(4)).join(', ');
-    this.tell(`${drag ? `${drag.grip.name} ` : ''}${place} m, closed to ${held.residual.toExponential(0)}${away > 1e-3 * reach ? ': as near as it can come' : ''}`);
+    this.tell(`${drag ? `${drag.grip.name} ` : ''}${place} m, closed to ${held.residual.toExponential(0)}${far > 1e-3 * sizeOf(movie) ? ': as near as it can come' : ''}`);
     this.view?.changed();
   }
 
