@@ -190,6 +190,58 @@ fn only_the_own_page_with_its_token_is_answered() {
     assert_eq!(session.get("style.css").status, 200);
 }
 
+/// Requests that mean nothing are refused, and nothing in the program panics.
+#[test]
+fn requests_that_mean_nothing_are_refused() {
+    let (_place, mut session) = session(CRANK);
+    let number = session.model(0)["number"].clone();
+    session.until("mechanism", |_| true);
+    let deep = "[".repeat(100_000);
+    let drag = |place: &str, from: &str| {
+        format!("{{\"number\":{number},\"values\":[0.2,0.3],\"body\":1,\"point\":1,\"place\":{place},\"from\":{from}}}")
+    };
+    let bodies = [
+        "",
+        "null",
+        "[]",
+        "{}",
+        "{\"path\":1}",
+        "{\"path\":\"\"}",
+        "{\"path\":\"\\u0000\",\"text\":\"\"}",
+        "{\"method\":\"textDocument/hover\",\"params\":[]}",
+        "{\"method\":\"textDocument/hover\",\"params\":{\"textDocument\":{\"uri\":\"file://\"}}}",
+        "{\"number\":-1,\"values\":[]}",
+        "{\"number\":18446744073709551616,\"values\":[]}",
+        "{\"number\":1,\"values\":[1e999,0]}",
+        &deep,
+    ];
+    let headers = format!("Host: {}\r\n", session.address);
+    for route in ["open", "text", "load", "save", "language", "sample", "motion", "drag", "scene", "none"] {
+        for body in bodies {
+            let answer = session.request("POST", &format!("{}{route}", session.base), &headers, body);
+            assert!((400..500).contains(&answer.status), "{route} {body:.60}: {} {}", answer.status, answer.body);
+        }
+    }
+    // Places and poses of any size and number.
+    for (place, from) in [
+        ("[1e308,-1e308,0]", "null"),
+        ("[0,0,0]", "[]"),
+        ("[0.1,0,0]", "[1,2]"),
+        ("[0,0,1e9]", "[1e300,1e300,1e300,1e300,1e300,1e300,1e300,1e300,1e300]"),
+        ("[0.1,0.1,0]", "null"),
+    ] {
+        let answer = session.request("POST", &format!("{}drag", session.base), &headers, &drag(place, from));
+        assert_eq!(answer.status, 200, "{place} {from}: {}", answer.body);
+        assert!(answer.json()["residual"].as_f64().unwrap() < 1e-10, "{}", answer.body);
+    }
+    let known = json!({ "scene": "there is none" });
+    assert_eq!(session.post("scene", &known).status, 200, "the first is shown");
+    session.process.kill().unwrap();
+    let mut errors = String::new();
+    session.process.stderr.take().unwrap().read_to_string(&mut errors).unwrap();
+    assert_eq!(errors, "");
+}
+
 #[test]
 fn nothing_is_served_of_what_cannot_be() {
     let place = Place::new();
