@@ -79,8 +79,6 @@ fn a_change_on_the_disk_is_followed() {
     let key = path.to_str().unwrap();
     open(&session, &path);
     session.until("bounds", |bounds| bounds["stage"] == "asked");
-    // The files have been looked at before.
-    std::thread::sleep(std::time::Duration::from_millis(700));
     let other = CRANK.replace("model: crank", "model: other");
     fs::write(&path, &other).unwrap();
     let disk = session.until("disk", |disk| disk[key]["text"].as_str().is_some());

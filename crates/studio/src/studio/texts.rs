@@ -101,12 +101,17 @@ impl Texts {
         self.named.contains(path)
     }
 
+    /// Whether a file is open.
+    pub fn is_open(&self, path: &Path) -> bool {
+        self.open.contains_key(path)
+    }
+
     /// The text of a file of the model, from the disk where it is not open.
     ///
     /// # Errors
     /// Where it is none of the model, or cannot be read.
     pub fn open(&mut self, path: &Path) -> Result<&str, TextError> {
-        if !self.open.contains_key(path) {
+        if !self.is_open(path) {
             self.load(path)?;
         }
         self.open.get(path).map(|own| own.text.as_str()).ok_or_else(|| TextError::Foreign(name(path)))

@@ -32,9 +32,12 @@ pub fn work(desk: &Desk, language: &Language) {
         sleep(BETWEEN);
         for path in desk.sources() {
             let now = mark(&path);
-            // One that is written in parts is read when it rests.
-            let before = marks.insert(path.clone(), now);
-            if before.is_none_or(|before| before == now) {
+            let is_as_it_was = match marks.insert(path.clone(), now) {
+                Some(before) => before == now,
+                // An open text may be older than the first look at its file.
+                None => !desk.texts(|texts| texts.is_open(&path)),
+            };
+            if is_as_it_was {
                 continue;
             }
             let Ok(followed) = desk.follow(&path) else { continue };
