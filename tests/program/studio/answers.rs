@@ -1,10 +1,12 @@
 //! Results of the studio: bounds, samples, and the mechanism in a hand.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::{CRANK, Session, session};
+use crate::place::Place;
 
 /// The numbers of a list.
 fn numbers(list: &Value) -> Vec<f64> {
@@ -102,6 +104,40 @@ fn a_hand_keeps_the_loop_closed() {
         let question =
             json!({ "number": number, "values": [0.2, 0.3], "body": body, "point": point, "place": [0, 0, 0] });
         assert_eq!(session.post("drag", &question).status, 409, "{body} {point}");
+    }
+}
+
+/// In space, with redundant constraints, several loops and floating bodies: wherever a point is dragged to, the residuals
+/// are rounding, and the point comes nearer unless every coordinate is driven.
+#[test]
+fn loops_in_space_stay_closed() {
+    for (model, freedom) in [("bricard", 1), ("flyball_governor", 4), ("humanoid", 11), ("stewart", 0)] {
+        let place = Place::new();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{model}.yaml"));
+        let mut session = Session::new(&place, path.to_str().unwrap());
+        let bodies = session.until("mechanism", |_| true)["motion"]["drawing"]["bodies"].clone();
+        let found = session.model(0);
+        let values: Vec<f64> =
+            found["parameters"].as_array().unwrap().iter().map(|own| own["nominal"].as_f64().unwrap()).collect();
+        // The centre of mass of one in the middle: nothing holds that.
+        let body = bodies.as_array().unwrap().len() / 2;
+        let point = bodies[body]["points"].as_array().unwrap().len();
+        let start = numbers(&bodies[body]["center_of_mass"]);
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let mut at = start.clone();
+        for step in 1..=5 {
+            let by = 0.01 * f64::from(step);
+            let place = [start[0] + by, start[1] + 0.5 * by, start[2] + 0.3 * by];
+            let question =
+                json!({ "number": found["number"], "values": values, "body": body, "point": point, "place": place });
+            let held = session.post("drag", &question).json();
+            assert_eq!(held["freedom"], freedom, "{model}: {held}");
+            assert!(held["residual"].as_f64().unwrap() < 1e-12, "{model}: {held}");
+            let now = numbers(&held["at"]);
+            assert!(apart(&now, &place) <= apart(&at, &place) + 1e-12, "{model}: {at:?} {now:?} {place:?}");
+            at = now;
+        }
+        assert_eq!(apart(&at, &start) > 1e-4, freedom > 0, "{model}: {start:?} {at:?}");
     }
 }
 
