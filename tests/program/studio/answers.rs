@@ -107,7 +107,7 @@ fn a_hand_keeps_the_loop_closed() {
     }
 }
 
-/// In space, with redundant constraints, several loops and floating bodies: wherever a point is dragged to, the residuals
+/// In space, with redundant constraints, several loops and floating bodies: wherever a point is dragged to, residuals
 /// are rounding, and the point comes nearer unless every coordinate is driven.
 #[test]
 fn loops_in_space_stay_closed() {
