@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Reports in a browser: their scripts' types, then tests in Chromium. `.ci/browser.sh pictures` makes the book's
+# Reports and the studio in a browser: their scripts' types, then tests in Chromium. `.ci/browser.sh pictures` makes the book's
 # pictures of reports again instead, `.ci/browser.sh install` ends when all is installed. Needs node and npm; Chromium
 # and two packages of npm are installed where they are missing. MBINT is the program (target/release/mbint, built here,
 # by default), CHROMIUM the browser.
@@ -20,11 +20,14 @@ fi
 : "${CHROMIUM:=$(command -v chromium)}"
 export CHROMIUM
 
-tests/browser/node_modules/.bin/tsc -p crates/export/src/export/report
+for scripts in crates/export/src/export/report crates/studio/src/studio/page; do
+    tests/browser/node_modules/.bin/tsc -p "$scripts"
+done
 if [ -z "${MBINT:-}" ]; then
     cargo build --locked --release
     MBINT=target/release/mbint
 fi
+export MBINT
 REPORTS=$(mktemp -d)
 export REPORTS
 trap 'rm -rf "$REPORTS"' EXIT

@@ -9,6 +9,7 @@ mod gradient;
 mod sample;
 mod shards;
 mod shared;
+mod studio;
 mod sweep;
 mod verify;
 
@@ -30,6 +31,7 @@ pub(super) use gradient::GradientArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 pub(super) use shared::{AskedArgs, OneRunArgs, RootArgs, SetArgs, Threads, overlaid};
+pub(super) use studio::StudioArgs;
 pub(super) use sweep::SweepArgs;
 pub(super) use verify::{VerifyArgs, VerifyCertificateArgs};
 
@@ -93,6 +95,8 @@ pub(super) enum Command {
     Schema,
     /// Serve an editor: a language server of model files on standard input and output.
     Lsp(LspArgs),
+    /// Serve a local page: the model's text, its mechanism, and its bounds as they are computed.
+    Studio(StudioArgs),
     /// Write a small, commented model as a starting point.
     New(NewArgs),
     /// Print a completion script for a shell.

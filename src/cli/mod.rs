@@ -25,7 +25,6 @@ mod listing;
 mod load;
 mod lsp;
 mod man;
-mod meshes;
 mod methods;
 mod new;
 mod overview;
@@ -47,6 +46,7 @@ mod stack;
 mod statistics;
 mod status;
 mod structure;
+mod studio;
 mod sweep;
 mod table;
 mod tree;
@@ -173,6 +173,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Submit(args) => shards::submit(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::Lsp(args) => lsp::lsp(args),
+        Command::Studio(args) => studio::studio(args, console),
         Command::New(args) => new::new(&args, console),
         Command::Man(args) => man::man(&args, console),
         Command::AnswerFmu(args) => answer_fmu::answer(&args),

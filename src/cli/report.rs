@@ -3,13 +3,12 @@
 use super::args::ReportArgs;
 use super::console::Console;
 use super::interrupt;
-use super::meshes::{MOST_TRIANGLES, read_meshes};
 use super::request::Job;
 use super::{Failure, Status};
-use crate::export::{ReportParts, write_report};
+use crate::export::{MOST_TRIANGLES, ReportParts, read_meshes, write_report};
 use crate::results::FunctionWitness;
 use crate::simulate::Interruption;
-use crate::study::{self, MotionOptions, RunError};
+use crate::study::{self, MotionOptions};
 
 /// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
 const SIZE: usize = 300_000;
@@ -25,15 +24,7 @@ pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status,
 pub(super) fn parts(job: &Job, worst: &[FunctionWitness], threads: Option<usize>) -> ReportParts {
     let options =
         MotionOptions { threads, size: SIZE / job.share.max(1), interruption: Interruption::new(&interrupt::asked) };
-    let motion = study::caught("the report's motion", || {
-        let mut motion = study::motion(&job.model, options)?;
-        study::add_worst_motions(&job.model, &mut motion, worst, options)?;
-        Ok::<_, RunError>(motion)
-    });
-    let motion = match motion {
-        Ok(found) => found.map_err(|error| error.to_string()),
-        Err(error) => Err(error.to_string()),
-    };
+    let motion = study::report_motion(&job.model, worst, options);
     let motion = motion.map(|mut found| {
         read_meshes(&mut found.drawing, &job.beside, MOST_TRIANGLES / job.share.max(1));
         found

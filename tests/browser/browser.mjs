@@ -1,5 +1,7 @@
 // A browser for the checks: Chromium, with WebGL computed by the processor.
+import { spawn } from 'node:child_process';
 import { readFileSync } from 'node:fs';
+import { resolve } from 'node:path';
 import { chromium } from 'playwright-core';
 
 const executablePath = process.env.CHROMIUM || '/usr/bin/chromium';
@@ -28,4 +30,11 @@ export async function open(browser, file, options = {}) {
 export function columns(file) {
   const [head, ...rows] = readFileSync(file, 'utf8').trim().split('\n').map((line) => line.split(','));
   return Object.fromEntries(head.map((name, place) => [name, rows.map((row) => Number(row[place]))]));
+}
+
+/** Serves a model in the studio of MBINT: the process, and the address of its page. */
+export async function studioOf(model) {
+  const program = spawn(resolve(process.env.MBINT || 'target/release/mbint'), ['studio', model, '--no-open'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const address = await new Promise((done) => program.stdout.on('data', (text) => /^http/.test(String(text)) && done(String(text).split('\n')[0])));
+  return { program, address };
 }

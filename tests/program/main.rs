@@ -48,6 +48,7 @@ mod snapshot;
 mod stacks;
 mod statistics;
 mod structure;
+mod studio;
 mod submit;
 mod tables;
 mod tolerance_forms;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Sources of the crates with their rooms. Each room stands on those before it, and knows none after it.
-const CRATES: [(&str, &[&str]); 11] = [
+const CRATES: [(&str, &[&str]); 12] = [
     ("crates/numerics/src", &["numerics"]),
     ("crates/certificate/src", &["certificate"]),
     ("crates/language/src", &["syntax", "grammar", "multibody"]),
@@ -17,6 +17,7 @@ const CRATES: [(&str, &[&str]); 11] = [
     ("crates/study/src", &["results", "store", "black_box", "study"]),
     ("crates/export/src", &["export"]),
     ("crates/lsp/src", &["lsp"]),
+    ("crates/studio/src", &["studio"]),
     ("src", &["api", "cli", "inner"]),
 ];
 

@@ -42,6 +42,19 @@ pub struct Points {
     pub motion: Vec<f64>,
 }
 
+/// A mechanism at a point.
+#[derive(Clone, Debug)]
+pub struct Configuration {
+    /// Whether the closure has this solution near the point's motion.
+    pub is_closed: bool,
+    /// n values of the coordinates.
+    pub positions: Vec<f64>,
+    /// Values of the outputs.
+    pub outputs: Vec<f64>,
+    /// The largest residual of the constraints, SI.
+    pub residual: f64,
+}
+
 /// The coordinates to take as independent at a motion (its first n values).
 pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f64], time: f64) -> Vec<CoordinateId> {
     let start = &simulator.start;
@@ -102,9 +115,43 @@ impl<'s> Closure<'s> {
     /// Outputs at all points: output by output, point by point; NaN where the closure has no solution near the point's
     /// motion.
     pub fn outputs(&self, time: f64, points: &Points, into: &mut Vec<f64>) {
-        let layout = &self.program.layout;
         into.clear();
         into.resize(self.program.outputs.len() * points.count, 0.0);
+        self.each(time, points, |first, count, assembly| {
+            let closed = self.closed(assembly);
+            for (line, &register) in into.chunks_exact_mut(points.count).zip(&self.program.outputs) {
+                for (lane, value) in line[first..first + count].iter_mut().enumerate() {
+                    *value = if closed[lane] { assembly.tile().lane(register)[lane] } else { f64::NAN };
+                }
+            }
+        });
+    }
+
+    /// The configurations at all points.
+    pub fn configurations(&self, time: f64, points: &Points) -> Vec<Configuration> {
+        let mut found = Vec::with_capacity(points.count);
+        self.each(time, points, |_, count, assembly| {
+            let closed = self.closed(assembly);
+            let tile = assembly.tile();
+            let values = |registers: &mut dyn Iterator<Item = usize>, lane: usize| -> Vec<f64> {
+                registers.map(|register| tile.lane(register)[lane]).collect()
+            };
+            for (lane, &is_closed) in closed.iter().enumerate().take(count) {
+                let gaps = values(&mut self.program.constraint.iter().map(|residual| residual.register), lane);
+                found.push(Configuration {
+                    is_closed,
+                    positions: values(&mut self.program.layout.q.clone(), lane),
+                    outputs: values(&mut self.program.outputs.iter().copied(), lane),
+                    residual: gaps.into_iter().map(f64::abs).fold(0.0, f64::max),
+                });
+            }
+        });
+        found
+    }
+
+    /// Closes all points, some at once; gives each tile of them: number of its first, their count, and the assembly.
+    fn each(&self, time: f64, points: &Points, mut visit: impl FnMut(usize, usize, &Assembly)) {
+        let layout = &self.program.layout;
         let width = WIDTHS.into_iter().find(|&width| width >= points.count.min(WIDTH)).unwrap_or(WIDTH);
         let mut assembly = Assembly::new(&self.program, &self.simulator.system, width, |_, _| 0.0);
         let mut first = 0;
@@ -124,12 +171,7 @@ impl<'s> Closure<'s> {
             tile.lane_mut(layout.time).fill(time);
             tile.run(self.program.sample());
             self.close(&mut assembly);
-            let closed = self.closed(&assembly);
-            for (line, &register) in into.chunks_exact_mut(points.count).zip(&self.program.outputs) {
-                for (lane, value) in line[first..first + count].iter_mut().enumerate() {
-                    *value = if closed[lane] { assembly.tile().lane(register)[lane] } else { f64::NAN };
-                }
-            }
+            visit(first, count, &assembly);
             first += count;
         }
     }

@@ -1,4 +1,4 @@
-//! The server and its answers; `serve` is the entrance.
+//! The server and its answers; `serve` and `attend` are the entrances.
 
 mod completion;
 mod context;
@@ -19,4 +19,5 @@ mod uri;
 mod values;
 mod workspace;
 
-pub use server::{ServerError, serve};
+pub use server::{ServerError, attend, serve};
+pub use uri::{path_of, uri_of};

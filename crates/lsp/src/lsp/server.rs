@@ -57,6 +57,19 @@ enum Event {
 /// Where the protocol is not followed.
 pub fn serve(root: Option<PathBuf>) -> Result<(), ServerError> {
     let (connection, threads) = Connection::stdio();
+    if attend(&connection, root)? {
+        drop(connection);
+        threads.join()?;
+    }
+    Ok(())
+}
+
+/// Serves the editor at the other end of a connection, as [`serve`] does. Returns whether it said that it ends; if not,
+/// it has closed its end.
+///
+/// # Errors
+/// Where the protocol is not followed.
+pub fn attend(connection: &Connection, root: Option<PathBuf>) -> Result<bool, ServerError> {
     let params = connection.initialize(serde_json::to_value(capabilities())?)?;
     let params: InitializeParams = serde_json::from_value(params)?;
     let (events, received) = channel();
@@ -74,11 +87,11 @@ pub fn serve(root: Option<PathBuf>) -> Result<(), ServerError> {
     let questions = mechanism::examine(move |answer| {
         let _ = events.send(Event::Mechanism(answer));
     });
-    let mut server = Server::new(&connection, questions, root, &params);
+    let mut server = Server::new(connection, questions, root, &params);
     while let Ok(first) = received.recv() {
         for event in std::iter::once(first).chain(received.try_iter()) {
             match event {
-                Event::End => return Ok(()),
+                Event::End => return Ok(false),
                 Event::Mechanism(answer) => server.mechanism(answer),
                 Event::Message(Message::Request(request)) => {
                     if request.method == "shutdown" {
@@ -87,19 +100,14 @@ pub fn serve(root: Option<PathBuf>) -> Result<(), ServerError> {
                     }
                     server.request(request);
                 }
-                Event::Message(Message::Notification(own)) if own.method == protocol::Exit::METHOD => {
-                    drop(server);
-                    drop(connection);
-                    threads.join()?;
-                    return Ok(());
-                }
+                Event::Message(Message::Notification(own)) if own.method == protocol::Exit::METHOD => return Ok(true),
                 Event::Message(Message::Notification(own)) => server.notification(own),
                 Event::Message(Message::Response(_)) => {}
             }
         }
         server.refresh();
     }
-    Ok(())
+    Ok(false)
 }
 
 fn capabilities() -> ServerCapabilities {

@@ -162,7 +162,9 @@ impl Workspace {
         for folder in own.into_iter().chain(above) {
             let Ok(entries) = std::fs::read_dir(folder) else { continue };
             let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-            files.retain(|path| path != part && path.extension().is_some_and(|own| own == "yaml" || own == "yml"));
+            // Of a model that is open its text counts, and not the stored one.
+            files.retain(|path| path != part && !self.documents.contains_key(path));
+            files.retain(|path| path.extension().is_some_and(|own| own == "yaml" || own == "yml"));
             files.sort_unstable();
             files.truncate(MOST_FILES);
             found.extend(files.into_iter().filter(|path| {

@@ -106,6 +106,11 @@ pub fn shown(path: &Path) -> String {
     harmless(&path.display().to_string()).replace(['\n', '\t'], "\u{fffd}")
 }
 
+/// Whether a file is a robot's own, URDF or MJCF, and no model that names one.
+pub fn is_robot(path: &Path) -> bool {
+    is_urdf(path) || is_mjcf(path)
+}
+
 /// Whether a path stands for standard input.
 pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")

@@ -54,7 +54,9 @@ pub use crate::expand::overrides::Override;
 pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotation, Symbol, TimeOrder};
 pub use crate::keys::{SCHEMA_VERSION, schema};
 pub use description::*;
-pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
+pub use load::{
+    Reading, Scene, UnknownScene, is_robot, is_standard_input, load, load_str, read, read_rooted, read_str, shown,
+};
 pub use open::{Opened, read_open};
 pub use overlay::read_overlay;
 pub use parameters::{deviation_of, seed_of};

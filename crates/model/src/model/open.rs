@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use super::load::{Origin, Reading, read_from, read_rooted, shown};
+use super::load::{Origin, Reading, is_robot, read_from, read_rooted, shown};
 use crate::grammar::mentions::{Mentions, Notes};
-use crate::robots::{mjcf, urdf};
 use crate::syntax::within::{OpenTexts, Within};
 
 /// A model that is open in an editor.
@@ -18,8 +17,7 @@ pub struct Opened {
 
 /// Reads a model, some of whose files are open in an editor. Other files are read as [`read_rooted`] reads them.
 pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
-    let is_robot = urdf::is_urdf(path) || mjcf::is_mjcf(path);
-    let Some(text) = open.get(path).filter(|_| !is_robot) else {
+    let Some(text) = open.get(path).filter(|_| !is_robot(path)) else {
         return Opened { reading: read_rooted(path, &[], root), mentions: Mentions::default() };
     };
     let (name, notes) = (shown(path), Notes::default());

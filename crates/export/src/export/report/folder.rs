@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::motion::MOTION;
-use super::page::{PageFigure, PageScene, page};
+use super::page::{PageFigure, PageScene, content, page};
 use super::tables::{list, text};
 use crate::export::earlier::scene_folders;
 use crate::export::error::ExportError;
@@ -36,6 +36,14 @@ pub fn write_report(dir: &Path) -> Result<PathBuf, ExportError> {
     files.join_older()?;
     files.put_in_place()?;
     Ok(dir.join(PAGE))
+}
+
+/// The article of the results in a folder, as a page of reports has it: for a page that is served.
+///
+/// # Errors
+/// Where the folder has no results, or they cannot be read.
+pub fn results_article(dir: &Path) -> Result<String, ExportError> {
+    Ok(content(0, &scene_of_folder(dir)?, 1))
 }
 
 /// The page of scenes whose results are in folders of a folder.

@@ -13,8 +13,9 @@ mod tables;
 mod visuals;
 
 pub(super) use folder::page_of_folders;
-pub use folder::write_report;
-pub use motion::ReportParts;
-pub(super) use motion::{MOTION, motion_json};
+pub use folder::{results_article, write_report};
+pub(super) use motion::MOTION;
+pub use motion::{ReportParts, motion_json};
 pub(super) use page::{PageFigure, PageScene, page};
 pub(super) use plain::{Section, plain_page};
+pub use script::{REPORT_STYLE, report_module};

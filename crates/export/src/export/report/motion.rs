@@ -104,7 +104,7 @@ struct PackedPolynomials<'m> {
 ///
 /// # Errors
 /// Only if memory cannot be written to.
-pub(in crate::export) fn motion_json(parts: &ReportParts) -> serde_json::Result<Vec<u8>> {
+pub fn motion_json(parts: &ReportParts) -> serde_json::Result<Vec<u8>> {
     let written = Written {
         description: parts.description.as_deref(),
         model: parts.texts.iter().map(|(name, text)| Text { name, text }).collect(),

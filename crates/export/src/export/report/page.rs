@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::html::{escaped, image, inline_svg, is_figure, script_json};
-use super::script::{SCRIPT, STYLE};
+use super::script::{REPORT_STYLE, SCRIPT};
 use super::statistics;
 use super::tables::{self, text};
 
@@ -54,7 +54,7 @@ pub(in crate::export) fn page(model: &str, scenes: &[PageScene]) -> String {
          <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title} – mbint</title>\n\
-         <link rel=\"icon\" href=\"{icon}\">\n<style>{STYLE}</style>\n</head>\n<body>\n\
+         <link rel=\"icon\" href=\"{icon}\">\n<style>{REPORT_STYLE}</style>\n</head>\n<body>\n\
          <header><div class=\"title\"><h1>{title}</h1>{}</div><nav id=\"scenes\" aria-label=\"Scenes\"></nav></header>\n\
          <main>\n<div id=\"stage\" hidden></div>\n{contents}</main>\n\
          <footer>Made by mbint {}. Nothing on this page comes from elsewhere.</footer>\n\
@@ -82,7 +82,8 @@ fn data(scene: &PageScene) -> Value {
     })
 }
 
-fn content(index: usize, scene: &PageScene, scenes: usize) -> String {
+/// A scene's article: warnings, verdicts, plots and tables.
+pub(super) fn content(index: usize, scene: &PageScene, scenes: usize) -> String {
     let PageScene { name, summary, motion, figures } = scene;
     let heading = if scenes > 1 { format!("<h2>{}</h2>", escaped(name)) } else { String::new() };
     let warnings = tables::warnings(summary, motion);

@@ -1,7 +1,7 @@
 //! A page of tables and figures without scripts, which prints: the answer to one question.
 
 use super::html::{escaped, inline_svg};
-use super::script::STYLE;
+use super::script::REPORT_STYLE;
 
 /// A part of the page.
 pub enum Section {
@@ -22,7 +22,7 @@ pub fn plain_page(title: &str, sections: &[Section]) -> String {
          <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title} – mbint</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<header><div class=\"title\"><h1>{title}</h1></div></header>\n\
+         <style>{REPORT_STYLE}</style>\n</head>\n<body>\n<header><div class=\"title\"><h1>{title}</h1></div></header>\n\
          <main>\n<article class=\"scene\">\n{content}</article>\n</main>\n\
          <footer>Made by mbint {}. Nothing on this page comes from elsewhere.</footer>\n</body>\n</html>\n",
         env!("CARGO_PKG_VERSION")

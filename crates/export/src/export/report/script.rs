@@ -4,27 +4,32 @@
 use std::sync::LazyLock;
 
 /// The style.
-pub(super) const STYLE: &str = include_str!("style.css");
+pub const REPORT_STYLE: &str = include_str!("style.css");
 
-/// The modules, each behind those that it imports.
-const MODULES: [&str; 13] = [
-    include_str!("data.js"),
-    include_str!("vectors.js"),
-    include_str!("motion.js"),
-    include_str!("solids.js"),
-    include_str!("renderer.js"),
-    include_str!("camera.js"),
-    include_str!("mechanism.js"),
-    include_str!("clock.js"),
-    include_str!("regions.js"),
-    include_str!("plots.js"),
-    include_str!("controls.js"),
-    include_str!("view.js"),
-    include_str!("main.js"),
+/// The modules with their names, each behind those that it imports.
+const MODULES: [(&str, &str); 13] = [
+    ("data.js", include_str!("data.js")),
+    ("vectors.js", include_str!("vectors.js")),
+    ("motion.js", include_str!("motion.js")),
+    ("solids.js", include_str!("solids.js")),
+    ("renderer.js", include_str!("renderer.js")),
+    ("camera.js", include_str!("camera.js")),
+    ("mechanism.js", include_str!("mechanism.js")),
+    ("clock.js", include_str!("clock.js")),
+    ("regions.js", include_str!("regions.js")),
+    ("plots.js", include_str!("plots.js")),
+    ("controls.js", include_str!("controls.js")),
+    ("view.js", include_str!("view.js")),
+    ("main.js", include_str!("main.js")),
 ];
 
+/// A module, for a page that is served and loads its modules itself.
+pub fn report_module(name: &str) -> Option<&'static str> {
+    MODULES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
 /// All modules as one script: including their imports from each other.
-pub(super) static SCRIPT: LazyLock<String> = LazyLock::new(|| MODULES.map(plain).concat());
+pub(super) static SCRIPT: LazyLock<String> = LazyLock::new(|| MODULES.map(|(_, text)| plain(text)).concat());
 
 /// A module without imports, and without the word `export`. Comments stay out of pages.
 fn plain(module: &str) -> String {

@@ -3,7 +3,10 @@
 //! Poses are outputs of the whole model like any other, asked in place of its own: the same equations and the same
 //! steps, and nothing of it is in the program of a run.
 
+mod by_hand;
 mod forces;
+mod movable;
+mod reach;
 mod rows;
 mod samples;
 mod thinning;
@@ -11,15 +14,17 @@ mod worst;
 
 use super::drawing::asked::{Asked, AskedBody, Values};
 use super::drawing::{drawn, extent, has_ground};
-use super::{RunError, pool};
+use super::{RunError, caught, pool};
 use crate::model::Description;
 use crate::numerics::{Sample, SparseWork, SurrogateWork};
-use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
+use crate::results::{Drawing, FunctionWitness, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
 use crate::simulate::Interruption;
+pub use by_hand::{Grip, Hand, Held};
+pub use movable::Movable;
 use rows::Rows;
 use samples::Samples;
 use thinning::Thinning;
-pub use worst::add_worst_motions;
+use worst::add_worst_motions;
 
 /// Straight lines between poses are near enough at this share of the model's size.
 const NEAR: f64 = 2e-4;
@@ -37,6 +42,26 @@ pub struct MotionOptions<'a> {
     pub size: usize,
     /// Asked now and then whether to end.
     pub interruption: Interruption<'a>,
+}
+
+/// The motion of all bodies for a report, with those under the worst functions of excitations; or why there is none.
+///
+/// # Errors
+/// As for [`motion`], and where it panics.
+pub fn report_motion(
+    description: &Description,
+    worst: &[FunctionWitness],
+    options: MotionOptions,
+) -> Result<Motion, String> {
+    let found = caught("the report's motion", || {
+        let mut found = motion(description, options)?;
+        add_worst_motions(description, &mut found, worst, options)?;
+        Ok::<_, RunError>(found)
+    });
+    match found {
+        Ok(found) => found.map_err(|error| error.to_string()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 /// Simulates the motion of all bodies.
@@ -81,6 +106,24 @@ impl<'a> Posed<'a> {
         if self.spatial { 7 } else { 3 }
     }
 
+    /// Numbers of the pose of all bodies but the ground.
+    fn lines(&self) -> usize {
+        self.per_body() * (self.bodies.len() - 1)
+    }
+
+    /// The uncertain parameters.
+    fn parameters(&self, description: &Description) -> Vec<ParameterSummary> {
+        let parameters = self.rows.simulator.system.parameters.iter().map(|parameter| ParameterSummary {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            display: description.parameter_units.get(&parameter.name).cloned(),
+            nominal: parameter.nominal,
+            lower: parameter.lower,
+            upper: parameter.upper,
+        });
+        parameters.collect()
+    }
+
     fn simulate(&mut self, description: &Description, drawing: Drawing, size: usize) -> Result<Motion, RunError> {
         let samples = Samples::of(&self.rows.domain);
         let wanted: Vec<Sample> =
@@ -92,7 +135,7 @@ impl<'a> Posed<'a> {
         let nodes = &recorded[1 + samples.shown.len()..];
         let surrogate = samples.surrogate.as_ref().filter(|_| nodes.iter().all(complete));
 
-        let lines = self.per_body() * (self.bodies.len() - 1);
+        let lines = self.lines();
         let terms = surrogate.map_or(0, |surrogate| surrogate.basis().len());
         let most = (size / (lines * (2 + shown.len() + terms)).max(1)).clamp(FEWEST, MOST);
         let weights = self.weights(&recorded[0].points, &drawing);
@@ -135,21 +178,13 @@ impl<'a> Posed<'a> {
             let error = error.fold(0.0, f64::max);
             MotionPolynomials { degrees, error, bodies, points }
         });
-        let parameters = self.rows.simulator.system.parameters.iter().map(|parameter| ParameterSummary {
-            name: parameter.name.clone(),
-            unit: parameter.unit.clone(),
-            display: description.parameter_units.get(&parameter.name).cloned(),
-            nominal: parameter.nominal,
-            lower: parameter.lower,
-            upper: parameter.upper,
-        });
         let found_times: Vec<f64> = kept.iter().map(|&row| times[row]).collect();
         Ok(Motion {
             times: found_times.clone(),
             rows,
             between,
             per_body: self.per_body(),
-            parameters: parameters.collect(),
+            parameters: self.parameters(description),
             nominal,
             stopped: wanted.len() - 1 - nodes.len() - samples.len(),
             samples,
@@ -193,13 +228,13 @@ impl<'a> Posed<'a> {
         wanted: &[Sample],
     ) -> Result<(Vec<f64>, Vec<Recorded>), RunError> {
         let mut recorded = vec![Recorded::default(); wanted.len()];
-        let numbers = self.per_body() * (self.bodies.len() - 1);
-        let (times, stopped) = self.rows.of_samples(description, wanted, numbers, |sample, is_first, values| {
-            self.pose(&values, &mut recorded[sample].rows);
-            if is_first {
-                recorded[sample].points = self.points(&values, drawing);
-            }
-        })?;
+        let (times, stopped) =
+            self.rows.of_samples(description, wanted, self.lines(), |sample, is_first, values| {
+                self.pose(&values, &mut recorded[sample].rows);
+                if is_first {
+                    recorded[sample].points = self.points(&values, drawing);
+                }
+            })?;
         recorded.iter_mut().zip(stopped).for_each(|(recorded, stopped)| recorded.stopped = stopped);
         Ok((times, recorded))
     }

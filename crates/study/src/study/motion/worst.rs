@@ -14,7 +14,7 @@ const MOST: usize = 8;
 ///
 /// # Errors
 /// At an interruption, and where threads cannot be had.
-pub fn add_worst_motions(
+pub(super) fn add_worst_motions(
     description: &Description,
     motion: &mut Motion,
     witnesses: &[FunctionWitness],

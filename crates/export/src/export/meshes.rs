@@ -10,11 +10,11 @@ use crate::syntax::regular;
 use crate::syntax::tuning::TUNING;
 
 /// Triangles of all meshes of a drawing; those beyond are left out.
-pub(super) const MOST_TRIANGLES: usize = 12_000;
+pub const MOST_TRIANGLES: usize = 12_000;
 
 /// Reads meshes that have not been read, from files beside the model or in a folder there, and leaves out those that
 /// cannot be, and those that are too many.
-pub(super) fn read_meshes(drawing: &mut Drawing, beside: &Path, most: usize) {
+pub fn read_meshes(drawing: &mut Drawing, beside: &Path, most: usize) {
     let mut left = most;
     drawing.solids.retain_mut(|solid| {
         let Form::Mesh { mesh, .. } = &mut solid.form else { return true };

@@ -1,0 +1,258 @@
+//! The state that page and workers share: the texts, the last model without errors, its results, notes and questions.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::board::Board;
+use super::questions::{Move, Values};
+use super::requests::Requests;
+use super::texts::{Followed, TextError, Texts};
+use crate::model::Description;
+use crate::results::{Bounds, Summary};
+use crate::syntax::within::OpenTexts;
+
+/// How long nothing is typed before a text is read: bounds of half a word are nobody's.
+const QUIET: Duration = Duration::from_millis(250);
+
+/// Between two questions whether the studio has ended.
+const BETWEEN: Duration = Duration::from_millis(100);
+
+/// A model that could be read.
+pub struct Current {
+    /// Its number: the next one has a greater one.
+    pub number: u64,
+    /// The model, or one of its scenes.
+    pub description: Description,
+}
+
+/// A study that is done.
+pub struct Finished {
+    /// The model.
+    pub current: Arc<Current>,
+    /// Its results.
+    pub bounds: Bounds,
+    /// Their summary.
+    pub summary: Summary,
+}
+
+/// The texts and choices that a reading of the model starts from.
+pub struct Reading {
+    /// Number of the change that is read.
+    pub change: u64,
+    /// The model's full path.
+    pub path: PathBuf,
+    /// Open texts.
+    pub overlay: OpenTexts,
+    /// The scene that was chosen.
+    pub scene: Option<String>,
+    /// Whether long studies and programs of this text are allowed.
+    pub is_allowed: bool,
+}
+
+struct State {
+    texts: Texts,
+    changed: Instant,
+    scene: Option<String>,
+    is_allowed: bool,
+    current: Option<Arc<Current>>,
+    finished: Option<Arc<Finished>>,
+    /// All files that the model was read from.
+    sources: Vec<PathBuf>,
+}
+
+/// The shared state of a session.
+pub struct Desk {
+    /// Notes for the page.
+    pub board: Board,
+    /// Samples that the page wants.
+    pub samples: Requests<Values>,
+    /// Motions that the page wants.
+    pub moves: Requests<Move>,
+    /// Folder whose files the model may name, beside those of its own.
+    pub root: Option<PathBuf>,
+    /// A folder for results, which ends with the session.
+    pub folder: PathBuf,
+    state: Mutex<State>,
+    bell: Condvar,
+    /// Number of the latest change.
+    change: AtomicU64,
+    /// Number of the current model.
+    number: AtomicU64,
+    is_ended: AtomicBool,
+}
+
+impl Desk {
+    /// With the texts of a model.
+    pub fn new(texts: Texts, root: Option<PathBuf>, folder: PathBuf) -> Self {
+        let (scene, current, finished, sources) = (None, None, None, Vec::new());
+        let state = State { texts, changed: Instant::now(), scene, is_allowed: false, current, finished, sources };
+        Self {
+            board: Board::default(),
+            samples: Requests::default(),
+            moves: Requests::default(),
+            root,
+            folder,
+            state: Mutex::new(state),
+            bell: Condvar::new(),
+            change: AtomicU64::new(1),
+            number: AtomicU64::new(0),
+            is_ended: AtomicBool::new(false),
+        }
+    }
+
+    /// Between any two statements of its users the state is whole, also where one of them panics.
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The texts.
+    pub fn texts<T>(&self, of: impl FnOnce(&mut Texts) -> T) -> T {
+        of(&mut self.lock().texts)
+    }
+
+    fn changed(&self, state: &mut State) {
+        state.changed = Instant::now();
+        self.change.fetch_add(1, Ordering::Relaxed);
+        self.bell.notify_all();
+    }
+
+    /// Changes a text. A permission holds for one text only.
+    ///
+    /// # Errors
+    /// Where it is not open.
+    pub fn write(&self, path: &Path, text: String) -> Result<(), TextError> {
+        let mut state = self.lock();
+        state.texts.change(path, text)?;
+        state.is_allowed = false;
+        self.changed(&mut state);
+        Ok(())
+    }
+
+    /// Takes a text from the disk again.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn load(&self, path: &Path) -> Result<(), TextError> {
+        let mut state = self.lock();
+        state.texts.load(path)?;
+        state.is_allowed = false;
+        self.changed(&mut state);
+        Ok(())
+    }
+
+    /// Takes the text of a file that another program has written.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn follow(&self, path: &Path) -> Result<Followed, TextError> {
+        let mut state = self.lock();
+        let followed = state.texts.follow(path)?;
+        if matches!(followed, Followed::Loaded(_) | Followed::Other) {
+            state.is_allowed = false;
+            self.changed(&mut state);
+        }
+        Ok(followed)
+    }
+
+    /// All files that the model was read from.
+    pub fn sources(&self) -> Vec<PathBuf> {
+        self.lock().sources.clone()
+    }
+
+    /// Says from which files the model was read, and which of them are texts of the language.
+    pub fn was_read_from(&self, sources: Vec<PathBuf>, texts: Vec<PathBuf>) {
+        let mut state = self.lock();
+        state.texts.consists_of(texts);
+        state.sources = sources;
+    }
+
+    /// Allows a long study, or the start of a program, for the present text.
+    pub fn allow(&self) {
+        let mut state = self.lock();
+        state.is_allowed = true;
+        self.changed(&mut state);
+    }
+
+    /// Chooses a scene.
+    pub fn choose(&self, scene: String) {
+        let mut state = self.lock();
+        state.scene = Some(scene);
+        self.changed(&mut state);
+    }
+
+    /// Waits for a change behind that of a number, and until nothing is typed; `None` at the end.
+    pub fn next_change(&self, seen: u64) -> Option<Reading> {
+        let mut state = self.lock();
+        while !self.has_ended() {
+            let change = self.change.load(Ordering::Relaxed);
+            // The first text is read at once.
+            if change != seen && (seen == 0 || state.changed.elapsed() >= QUIET) {
+                let (path, overlay) = (state.texts.model().to_owned(), state.texts.overlay());
+                let (scene, is_allowed) = (state.scene.clone(), state.is_allowed);
+                return Some(Reading { change, path, overlay, scene, is_allowed });
+            }
+            state = self.bell.wait_timeout(state, BETWEEN).unwrap_or_else(PoisonError::into_inner).0;
+        }
+        None
+    }
+
+    /// Whether a change is no longer the latest.
+    pub fn is_old(&self, change: u64) -> bool {
+        self.has_ended() || self.change.load(Ordering::Relaxed) != change
+    }
+
+    /// Makes a model the current one.
+    pub fn publish(&self, number: u64, description: Description) -> Arc<Current> {
+        let current = Arc::new(Current { number, description });
+        self.lock().current = Some(Arc::clone(&current));
+        self.number.store(number, Ordering::Relaxed);
+        self.bell.notify_all();
+        current
+    }
+
+    /// Waits for a model behind that of a number; `None` at the end.
+    pub fn next_model(&self, seen: u64) -> Option<Arc<Current>> {
+        let mut state = self.lock();
+        while !self.has_ended() {
+            if let Some(current) = state.current.as_ref().filter(|current| current.number != seen) {
+                return Some(Arc::clone(current));
+            }
+            state = self.bell.wait_timeout(state, BETWEEN).unwrap_or_else(PoisonError::into_inner).0;
+        }
+        None
+    }
+
+    /// The current model, if one could be read.
+    pub fn current(&self) -> Option<Arc<Current>> {
+        self.lock().current.clone()
+    }
+
+    /// Whether a model is no longer the current one.
+    pub fn is_replaced(&self, number: u64) -> bool {
+        self.has_ended() || self.number.load(Ordering::Relaxed) != number
+    }
+
+    /// Keeps the results of a study.
+    pub fn finish(&self, finished: Finished) {
+        self.lock().finished = Some(Arc::new(finished));
+    }
+
+    /// The results of the latest study that is done.
+    pub fn finished(&self) -> Option<Arc<Finished>> {
+        self.lock().finished.clone()
+    }
+
+    /// Ends the workers, and tells the page.
+    pub fn end(&self) {
+        self.is_ended.store(true, Ordering::Relaxed);
+        self.bell.notify_all();
+        self.board.end();
+    }
+
+    /// Whether the session has ended.
+    pub fn has_ended(&self) -> bool {
+        self.is_ended.load(Ordering::Relaxed)
+    }
+}

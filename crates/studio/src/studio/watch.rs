@@ -1,0 +1,61 @@
+//! Files that another program changes: a text that the page has not changed follows the disk, another stays.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, SystemTime};
+
+use serde_json::{Value, json};
+
+use super::desk::Desk;
+use super::language::Language;
+use super::texts::Followed;
+
+/// Between two looks at the files.
+const BETWEEN: Duration = Duration::from_millis(300);
+
+/// Tells whether a file is as it was: when it was written, and its length; `None` where there is none.
+type Mark = Option<(SystemTime, u64)>;
+
+fn mark(path: &Path) -> Mark {
+    let data = fs::metadata(path).ok()?;
+    Some((data.modified().ok()?, data.len()))
+}
+
+/// Looks at the model's files until the end.
+pub fn work(desk: &Desk, language: &Language) {
+    let mut marks: BTreeMap<PathBuf, Mark> = BTreeMap::new();
+    let mut notes: BTreeMap<String, Value> = BTreeMap::new();
+    let mut changes = 0;
+    while !desk.has_ended() {
+        sleep(BETWEEN);
+        for path in desk.sources() {
+            let now = mark(&path);
+            let is_as_it_was = match marks.insert(path.clone(), now) {
+                Some(before) => before == now,
+                // An open text may be older than the first look at its file.
+                None => !desk.texts(|texts| texts.is_open(&path)),
+            };
+            if is_as_it_was {
+                continue;
+            }
+            let Ok(followed) = desk.follow(&path) else { continue };
+            let text = match followed {
+                Followed::Same => continue,
+                Followed::Other => {
+                    language.saved(&path);
+                    continue;
+                }
+                Followed::Loaded(text) => {
+                    language.open(&path, &text);
+                    Some(text)
+                }
+                Followed::Kept => None,
+            };
+            changes += 1;
+            notes.insert(path.to_string_lossy().into_owned(), json!({ "change": changes, "text": text }));
+            desk.board.put("disk", json!(notes));
+        }
+    }
+}
