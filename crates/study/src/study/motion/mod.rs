@@ -68,7 +68,7 @@ pub fn report_motion(
 ///
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped, and at an interruption.
-pub fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
+fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
     let pool = pool(options.threads)?;
     pool.install(|| {
         // Its ground is drawn when it is known what the motion passes.
