@@ -228,8 +228,13 @@ impl Search<'_, '_> {
             let mut alike = followed.iter().filter(|climb| climb.output == own.output && climb.sign == own.sign);
             let after = alike.clone().find(|climb| climb.row > own.row);
             let before = alike.rfind(|climb| climb.row < own.row);
-            for other in [before, after].into_iter().flatten() {
-                improved[number] = improved[number].max(other.improved);
+            let around = || [before, after].into_iter().flatten();
+            improved[number] = around().map(|other| other.improved).fold(0.0, f64::max);
+            // Where no start from elsewhere is better, one that has settled is the end.
+            if own.settled.is_some_and(|(_, open)| improved[number] <= open) {
+                continue;
+            }
+            for other in around() {
                 let starts = self.of_neighbour(own.row, other);
                 numbers.extend(starts.iter().map(|_| number));
                 climbs.extend(starts);
