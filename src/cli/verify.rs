@@ -7,7 +7,9 @@ use super::table::{Align, Table};
 use super::verdicts::short;
 use super::{Failure, Status, load};
 use crate::export::{Suite, write_junit};
-use crate::results::{Convergence, EffectBalance, Exchange, FormulationVerification, PowerBalance, Verification};
+use crate::results::{
+    Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, PowerBalance, Verification,
+};
 use crate::study::{self, RunError, VerifyError};
 
 /// Orders that exceed that of theory by more than this factor tell only that they do.
@@ -82,8 +84,23 @@ fn formulation(own: &FormulationVerification) -> String {
         }
     }
     text += &table.render(2);
+    text += &differentiated(&own.derivatives);
     if let Some(balance) = &own.balance {
         text += &balanced(balance);
+    }
+    text
+}
+
+/// The largest difference of all derivatives, and those that are wrong.
+fn differentiated(checks: &[DerivativeCheck]) -> String {
+    let Some(worst) = checks.iter().max_by(|a, b| a.difference.total_cmp(&b.difference)) else {
+        return String::new();
+    };
+    let count: usize = checks.iter().map(|check| check.derivatives).sum();
+    let of = |check: &DerivativeCheck| format!("{}, {} by {}", short(check.difference), check.of, check.by);
+    let mut text = format!("  derivatives: {count}, of differences with twice the digits at most {} off\n", of(worst));
+    for check in checks.iter().filter(|check| !check.is_verified()) {
+        text += &format!("  not the derivative: off by {}\n", of(check));
     }
     text
 }

@@ -102,6 +102,14 @@ fn of_formulation(own: &FormulationVerification) -> Vec<Case> {
             Case { name: format!("{name}: {}", found.quantity.name()), fault }
         }));
     }
+    cases.extend(own.derivatives.iter().map(|check| {
+        let fault = (!check.is_verified()).then(|| Fault {
+            element: "failure",
+            message: "not the derivative".to_owned(),
+            text: format!("largest difference {:e} of {} derivatives", check.difference, check.derivatives),
+        });
+        Case { name: format!("{formulation}, derivatives: {} by {}", check.of, check.by), fault }
+    }));
     cases.extend(own.balance.as_ref().map(|balance| {
         let fault = (!balance.is_verified()).then(|| Fault {
             element: "failure",

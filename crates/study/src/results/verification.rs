@@ -106,7 +106,7 @@ pub struct PowerBalance {
     pub effects: Vec<EffectBalance>,
 }
 
-/// Share of a power that is rounding.
+/// Share of a power, or of a derivative, that is rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl EffectBalance {
@@ -136,6 +136,31 @@ impl PowerBalance {
     }
 }
 
+/// Derivatives of a program against differences with twice the digits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DerivativeCheck {
+    /// Which rows.
+    pub of: String,
+    /// By which variables.
+    pub by: String,
+    /// Number of derivatives at one point.
+    pub derivatives: usize,
+    /// Largest difference at all points, as a share of the row's largest derivative by a variable of its scale.
+    pub difference: f64,
+}
+
+impl DerivativeCheck {
+    /// With the largest difference at one more point.
+    pub fn add(&mut self, difference: f64) {
+        self.difference = larger(self.difference, difference);
+    }
+
+    /// Whether all derivatives are exact to rounding.
+    pub fn is_verified(&self) -> bool {
+        self.difference <= ROUNDING
+    }
+}
+
 /// What a formulation's equations were found to be.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FormulationVerification {
@@ -151,6 +176,8 @@ pub struct FormulationVerification {
     pub singular_at_start: Vec<String>,
     /// Length of the manufactured motion, s.
     pub duration: f64,
+    /// Derivatives of its programs.
+    pub derivatives: Vec<DerivativeCheck>,
     /// Balance of power along it.
     pub balance: Option<PowerBalance>,
     /// By scheme.
@@ -277,7 +304,8 @@ impl FormulationVerification {
     /// Whether all schemes do what theory tells.
     pub fn is_verified(&self) -> bool {
         let is_balanced = self.balance.as_ref().is_none_or(PowerBalance::is_verified);
-        self.failure.is_none() && is_balanced && self.schemes.iter().all(SchemeVerification::is_verified)
+        let are_exact = self.derivatives.iter().all(DerivativeCheck::is_verified);
+        self.failure.is_none() && are_exact && is_balanced && self.schemes.iter().all(SchemeVerification::is_verified)
     }
 }
 

@@ -2,11 +2,12 @@
 //! 20): does *this* mechanism, with *these* effects, integrate as theory tells?
 //!
 //! `motion` makes a smooth motion on the constraints, near the nominal one, and the loads with which it fulfils the
-//! equations of motion; `balance` compares the powers of all effects with the mechanism's energy along it; `loaded` is
-//! the system with these loads, whose exact solution is then known; `orders` measures how its errors fall with the
-//! steps.
+//! equations of motion; `derivatives` compares the derivatives of all programs on it with differences, and `balance` the
+//! powers of all effects with the mechanism's energy; `loaded` is the system with these loads, whose exact solution is
+//! then known; `orders` measures how its errors fall with the steps.
 
 mod balance;
+mod derivatives;
 mod loaded;
 mod motion;
 mod orders;
@@ -26,6 +27,7 @@ use crate::simulate::{
 };
 
 use balance::balance;
+use derivatives::derivatives;
 use loaded::{loaded, observed};
 use motion::{Equations, Manufactured, Nominal};
 use orders::convergence;
@@ -127,6 +129,7 @@ fn of_formulation(
         redundant: system.constraint_names(&mobility.redundant),
         singular_at_start: system.constraint_names(&mobility.singular_at_start),
         duration: 0.0,
+        derivatives: Vec::new(),
         balance: None,
         schemes: Vec::new(),
         failure: None,
@@ -148,6 +151,8 @@ fn of_formulation(
         }
     };
     found.duration = motion.end;
+    (options.stage)("derivatives");
+    found.derivatives = derivatives(simulator, &mut equations, &motion);
     (options.stage)("balance of power");
     found.balance = balance(system, &motion, &parameters, &redundant);
     let start: Vec<f64> = motion.positions.iter().map(|own| own.at(0.0)).collect();

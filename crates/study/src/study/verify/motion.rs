@@ -92,6 +92,22 @@ impl<'s> Equations<'s> {
         Self { system, program, tile, kept }
     }
 
+    /// The system whose equations they are.
+    pub fn system(&self) -> &'s System {
+        self.system
+    }
+
+    /// Its tapes.
+    pub fn program(&self) -> &EquationsProgram {
+        &self.program
+    }
+
+    /// Values of the layout's registers on the motion.
+    pub fn registers(&mut self, motion: &Manufactured, time: f64) -> Vec<f64> {
+        self.follow(motion, time);
+        (0..self.layout().registers()).map(|register| self.value(register)).collect()
+    }
+
     fn layout(&self) -> &Layout {
         &self.program.layout
     }
