@@ -63,7 +63,11 @@ fn formulation(own: &FormulationVerification) -> String {
     if let Some(why) = &own.failure {
         return text + &format!("\n  not verified: {why}\n");
     }
-    text += &format!("; a motion of {} s\n", short(own.duration));
+    text += &format!("; a motion of {} s", short(own.duration));
+    if own.begin > 0.0 {
+        text += &format!(" from t = {} s on", short(own.begin));
+    }
+    text += "\n";
     let mut table = Table::new([
         ("scheme", Align::Left),
         ("of", Align::Left),

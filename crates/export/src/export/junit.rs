@@ -79,7 +79,8 @@ fn of_requirement(own: &RequirementSummary) -> Case {
 }
 
 fn of_formulation(own: &FormulationVerification) -> Vec<Case> {
-    let formulation = &own.formulation;
+    let from = if own.begin > 0.0 { format!(" from {} s on", own.begin) } else { String::new() };
+    let formulation = &format!("{}{from}", own.formulation);
     let error = |why: &String| Fault { element: "error", message: "not verified".to_owned(), text: why.clone() };
     if let Some(why) = &own.failure {
         return vec![Case { name: formulation.clone(), fault: Some(error(why)) }];

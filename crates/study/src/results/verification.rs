@@ -174,6 +174,8 @@ pub struct FormulationVerification {
     pub redundant: Vec<String>,
     /// Names of constraints that depend on others at the start only.
     pub singular_at_start: Vec<String>,
+    /// Where the manufactured motion begins in the run, s: behind what switches, where that is not at its start.
+    pub begin: f64,
     /// Length of the manufactured motion, s.
     pub duration: f64,
     /// Derivatives of its programs.
@@ -191,7 +193,7 @@ pub struct FormulationVerification {
 pub struct Verification {
     /// Name of the model.
     pub model: String,
-    /// By formulation, as far as the model has it.
+    /// By formulation, as far as the model has it, and by part of the run.
     pub formulations: Vec<FormulationVerification>,
 }
 

@@ -10,7 +10,7 @@ use symdiff::jet::JetSpace;
 use symdiff::{Adjoints, DoubleDouble, DoubleDoubleMemory, JetMemory, Tape, Tile};
 
 use super::motion::{Equations, Manufactured};
-use crate::compile::{EquationsProgram, Layout, Program, Tapes};
+use crate::compile::{Entries, EquationsProgram, Layout, Program, Tapes};
 use crate::results::DerivativeCheck;
 use crate::simulate::Simulator;
 
@@ -82,7 +82,7 @@ impl Scales {
     fn new(equations: &Equations, motion: &Manufactured, values: &[f64]) -> Self {
         let layout = &equations.program().layout;
         let mut of: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-        let rate = 1.0 / motion.end;
+        let rate = 1.0 / motion.length();
         for (index, coordinate) in equations.system().coordinates.iter().enumerate() {
             let mut least = |register: usize, scale: f64| of[register] = of[register].max(scale);
             least(layout.q.start + index, coordinate.scale);
@@ -128,12 +128,12 @@ fn compare(checks: &mut Vec<DerivativeCheck>, of: &str, by: &str, sizes: &[f64],
 pub fn derivatives(simulator: &Simulator, equations: &mut Equations, motion: &Manufactured) -> Vec<DerivativeCheck> {
     let mut checks = Vec::new();
     for share in INSTANTS {
-        let values = equations.registers(motion, share * motion.end);
+        let values = equations.registers(motion, motion.begin + share * motion.length());
         let scales = Scales::new(equations, motion, &values);
         of_equations(&mut checks, equations.program(), &values, &scales);
-        of_rates(&mut checks, equations.program(), equations.system().constraint.len(), &values, motion.end);
+        of_rates(&mut checks, equations.program(), &values, &scales, motion.length());
         of_outputs(&mut checks, equations.program(), &values, &scales);
-        of_step(&mut checks, &simulator.program, &values, &scales, STEP * motion.end);
+        of_step(&mut checks, &simulator.program, &values, &scales, STEP * motion.length());
     }
     checks
 }
@@ -166,14 +166,22 @@ fn variables(layout: &Layout) -> [(&'static str, Range<usize>); 4] {
 /// Symbolic derivatives of the equations of motion, constraints and conditions of the start.
 fn of_equations(checks: &mut Vec<DerivativeCheck>, program: &EquationsProgram, values: &[f64], scales: &Scales) {
     let tile = evaluated(program, &[&tapes(program)[..], &[program.closure_jacobian()]].concat(), values);
+    let holonomic = program.constraint.len();
+    // Rows of Φ_q are followed by those of Ψ_v.
+    let (by_position, by_velocity): (Entries, Entries) =
+        program.constraint_by_position.iter().partition(|(row, _, _)| *row < holonomic);
+    let by_velocity: Entries =
+        by_velocity.into_iter().map(|(row, column, register)| (row - holonomic, column, register)).collect();
+    let [rates, accelerations] = program.constraint_rates.each_ref();
     let groups = [
-        ("equations of motion", &program.motion, program.motion_by.each_ref().map(Some)),
-        ("constraints", &program.constraint, [Some(&program.constraint_by_position), None, None, None]),
+        ("equations of motion", &program.motion[..], program.motion_by.each_ref().map(Some)),
+        ("constraints", &program.constraint, [Some(&by_position), None, None, None]),
+        ("velocity constraints", &rates[holonomic..], [None, Some(&by_velocity), None, None]),
         ("start's positions", &program.closure[0], [Some(&program.closure_by[0]), None, None, None]),
         ("start's velocities", &program.closure[1], [None, Some(&program.closure_by[1]), None, None]),
         (
             "constraints' accelerations",
-            &program.constraint_rates[1],
+            accelerations,
             [Some(&program.constraint_acceleration_by[0]), Some(&program.constraint_acceleration_by[1]), None, None],
         ),
     ];
@@ -205,26 +213,27 @@ fn of_equations(checks: &mut Vec<DerivativeCheck>, program: &EquationsProgram, v
 fn of_rates(
     checks: &mut Vec<DerivativeCheck>,
     program: &EquationsProgram,
-    constraints: usize,
     values: &[f64],
-    end: f64,
+    scales: &Scales,
+    length: f64,
 ) {
-    let layout = &program.layout;
+    let (constraints, layout) = (program.constraint.len(), &program.layout);
     let tile = evaluated(program, &tapes(program), values);
     let [rate, acceleration] = program.constraint_rates.each_ref();
     let rows = [&program.constraint[..constraints], rate].concat();
     let mut point = Point::new(program, tapes(program), values, rows);
     let along = |registers: &Range<usize>, rates: &Range<usize>| -> Direction {
-        registers.clone().zip(rates.clone()).map(|(register, rate)| (register, values[rate] * end)).collect()
+        registers.clone().zip(rates.clone()).map(|(register, rate)| (register, values[rate] * length)).collect()
     };
-    let mut direction = vec![(layout.time, end)];
+    let mut direction = vec![(layout.time, length)];
     direction.extend(along(&layout.q, &layout.v));
     direction.extend(along(&layout.v, &layout.w));
-    // What moves apart from the others tells how large terms are that may cancel.
-    let apart: Vec<Direction> = direction.iter().map(|&one| vec![one]).collect();
+    // What moves apart from the others, by its scale at least, tells how large terms are that may cancel.
+    let by_scale = |&(register, slope): &(usize, f64)| vec![(register, slope.abs().max(scales.of[register]))];
+    let apart: Vec<Direction> = direction.iter().map(by_scale).collect();
     let (expected, sizes) = (point.by(&[direction]), sizes(&point.by(&apart)));
     let found = |registers: &[usize]| {
-        Matrix::from_iterator(registers.len(), 1, registers.iter().map(|&register| tile.lane(register)[0] * end))
+        Matrix::from_iterator(registers.len(), 1, registers.iter().map(|&register| tile.lane(register)[0] * length))
     };
     for (of, found, first) in
         [("constraints", found(&rate[..constraints]), 0), ("constraints' velocities", found(acceleration), constraints)]

@@ -24,7 +24,7 @@ const NODES: usize = 96;
 const LOADS: [usize; 2] = [96, 384];
 
 /// Halvings of the part of the run, where polynomials do not follow the motion or its series is not resolved.
-const HALVINGS: usize = 8;
+pub const HALVINGS: usize = 8;
 
 /// How far polynomials may be from the nominal motion, as a share of a coordinate's range.
 const NEAR: f64 = 0.02;
@@ -55,7 +55,9 @@ pub struct Nominal {
 /// A motion that fulfils the constraints, and the loads with which it fulfils the equations of motion.
 #[derive(Clone, Debug)]
 pub struct Manufactured {
-    /// s
+    /// Begin in the run, s.
+    pub begin: f64,
+    /// End in the run, s.
     pub end: f64,
     /// Positions, n; constant for states, whose positions stand in no equation.
     pub positions: Vec<ChebyshevSeries>,
@@ -69,6 +71,8 @@ pub struct Manufactured {
     pub loads: Vec<ChebyshevSeries>,
     /// Ψ(q, v, t) of the velocity constraints.
     pub slips: Vec<ChebyshevSeries>,
+    /// What it is near: polynomials for q, v and λ.
+    fit: Vec<ChebyshevSeries>,
 }
 
 /// The equations at one point.
@@ -76,25 +80,31 @@ pub struct Equations<'s> {
     system: &'s System,
     program: EquationsProgram,
     tile: Tile,
-    /// Numbers of the constraints that are not redundant.
+    /// Numbers of the constraints that follow from others, and of those that are kept.
+    redundant: Vec<usize>,
     kept: Vec<usize>,
 }
 
 impl<'s> Equations<'s> {
     /// Of a system with these parameters, of whose constraints those by the numbers `redundant` follow from others.
-    pub fn new(system: &'s System, program: EquationsProgram, parameters: &[f64], redundant: &[usize]) -> Self {
+    pub fn new(system: &'s System, program: EquationsProgram, parameters: &[f64], redundant: Vec<usize>) -> Self {
         let mut tile = Tile::new(1, program.registers(), program.constants());
         for (register, &value) in program.layout.parameters.clone().zip(parameters) {
             tile.lane_mut(register)[0] = value;
         }
         tile.run(program.sample());
         let kept = (0..system.constraint.len()).filter(|constraint| !redundant.contains(constraint)).collect();
-        Self { system, program, tile, kept }
+        Self { system, program, tile, redundant, kept }
     }
 
     /// The system whose equations they are.
     pub fn system(&self) -> &'s System {
         self.system
+    }
+
+    /// Numbers of the constraints that follow from others.
+    pub fn redundant(&self) -> &[usize] {
+        &self.redundant
     }
 
     /// Its tapes.
@@ -188,6 +198,20 @@ impl<'s> Equations<'s> {
         Some(())
     }
 
+    /// Which conditions are positive in a row of the nominal motion.
+    pub fn conditions(&mut self, nominal: &Nominal, row: usize) -> Vec<bool> {
+        let (layout, state) = (self.layout().clone(), &nominal.states[row]);
+        let n = layout.q.len();
+        self.set(layout.time..layout.time + 1, [nominal.times[row]]);
+        self.set(layout.q, state[..n].iter().copied());
+        self.set(layout.v, state[n..2 * n].iter().copied());
+        self.set(layout.lambda, state[2 * n..].iter().copied());
+        for tape in [self.program.residual(), self.program.rates(), self.program.closure(), self.program.conditions()] {
+            self.tile.run(tape);
+        }
+        self.program.conditions.iter().map(|&register| self.value(register) > 0.0).collect()
+    }
+
     /// Sets all symbols to their values on the motion.
     fn follow(&mut self, motion: &Manufactured, time: f64) {
         let layout = self.layout().clone();
@@ -243,17 +267,22 @@ fn series(
 }
 
 impl Manufactured {
-    /// Near a nominal motion, over as much of it as polynomials follow.
+    /// Near a part of a nominal motion, over as much of it from its begin on as polynomials follow, by so many halvings
+    /// at most.
     ///
     /// # Errors
     /// Where no part of it has a smooth motion on the constraints, or its equations are not smooth along it.
-    pub fn near(nominal: &Nominal, equations: &mut Equations) -> Result<Self, NotVerified> {
-        let whole = *nominal.times.last().ok_or(NotVerified::NoMotion)?;
+    pub fn near(
+        nominal: &Nominal,
+        equations: &mut Equations,
+        [begin, whole]: [f64; 2],
+        halvings: usize,
+    ) -> Result<Self, NotVerified> {
         let mut why = NotVerified::NoMotion;
-        for halving in 0..=HALVINGS {
-            let end = whole * 0.5_f64.powi(halving as i32);
-            let Some(fit) = followed(nominal, end, equations.system, halving < HALVINGS / 2) else { continue };
-            match Self::of_fit(&fit, end, equations) {
+        for halving in 0..=halvings {
+            let span = [begin, begin + (whole - begin) * 0.5_f64.powi(halving as i32)];
+            let Some(fit) = followed(nominal, span, equations.system, halving < HALVINGS / 2) else { continue };
+            match Self::of_fit(fit, span, equations) {
                 Ok(motion) => return Ok(motion),
                 Err(reason) => why = reason,
             }
@@ -261,10 +290,20 @@ impl Manufactured {
         Err(why)
     }
 
+    /// A motion near the same polynomials over the first part of the time; `None` where there is none.
+    pub fn shortened(&self, share: f64, equations: &mut Equations) -> Option<Self> {
+        Self::of_fit(self.fit.clone(), [self.begin, self.begin + share * self.length()], equations).ok()
+    }
+
+    /// s
+    pub fn length(&self) -> f64 {
+        self.end - self.begin
+    }
+
     /// From polynomials for q, v and λ.
-    fn of_fit(fit: &[ChebyshevSeries], end: f64, equations: &mut Equations) -> Result<Self, NotVerified> {
+    fn of_fit(fit: Vec<ChebyshevSeries>, span: [f64; 2], equations: &mut Equations) -> Result<Self, NotVerified> {
         let n = equations.system.q.len();
-        let span = [0.0, end];
+        let [begin, end] = span;
         let coordinates = &equations.system.coordinates;
         // Of the motion, of states, and slips behind them.
         let group = |index: usize| coordinates.get(index).map_or(2, |coordinate| usize::from(coordinate.is_state));
@@ -298,7 +337,8 @@ impl Manufactured {
         velocities = series(span, &rates, RESOLVED, group).ok_or(NotVerified::NotSmooth { end })?;
         accelerations = series(span, &changes, LOADS_RESOLVED, group).unwrap_or(accelerations);
         let multipliers = fit[2 * n..].to_vec();
-        let mut motion = Self { end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![] };
+        let mut motion =
+            Self { begin, end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![], fit };
         for nodes in LOADS {
             let times = ChebyshevSeries::nodes(span, nodes);
             let values: Vec<Vec<f64>> = times.iter().map(|&time| equations.residuals(&motion, time)).collect();
@@ -331,15 +371,16 @@ fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &own| (least.min(own), most.max(own)))
 }
 
-/// Polynomials for q, v and λ up to a time; `None` where they are not near the motion, if they have to be.
-fn followed(nominal: &Nominal, end: f64, system: &System, near: bool) -> Option<Vec<ChebyshevSeries>> {
-    let rows = nominal.times.iter().take_while(|&&time| time <= end * (1.0 + 1e-12)).count();
-    let (times, states) = (&nominal.times[..rows], &nominal.states[..rows]);
+/// Polynomials for q, v and λ over a time; `None` where they are not near the motion, if they have to be.
+fn followed(nominal: &Nominal, span: [f64; 2], system: &System, near: bool) -> Option<Vec<ChebyshevSeries>> {
+    let [first, last] = [span[0] * (1.0 - 1e-12), span[1] * (1.0 + 1e-12)];
+    let rows = nominal.times.partition_point(|time| *time < first)..nominal.times.partition_point(|time| *time <= last);
+    let (times, states) = (&nominal.times[rows.clone()], &nominal.states[rows]);
     let mut functions: Vec<Vec<f64>> =
         (0..states.first()?.len()).map(|index| states.iter().map(|state| state[index]).collect()).collect();
     let scales = system.coordinates.iter().map(|coordinate| coordinate.scale);
     functions.iter_mut().zip(scales.clone()).enumerate().for_each(|(index, (own, scale))| moved(own, index, scale));
-    let fit = ChebyshevSeries::fitted([0.0, end], FOLLOWING, times, &functions)?;
+    let fit = ChebyshevSeries::fitted(span, FOLLOWING, times, &functions)?;
     let is_near = |((own, values), scale): ((&ChebyshevSeries, &Vec<f64>), f64)| {
         let (least, most) = range(values);
         let allowed = NEAR * (most - least).max(1e-6 * scale);

@@ -10,7 +10,7 @@ use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulato
 const ROWS: usize = 4;
 
 /// Most steps of a row.
-const MOST: usize = 1 << 13;
+const MOST: usize = 1 << 9;
 
 /// Errors below these shares of a quantity's size are rounding's, whatever the model: of positions, velocities,
 /// accelerations and reactions.
@@ -29,10 +29,10 @@ struct Group<'m> {
 }
 
 /// Largest error in all rows, as a share of the group's size.
-fn error(group: &Group, rows: &[Vec<f64>], schedule: &Schedule) -> f64 {
+fn error(group: &Group, rows: &[Vec<f64>], schedule: &Schedule, begin: f64) -> f64 {
     let mut most = 0.0_f64;
     for (row, values) in rows.iter().enumerate().skip(1) {
-        let time = schedule.time(row);
+        let time = begin + schedule.time(row);
         for ((exact, &of), scale) in group.exact.iter().zip(&group.of).zip(&group.scales) {
             most = larger(most, (values[group.first + of] - exact.at(time)).abs() / scale);
         }
@@ -63,7 +63,7 @@ fn groups<'m>(system: &System, motion: &'m Manufactured) -> Vec<Group<'m>> {
             let scales = scales.collect();
             Group { quantity, first, exact, of, scales, rounding }
         };
-    let rate = 1.0 / motion.end;
+    let rate = 1.0 / motion.length();
     let [position, velocity, acceleration, reaction] = ROUNDING;
     let all = [
         group(Quantity::Positions, 0, &motion.positions, of_motion.clone(), 1.0, position),
@@ -96,8 +96,8 @@ pub fn convergence(
         if interrupted() {
             return Err(SimulationError::Interrupted);
         }
-        let step = motion.end / (ROWS * per_row) as f64;
-        let schedule = Schedule::fixed(motion.end, step, motion.end / ROWS as f64).taken(integration);
+        let step = motion.length() / (ROWS * per_row) as f64;
+        let schedule = Schedule::fixed(motion.length(), step, motion.length() / ROWS as f64).taken(integration);
         let rows = simulated(simulator, &nominal, &schedule)?;
         per_row *= 2;
         let Some(rows) = rows else {
@@ -105,7 +105,7 @@ pub fn convergence(
             continue;
         };
         for (own, group) in found.iter_mut().zip(&groups) {
-            own.add(step, error(group, &rows, &schedule));
+            own.add(step, error(group, &rows, &schedule, motion.begin));
         }
         if found.iter().all(Convergence::is_settled) {
             break;
