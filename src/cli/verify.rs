@@ -6,14 +6,11 @@ use super::question::{answer, ask};
 use super::table::{Align, Table};
 use super::verdicts::short;
 use super::{Failure, Status, load};
-use crate::export::{Suite, write_junit};
+use crate::export::{Suite, write_junit, write_verification};
 use crate::results::{
     Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, PowerBalance, Verification,
 };
 use crate::study::{self, RunError, VerifyError};
-
-/// Orders that exceed that of theory by more than this factor tell only that they do.
-const MORE: f64 = 1.5;
 
 pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status, Failure> {
     let given = args.set.given()?;
@@ -35,6 +32,9 @@ pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status,
     if let Some(path) = &args.junit {
         let written = write_junit(path, &[Suite::of_verification(&found)]);
         written.map_err(|error| Failure::Failed(error.to_string()))?;
+    }
+    if let Some(path) = &args.html {
+        write_verification(path, &found).map_err(|error| Failure::Failed(error.to_string()))?;
     }
     Ok(if found.is_verified() { Status::Done } else { Status::NotMet })
 }
@@ -131,24 +131,25 @@ fn balanced(balance: &PowerBalance) -> String {
 
 fn of_effect(own: &EffectBalance) -> [String; 6] {
     let exchange = own.exchange();
-    let (word, puts_in, takes) = match exchange {
-        Exchange::None => ("none", 0.0, 0.0),
-        Exchange::Conserves => ("kept", 0.0, 0.0),
-        Exchange::Dissipates => ("taken", 0.0, own.taken),
-        Exchange::Drives => ("put in", own.put_in, own.taken),
+    let (puts_in, takes) = match exchange {
+        Exchange::None | Exchange::Conserves => (0.0, 0.0),
+        Exchange::Dissipates => (0.0, own.taken),
+        Exchange::Drives => (own.put_in, own.taken),
     };
     let (effect, kind) = (own.effect.clone(), own.kind.clone());
-    [effect, kind, word.to_owned(), short(own.power), short(puts_in), short(takes)]
+    [effect, kind, exchange.name().to_owned(), short(own.power), short(puts_in), short(takes)]
 }
 
 fn row(scheme: String, own: &Convergence) -> [String; 7] {
     let (step, error) = own.errors.last().copied().unwrap_or((f64::NAN, f64::NAN));
-    let order = match own.order {
-        None => "exact".to_owned(),
-        // Transients that long steps damp, or rounding at once.
-        Some(order) if order > MORE * own.theory => format!("> {:.0}", own.theory),
-        Some(order) => format!("{order:.2}"),
-    };
     let verdict = if own.is_verified { String::new() } else { "not as in theory".to_owned() };
-    [scheme, own.quantity.name().to_owned(), order, format!("{:.0}", own.theory), short(error), short(step), verdict]
+    [
+        scheme,
+        own.quantity.name().to_owned(),
+        own.shown_order(),
+        format!("{:.0}", own.theory),
+        short(error),
+        short(step),
+        verdict,
+    ]
 }

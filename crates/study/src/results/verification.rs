@@ -79,6 +79,18 @@ pub enum Exchange {
     Drives,
 }
 
+impl Exchange {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Conserves => "kept",
+            Self::Dissipates => "taken",
+            Self::Drives => "put in",
+        }
+    }
+}
+
 /// Power of an effect along a motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct EffectBalance {
@@ -206,6 +218,9 @@ const ABOVE: f64 = 0.1;
 /// are those of rounding; errors that get there at a higher order than this are as in theory, too.
 const HIGH: f64 = 4.0;
 
+/// Orders that exceed that of theory by more than this factor tell only that they do.
+const MORE: f64 = 1.5;
+
 /// An error that falls by less than this order, and is less than this, is rounding's.
 const FLAT: f64 = 1.0;
 const SMALL: f64 = 1e-6;
@@ -232,6 +247,16 @@ impl Convergence {
     /// Forgets the errors of longer steps, of which some did not converge.
     pub fn restart(&mut self) {
         *self = Self::new(self.quantity, self.theory, self.rounding);
+    }
+
+    /// The order that counts, for people.
+    pub fn shown_order(&self) -> String {
+        match self.order {
+            None => "exact".to_owned(),
+            // Transients that long steps damp, or rounding at once.
+            Some(order) if order > MORE * self.theory => format!("> {:.0}", self.theory),
+            Some(order) => format!("{order:.2}"),
+        }
     }
 
     /// Whether shorter steps do not make the error smaller, which is small already.

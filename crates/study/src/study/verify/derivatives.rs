@@ -17,9 +17,9 @@ use crate::simulate::Simulator;
 /// Instants, as shares of the motion.
 const INSTANTS: [f64; 2] = [0.31, 0.77];
 
-/// Differences are over this share of a variable's scale to both sides: their errors are its square, 1e-20, of the
-/// third derivative, and the rounding of 32 digits over it, 1e-22.
-const SHARE: f64 = 1.0 / (1_u64 << 33) as f64;
+/// Differences are over this share of a variable's scale to both sides: their errors are its square, 1e-24, of the
+/// third derivative, and the rounding of 32 digits over it, 1e-20.
+const SHARE: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// A step of the Newton matrix is this share of the motion.
 const STEP: f64 = 1.0 / 64.0;

@@ -74,7 +74,9 @@ pub enum NotVerified {
         end: f64,
     },
     /// The equations are not smooth along the motion.
-    #[error("the equations of motion are not smooth up to t = {end} s: a contact, a stop or a condition switches")]
+    #[error(
+        "the equations of motion are not smooth up to t = {end} s: a contact, a stop or a condition switches, or friction is steep near rest"
+    )]
     Kink {
         /// s
         end: f64,

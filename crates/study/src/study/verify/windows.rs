@@ -18,14 +18,14 @@ const ROWS: usize = 16;
 /// Halvings of a later part.
 const HALVINGS: usize = 3;
 
-/// The parts between the instants at which conditions change their sign, without the first one; equal parts of the run
-/// where none does.
-fn parts(nominal: &Nominal, equations: &mut Equations) -> Vec<[f64; 2]> {
+/// The parts between the instants at which conditions change their sign, without the first one; where none does, none,
+/// or equal parts of the run where its begin has no smooth motion.
+fn parts(nominal: &Nominal, equations: &mut Equations, begins: bool) -> Vec<[f64; 2]> {
     let signs: Vec<Vec<bool>> = (0..nominal.times.len()).map(|row| equations.conditions(nominal, row)).collect();
     let switches = (1..signs.len()).filter(|&row| signs[row] != signs[row - 1]);
     let last = nominal.times.len().saturating_sub(1);
     let mut ends: Vec<usize> = switches.chain([last]).collect();
-    if ends.len() == 1 {
+    if ends.len() == 1 && !begins {
         ends = (1..=PARTS).map(|part| part * last / PARTS).collect();
     }
     let mut found: Vec<[usize; 2]> = ends.windows(2).map(|pair| [pair[0], pair[1]]).collect();
@@ -41,7 +41,7 @@ fn parts(nominal: &Nominal, equations: &mut Equations) -> Vec<[f64; 2]> {
 
 /// A motion on a part after the time `reached`, behind what switches; `None` where there is no smooth one.
 pub fn later(nominal: &Nominal, equations: &mut Equations, reached: f64) -> Option<Manufactured> {
-    let parts = parts(nominal, equations).into_iter().filter(|[begin, _]| *begin >= reached).take(TRIED);
+    let parts = parts(nominal, equations, reached > 0.0).into_iter().filter(|[begin, _]| *begin >= reached).take(TRIED);
     let mut motions = parts.filter_map(|part| Manufactured::near(nominal, equations, part, HALVINGS).ok());
     motions.next()
 }
