@@ -95,6 +95,7 @@ mod time_steps;
 mod tolerance;
 mod total_degree;
 mod urdf;
+mod validation;
 mod vehicles;
 mod verify;
 mod wiper;
