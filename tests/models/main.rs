@@ -64,6 +64,7 @@ mod mjcf;
 mod modes;
 mod modes_with_states;
 mod moving_machines;
+mod peers;
 mod pruning;
 mod questions_apart;
 mod random;
