@@ -43,7 +43,7 @@ pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> 
     observed(&system)
 }
 
-/// The system, in whose equations the time counts from `begin` on. What is not of the equations keeps its time.
+/// The system, in whose equations the time counts from `begin` on. Outputs and powers keep theirs.
 fn later(system: &System, begin: f64) -> System {
     let mut system = system.clone();
     if begin == 0.0 {

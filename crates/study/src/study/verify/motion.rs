@@ -71,7 +71,7 @@ pub struct Manufactured {
     pub loads: Vec<ChebyshevSeries>,
     /// Ψ(q, v, t) of the velocity constraints.
     pub slips: Vec<ChebyshevSeries>,
-    /// What it is near: polynomials for q, v and λ.
+    /// Polynomials for q, v and λ near which it is.
     fit: Vec<ChebyshevSeries>,
 }
 

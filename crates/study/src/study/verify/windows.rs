@@ -2,14 +2,14 @@
 
 use super::motion::{Equations, Manufactured, Nominal};
 
-/// Share of a part that is left out at both ends: the manufactured motion is near the nominal one, and switches at other
-/// instants.
+/// Share of a part that is left out at both ends: the manufactured motion is near the nominal one, and switches at
+/// other instants.
 const MARGIN: f64 = 0.1;
 
 /// Parts that are tried, the longest first.
 const TRIED: usize = 6;
 
-/// Parts of a run where no condition is seen to switch: what is steep, a friction at rest, may be so in some only.
+/// Parts of a run where no condition is seen to switch: friction at rest is steep in some only.
 const PARTS: usize = 8;
 
 /// Shortest part, in rows of the nominal motion.

@@ -56,7 +56,7 @@ impl DoubleDouble {
         self.high
     }
 
-    /// Without the rounding error of what is not finite.
+    /// The same, without a rounding error where the sum is not finite.
     fn finite(self) -> Self {
         if self.low.is_finite() { self } else { self.high.into() }
     }
