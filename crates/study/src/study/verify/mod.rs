@@ -4,8 +4,8 @@
 //! `motion` makes a smooth motion on the constraints, near the nominal one, and the loads with which it fulfils the
 //! equations of motion; `derivatives` compares the derivatives of all programs on it with differences, and `balance`
 //! the powers of all effects with the mechanism's energy; `loaded` is the system with these loads, whose exact solution
-//! is then known; `orders` measures how its errors fall with the steps. Where equations switch there is no smooth motion:
-//! `windows` finds parts of the run between such instants.
+//! is then known; `orders` measures how its errors fall with the steps. Where equations switch there is no smooth
+//! motion: `windows` finds parts of the run between such instants.
 
 mod balance;
 mod derivatives;
