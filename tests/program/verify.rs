@@ -19,12 +19,14 @@ fn orders_and_balances_are_tests() {
     assert!(cases.iter().all(|case| !case.has_children()), "{text}");
 }
 
-/// Friction at rest has no smooth motion in absolute coordinates.
+/// A force with a corner everywhere has no smooth motion.
 #[test]
 fn what_is_not_verified_is_an_error() {
     let place = Place::new();
-    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/arm.urdf");
-    place.run(&format!("verify {model} --quiet --junit orders.xml"), 4);
+    let model = "model: kink\nbodies: { block: { mass: 1, coordinates: [x] } }\neffects: { push: { force: { on: block, value: [\"abs(sin(4000*t))\", 0] } } }\n\
+                 outputs: { x: block.x }\nsimulation: { duration: 1, step: 1e-3 }\n";
+    fs::write(place.path().join("kink.yaml"), model).unwrap();
+    place.run("verify kink.yaml --quiet --junit orders.xml", 4);
     let text = fs::read_to_string(place.path().join("orders.xml")).unwrap();
     let document = roxmltree::Document::parse(&text).unwrap();
     let errors: Vec<_> = document.descendants().filter(|node| node.has_tag_name("error")).collect();

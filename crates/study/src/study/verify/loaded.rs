@@ -40,6 +40,8 @@ pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> 
         at_equilibrium: false,
         nearest: None,
     };
+    // The loads hold bodies where a model's start could not be.
+    system.effects.iter_mut().for_each(|effect| (effect.room, effect.overlap) = (None, None));
     observed(&system)
 }
 

@@ -1,14 +1,15 @@
 //! Verification of a model by manufactured solutions (Salari & Knupp, Sandia report SAND2000-1444; ASME V&V 10 and
 //! 20): does *this* mechanism, with *these* effects, integrate as theory tells?
 //!
-//! `motion` makes a smooth motion on the constraints, near the nominal one, and the loads with which it fulfils the
-//! equations of motion; `derivatives` compares the derivatives of all programs on it with differences, and `balance`
-//! the powers of all effects with the mechanism's energy; `loaded` is the system with these loads, whose exact solution
-//! is then known; `orders` measures how its errors fall with the steps. Where equations switch there is no smooth
-//! motion: `windows` finds parts of the run between such instants.
+//! `motion` makes a smooth motion on the constraints, near the nominal one (`fit`), and the loads with which it
+//! fulfils the equations of motion; `derivatives` compares the derivatives of all programs on it with differences,
+//! and `balance` the powers of all effects with the mechanism's energy; `loaded` is the system with these loads,
+//! whose exact solution is then known; `orders` measures how its errors fall with the steps. Where equations switch
+//! there is no smooth motion: `windows` finds parts of the run between such instants.
 
 mod balance;
 mod derivatives;
+mod fit;
 mod loaded;
 mod motion;
 mod orders;
@@ -30,8 +31,9 @@ use crate::simulate::{
 
 use balance::balance;
 use derivatives::derivatives;
+use fit::Nominal;
 use loaded::{loaded, observed};
-use motion::{Equations, HALVINGS, Manufactured, Nominal};
+use motion::{Equations, HALVINGS, Manufactured};
 use orders::convergence;
 use windows::later;
 

@@ -4,18 +4,14 @@
 //! constraints at Chebyshev nodes, by the shortest way; the series through these points is the motion. It fulfils the
 //! constraints to rounding where it is resolved, and velocities and accelerations are its derivatives.
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DMatrix, DVector};
-use symdiff::{Tile, math};
+use symdiff::Tile;
 
 use super::NotVerified;
+use super::fit::{Nominal, followed, series};
 use crate::assemble::System;
 use crate::compile::{EquationsProgram, Layout, Tapes};
 use crate::numerics::ChebyshevSeries;
-
-/// Degree of the polynomials that follow the nominal motion.
-const FOLLOWING: usize = 8;
 
 /// Nodes of the motion.
 const NODES: usize = 96;
@@ -30,8 +26,9 @@ pub const HALVINGS: usize = 8;
 const NEAR: f64 = 0.02;
 
 /// Coordinates that hardly move, by less than this share of their scale, swing by as much: a motion at rest would tell
-/// nothing.
-const SWING: f64 = 0.01;
+/// nothing. The smaller ones where the first has no smooth motion: a swing may leave a clearance or the steep part of
+/// friction.
+const SWINGS: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
 /// Constraints are fulfilled where residuals are less than this share of the coordinates' scale.
 const CLOSED: f64 = 1e-12;
@@ -41,16 +38,6 @@ const CORRECTIONS: usize = 40;
 const RESOLVED: f64 = 1e-11;
 /// The same for loads, which have accelerations in them.
 const LOADS_RESOLVED: f64 = 1e-9;
-/// Coefficients below this share of the largest are rounding, which derivatives would amplify.
-const ROUNDING: f64 = 3e-16;
-
-/// A nominal motion, row by row.
-pub struct Nominal {
-    /// s, from zero on.
-    pub times: Vec<f64>,
-    /// Positions, velocities and multipliers (2n + m) in each row.
-    pub states: Vec<Vec<f64>>,
-}
 
 /// A motion that fulfils the constraints, and the loads with which it fulfils the equations of motion.
 #[derive(Clone, Debug)]
@@ -242,30 +229,6 @@ impl<'s> Equations<'s> {
     }
 }
 
-/// Through values of several functions at nodes, without rounding; `None` where one is not resolved. Functions are
-/// compared with the largest of their group: states may be of any size.
-fn series(
-    span: [f64; 2],
-    values: &[Vec<f64>],
-    resolved: f64,
-    group: impl Fn(usize) -> usize,
-) -> Option<Vec<ChebyshevSeries>> {
-    let count = values.first().map_or(0, Vec::len);
-    let mut found = Vec::with_capacity(count);
-    let mut sizes = BTreeMap::new();
-    for index in 0..count {
-        let of_one: Vec<f64> = values.iter().map(|row| row[index]).collect();
-        let own = ChebyshevSeries::through(span, &of_one);
-        let size: &mut f64 = sizes.entry(group(index)).or_default();
-        *size = size.max(own.size());
-        found.push(own);
-    }
-    let is_resolved = |(index, own): (usize, &ChebyshevSeries)| own.tail() <= resolved * sizes[&group(index)];
-    let all = found.iter().enumerate().all(is_resolved);
-    let chopped = |(index, own): (usize, ChebyshevSeries)| own.chopped(ROUNDING * sizes[&group(index)]);
-    all.then(|| found.into_iter().enumerate().map(chopped).collect())
-}
-
 impl Manufactured {
     /// Near a part of a nominal motion, over as much of it from its begin on as polynomials follow, by so many halvings
     /// at most.
@@ -279,12 +242,15 @@ impl Manufactured {
         halvings: usize,
     ) -> Result<Self, NotVerified> {
         let mut why = NotVerified::NoMotion;
-        for halving in 0..=halvings {
-            let span = [begin, begin + (whole - begin) * 0.5_f64.powi(halving as i32)];
-            let Some(fit) = followed(nominal, span, equations.system, halving < HALVINGS / 2) else { continue };
-            match Self::of_fit(fit, span, equations) {
-                Ok(motion) => return Ok(motion),
-                Err(reason) => why = reason,
+        for swing in SWINGS {
+            for halving in 0..=halvings {
+                let span = [begin, begin + (whole - begin) * 0.5_f64.powi(halving as i32)];
+                let near = (halving < HALVINGS / 2).then_some(NEAR);
+                let Some(fit) = followed(nominal, span, equations.system, swing, near) else { continue };
+                match Self::of_fit(fit, span, equations) {
+                    Ok(motion) => return Ok(motion),
+                    Err(reason) => why = reason,
+                }
             }
         }
         Err(why)
@@ -353,38 +319,4 @@ impl Manufactured {
         }
         Err(NotVerified::Kink { end })
     }
-}
-
-/// Values with a swing of their own where they hardly change.
-fn moved(values: &mut [f64], index: usize, scale: f64) {
-    let (least, most) = range(values);
-    if most - least > SWING * scale {
-        return;
-    }
-    let last = (values.len().max(2) - 1) as f64;
-    for (row, value) in values.iter_mut().enumerate() {
-        *value += SWING * scale * math::sin(index as f64 + (2.0 + 0.3 * index as f64) * row as f64 / last);
-    }
-}
-
-fn range(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &own| (least.min(own), most.max(own)))
-}
-
-/// Polynomials for q, v and λ over a time; `None` where they are not near the motion, if they have to be.
-fn followed(nominal: &Nominal, span: [f64; 2], system: &System, near: bool) -> Option<Vec<ChebyshevSeries>> {
-    let [first, last] = [span[0] * (1.0 - 1e-12), span[1] * (1.0 + 1e-12)];
-    let rows = nominal.times.partition_point(|time| *time < first)..nominal.times.partition_point(|time| *time <= last);
-    let (times, states) = (&nominal.times[rows.clone()], &nominal.states[rows]);
-    let mut functions: Vec<Vec<f64>> =
-        (0..states.first()?.len()).map(|index| states.iter().map(|state| state[index]).collect()).collect();
-    let scales = system.coordinates.iter().map(|coordinate| coordinate.scale);
-    functions.iter_mut().zip(scales.clone()).enumerate().for_each(|(index, (own, scale))| moved(own, index, scale));
-    let fit = ChebyshevSeries::fitted(span, FOLLOWING, times, &functions)?;
-    let is_near = |((own, values), scale): ((&ChebyshevSeries, &Vec<f64>), f64)| {
-        let (least, most) = range(values);
-        let allowed = NEAR * (most - least).max(1e-6 * scale);
-        times.iter().zip(values).all(|(&time, value)| (own.at(time) - value).abs() <= allowed)
-    };
-    (!near || fit.iter().zip(&functions).zip(scales).all(is_near)).then_some(fit)
 }

@@ -1,6 +1,7 @@
 //! Parts of a run between the instants at which its equations switch.
 
-use super::motion::{Equations, Manufactured, Nominal};
+use super::fit::Nominal;
+use super::motion::{Equations, Manufactured};
 
 /// Share of a part that is left out at both ends: the manufactured motion is near the nominal one, and switches at
 /// other instants.
