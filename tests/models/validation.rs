@@ -66,8 +66,8 @@ impl Comparison {
             .figure("u_input", self.inputs)
             .figure("u_D", self.measurement)
             .figure("u_val", uncertainty)
-            .text("|E| ≤ u_val", if error.abs() <= uncertainty { "yes" } else { "no" })
-            .at_most("|E|/D, %", 100.0 * (error / self.measured).abs(), share)
+            .text("E within u_val", if error.abs() <= uncertainty { "yes" } else { "no" })
+            .at_most("E/D, %", 100.0 * (error / self.measured).abs(), share)
     }
 }
 

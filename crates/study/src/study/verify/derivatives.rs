@@ -334,3 +334,39 @@ fn of_step(checks: &mut Vec<DerivativeCheck>, program: &Program, values: &[f64],
     let expected = point.by(&directions);
     compare(checks, "step of HHT-I3", "accelerations and reactions", &sizes(&expected), [&found, &expected]);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assemble::Questions;
+    use crate::compile::compile_equations;
+    use crate::model::load_str;
+    use crate::numerics::larger;
+    use crate::study::formulation::compiled;
+
+    /// A pendulum on a spring; an entry of ∂r/∂v in place of one of ∂r/∂q is seen, and the right ones are exact.
+    #[test]
+    fn a_wrong_derivative_is_seen() {
+        let text = "bodies: { ground: { points: { P: [0.2, 0.6] } }, rod: { mass: 2, inertia: 0.3, points: { A: [-0.4, 0.1], B: [0.5, 0] } } }\n\
+                    joints: { pin: { revolute: [ground, rod.A] } }\n\
+                    effects: { spring: { spring_damper: { between: [ground.P, rod.B], stiffness: 30, damping: 2, free_length: 0.3 } } }\n\
+                    initial: { rod.angle: 0.3, rod.angular_velocity: 2 }\noutputs: { x: rod.x }\n\
+                    simulation: { duration: 1, step: 1e-3 }\n";
+        let description = load_str("pendulum", text, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let simulator = compiled(&Questions::of(&description)).unwrap();
+        let mut program = compile_equations(&simulator.system);
+        let registers = program.layout.registers();
+        let values: Vec<f64> = (0..registers).map(|register| 0.3 + 0.1 * register as f64).collect();
+        let scales = Scales { of: vec![1.0; registers] };
+        let worst = |program: &EquationsProgram| {
+            let mut checks = Vec::new();
+            of_equations(&mut checks, program, &values, &scales);
+            checks.iter().map(|check| check.difference).fold(0.0, larger)
+        };
+        assert!(worst(&program) < 1e-14);
+        let other = program.motion_by[1][0].2;
+        assert_ne!(program.motion_by[0][0].2, other);
+        program.motion_by[0][0].2 = other;
+        assert!(worst(&program) > 1e-3);
+    }
+}

@@ -40,9 +40,12 @@ use windows::later;
 /// Rows in which the nominal motion is followed.
 const ROWS: usize = 1 << 10;
 
-/// Where orders do not show, the motion is shortened to this share, so often: fast vibrations take short steps.
+/// Where orders do not show with so many steps a row, the motion is shortened to this share, so often: fast vibrations
+/// take short steps. Where that does not help, more steps are taken along the whole motion.
+const FEW: usize = 1 << 9;
 const SHORTER: f64 = 1.0 / 16.0;
-const SHORTENINGS: usize = 3;
+const SHORTENINGS: i32 = 3;
+const MANY: usize = 1 << 11;
 
 /// Ways to integrate.
 const INTEGRATIONS: [Integration; 3] =
@@ -169,8 +172,8 @@ fn of_formulation(
     motions.map(|motion| along(description, simulator, &mut equations, motion, &found, options)).collect()
 }
 
-/// Verifies along a motion; along a shorter one where something is so stiff that orders do not show with the steps of
-/// the first.
+/// Verifies along a motion; along a shorter one, or with more steps, where something is so stiff that orders do not
+/// show with the steps of the first.
 fn along(
     description: &Description,
     simulator: &Simulator,
@@ -180,16 +183,21 @@ fn along(
     options: &Options,
 ) -> Result<FormulationVerification, VerifyError> {
     let mut own = found.clone();
-    for shortening in 0..=SHORTENINGS {
-        if shortening > 0 {
-            let Some(shorter) = motion.shortened(SHORTER, equations) else { break };
-            motion = shorter;
-        }
-        match of_motion(description, simulator, &motion, options)? {
+    let whole = motion.clone();
+    for attempt in 0..=SHORTENINGS + 1 {
+        let most = if attempt > SHORTENINGS { MANY } else { FEW };
+        motion = match attempt {
+            1..=SHORTENINGS => match whole.shortened(SHORTER.powi(attempt), equations) {
+                Some(shorter) => shorter,
+                None => continue,
+            },
+            _ => whole.clone(),
+        };
+        match of_motion(description, simulator, &motion, most, options)? {
             Ok(schemes) => own.schemes = schemes,
             Err(error) => own.failure = Some(format!("the manufactured motion does not start: {error}")),
         }
-        if own.is_verified() {
+        if own.is_verified() || own.failure.is_some() {
             break;
         }
     }
@@ -207,6 +215,7 @@ fn of_motion(
     description: &Description,
     simulator: &Simulator,
     motion: &Manufactured,
+    most: usize,
     options: &Options,
 ) -> Result<Result<Vec<SchemeVerification>, SimulationError>, VerifyError> {
     let system = &simulator.system;
@@ -223,7 +232,7 @@ fn of_motion(
     let of = |integration: Integration| {
         (options.stage)("orders");
         let scheme = integration.name().unwrap_or_else(|| "HHT-I3".to_owned());
-        match convergence(&loaded, motion, integration, options.interrupted) {
+        match convergence(&loaded, motion, integration, most, options.interrupted) {
             Ok(convergence) => Ok(SchemeVerification { scheme, convergence, failure: None }),
             Err(SimulationError::Interrupted) => Err(VerifyError::Interrupted),
             Err(error) => Ok(SchemeVerification { scheme, convergence: Vec::new(), failure: Some(error.to_string()) }),

@@ -9,9 +9,6 @@ use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulato
 /// Intervals between the rows in which errors are taken.
 const ROWS: usize = 4;
 
-/// Most steps of a row.
-const MOST: usize = 1 << 9;
-
 /// Errors below these shares of a quantity's size are rounding's, whatever the model: of positions, velocities,
 /// accelerations and reactions.
 const ROUNDING: [f64; 4] = [1e-13, 1e-12, 1e-10, 1e-10];
@@ -75,8 +72,8 @@ fn groups<'m>(system: &System, motion: &'m Manufactured) -> Vec<Group<'m>> {
     all.into_iter().filter(|group| !group.of.is_empty()).collect()
 }
 
-/// Errors and orders of all quantities by a way to integrate, with steps that are halved until orders settle or errors
-/// are those of rounding.
+/// Errors and orders of all quantities by a way to integrate, with steps that are halved until orders settle, errors
+/// are those of rounding, or a row has the most steps.
 ///
 /// # Errors
 /// Where the system cannot be started, or a step does not converge however short it is.
@@ -84,6 +81,7 @@ pub fn convergence(
     simulator: &Simulator,
     motion: &Manufactured,
     integration: Integration,
+    most: usize,
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Result<Vec<Convergence>, SimulationError> {
     let groups = groups(&simulator.system, motion);
@@ -92,7 +90,7 @@ pub fn convergence(
     let mut found: Vec<Convergence> =
         groups.iter().map(|group| Convergence::new(group.quantity, theory, group.rounding)).collect();
     let mut per_row = 1;
-    while per_row <= MOST {
+    while per_row <= most {
         if interrupted() {
             return Err(SimulationError::Interrupted);
         }
