@@ -290,7 +290,9 @@ def cable():
         fixedConstraintsNode0=[1, 1, 0, 1],
     )[0]
     s.mbs.Assemble()
-    s.mbs.SolveStatic(exu.SimulationSettings())
+    settings = exu.SimulationSettings()
+    settings.solutionSettings.writeSolutionToFile = False
+    s.mbs.SolveStatic(settings)
     return s.output(nodes[-1], DISPLACEMENT)[0]
 
 
