@@ -127,6 +127,9 @@ impl Mul for DoubleDouble {
 
     fn mul(self, other: Self) -> Self {
         let exact = product(self.high, other.high);
+        if !exact.high.is_finite() {
+            return exact;
+        }
         ordered_sum(exact.high, exact.low + (self.high * other.low + self.low * other.high))
     }
 }
