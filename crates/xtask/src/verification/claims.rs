@@ -227,7 +227,7 @@ pub const CLAIMS: [Claim; 13] = [
         name: "validation",
         title: "Wings bend and vibrate as measured",
         activity: VALIDATION,
-        claim: "Models of two wings that bend far have what was measured, but for errors of the model that are stated here.",
+        claim: "Models of two wings that bend far have the measured values, but for errors of the model that are stated here.",
         setup: "The Pazy wing without skin, loaded at its tip (Avin et al., AIAA J. 60, 2022; stiffnesses of Riso and Cesnik), and Tang and Dowell's wing, which sags under its own weight (AIAA J. 39, \
                 2001; numbers and points of figures by AeroBeams). Bounds of `tests/validation/*.yaml` over intervals of the inputs. By ASME V&V 20, E = S − D of a simulated and a measured value has \
                 the uncertainty u_val² = u_num² + u_input² + u_D²; the model's own error is E ± u_val.",

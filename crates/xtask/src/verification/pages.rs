@@ -35,7 +35,7 @@ pub fn verdict(record: &Record, claim: &Claim) -> Verdict {
 const HEAD: &str = "# Verification report
 
 Claims about the program, each with its set-up, acceptance criterion, result and limits, in the vocabulary of ASME V&V 10 and 20 and of NAFEMS: *code verification* asks
-whether equations are solved as theory tells, *solution verification* whether stated errors hold, *validation* whether a model has what was measured on its mechanism. All
+whether equations are solved as theory tells, *solution verification* whether stated errors hold, *validation* whether a model has the values that were measured on its mechanism. All
 figures are measured by the command that writes these pages, `cargo xtask verification`; they stand with full digits in
 [measured.json](measured.json). A verdict follows from figures and limits alone.
 
