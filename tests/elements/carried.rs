@@ -1,5 +1,5 @@
-//! Beams and superelements that are carried along steadily: what they feel does not change (Galileo), nor where the
-//! direction of the motion is turned.
+//! Beams and superelements that are carried along steadily: their inner forces do not change (Galileo), along the
+//! beam and aslant.
 
 use std::fmt::Write;
 
@@ -16,7 +16,7 @@ const MOST: f64 = 1e-8;
 const STEEL: Beam =
     Beam { length: 0.8, axial: 4e6, bending: [60.0, 90.0], torsional: 45.0, mass: 1.2, turning: 1e-4 };
 
-/// A mechanism with an elastic part that is clamped to a carriage, and what it feels.
+/// A mechanism with an elastic part that is clamped to a carriage, and its inner forces.
 struct Elastic {
     element: &'static str,
     spatial: bool,
@@ -104,7 +104,7 @@ impl Elastic {
     }
 }
 
-/// The table of largest changes; fails where what is felt changes by more than rounding.
+/// The table of largest changes; fails where inner forces change by more than rounding.
 pub fn table() -> String {
     let mut page = "| element | space | along the beam | aslant |\n|---|---|--:|--:|\n".to_owned();
     for own in elastic() {

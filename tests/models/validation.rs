@@ -3,7 +3,7 @@
 //! E = S − D is the comparison error of a simulated value and a measured one. Its standard uncertainty is that of
 //! numbers, of inputs and of the measurement, u_val² = u_num² + u_input² + u_D²; the model's own error is E ± u_val.
 //! Bands have uniform inputs: u_input is their half width over √3. No source states an uncertainty of its measurements,
-//! so that u_D is what they show: their scatter about a smooth curve, and the digits of a reading.
+//! so that u_D is that of the numbers: their scatter about a smooth curve, and the digits of a reading.
 
 use std::path::Path;
 

@@ -164,7 +164,7 @@ pub const CLAIMS: [Claim; 13] = [
         setup: "Mini examples of Exudyn, made again in Exudyn with steps so short that its values have converged (`tests/peers/in_exudyn.py`); unit tests of Chrono that state a closed form, or \
                 equations in minimal coordinates (`tests/peers/closed_forms.py`). The models are `tests/peers/*/*.yaml`, the cases `tests/peers/*.csv`.",
         acceptance: "The largest difference as a share of the largest value; each case has its own limit, with the reason beside it.",
-        scope: "Chosen because mbint has what they need: no shells, solids, fluids or terrain, and no contacts, whose laws differ. Values of Chrono's own integrators are compared where its tests \
+        scope: "Chosen because mbint has their elements: no shells, solids, fluids or terrain, and no contacts, whose laws differ. Values of Chrono's own integrators are compared where its tests \
                 state them.",
         sources: &[tests("models", "peers::", Always)],
         table: Table::Cases,
