@@ -12,8 +12,8 @@ pub use mbint_study::results;
 pub use methods::Method;
 #[doc(inline)]
 pub use results::{
-    Convergence, EffectBalance, Exchange, FormulationVerification, GradientParameter, Gradients, OutputGradients,
-    PowerBalance, Quantity, ReducedGradients, SchemeVerification, Summary, Verification,
+    Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, GradientParameter, Gradients,
+    OutputGradients, PowerBalance, Quantity, ReducedGradients, SchemeVerification, Summary, Verification,
 };
 #[doc(inline)]
 pub use syntax::Diagnostics;

@@ -114,3 +114,76 @@ fn powers_are_balanced_in_every_formulation() {
         }
     }
 }
+
+/// Symbolic derivatives, the Newton matrix with and without links, jets and adjoints are those of differences.
+#[test]
+fn derivatives_are_those_of_differences() {
+    for name in ["slider_crank.yaml", "humanoid.yaml", "coin.yaml", "held_arm.yaml", "quarter_car.yaml"] {
+        let found = of_model(name);
+        for formulation in &found.formulations {
+            let checked: Vec<(&str, &str)> =
+                formulation.derivatives.iter().map(|check| (check.of.as_str(), check.by.as_str())).collect();
+            for expected in [
+                ("equations of motion", "velocities"),
+                ("outputs", "motion and parameters, backwards"),
+                ("step of HHT-I3", "accelerations and reactions"),
+            ] {
+                assert!(checked.contains(&expected), "{name}: {expected:?} of {checked:?}");
+            }
+            for check in &formulation.derivatives {
+                assert!(check.difference < 1e-13, "{name}, {}: {check:?}", formulation.formulation);
+            }
+        }
+    }
+}
+
+/// A stop that is met in the middle of the run: a part before it and one behind are verified, and neither has it.
+#[test]
+fn parts_before_and_behind_a_stop_are_verified() {
+    let text = "model: stop\nbodies:\n  block: { mass: 1, coordinates: [x] }\njoints: { guide: { prismatic: { between: [ground, block], axis: x } } }\n\
+                effects:\n  end: { stop: { on: guide, upper: 0.5, impact: { stiffness: 1e3, dissipation: 0.2 } } }\n\
+                initial: { block.x: 0, block.vx: 1 }\noutputs: { x: block.x }\nsimulation: { duration: 1.2, step: 1e-3 }\n";
+    let found = Model::from_yaml_str("stop.yaml", text).unwrap().verify().unwrap();
+    assert!(found.is_verified(), "{found:?}");
+    let parts: Vec<[f64; 2]> = found
+        .formulations
+        .iter()
+        .filter(|own| own.formulation == "absolute")
+        .map(|own| [own.begin, own.begin + own.duration])
+        .collect();
+    // It is met at 0.5 s, and left after half a period of the stop, 0.1 s.
+    assert!(parts.len() == 2 && parts[0][0] == 0.0 && parts[0][1] <= 0.5 && parts[1][0] > 0.5, "{parts:?}");
+}
+
+/// A parallelogram with a third crank that starts at an angle.
+fn parallelogram(angle: f64) -> Verification {
+    let text = format!(
+        "model: parallelogram\nbodies:\n  ground: {{ points: {{ B: [1, 0], C: [2, 0] }} }}\n\
+             {}  bar: {{ mass: 1, inertia: 0.1, points: {{ A: [-1, 0], B: [0, 0], C: [1, 0] }} }}\n\
+             joints: {{ ja: {{ revolute: [ground, a.A] }}, jb: {{ revolute: [ground.B, b.A] }}, jc: {{ revolute: [ground.C, c.A] }}, \
+             pa: {{ revolute: [a.P, bar.A] }}, pb: {{ revolute: [b.P, bar.B] }}, pc: {{ revolute: [c.P, bar.C] }} }}\n\
+             effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}\n\
+             initial: {{ a.angle: {angle}, a.angular_velocity: 0 }}\nguess: {{ b.angle: {angle}, c.angle: {angle}, bar.angle: 0 }}\n\
+             outputs: {{ x: bar.x }}\nsimulation: {{ duration: 0.5, step: 1e-3 }}\n",
+        ["a", "b", "c"]
+            .map(|name| format!("  {name}: {{ mass: 1, inertia: 0.1, points: {{ A: [-0.5, 0], P: [0.5, 0] }} }}\n"))
+            .concat()
+    );
+    Model::from_yaml_str("parallelogram.yaml", &text).unwrap().verify().unwrap()
+}
+
+/// A constraint follows from others.
+#[test]
+fn redundant_constraints_are_named() {
+    let found = parallelogram(1.0);
+    assert!(found.is_verified(), "{found:?}");
+    assert!(found.formulations.iter().all(|own| own.redundant.len() == 1 && own.singular_at_start.is_empty()));
+}
+
+/// Where all cranks lie along the bar, two more depend on others at the start; whatever a motion from there shows.
+#[test]
+#[ignore = "a minute: orders do not show so near to a singular position"]
+fn singular_constraints_are_named() {
+    let found = parallelogram(0.0);
+    assert!(found.formulations.iter().all(|own| own.redundant.len() == 1 && own.singular_at_start.len() == 2));
+}

@@ -1,7 +1,8 @@
 //! Hash-consed expressions, symbolic derivatives, and tapes of instructions evaluated over tiles of samples.
 //!
 //! The data flow: text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → [`lower`] → [`Tape`]s → numbers in a
-//! [`Tile`], polynomials in a [`JetMemory`], or enclosures in a [`ModelMemory`].
+//! [`Tile`], with twice the digits in a [`DoubleDoubleMemory`], polynomials in a [`JetMemory`], or enclosures in a
+//! [`ModelMemory`].
 //!
 //! ```
 //! use symdiff::{Builder, Input, Tile, lower};
@@ -29,6 +30,7 @@ pub mod formula;
 mod lower;
 mod slopes;
 
+pub use eval::double_double::{DoubleDouble, DoubleDoubleMemory};
 pub use eval::interval::Interval;
 pub use eval::jet::JetMemory;
 pub use eval::taylor_model::ModelMemory;

@@ -42,7 +42,7 @@ pub mod tuning;
 
 pub use combinations::{Combination, combinations};
 pub use equation_list::{AtStart, list_equations};
-pub use equation_tapes::{EquationsProgram, compile_equations};
+pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
 pub use equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 pub use layout::Layout;
 pub use nearest::OpenStart;

@@ -79,7 +79,8 @@ fn of_requirement(own: &RequirementSummary) -> Case {
 }
 
 fn of_formulation(own: &FormulationVerification) -> Vec<Case> {
-    let formulation = &own.formulation;
+    let from = if own.begin > 0.0 { format!(" from {} s on", own.begin) } else { String::new() };
+    let formulation = &format!("{}{from}", own.formulation);
     let error = |why: &String| Fault { element: "error", message: "not verified".to_owned(), text: why.clone() };
     if let Some(why) = &own.failure {
         return vec![Case { name: formulation.clone(), fault: Some(error(why)) }];
@@ -102,6 +103,14 @@ fn of_formulation(own: &FormulationVerification) -> Vec<Case> {
             Case { name: format!("{name}: {}", found.quantity.name()), fault }
         }));
     }
+    cases.extend(own.derivatives.iter().map(|check| {
+        let fault = (!check.is_verified()).then(|| Fault {
+            element: "failure",
+            message: "not the derivative".to_owned(),
+            text: format!("largest difference {:e} of {} derivatives", check.difference, check.derivatives),
+        });
+        Case { name: format!("{formulation}, derivatives: {} by {}", check.of, check.by), fault }
+    }));
     cases.extend(own.balance.as_ref().map(|balance| {
         let fault = (!balance.is_verified()).then(|| Fault {
             element: "failure",

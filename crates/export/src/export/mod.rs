@@ -39,6 +39,7 @@ mod stems;
 mod sweep;
 mod sweep_files;
 mod tornado;
+mod verification;
 mod witnesses;
 
 pub use self::csv::bounds_csv;
@@ -72,4 +73,5 @@ pub use stack::shown_sensitivity;
 pub use stems::file_stem;
 pub use sweep::{Swept, SweptBounds, TradeAxis, TradeMark, sweep_svg, trade_svg};
 pub use sweep_files::{Sweep, SweepAxis, SweepPoint, write_sweep};
+pub use verification::write_verification;
 pub use witnesses::POINTS;

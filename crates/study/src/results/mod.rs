@@ -60,6 +60,6 @@ pub use summary::{
     ParameterSummary, PieceSummary, SingularSummary, SubsystemSummary, Summary,
 };
 pub use verification::{
-    Convergence, EffectBalance, Exchange, FormulationVerification, PowerBalance, Quantity, SchemeVerification,
-    Verification,
+    Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, PowerBalance, Quantity,
+    SchemeVerification, Verification,
 };

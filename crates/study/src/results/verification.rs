@@ -79,6 +79,18 @@ pub enum Exchange {
     Drives,
 }
 
+impl Exchange {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Conserves => "kept",
+            Self::Dissipates => "taken",
+            Self::Drives => "put in",
+        }
+    }
+}
+
 /// Power of an effect along a motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct EffectBalance {
@@ -106,7 +118,7 @@ pub struct PowerBalance {
     pub effects: Vec<EffectBalance>,
 }
 
-/// Share of a power that is rounding.
+/// Share of a power, or of a derivative, that is rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl EffectBalance {
@@ -136,6 +148,31 @@ impl PowerBalance {
     }
 }
 
+/// Derivatives of a program against differences with twice the digits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DerivativeCheck {
+    /// Which rows.
+    pub of: String,
+    /// By which variables.
+    pub by: String,
+    /// Number of derivatives at one point.
+    pub derivatives: usize,
+    /// Largest difference at all points, as a share of the row's largest derivative by a variable of its scale.
+    pub difference: f64,
+}
+
+impl DerivativeCheck {
+    /// With the largest difference at one more point.
+    pub fn add(&mut self, difference: f64) {
+        self.difference = larger(self.difference, difference);
+    }
+
+    /// Whether all derivatives are exact to rounding.
+    pub fn is_verified(&self) -> bool {
+        self.difference <= ROUNDING
+    }
+}
+
 /// What a formulation's equations were found to be.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FormulationVerification {
@@ -149,8 +186,12 @@ pub struct FormulationVerification {
     pub redundant: Vec<String>,
     /// Names of constraints that depend on others at the start only.
     pub singular_at_start: Vec<String>,
+    /// Where the manufactured motion begins in the run, s: behind what switches, where that is not at its start.
+    pub begin: f64,
     /// Length of the manufactured motion, s.
     pub duration: f64,
+    /// Derivatives of its programs.
+    pub derivatives: Vec<DerivativeCheck>,
     /// Balance of power along it.
     pub balance: Option<PowerBalance>,
     /// By scheme.
@@ -164,7 +205,7 @@ pub struct FormulationVerification {
 pub struct Verification {
     /// Name of the model.
     pub model: String,
-    /// By formulation, as far as the model has it.
+    /// By formulation, as far as the model has it, and by part of the run.
     pub formulations: Vec<FormulationVerification>,
 }
 
@@ -176,6 +217,9 @@ const ABOVE: f64 = 0.1;
 /// Methods of a higher order show it only where forces have as many derivatives, and steps are short long before errors
 /// are those of rounding; errors that get there at a higher order than this are as in theory, too.
 const HIGH: f64 = 4.0;
+
+/// Orders that exceed that of theory by more than this factor tell only that they do.
+const MORE: f64 = 1.5;
 
 /// An error that falls by less than this order, and is less than this, is rounding's.
 const FLAT: f64 = 1.0;
@@ -203,6 +247,16 @@ impl Convergence {
     /// Forgets the errors of longer steps, of which some did not converge.
     pub fn restart(&mut self) {
         *self = Self::new(self.quantity, self.theory, self.rounding);
+    }
+
+    /// The order that counts, for people.
+    pub fn shown_order(&self) -> String {
+        match self.order {
+            None => "exact".to_owned(),
+            // Transients that long steps damp, or rounding at once.
+            Some(order) if order > MORE * self.theory => format!("> {:.0}", self.theory),
+            Some(order) => format!("{order:.2}"),
+        }
     }
 
     /// Whether shorter steps do not make the error smaller, which is small already.
@@ -277,7 +331,8 @@ impl FormulationVerification {
     /// Whether all schemes do what theory tells.
     pub fn is_verified(&self) -> bool {
         let is_balanced = self.balance.as_ref().is_none_or(PowerBalance::is_verified);
-        self.failure.is_none() && is_balanced && self.schemes.iter().all(SchemeVerification::is_verified)
+        let are_exact = self.derivatives.iter().all(DerivativeCheck::is_verified);
+        self.failure.is_none() && are_exact && is_balanced && self.schemes.iter().all(SchemeVerification::is_verified)
     }
 }
 

@@ -1,7 +1,9 @@
-//! Evaluation of tapes: over samples ([`tile`]), and backwards ([`Adjoints`]); over polynomials ([`jet`]) and their
-//! enclosures ([`taylor_model`]); and of expressions over intervals (`ranges`).
+//! Evaluation of tapes: over samples ([`tile`]), and backwards ([`Adjoints`]); with twice the digits
+//! ([`double_double`]); over polynomials ([`jet`]) and their enclosures ([`taylor_model`]); and of expressions over
+//! intervals (`ranges`).
 
 mod adjoints;
+pub mod double_double;
 mod enclosed;
 pub(crate) mod functions;
 pub mod interval;

@@ -129,6 +129,13 @@ impl Spline {
         self.taylor_of(self.piece(x), order, x)
     }
 
+    /// The cubic at x, and the number from which its powers count.
+    pub(crate) fn cubic_at(self, x: f64) -> (f64, [f64; 4]) {
+        let shift = if self.0.periodic { self.shift(x) } else { 0.0 };
+        let piece = self.piece(x - shift);
+        (self.0.knots[piece.max(1) - 1] + shift, self.0.cubics[piece])
+    }
+
     /// The piece that a number is in.
     fn piece(self, x: f64) -> usize {
         let piece = self.0.knots.partition_point(|knot| *knot <= x);

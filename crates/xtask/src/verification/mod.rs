@@ -4,6 +4,7 @@
 //! - `--dev` measures a build with debug assertions instead of a release;
 //! - `--draws N` of the falsifier (5000);
 //! - `--into FOLDER` instead of `docs/verification`;
+//! - `--only CLAIM,…` measures some claims, and leaves FOLDER's others as they were measured;
 //! - `--pages` measures nothing, and writes the pages of FOLDER's `measured.json` again.
 //!
 //! The exit status is 1 where a claim fails, 2 where nothing could be measured.
@@ -22,7 +23,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use crate::machine;
-use claims::{CLAIMS, Claim, Source, When};
+use claims::{CLAIMS, Claim, FALSIFIER, Source, When};
 use record::{Case, Circumstances, Record, Run, Section};
 use run_tests::Built;
 use verdict::Verdict;
@@ -39,13 +40,15 @@ struct Options {
     release: bool,
     draws: u64,
     into: PathBuf,
+    /// Names of claims; all where there are none.
+    only: Vec<String>,
     pages_only: bool,
 }
 
 impl Options {
     fn read(mut arguments: impl Iterator<Item = String>) -> Result<Self, String> {
         let into = PathBuf::from("docs/verification");
-        let mut options = Self { quick: false, release: true, draws: DRAWS, into, pages_only: false };
+        let mut options = Self { quick: false, release: true, draws: DRAWS, into, only: Vec::new(), pages_only: false };
         while let Some(argument) = arguments.next() {
             let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
             match argument.as_str() {
@@ -53,8 +56,12 @@ impl Options {
                 "--dev" => options.release = false,
                 "--draws" => options.draws = value()?.parse().map_err(|error| format!("--draws: {error}"))?,
                 "--into" => options.into = PathBuf::from(value()?),
+                "--only" => options.only = claims_named(&value()?)?,
                 "--pages" => options.pages_only = true,
-                _ => return Err(format!("{argument} is none of --quick, --dev, --draws N, --into FOLDER, --pages")),
+                _ => {
+                    let known = "--quick, --dev, --draws N, --into FOLDER, --only CLAIM,…, --pages";
+                    return Err(format!("{argument} is none of {known}"));
+                }
             }
         }
         Ok(options)
@@ -64,14 +71,34 @@ impl Options {
     fn command(&self) -> String {
         let options = [self.quick.then_some(" --quick"), (!self.release).then_some(" --dev")];
         let draws = if self.quick { String::new() } else { format!(" --draws {}", self.draws) };
-        format!("cargo xtask verification{}{draws}", options.into_iter().flatten().collect::<String>())
+        let only = if self.only.is_empty() { String::new() } else { format!(" --only {}", self.only.join(",")) };
+        format!("cargo xtask verification{}{draws}{only}", options.into_iter().flatten().collect::<String>())
     }
+
+    fn measures(&self, claim: &Claim) -> bool {
+        self.only.is_empty() || self.only.iter().any(|name| name == claim.name)
+    }
+}
+
+/// Names of claims, separated by commas.
+fn claims_named(text: &str) -> Result<Vec<String>, String> {
+    let known: Vec<&str> = CLAIMS.iter().map(|claim| claim.name).collect();
+    let of = |name: &str| match known.contains(&name) {
+        true => Ok(name.to_owned()),
+        false => Err(format!("--only: {name} is none of {}", known.join(", "))),
+    };
+    text.split(',').map(of).collect()
 }
 
 pub fn run(root: &Path, arguments: impl Iterator<Item = String>) -> ExitCode {
     let written = Options::read(arguments).and_then(|options| {
         let folder = root.join(&options.into);
-        let record = if options.pages_only { read(&folder.join(MEASURED))? } else { measure(root, &options)? };
+        let before = || read(&folder.join(MEASURED));
+        let record = match () {
+            () if options.pages_only => before()?,
+            () if options.only.is_empty() => measure(root, &options)?,
+            () => before()?.with(measure(root, &options)?),
+        };
         write(&folder, &record)?;
         Ok(record)
     });
@@ -118,14 +145,16 @@ fn measure(root: &Path, options: &Options) -> Result<Record, String> {
     let mut record = Record { on: circumstances(root, options), sections: Vec::new() };
     let built = Built::new(root, options.release)?;
     let mut all = Vec::new();
-    for claim in &CLAIMS {
+    for claim in CLAIMS.iter().filter(|claim| options.measures(claim)) {
         let begun = Instant::now();
         let (runs, cases) = measure_claim(root, &built, claim, options);
         all.extend(cases);
         println!("{:5.0} s  {}", begun.elapsed().as_secs_f64(), claim.name);
-        record.sections.push(Section { claim: claim.name.to_owned(), runs, cases: Vec::new() });
+        record.sections.push(Section { claim: claim.name.to_owned(), runs, ..Section::default() });
     }
-    record.sections.push(Section { claim: pages::MISSES.to_owned(), ..Section::default() });
+    if options.measures(&CLAIMS[FALSIFIER]) {
+        record.sections.push(Section { claim: pages::MISSES.to_owned(), ..Section::default() });
+    }
     for case in all {
         match record.sections.iter_mut().find(|section| section.claim == case.claim) {
             Some(section) => section.cases.push(case),

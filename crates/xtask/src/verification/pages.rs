@@ -35,7 +35,7 @@ pub fn verdict(record: &Record, claim: &Claim) -> Verdict {
 const HEAD: &str = "# Verification report
 
 Claims about the program, each with its set-up, acceptance criterion, result and limits, in the vocabulary of ASME V&V 10 and 20 and of NAFEMS: *code verification* asks
-whether equations are solved as theory tells, *solution verification* whether stated errors hold. *Validation*, the comparison with experiments, is no part of this report. All
+whether equations are solved as theory tells, *solution verification* whether stated errors hold, *validation* whether a model has the values that were measured on its mechanism. All
 figures are measured by the command that writes these pages, `cargo xtask verification`; they stand with full digits in
 [measured.json](measured.json). A verdict follows from figures and limits alone.
 
@@ -91,6 +91,10 @@ fn section(number: usize, claim: &Claim, record: &Record) -> String {
         writeln!(page, "**{name}.** {text}{}\n", if text.ends_with(['.', ')']) { "" } else { "." }).expect(STRINGS);
     }
     let Some(section) = of(record, claim.name) else { return page + "Nothing was run.\n" };
+    if let Some(on) = &section.apart {
+        let words = format!("commit `{}`, {}, {}, {}", on.commit, on.date, on.profile, on.processor);
+        writeln!(page, "**Measured apart.** By `{}`: {words}.\n", on.command).expect(STRINGS);
+    }
     page += "## Result\n\n";
     for run in section.runs.iter().filter(|run| run.error.is_some() || run.left_out.is_some()) {
         let [said, why] = match (&run.error, &run.left_out) {

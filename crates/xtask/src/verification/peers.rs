@@ -34,7 +34,8 @@ pub fn peers(root: &Path, claim: &str, quick: bool) -> (Run, Vec<Case>) {
         let Some((python, _)) = found.filter(|_| !quick) else { continue };
         let again = match package {
             "mujoco" => robots_again(root, python),
-            "exudyn" => slider_crank_by_exudyn(root, python),
+            "exudyn" => slider_crank_by_exudyn(root, python)
+                .and_then(|first| Ok([first, mini_examples_by_exudyn(root, python)?].concat())),
             _ => Ok(Vec::new()),
         };
         match again {
@@ -98,6 +99,30 @@ fn slider_crank_by_exudyn(root: &Path, python: &Path) -> Result<Vec<Case>, Strin
         case: "Exudyn, slider crank".to_owned(),
         source: Some("the reference with which mbint agrees in section 3".to_owned()),
         figures: vec![distance(worst, 1e-5)],
+        ..Case::default()
+    }])
+}
+
+/// The mini examples that Exudyn computes, against their recorded values: the largest difference, as a share.
+fn mini_examples_by_exudyn(root: &Path, python: &Path) -> Result<Vec<Case>, String> {
+    let file = "tests/peers/exudyn.csv";
+    let table = std::fs::read_to_string(root.join(file)).map_err(|error| format!("{file}: {error}"))?;
+    let printed = output(root, python, &["-W", "ignore", "tests/peers/in_exudyn.py"])?;
+    // Its static solver prints before.
+    let computed = printed.find('{').map_or("", |first| &printed[first..]);
+    let computed: Value = serde_json::from_str(computed).map_err(|error| error.to_string())?;
+    let mut worst = 0.0_f64;
+    for row in table.lines().skip(1) {
+        let cells: Vec<&str> = row.splitn(6, ',').collect();
+        let [recorded, again] = [cells[4].parse().unwrap_or(f64::NAN), computed[cells[0]].as_f64().unwrap_or(f64::NAN)];
+        let apart = (again / recorded - 1.0).abs();
+        // A NaN stays.
+        worst = if worst.is_nan() || apart <= worst { worst } else { apart };
+    }
+    Ok(vec![Case {
+        case: "Exudyn, mini examples, computed again".to_owned(),
+        source: Some(format!("`{file}`")),
+        figures: vec![Figure::number("largest difference, as a share", worst, None, Some(1e-9))],
         ..Case::default()
     }])
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Record {
     pub on: Circumstances,
-    /// In the order of the claims.
+    /// By claim.
     pub sections: Vec<Section>,
 }
 
@@ -33,8 +33,25 @@ pub struct Circumstances {
 pub struct Section {
     /// Name of the claim.
     pub claim: String,
+    /// Where it was measured, if by another run than the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub apart: Option<Circumstances>,
     pub runs: Vec<Run>,
     pub cases: Vec<Case>,
+}
+
+impl Record {
+    /// With the sections of another run in place of its own.
+    pub fn with(mut self, other: Self) -> Self {
+        for section in other.sections {
+            let section = Section { apart: Some(other.on.clone()), ..section };
+            match self.sections.iter_mut().find(|own| own.claim == section.claim) {
+                Some(own) => *own = section,
+                None => self.sections.push(section),
+            }
+        }
+        self
+    }
 }
 
 /// A command of a section.
@@ -112,6 +129,19 @@ pub fn cases(text: &str) -> Result<Vec<Case>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sections_of_another_run_take_the_place_of_older_ones() {
+        let of = |commit: &str, claims: &[&str]| Record {
+            on: Circumstances { commit: commit.to_owned(), ..Circumstances::default() },
+            sections: claims.iter().map(|&claim| Section { claim: claim.to_owned(), ..Section::default() }).collect(),
+        };
+        let record = of("old", &["a", "b"]).with(of("new", &["b", "c"]));
+        let commits =
+            record.sections.iter().map(|own| (own.claim.as_str(), own.apart.as_ref().map(|on| on.commit.as_str())));
+        assert_eq!(commits.collect::<Vec<_>>(), [("a", None), ("b", Some("new")), ("c", Some("new"))]);
+        assert_eq!(record.on.commit, "old");
+    }
 
     #[test]
     fn lines_of_tests_are_read_and_others_are_named() {

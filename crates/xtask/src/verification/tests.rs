@@ -14,6 +14,7 @@ fn holding() -> Record {
             figures: vec![Figure::number("error, m", 2.5e-7, None, Some(1e-6))],
             ..Case::default()
         }],
+        apart: None,
     };
     Record { sections: CLAIMS.iter().map(section).collect(), ..Record::default() }
 }
@@ -72,7 +73,7 @@ fn exceptions_and_shares_stand_with_their_reasons_and_intervals() {
     excepted.exception = Some("not smooth".to_owned());
     record.sections[1].cases.push(excepted);
     let share = Figure { name: "missed".to_owned(), count: Some(1), of: Some(29), ..Figure::default() };
-    record.sections[6].cases[0].figures.push(share);
+    record.sections[FALSIFIER].cases[0].figures.push(share);
     let misses = page(&record, "misses.md");
     assert!(misses.contains("(models.md) | a \\| b | not smooth |"), "{misses}");
     assert!(page(&record, "index.md").contains("](models.md) | code verification | 1 | 1 | holds |"));
@@ -96,12 +97,20 @@ fn committed_pages_are_those_of_the_measurements() {
 #[test]
 fn options_are_read_or_named() {
     let read = |text: &str| Options::read(text.split_whitespace().map(str::to_owned));
-    let options = read("--quick --dev --draws 12 --into there").unwrap();
-    let expected = Options { quick: true, release: false, draws: 12, into: PathBuf::from("there"), pages_only: false };
+    let options = read("--quick --dev --draws 12 --into there --only peers,validation").unwrap();
+    let expected = Options {
+        quick: true,
+        release: false,
+        draws: 12,
+        into: PathBuf::from("there"),
+        only: vec!["peers".to_owned(), "validation".to_owned()],
+        pages_only: false,
+    };
     assert_eq!(options, expected);
-    assert_eq!(options.command(), "cargo xtask verification --quick --dev");
+    assert_eq!(options.command(), "cargo xtask verification --quick --dev --only peers,validation");
     assert_eq!(read("").unwrap().command(), "cargo xtask verification --draws 5000");
     assert_eq!(read("--draws many").unwrap_err(), "--draws: invalid digit found in string");
     assert_eq!(read("--into").unwrap_err(), "--into needs a value");
+    assert!(read("--only peer").unwrap_err().starts_with("--only: peer is none of elements, models"));
     assert!(read("--qick").unwrap_err().starts_with("--qick is none of --quick"));
 }

@@ -17,7 +17,7 @@ pub fn balance(
     redundant: &[usize],
 ) -> Option<PowerBalance> {
     let observed = observing_powers(system)?;
-    let mut equations = Equations::new(&observed, compile_equations(&observed), parameters, redundant);
+    let mut equations = Equations::new(&observed, compile_equations(&observed), parameters, redundant.to_vec());
     let mut found = PowerBalance::default();
     let effects = system.powers.iter().flat_map(|powers| &powers.effects);
     found.effects.extend(effects.map(|effect| EffectBalance {
@@ -26,7 +26,7 @@ pub fn balance(
         ..EffectBalance::default()
     }));
     let (mut defect, mut size) = (0.0_f64, 0.0_f64);
-    for time in ChebyshevSeries::nodes([0.0, motion.end], INSTANTS) {
+    for time in ChebyshevSeries::nodes([motion.begin, motion.end], INSTANTS) {
         let values = equations.outputs(motion, time);
         let (whole, of_effects) = values.split_at(OF_WHOLE);
         (defect, size) = (larger(defect, whole[0].abs()), larger(size, whole[1]));

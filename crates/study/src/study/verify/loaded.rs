@@ -1,5 +1,6 @@
 //! A system with the loads of a manufactured motion, which starts on it.
 
+use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph};
 
 use super::motion::Manufactured;
@@ -10,9 +11,9 @@ use crate::numerics::ChebyshevSeries;
 /// velocities, accelerations and multipliers (3n + m). `independent` coordinates are given at the start, the others
 /// follow.
 pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> System {
-    let mut system = system.clone();
+    let mut system = later(system, motion.begin);
     let n = system.q.len();
-    let scaled = scaled_time(&mut system.graph, system.time, motion.end);
+    let scaled = scaled_time(&mut system.graph, system.time, motion.length());
     for (force, load) in system.force.iter_mut().zip(&motion.loads) {
         let load = expression(&mut system.graph, scaled, load);
         *force = system.graph.add(*force, load);
@@ -22,7 +23,7 @@ pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> 
         *constraint = system.graph.sub(*constraint, slip);
     }
     let at_start = |series: &[ChebyshevSeries], graph: &mut Graph| -> Vec<Expr> {
-        series.iter().map(|own| graph.constant(own.at(0.0))).collect()
+        series.iter().map(|own| graph.constant(own.at(motion.begin))).collect()
     };
     let positions = at_start(&motion.positions, &mut system.graph);
     let velocities = at_start(&motion.velocities, &mut system.graph);
@@ -39,7 +40,36 @@ pub fn loaded(system: &System, motion: &Manufactured, independent: &[usize]) -> 
         at_equilibrium: false,
         nearest: None,
     };
+    // The loads hold bodies where a model's start could not be.
+    system.effects.iter_mut().for_each(|effect| (effect.room, effect.overlap) = (None, None));
     observed(&system)
+}
+
+/// The system, in whose equations the time counts from `begin` on. Outputs and powers keep theirs.
+fn later(system: &System, begin: f64) -> System {
+    let mut system = system.clone();
+    if begin == 0.0 {
+        return system;
+    }
+    let by = system.graph.constant(begin);
+    let moved = system.graph.add(system.time, by);
+    let of_links = system.links.iter_mut().flat_map(|link| link.values.iter_mut().chain(&mut link.inertial_forces));
+    let all: Vec<&mut Expr> = system
+        .mass
+        .iter_mut()
+        .map(|(_, _, value)| value)
+        .chain(&mut system.inertia)
+        .chain(&mut system.force)
+        .chain(&mut system.active_condition)
+        .chain(&mut system.conditional)
+        .chain(&mut system.constraint)
+        .chain(&mut system.velocity_constraint)
+        .chain(of_links)
+        .collect();
+    let before: Vec<Expr> = all.iter().map(|own| **own).collect();
+    let after = system.graph.substitute(&before, &FxHashMap::from_iter([(system.time, moved)]));
+    all.into_iter().zip(after).for_each(|(own, after)| *own = after);
+    system
 }
 
 /// The system with its coordinates, velocities, accelerations and multipliers as outputs.

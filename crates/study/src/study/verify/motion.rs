@@ -4,18 +4,14 @@
 //! constraints at Chebyshev nodes, by the shortest way; the series through these points is the motion. It fulfils the
 //! constraints to rounding where it is resolved, and velocities and accelerations are its derivatives.
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DMatrix, DVector};
-use symdiff::{Tile, math};
+use symdiff::Tile;
 
 use super::NotVerified;
+use super::fit::{Nominal, followed, series};
 use crate::assemble::System;
 use crate::compile::{EquationsProgram, Layout, Tapes};
 use crate::numerics::ChebyshevSeries;
-
-/// Degree of the polynomials that follow the nominal motion.
-const FOLLOWING: usize = 8;
 
 /// Nodes of the motion.
 const NODES: usize = 96;
@@ -24,14 +20,15 @@ const NODES: usize = 96;
 const LOADS: [usize; 2] = [96, 384];
 
 /// Halvings of the part of the run, where polynomials do not follow the motion or its series is not resolved.
-const HALVINGS: usize = 8;
+pub const HALVINGS: usize = 8;
 
 /// How far polynomials may be from the nominal motion, as a share of a coordinate's range.
 const NEAR: f64 = 0.02;
 
 /// Coordinates that hardly move, by less than this share of their scale, swing by as much: a motion at rest would tell
-/// nothing.
-const SWING: f64 = 0.01;
+/// nothing. The smaller ones where the first has no smooth motion: a swing may leave a clearance or the steep part of
+/// friction.
+const SWINGS: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
 /// Constraints are fulfilled where residuals are less than this share of the coordinates' scale.
 const CLOSED: f64 = 1e-12;
@@ -41,21 +38,13 @@ const CORRECTIONS: usize = 40;
 const RESOLVED: f64 = 1e-11;
 /// The same for loads, which have accelerations in them.
 const LOADS_RESOLVED: f64 = 1e-9;
-/// Coefficients below this share of the largest are rounding, which derivatives would amplify.
-const ROUNDING: f64 = 3e-16;
-
-/// A nominal motion, row by row.
-pub struct Nominal {
-    /// s, from zero on.
-    pub times: Vec<f64>,
-    /// Positions, velocities and multipliers (2n + m) in each row.
-    pub states: Vec<Vec<f64>>,
-}
 
 /// A motion that fulfils the constraints, and the loads with which it fulfils the equations of motion.
 #[derive(Clone, Debug)]
 pub struct Manufactured {
-    /// s
+    /// Begin in the run, s.
+    pub begin: f64,
+    /// End in the run, s.
     pub end: f64,
     /// Positions, n; constant for states, whose positions stand in no equation.
     pub positions: Vec<ChebyshevSeries>,
@@ -69,6 +58,8 @@ pub struct Manufactured {
     pub loads: Vec<ChebyshevSeries>,
     /// Ψ(q, v, t) of the velocity constraints.
     pub slips: Vec<ChebyshevSeries>,
+    /// Polynomials for q, v and λ near which it is.
+    fit: Vec<ChebyshevSeries>,
 }
 
 /// The equations at one point.
@@ -76,20 +67,42 @@ pub struct Equations<'s> {
     system: &'s System,
     program: EquationsProgram,
     tile: Tile,
-    /// Numbers of the constraints that are not redundant.
+    /// Numbers of the constraints that follow from others, and of those that are kept.
+    redundant: Vec<usize>,
     kept: Vec<usize>,
 }
 
 impl<'s> Equations<'s> {
     /// Of a system with these parameters, of whose constraints those by the numbers `redundant` follow from others.
-    pub fn new(system: &'s System, program: EquationsProgram, parameters: &[f64], redundant: &[usize]) -> Self {
+    pub fn new(system: &'s System, program: EquationsProgram, parameters: &[f64], redundant: Vec<usize>) -> Self {
         let mut tile = Tile::new(1, program.registers(), program.constants());
         for (register, &value) in program.layout.parameters.clone().zip(parameters) {
             tile.lane_mut(register)[0] = value;
         }
         tile.run(program.sample());
         let kept = (0..system.constraint.len()).filter(|constraint| !redundant.contains(constraint)).collect();
-        Self { system, program, tile, kept }
+        Self { system, program, tile, redundant, kept }
+    }
+
+    /// The system whose equations they are.
+    pub fn system(&self) -> &'s System {
+        self.system
+    }
+
+    /// Numbers of the constraints that follow from others.
+    pub fn redundant(&self) -> &[usize] {
+        &self.redundant
+    }
+
+    /// Its tapes.
+    pub fn program(&self) -> &EquationsProgram {
+        &self.program
+    }
+
+    /// Values of the layout's registers on the motion.
+    pub fn registers(&mut self, motion: &Manufactured, time: f64) -> Vec<f64> {
+        self.follow(motion, time);
+        (0..self.layout().registers()).map(|register| self.value(register)).collect()
     }
 
     fn layout(&self) -> &Layout {
@@ -172,6 +185,20 @@ impl<'s> Equations<'s> {
         Some(())
     }
 
+    /// Which conditions are positive in a row of the nominal motion.
+    pub fn conditions(&mut self, nominal: &Nominal, row: usize) -> Vec<bool> {
+        let (layout, state) = (self.layout().clone(), &nominal.states[row]);
+        let n = layout.q.len();
+        self.set(layout.time..layout.time + 1, [nominal.times[row]]);
+        self.set(layout.q, state[..n].iter().copied());
+        self.set(layout.v, state[n..2 * n].iter().copied());
+        self.set(layout.lambda, state[2 * n..].iter().copied());
+        for tape in [self.program.residual(), self.program.rates(), self.program.closure(), self.program.conditions()] {
+            self.tile.run(tape);
+        }
+        self.program.conditions.iter().map(|&register| self.value(register) > 0.0).collect()
+    }
+
     /// Sets all symbols to their values on the motion.
     fn follow(&mut self, motion: &Manufactured, time: f64) {
         let layout = self.layout().clone();
@@ -202,53 +229,47 @@ impl<'s> Equations<'s> {
     }
 }
 
-/// Through values of several functions at nodes, without rounding; `None` where one is not resolved. Functions are
-/// compared with the largest of their group: states may be of any size.
-fn series(
-    span: [f64; 2],
-    values: &[Vec<f64>],
-    resolved: f64,
-    group: impl Fn(usize) -> usize,
-) -> Option<Vec<ChebyshevSeries>> {
-    let count = values.first().map_or(0, Vec::len);
-    let mut found = Vec::with_capacity(count);
-    let mut sizes = BTreeMap::new();
-    for index in 0..count {
-        let of_one: Vec<f64> = values.iter().map(|row| row[index]).collect();
-        let own = ChebyshevSeries::through(span, &of_one);
-        let size: &mut f64 = sizes.entry(group(index)).or_default();
-        *size = size.max(own.size());
-        found.push(own);
-    }
-    let is_resolved = |(index, own): (usize, &ChebyshevSeries)| own.tail() <= resolved * sizes[&group(index)];
-    let all = found.iter().enumerate().all(is_resolved);
-    let chopped = |(index, own): (usize, ChebyshevSeries)| own.chopped(ROUNDING * sizes[&group(index)]);
-    all.then(|| found.into_iter().enumerate().map(chopped).collect())
-}
-
 impl Manufactured {
-    /// Near a nominal motion, over as much of it as polynomials follow.
+    /// Near a part of a nominal motion, over as much of it from its begin on as polynomials follow, by so many halvings
+    /// at most.
     ///
     /// # Errors
     /// Where no part of it has a smooth motion on the constraints, or its equations are not smooth along it.
-    pub fn near(nominal: &Nominal, equations: &mut Equations) -> Result<Self, NotVerified> {
-        let whole = *nominal.times.last().ok_or(NotVerified::NoMotion)?;
+    pub fn near(
+        nominal: &Nominal,
+        equations: &mut Equations,
+        [begin, whole]: [f64; 2],
+        halvings: usize,
+    ) -> Result<Self, NotVerified> {
         let mut why = NotVerified::NoMotion;
-        for halving in 0..=HALVINGS {
-            let end = whole * 0.5_f64.powi(halving as i32);
-            let Some(fit) = followed(nominal, end, equations.system, halving < HALVINGS / 2) else { continue };
-            match Self::of_fit(&fit, end, equations) {
-                Ok(motion) => return Ok(motion),
-                Err(reason) => why = reason,
+        for swing in SWINGS {
+            for halving in 0..=halvings {
+                let span = [begin, begin + (whole - begin) * 0.5_f64.powi(halving as i32)];
+                let near = (halving < HALVINGS / 2).then_some(NEAR);
+                let Some(fit) = followed(nominal, span, equations.system, swing, near) else { continue };
+                match Self::of_fit(fit, span, equations) {
+                    Ok(motion) => return Ok(motion),
+                    Err(reason) => why = reason,
+                }
             }
         }
         Err(why)
     }
 
+    /// A motion near the same polynomials over the first part of the time; `None` where there is none.
+    pub fn shortened(&self, share: f64, equations: &mut Equations) -> Option<Self> {
+        Self::of_fit(self.fit.clone(), [self.begin, self.begin + share * self.length()], equations).ok()
+    }
+
+    /// s
+    pub fn length(&self) -> f64 {
+        self.end - self.begin
+    }
+
     /// From polynomials for q, v and λ.
-    fn of_fit(fit: &[ChebyshevSeries], end: f64, equations: &mut Equations) -> Result<Self, NotVerified> {
+    fn of_fit(fit: Vec<ChebyshevSeries>, span: [f64; 2], equations: &mut Equations) -> Result<Self, NotVerified> {
         let n = equations.system.q.len();
-        let span = [0.0, end];
+        let [begin, end] = span;
         let coordinates = &equations.system.coordinates;
         // Of the motion, of states, and slips behind them.
         let group = |index: usize| coordinates.get(index).map_or(2, |coordinate| usize::from(coordinate.is_state));
@@ -282,7 +303,8 @@ impl Manufactured {
         velocities = series(span, &rates, RESOLVED, group).ok_or(NotVerified::NotSmooth { end })?;
         accelerations = series(span, &changes, LOADS_RESOLVED, group).unwrap_or(accelerations);
         let multipliers = fit[2 * n..].to_vec();
-        let mut motion = Self { end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![] };
+        let mut motion =
+            Self { begin, end, positions, velocities, accelerations, multipliers, loads: vec![], slips: vec![], fit };
         for nodes in LOADS {
             let times = ChebyshevSeries::nodes(span, nodes);
             let values: Vec<Vec<f64>> = times.iter().map(|&time| equations.residuals(&motion, time)).collect();
@@ -297,37 +319,4 @@ impl Manufactured {
         }
         Err(NotVerified::Kink { end })
     }
-}
-
-/// Values with a swing of their own where they hardly change.
-fn moved(values: &mut [f64], index: usize, scale: f64) {
-    let (least, most) = range(values);
-    if most - least > SWING * scale {
-        return;
-    }
-    let last = (values.len().max(2) - 1) as f64;
-    for (row, value) in values.iter_mut().enumerate() {
-        *value += SWING * scale * math::sin(index as f64 + (2.0 + 0.3 * index as f64) * row as f64 / last);
-    }
-}
-
-fn range(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &own| (least.min(own), most.max(own)))
-}
-
-/// Polynomials for q, v and λ up to a time; `None` where they are not near the motion, if they have to be.
-fn followed(nominal: &Nominal, end: f64, system: &System, near: bool) -> Option<Vec<ChebyshevSeries>> {
-    let rows = nominal.times.iter().take_while(|&&time| time <= end * (1.0 + 1e-12)).count();
-    let (times, states) = (&nominal.times[..rows], &nominal.states[..rows]);
-    let mut functions: Vec<Vec<f64>> =
-        (0..states.first()?.len()).map(|index| states.iter().map(|state| state[index]).collect()).collect();
-    let scales = system.coordinates.iter().map(|coordinate| coordinate.scale);
-    functions.iter_mut().zip(scales.clone()).enumerate().for_each(|(index, (own, scale))| moved(own, index, scale));
-    let fit = ChebyshevSeries::fitted([0.0, end], FOLLOWING, times, &functions)?;
-    let is_near = |((own, values), scale): ((&ChebyshevSeries, &Vec<f64>), f64)| {
-        let (least, most) = range(values);
-        let allowed = NEAR * (most - least).max(1e-6 * scale);
-        times.iter().zip(values).all(|(&time, value)| (own.at(time) - value).abs() <= allowed)
-    };
-    (!near || fit.iter().zip(&functions).zip(scales).all(is_near)).then_some(fit)
 }

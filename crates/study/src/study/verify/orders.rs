@@ -9,9 +9,6 @@ use crate::simulate::{Integration, Observed, Schedule, SimulationError, Simulato
 /// Intervals between the rows in which errors are taken.
 const ROWS: usize = 4;
 
-/// Most steps of a row.
-const MOST: usize = 1 << 13;
-
 /// Errors below these shares of a quantity's size are rounding's, whatever the model: of positions, velocities,
 /// accelerations and reactions.
 const ROUNDING: [f64; 4] = [1e-13, 1e-12, 1e-10, 1e-10];
@@ -29,10 +26,10 @@ struct Group<'m> {
 }
 
 /// Largest error in all rows, as a share of the group's size.
-fn error(group: &Group, rows: &[Vec<f64>], schedule: &Schedule) -> f64 {
+fn error(group: &Group, rows: &[Vec<f64>], schedule: &Schedule, begin: f64) -> f64 {
     let mut most = 0.0_f64;
     for (row, values) in rows.iter().enumerate().skip(1) {
-        let time = schedule.time(row);
+        let time = begin + schedule.time(row);
         for ((exact, &of), scale) in group.exact.iter().zip(&group.of).zip(&group.scales) {
             most = larger(most, (values[group.first + of] - exact.at(time)).abs() / scale);
         }
@@ -63,7 +60,7 @@ fn groups<'m>(system: &System, motion: &'m Manufactured) -> Vec<Group<'m>> {
             let scales = scales.collect();
             Group { quantity, first, exact, of, scales, rounding }
         };
-    let rate = 1.0 / motion.end;
+    let rate = 1.0 / motion.length();
     let [position, velocity, acceleration, reaction] = ROUNDING;
     let all = [
         group(Quantity::Positions, 0, &motion.positions, of_motion.clone(), 1.0, position),
@@ -75,8 +72,8 @@ fn groups<'m>(system: &System, motion: &'m Manufactured) -> Vec<Group<'m>> {
     all.into_iter().filter(|group| !group.of.is_empty()).collect()
 }
 
-/// Errors and orders of all quantities by a way to integrate, with steps that are halved until orders settle or errors
-/// are those of rounding.
+/// Errors and orders of all quantities by a way to integrate, with steps that are halved until orders settle, errors
+/// are those of rounding, or a row has the most steps.
 ///
 /// # Errors
 /// Where the system cannot be started, or a step does not converge however short it is.
@@ -84,6 +81,7 @@ pub fn convergence(
     simulator: &Simulator,
     motion: &Manufactured,
     integration: Integration,
+    most: usize,
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Result<Vec<Convergence>, SimulationError> {
     let groups = groups(&simulator.system, motion);
@@ -92,12 +90,12 @@ pub fn convergence(
     let mut found: Vec<Convergence> =
         groups.iter().map(|group| Convergence::new(group.quantity, theory, group.rounding)).collect();
     let mut per_row = 1;
-    while per_row <= MOST {
+    while per_row <= most {
         if interrupted() {
             return Err(SimulationError::Interrupted);
         }
-        let step = motion.end / (ROWS * per_row) as f64;
-        let schedule = Schedule::fixed(motion.end, step, motion.end / ROWS as f64).taken(integration);
+        let step = motion.length() / (ROWS * per_row) as f64;
+        let schedule = Schedule::fixed(motion.length(), step, motion.length() / ROWS as f64).taken(integration);
         let rows = simulated(simulator, &nominal, &schedule)?;
         per_row *= 2;
         let Some(rows) = rows else {
@@ -105,7 +103,7 @@ pub fn convergence(
             continue;
         };
         for (own, group) in found.iter_mut().zip(&groups) {
-            own.add(step, error(group, &rows, &schedule));
+            own.add(step, error(group, &rows, &schedule, motion.begin));
         }
         if found.iter().all(Convergence::is_settled) {
             break;
