@@ -47,7 +47,7 @@ pub struct MotionOptions<'a> {
 /// The motion of all bodies for a report, with those under the worst functions of excitations; or why there is none.
 ///
 /// # Errors
-/// As for [`motion`], and where it panics.
+/// Where the mechanism cannot be built, assembled or stepped, at an interruption, and where it panics.
 pub fn report_motion(
     description: &Description,
     worst: &[FunctionWitness],
