@@ -6,10 +6,9 @@
 //! from the middle, from the constants and from the best functions of the ends around them; those between learn from
 //! these.
 
-use super::climb::{Climb, Point};
+use super::climb::Climb;
 use super::motions::{Asked, ExcitedMotions, in_row};
-use super::switches::settle_switches;
-use super::values::ends_of_values;
+use super::point::Point;
 use crate::numerics::step_error;
 use crate::simulate::{Schedule, SimulationError, Simulator};
 use crate::study::bounding::{FunctionEnd, FunctionEnds};
@@ -46,15 +45,15 @@ struct Bent {
     settled: Option<(f64, f64)>,
 }
 
-/// All ends, and what the search took in simulations.
+/// Ends of all outputs in all rows, and the motions, which have counted simulations.
 ///
 /// # Errors
 /// Where the nominal motion cannot be simulated, and at an interruption.
-pub fn ends(
-    study: &Study,
-    simulator: &Simulator,
+pub fn ends<'s, 'm>(
+    study: &'s Study<'m>,
+    simulator: &'s Simulator,
     schedule: &Schedule,
-) -> Result<(FunctionEnds, usize), SimulationError> {
+) -> Result<(FunctionEnds, ExcitedMotions<'s, 'm>), SimulationError> {
     let motions = ExcitedMotions::new(study, simulator, schedule);
     let (rows, outputs) = (motions.schedule.rows, motions.outputs());
     let found = FunctionEnds::new(rows, outputs, motions.inputs());
@@ -66,12 +65,7 @@ pub fn ends(
     }
     search.follow_bent()?;
     search.found.spread_steps();
-    let Search { mut motions, mut found, .. } = search;
-    settle_switches(&mut motions, &mut found)?;
-    if let Some(store) = study.store.get() {
-        found.of_values = Some(Box::new(ends_of_values(&mut motions, &found, store)?));
-    }
-    Ok((found, motions.count))
+    Ok((search.found, search.motions))
 }
 
 /// Some rows, ascending, the last of all among them.

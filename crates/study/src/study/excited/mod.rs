@@ -11,6 +11,7 @@ mod climb;
 mod ends;
 mod limits;
 mod motions;
+mod point;
 mod switches;
 mod values;
 
@@ -24,6 +25,8 @@ use crate::model::Formulation;
 use crate::simulate::{Schedule, SimulationError};
 use ends::ends;
 pub(super) use limits::Limits;
+use switches::settle_switches;
+use values::ends_of_values;
 
 /// Whether an excitation acts.
 pub(super) fn is_excited(study: &Study) -> bool {
@@ -44,8 +47,12 @@ pub(super) fn excited(study: &Study, schedule: &Schedule) -> Result<Option<(Outc
     let questions = Questions { as_functions: true, formulation, ..Questions::of(study.description) };
     let simulator = compiled(&questions)?;
     let found = timed(schedule, "any function", || {
-        let (found, simulations) = ends(study, &simulator, schedule)?;
-        Ok((MethodResult { simulations, ..MethodResult::default() }, found))
+        let (mut found, mut motions) = ends(study, &simulator, schedule)?;
+        settle_switches(&mut motions, &mut found)?;
+        if let Some(store) = study.store.get() {
+            found.of_values = Some(Box::new(ends_of_values(&mut motions, &found, store)?));
+        }
+        Ok((MethodResult { simulations: motions.count, ..MethodResult::default() }, found))
     });
     match found {
         Err(SimulationError::Interrupted) => Ok(None),

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::climb::Point;
 use super::limits::Limits;
+use super::point::Point;
 use crate::model::{Class, Excitation};
 use crate::numerics::{FunctionClass, Sample};
 use crate::simulate::{

@@ -4,8 +4,9 @@
 //! there; the kernel is straight between the middles of cells, and its zero is the next τ. Steps then end there, as
 //! long as the end grows.
 
-use super::climb::{Climb, Point};
+use super::climb::Climb;
 use super::motions::{ExcitedMotions, in_row};
+use super::point::Point;
 use crate::numerics::{Cell, FunctionClass};
 use crate::simulate::{Gradient, SimulationError};
 use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};

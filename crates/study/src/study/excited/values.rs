@@ -4,9 +4,10 @@
 //! weighted sum names the next function, as that of an output in a row does. A peak can go no further than the ends of
 //! its source in the rows: these say how much is open.
 
-use super::climb::{Climb, Point};
+use super::climb::Climb;
 use super::ends::{FIRST_ORDER, SAFETY, STEPS};
 use super::motions::{Asked, ExcitedMotions};
+use super::point::Point;
 use crate::assemble::NumberFormulas;
 use crate::model::ReducedKind;
 use crate::numerics::{largest, step_error};
