@@ -164,7 +164,7 @@ test('the text is saved when asked, and not over a change of another program', a
   assert.equal(readFileSync(file, 'utf8'), `# mine\n${CRANK}`);
   writeFileSync(file, `# other\n${CRANK}`);
   await page.keyboard.type('# again ');
-  await Promise.all([page.waitForResponse((answer) => answer.status() === 409), page.keyboard.press('Control+s')]);
+  await Promise.all([page.waitForResponse((answer) => answer.url().endsWith('/save') && answer.status() === 409), page.keyboard.press('Control+s')]);
   await page.waitForSelector('#notice:not([hidden])');
   // By the refused save, or by the look at the file, whichever comes first.
   assert.match(await page.textContent('#notice'), /has changed on the disk/);
