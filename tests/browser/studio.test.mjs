@@ -162,8 +162,10 @@ test('the text is saved when asked, and not over a change of another program', a
   await page.keyboard.press('Control+s');
   await page.waitForFunction(() => document.querySelector('#save').disabled);
   assert.equal(readFileSync(file, 'utf8'), `# mine\n${CRANK}`);
-  writeFileSync(file, `# other\n${CRANK}`);
+  // A text that is not changed would follow the file.
   await page.keyboard.type('# again ');
+  await page.waitForFunction(() => !document.querySelector('#save').disabled);
+  writeFileSync(file, `# other\n${CRANK}`);
   await Promise.all([page.waitForResponse((answer) => answer.url().endsWith('/save') && answer.status() === 409), page.keyboard.press('Control+s')]);
   await page.waitForSelector('#notice:not([hidden])');
   // By the refused save, or by the look at the file, whichever comes first.
