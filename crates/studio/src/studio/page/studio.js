@@ -175,13 +175,16 @@ async function load(open) {
 
 async function format() {
   await sent();
-  const uri = files.get(current)?.file.uri || '';
+  const uri = files.get(current)?.file.uri;
+  if (!uri) return;
   const edits = await language('formatting', { textDocument: { uri }, options: { tabSize: 2, insertSpaces: true } }).catch((error) => notice(error.message));
   if (edits?.length) editor.edit(edits);
 }
 
 async function outline() {
-  const uri = files.get(current)?.file.uri || '';
+  // Diagnostics may come before the first file is shown.
+  const uri = files.get(current)?.file.uri;
+  if (!uri) return;
   /** @type {any[]} */
   const symbols = (await language('documentSymbol', { textDocument: { uri } }).catch(() => null)) || [];
   const select = /** @type {HTMLSelectElement} */ (byId('outline').querySelector('select'));
