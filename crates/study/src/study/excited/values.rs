@@ -17,11 +17,11 @@ use crate::study::gradient::{InRows, in_rows};
 use crate::study::reduced::Store;
 
 /// A value of a motion.
-enum Value {
+enum Value<'v> {
     /// A reduced output, by its index.
     Reduced(usize),
     /// A slack of a requirement on reduced outputs (by their indices) and parameters.
-    Slack { formulas: Box<NumberFormulas>, reduced: Vec<usize> },
+    Slack { formulas: &'v NumberFormulas, reduced: &'v [usize] },
 }
 
 /// A value with its derivatives by outputs in rows and by parameters.
@@ -32,13 +32,13 @@ struct Linear {
 }
 
 /// The values of a study, and how they follow from outputs.
-pub struct Values<'m, 's, 'd> {
+struct Values<'m, 's, 'd> {
     motions: &'m mut ExcitedMotions<'s, 'd>,
     times: Vec<f64>,
     /// Ends of outputs in rows.
     rows: &'m FunctionEnds,
     /// With their indices among all values of the study.
-    all: Vec<(usize, Value)>,
+    all: Vec<(usize, Value<'m>)>,
     /// Outputs that they follow from, ascending.
     sources: Vec<usize>,
 }
@@ -59,12 +59,9 @@ pub fn ends_of_values(
         if own.times.is_some() || own.of_results {
             continue;
         }
-        for (index, slack) in store.plan.values.parts(number).zip(&own.slacks) {
-            let (reduced, names): (Vec<usize>, Vec<&str>) =
-                description.reduced_in(slack).map(|(index, own)| (index, own.name.as_str())).unzip();
-            let formulas = Box::new(NumberFormulas::of(&description.parameters, &names, std::slice::from_ref(slack)));
-            all.push((index, Value::Slack { formulas, reduced }));
-        }
+        let slack = |index| Some((index, store.plan.values.slack(index)?));
+        let slacks = store.plan.values.parts(number).filter_map(slack);
+        all.extend(slacks.map(|(index, (formulas, reduced))| (index, Value::Slack { formulas, reduced })));
     }
     let mut sources: Vec<usize> = description.reduced.iter().flat_map(|own| own.outputs.iter().copied()).collect();
     sources.sort_unstable();
@@ -127,7 +124,7 @@ impl Values<'_, '_, '_> {
     fn sources_of(&self, value: &Value) -> Vec<usize> {
         let reduced = match value {
             Value::Reduced(index) => std::slice::from_ref(index),
-            Value::Slack { reduced, .. } => reduced,
+            Value::Slack { reduced, .. } => *reduced,
         };
         let of_reduced = |index: &usize| self.motions.study.description.reduced[*index].outputs.iter().copied();
         reduced.iter().flat_map(of_reduced).collect()
@@ -246,15 +243,14 @@ impl Values<'_, '_, '_> {
                     let number = self.sources.partition_point(|known| *known < output);
                     &found.terms[number * rows.len()..][..rows.len()]
                 };
-                let InRows { value, terms } =
-                    in_rows(own, self.motions.study.description.simulation.duration, &times, series)?;
-                let terms = terms.into_iter().map(|term| Term { row: rows[term.row], ..term }).collect();
-                value.is_finite().then_some(InRows { value, terms })
+                let mut found = in_rows(own, self.motions.study.description.simulation.duration, &times, series)?;
+                found.terms.iter_mut().for_each(|term| term.row = rows[term.row]);
+                found.value.is_finite().then_some(found)
             };
             let sample = self.motions.sample(point);
             match &self.all[number].1 {
                 Value::Reduced(index) => {
-                    let InRows { value, terms } = in_rows_of(*index)?;
+                    let InRows { value, terms, .. } = in_rows_of(*index)?;
                     Some(Linear { value, terms, by_parameters: vec![0.0; sample.len()] })
                 }
                 Value::Slack { formulas, reduced } => {

@@ -1,7 +1,7 @@
-//! An output and its derivatives over the time: the rows, and between them the cubic through the four nearest.
+//! An output over the time, as its rows have it: between them it is the cubic through the four nearest.
 
 use crate::numerics::bisected;
-use crate::results::OutputGradients;
+use crate::simulate::Term;
 
 /// Halvings of an interval in which a zero is looked for, and golden sections of one with an extreme.
 const HALVINGS: usize = 60;
@@ -10,7 +10,10 @@ const HALVINGS: usize = 60;
 #[derive(Clone, Copy)]
 pub(super) struct Curve<'a> {
     pub times: &'a [f64],
-    pub of: &'a OutputGradients,
+    /// By row.
+    pub values: &'a [f64],
+    /// Number of the output.
+    pub output: usize,
     /// 1 or −1.
     pub sign: f64,
 }
@@ -18,17 +21,12 @@ pub(super) struct Curve<'a> {
 impl Curve<'_> {
     /// Value at an instant.
     pub fn value(&self, time: f64) -> f64 {
-        self.weights(time).map(|(row, weight)| self.sign * weight * self.of.values[row]).sum()
+        self.weights(time).map(|(row, weight)| self.sign * weight * self.values[row]).sum()
     }
 
-    /// Derivatives by the parameters at a fixed instant.
-    pub fn by_parameters(&self, time: f64) -> Vec<f64> {
-        let mut found = vec![0.0; self.of.by_parameters.first().map_or(0, Vec::len)];
-        for (row, weight) in self.weights(time) {
-            let own = found.iter_mut().zip(&self.of.by_parameters[row]);
-            own.for_each(|(sum, by)| *sum += self.sign * weight * by);
-        }
-        found
+    /// Derivatives of the value at a fixed instant by the rows.
+    pub fn terms(&self, time: f64) -> impl Iterator<Item = Term> + use<'_> {
+        self.weights(time).map(|(row, weight)| Term { row, output: self.output, weight: self.sign * weight })
     }
 
     /// Rates of change: of the value, and of that.
@@ -98,17 +96,20 @@ impl Curve<'_> {
         ([first, last].map(|pair| pair.map(zero)), [from, to].map(is_met))
     }
 
-    /// ∫ f(value, derivatives) dt by Simpson's rule, with a value between each two rows.
-    pub fn integral(&self, from: f64, to: f64, of: impl Fn(f64, &[f64]) -> Vec<f64>) -> Vec<f64> {
-        let instants = self.instants(from, to);
-        let at = |time: f64| of(self.value(time), &self.by_parameters(time));
-        let mut sum = vec![0.0; at(from).len()];
-        for pair in instants.windows(2) {
+    /// ∫ f(value) dt by Simpson's rule, with a value between each two rows, and its derivatives by the rows; `of` has f
+    /// and f′.
+    pub fn integral(&self, from: f64, to: f64, of: impl Fn(f64) -> [f64; 2]) -> (f64, Vec<Term>) {
+        let mut sum = 0.0;
+        let mut by_rows = vec![0.0; self.times.len()];
+        for pair in self.instants(from, to).windows(2) {
             let length = pair[1] - pair[0];
-            for (time, weight) in [(pair[0], 1.0), (0.5 * (pair[0] + pair[1]), 4.0), (pair[1], 1.0)] {
-                sum.iter_mut().zip(at(time)).for_each(|(sum, own)| *sum += weight / 6.0 * length * own);
+            for (time, share) in [(pair[0], 1.0), (0.5 * (pair[0] + pair[1]), 4.0), (pair[1], 1.0)] {
+                let ([value, slope], share) = (of(self.value(time)), share / 6.0 * length);
+                sum += share * value;
+                self.terms(time).for_each(|term| by_rows[term.row] += share * slope * term.weight);
             }
         }
-        sum
+        let term = |(row, weight)| Term { row, output: self.output, weight };
+        (sum, by_rows.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0).map(term).collect())
     }
 }

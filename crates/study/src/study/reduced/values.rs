@@ -72,6 +72,14 @@ impl Values {
         matches!(self.all[value], Value::Greatest(_) | Value::Least(_) | Value::Range(..) | Value::Magnitude(..))
     }
 
+    /// The formula of a value that is a slack of parameters and reduced outputs, and the indices of these.
+    pub fn slack(&self, value: usize) -> Option<(&NumberFormulas, &[usize])> {
+        match &self.all[value] {
+            Value::Formulas { formulas, reduced } => Some((&**formulas, reduced.as_slice())),
+            _ => None,
+        }
+    }
+
     /// Which values are parts of a requirement's margin.
     pub fn parts(&self, requirement: usize) -> Range<usize> {
         self.margins[requirement].clone()
