@@ -76,7 +76,7 @@ pub use error::{
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
-pub use functions_of_time::{Cell, FunctionClass, value};
+pub use functions_of_time::{Cell, FunctionClass, Worst, value};
 pub use gradient_fit::{Derivatives, GradientFit};
 pub use least_squares::LeastSquares;
 pub use ledger::Ledger;

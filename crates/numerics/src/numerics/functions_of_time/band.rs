@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use symdiff::math;
 
 use super::rate::by_values;
-use super::{Cell, along, begin};
+use super::{Cell, along, begin, length};
 
 /// Frequencies that are tried in the width of a peak, one over the time.
 const TRIED: f64 = 4.0;
@@ -69,6 +69,6 @@ pub fn worst_sine([least, most]: [f64; 2], ends: &[f64], functional: &[Cell]) ->
 
 /// Share that chords of a sine of this frequency lie below it, ω² d²/12 on average, of the longest cell.
 pub fn share_of_chords(frequency: f64, ends: &[f64]) -> f64 {
-    let longest = (0..ends.len()).map(|cell| ends[cell] - begin(ends, cell)).fold(0.0, f64::max);
+    let longest = (0..ends.len()).map(|cell| length(ends, cell)).fold(0.0, f64::max);
     (TAU * frequency * longest).powi(2) / 12.0
 }

@@ -6,10 +6,10 @@
 //!   unless an end of the interval is reached; one cell may be in between (the fractional knapsack).
 //! - *Energy*, Σ aₖ² dₖ ≤ E: aₖ = λ gₖ/dₖ by Cauchy and Schwarz's inequality, cut off at 1 if |u| ≤ 1 too.
 
-use super::{Cell, begin, sign};
+use super::{Cell, length, sign};
 
 fn lengths(ends: &[f64]) -> Vec<f64> {
-    (0..ends.len()).map(|cell| ends[cell] - begin(ends, cell)).collect()
+    (0..ends.len()).map(|cell| length(ends, cell)).collect()
 }
 
 /// The best function between −1 and 1 whose mean lies between two, and the multiplier μ.

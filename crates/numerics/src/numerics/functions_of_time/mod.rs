@@ -58,6 +58,19 @@ pub enum FunctionClass {
 /// Level and slope (1/s) in a cell; or the functional's coefficients of both.
 pub type Cell = [f64; 2];
 
+/// The best function of a class for a functional.
+#[derive(Clone, Debug)]
+pub struct Worst {
+    /// The functional's value.
+    pub value: f64,
+    /// Cell by cell.
+    pub function: Vec<Cell>,
+    /// Cost of cells, within which no function changes: at most as much as a kernel costs that is straight in them. Of
+    /// functions that are bounded with their rate it is that of joining cells in pairs; of sines, by how much their
+    /// chords are smaller.
+    pub loss: f64,
+}
+
 impl FunctionClass {
     /// The function in the middle of the class, over cells that end at these times (s, ascending, the first begins at
     /// 0).
@@ -84,19 +97,41 @@ impl FunctionClass {
         }
     }
 
-    /// The function that makes the functional largest, cell by cell, and the functional's value.
-    pub fn worst(&self, ends: &[f64], functional: &[Cell]) -> (f64, Vec<Cell>) {
-        let function = match self {
-            Self::Bounded => jumps::with_signs(functional.iter().map(|[level, _]| *level)),
-            Self::Held(period) => jumps::held(*period, ends, functional),
-            Self::Rate => rate::from_zero(ends, functional),
-            Self::BoundedRate(ratio) => rate::between(*ratio, &rate::Still, ends, functional),
-            Self::Moving { limits, rate } => rate::between(*rate, limits, ends, functional),
-            Self::Mean(mean) => budget::with_mean(*mean, ends, functional).0,
-            Self::Energy { energy, bounded } => budget::with_energy(*energy, *bounded, ends, functional).0,
-            Self::Band(band) => band::worst_sine(*band, ends, functional).0,
+    /// The function that makes the functional largest.
+    pub fn worst(&self, ends: &[f64], functional: &[Cell]) -> Worst {
+        let (function, loss) = match self {
+            Self::Bounded => {
+                let levels = levels(functional);
+                (jumps::with_signs(levels.iter().copied()), at_changes(ends, &levels))
+            }
+            // Periods end where cells do.
+            Self::Held(period) => (jumps::held(*period, ends, functional), 0.0),
+            Self::Rate => {
+                let slopes = rate::by_slopes(ends, functional);
+                (rate::from_zero(ends, &slopes), at_changes(ends, &slopes))
+            }
+            Self::BoundedRate(ratio) => between(*ratio, &rate::Still, ends, functional),
+            Self::Moving { limits, rate } => between(*rate, limits, ends, functional),
+            Self::Mean(mean) => {
+                let (function, multiplier) = budget::with_mean(*mean, ends, functional);
+                (function, loss_by_mean(multiplier, ends, functional))
+            }
+            Self::Energy { energy, bounded } => {
+                let (function, factor) = budget::with_energy(*energy, *bounded, ends, functional);
+                let loss = if factor.is_finite() {
+                    budget::loss_by_energy(factor, ends, functional, &function)
+                } else {
+                    at_changes(ends, &levels(functional))
+                };
+                (function, loss)
+            }
+            Self::Band(band) => {
+                let (function, frequency) = band::worst_sine(*band, ends, functional);
+                let loss = value(functional, &function) * band::share_of_chords(frequency, ends);
+                (function, loss)
+            }
         };
-        (value(functional, &function), function)
+        Worst { value: value(functional, &function), function, loss }
     }
 
     /// Times, s, at which the best function would switch, if it could within cells: zeros of the kernel, which is
@@ -104,62 +139,31 @@ impl FunctionClass {
     /// they switch where the kernel is not zero, and steps of different lengths smear that differently.
     pub fn switches(&self, ends: &[f64], functional: &[Cell]) -> Vec<f64> {
         match self {
-            Self::Mean(_) => Vec::new(),
-            _ => self.switching(ends, functional).map_or_else(Vec::new, |integrals| zeros(ends, &integrals)),
-        }
-    }
-
-    /// Cost of steps to a function with a mean: they smear a switch over a cell, and so change the mean.
-    fn loss_of_mean(&self, ends: &[f64], functional: &[Cell]) -> f64 {
-        let Self::Mean(mean) = self else { return 0.0 };
-        let longest = (0..ends.len()).map(|cell| ends[cell] - begin(ends, cell)).fold(0.0, f64::max);
-        budget::with_mean(*mean, ends, functional).1.abs() * longest
-    }
-
-    /// Integrals over cells of a kernel at whose zeros the best function switches.
-    fn switching(&self, ends: &[f64], functional: &[Cell]) -> Option<Vec<f64>> {
-        let levels = || functional.iter().map(|[level, _]| *level);
-        match self {
-            Self::Bounded => Some(levels().collect()),
-            Self::Rate => Some(rate::by_slopes(ends, functional)),
-            Self::Mean(mean) => {
-                let (_, multiplier) = budget::with_mean(*mean, ends, functional);
-                let length = |cell: usize| ends[cell] - begin(ends, cell);
-                Some(levels().enumerate().map(|(cell, level)| level - multiplier * length(cell)).collect())
-            }
-            _ => None,
-        }
-    }
-
-    /// Cost of cells, within which no function changes: at most as much as a kernel costs that is straight in them.
-    /// Periods end where cells do, and cost nothing; of functions that are bounded with their rate it is that of
-    /// joining cells in pairs; of sines, by how much their chords are smaller.
-    pub fn loss_of_cells(&self, ends: &[f64], functional: &[Cell]) -> f64 {
-        if let Some(integrals) = self.switching(ends, functional) {
-            return at_changes(ends, &integrals) + self.loss_of_mean(ends, functional);
-        }
-        match self {
-            Self::Bounded | Self::Rate | Self::Mean(_) | Self::Held(_) => 0.0,
-            Self::BoundedRate(ratio) => in_pairs(*ratio, &rate::Still, ends, functional),
-            Self::Moving { limits, rate } => in_pairs(*rate, limits, ends, functional),
-            Self::Energy { energy, bounded } => {
-                let (function, factor) = budget::with_energy(*energy, *bounded, ends, functional);
-                if factor.is_finite() {
-                    budget::loss_by_energy(factor, ends, functional, &function)
-                } else {
-                    at_changes(ends, &functional.iter().map(|[level, _]| *level).collect::<Vec<f64>>())
-                }
-            }
-            Self::Band(band) => {
-                let (function, frequency) = band::worst_sine(*band, ends, functional);
-                value(functional, &function) * band::share_of_chords(frequency, ends)
-            }
+            Self::Bounded => zeros(ends, &levels(functional)),
+            Self::Rate => zeros(ends, &rate::by_slopes(ends, functional)),
+            _ => Vec::new(),
         }
     }
 }
 
-/// Cost of joining cells in pairs, of functions between limits with a limited rate.
-fn in_pairs(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) -> f64 {
+fn levels(functional: &[Cell]) -> Vec<f64> {
+    functional.iter().map(|[level, _]| *level).collect()
+}
+
+fn length(ends: &[f64], cell: usize) -> f64 {
+    ends[cell] - begin(ends, cell)
+}
+
+/// Cost of cells and steps to a function with a mean: a step smears a switch over a cell, and so changes the mean.
+fn loss_by_mean(multiplier: f64, ends: &[f64], functional: &[Cell]) -> f64 {
+    let beyond = levels(functional).into_iter().enumerate();
+    let beyond: Vec<f64> = beyond.map(|(cell, level)| level - multiplier * length(ends, cell)).collect();
+    let longest = (0..ends.len()).map(|cell| length(ends, cell)).fold(0.0, f64::max);
+    at_changes(ends, &beyond) + multiplier.abs() * longest
+}
+
+/// The best function between limits with a limited rate, and the cost of joining cells in pairs.
+fn between(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) -> (Vec<Cell>, f64) {
     // From the end, where the kernel is largest as a rule.
     let joined = |pair: &[Cell]| pair.iter().fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
     let mut pairs: Vec<Cell> = functional.rchunks(2).map(joined).collect();
@@ -167,8 +171,10 @@ fn in_pairs(rate: f64, limits: &impl Limits, ends: &[f64], functional: &[Cell]) 
     pairs.reverse();
     of_pairs.reverse();
     let every_other = rate::EveryOther { limits, alone: ends.len() % 2 };
-    let all = value(functional, &rate::between(rate, limits, ends, functional));
-    (all - value(&pairs, &rate::between(rate, &every_other, &of_pairs, &pairs))).max(0.0)
+    let function = rate::between(rate, limits, ends, functional);
+    let in_pairs = value(&pairs, &rate::between(rate, &every_other, &of_pairs, &pairs));
+    let loss = (value(functional, &function) - in_pairs).max(0.0);
+    (function, loss)
 }
 
 /// Share of a cell by which the zero of a kernel may be off, which is straight between the cells' middles.
@@ -177,9 +183,8 @@ const OFF: f64 = 0.05;
 /// Cost of a switch where a cell begins, and not at the zero of the kernel, given the kernel's
 /// integrals over cells: s δ² of a straight one of slope s whose zero is δ away.
 fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
-    let length = |cell: usize| ends[cell] - begin(ends, cell);
     let cost = |cell: usize| {
-        let [before, after] = [length(cell - 1), length(cell)];
+        let [before, after] = [cell - 1, cell].map(|cell| length(ends, cell));
         let (distance, longest) = (0.5 * (before + after), before.max(after));
         let slope = (integrals[cell] / after - integrals[cell - 1] / before) / distance;
         // Where there is a jump, or nothing on one side, the zero may be anywhere.
@@ -197,7 +202,7 @@ fn at_changes(ends: &[f64], integrals: &[f64]) -> f64 {
 
 /// Zeros of a kernel that is straight between the cells' middles, given its integrals over cells.
 fn zeros(ends: &[f64], integrals: &[f64]) -> Vec<f64> {
-    let density = |cell: usize| integrals[cell] / (ends[cell] - begin(ends, cell));
+    let density = |cell: usize| integrals[cell] / length(ends, cell);
     let changes = (1..integrals.len()).filter(|&cell| integrals[cell] * integrals[cell - 1] < 0.0);
     let zero = |cell: usize| {
         let ([from, to], [a, b]) =

@@ -35,16 +35,16 @@ pub fn by_values(ends: &[f64], functional: &[Cell]) -> Vec<f64> {
     by_values
 }
 
-/// The best function from 0 on whose rate is at most 1.
-pub fn from_zero(ends: &[f64], functional: &[Cell]) -> Vec<Cell> {
+/// The best function from 0 on whose rate is at most 1, by the functional's coefficients in terms of slopes.
+pub fn from_zero(ends: &[f64], slopes: &[f64]) -> Vec<Cell> {
     let mut from = 0.0;
-    let of_cell = |(cell, slope): (usize, f64)| {
-        let to = from + sign(slope) * (ends[cell] - begin(ends, cell));
+    let of_cell = |(cell, slope): (usize, &f64)| {
+        let to = from + sign(*slope) * (ends[cell] - begin(ends, cell));
         let own = straight(ends, cell, from, to);
         from = to;
         own
     };
-    by_slopes(ends, functional).into_iter().enumerate().map(of_cell).collect()
+    slopes.iter().enumerate().map(of_cell).collect()
 }
 
 /// Breakpoints of a concave function on one side of its maximum, the nearest to it first: how far out they are before

@@ -40,7 +40,7 @@ fn chains_of_values_are_the_best_of_all() {
         let ends = [0.1, 0.2, 0.35, 0.5, 0.6, 0.8, 1.0];
         let functional = kernel(ends.len(), seed);
         // Steps of the grid are divisors of what a cell allows, so that the grid holds a best chain.
-        let (best, function) = FunctionClass::BoundedRate(4.0).worst(&ends, &functional);
+        let Worst { value: best, function, .. } = FunctionClass::BoundedRate(4.0).worst(&ends, &functional);
         let expected = tried(4.0, |_| [-1.0, 1.0], &ends, &functional, 101);
         assert!((best - expected).abs() < 1e-9, "{best}, not {expected}, of {seed}");
         let mut before = None;
@@ -58,13 +58,13 @@ fn a_rate_beyond_all_limits_does_not_limit() {
     let ends: Vec<f64> = (1..=400).map(|end| 0.01 * f64::from(end)).collect();
     // The kernel cos(3 τ): ∫|cos 3τ| over 4 s.
     let functional: Vec<Cell> = ends.iter().map(|end| [0.01 * (3.0 * (end - 0.005)).cos(), 0.0]).collect();
-    let (free, _) = FunctionClass::Bounded.worst(&ends, &functional);
+    let Worst { value: free, .. } = FunctionClass::Bounded.worst(&ends, &functional);
     let integral = (8.0 + 12.0_f64.sin()) / 3.0;
     assert!((free - integral).abs() < 1e-3, "{free}, not {integral}");
     let slopes: Vec<Cell> =
         functional.iter().enumerate().map(|(cell, by)| [by[0], by[0] * (begin(&ends, cell) + 0.005)]).collect();
-    let (fast, _) = FunctionClass::BoundedRate(1e4).worst(&ends, &slopes);
-    let (slow, _) = FunctionClass::BoundedRate(1.0).worst(&ends, &slopes);
+    let Worst { value: fast, .. } = FunctionClass::BoundedRate(1e4).worst(&ends, &slopes);
+    let Worst { value: slow, .. } = FunctionClass::BoundedRate(1.0).worst(&ends, &slopes);
     assert!(fast > 0.98 * free && fast <= free * (1.0 + 1e-12) && slow < 0.5 * free, "{slow} {fast} {free}");
 }
 
@@ -73,7 +73,7 @@ fn of_a_bounded_rate_the_integral_of_the_step_response_counts() {
     // y(T) = ∫ u dτ with |u̇| ≤ 1: T²/2, of all slopes 1.
     let ends: Vec<f64> = (1..=50).map(|end| 0.1 * f64::from(end)).collect();
     let functional: Vec<Cell> = (0..50).map(|cell| [0.1, 0.1 * (begin(&ends, cell) + 0.05)]).collect();
-    let (best, function) = FunctionClass::Rate.worst(&ends, &functional);
+    let Worst { value: best, function, .. } = FunctionClass::Rate.worst(&ends, &functional);
     assert!((best - 12.5).abs() < 1e-9 && function.iter().all(|[_, slope]| (*slope - 1.0).abs() < 1e-9));
 }
 
@@ -81,7 +81,7 @@ fn of_a_bounded_rate_the_integral_of_the_step_response_counts() {
 fn what_is_held_has_the_sign_of_its_period() {
     let ends = [0.1, 0.2, 0.3, 0.4, 0.5];
     let functional = [[1.0, 0.0], [-3.0, 0.0], [1.0, 0.0], [1.0, 0.0], [-0.5, 0.0]];
-    let (best, function) = FunctionClass::Held(0.2).worst(&ends, &functional);
+    let Worst { value: best, function, .. } = FunctionClass::Held(0.2).worst(&ends, &functional);
     assert_eq!(best, 2.0 + 2.0 + 0.5);
     assert_eq!(function.map_levels(), [-1.0, -1.0, 1.0, 1.0, -1.0]);
 }
@@ -102,13 +102,13 @@ fn cells_cost_no_more_than_a_straight_kernel_loses_in_them() {
     let ends = [1.0, 2.0, 3.0, 4.0];
     for z in [2.0, 2.2, 2.5, 2.9] {
         let functional: Vec<Cell> = (1..=4).map(|k| [f64::from(k) - 0.5 - z, 0.0]).collect();
-        let found = FunctionClass::Bounded.loss_of_cells(&ends, &functional);
+        let found = FunctionClass::Bounded.worst(&ends, &functional).loss;
         let whole = 0.5 * (z * z + (4.0 - z).powi(2));
-        let lost = whole - FunctionClass::Bounded.worst(&ends, &functional).0;
+        let lost = whole - FunctionClass::Bounded.worst(&ends, &functional).value;
         let expected = (z - 2.0).min(3.0 - z).powi(2);
         assert!((lost - expected).abs() < 1e-12 && lost <= found + 1e-12 && found <= 0.5, "{z}: {lost} {found}");
     }
-    assert_eq!(FunctionClass::Held(2.0).loss_of_cells(&ends, &[[1.0, 0.0]; 4]), 0.0);
+    assert_eq!(FunctionClass::Held(2.0).worst(&ends, &[[1.0, 0.0]; 4]).loss, 0.0);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn chains_between_limits_that_move_are_the_best_of_all() {
         let middle: f64 = by_x.iter().zip(&*limits).map(|(by, [middle, _])| by * middle).sum();
         let of_u = of_values(&ends, by_x.iter().zip(&*limits).map(|(by, [_, reach])| by * reach).collect());
         let class = FunctionClass::Moving { limits: limits.clone(), rate: 4.0 };
-        let (best, function) = class.worst(&ends, &of_u);
+        let Worst { value: best, function, .. } = class.worst(&ends, &of_u);
         assert!((middle + best - expected).abs() < 1e-9, "{}, not {expected}, of {seed}", middle + best);
         let mut before = None;
         for (cell, [level, slope]) in function.iter().enumerate() {
@@ -148,7 +148,7 @@ fn chains_between_limits_that_move_are_the_best_of_all() {
         for sign in [-1.0, 1.0] {
             assert!(value(&of_u, &class.constant(sign, &ends)) <= best + 1e-12);
         }
-        assert!(class.loss_of_cells(&ends, &of_u) >= 0.0);
+        assert!(class.worst(&ends, &of_u).loss >= 0.0);
     }
 }
 
@@ -192,7 +192,7 @@ fn functions_of_a_mean_are_the_best_of_all_levels() {
         // Sevenths of the mean are multiples of the grid's levels by the cells' lengths.
         for [least, most] in [[mean / 7.0; 2], [mean / 7.0 - 1.0 / 7.0, mean / 7.0]] {
             let class = FunctionClass::Mean([least, most]);
-            let (best, function) = class.worst(&ends, &functional);
+            let Worst { value: best, function, .. } = class.worst(&ends, &functional);
             let holds = |levels: &[f64]| {
                 let mean = levels.iter().zip(&lengths).map(|(level, length)| level * length).sum::<f64>() / 0.7;
                 mean > least - 1e-9 && mean < most + 1e-9
@@ -212,15 +212,15 @@ fn a_limited_energy_follows_the_kernel() {
     let functional: Vec<Cell> = ends.iter().map(|end| [integral(*end) - integral(end - 0.01), 0.0]).collect();
     let class = |energy: f64, bounded: bool| FunctionClass::Energy { energy, bounded };
     let expected = (2.0 * (2.0 + 24.0_f64.sin() / 12.0)).sqrt();
-    let (best, _) = class(2.0, false).worst(&ends, &functional);
-    let loss = class(2.0, false).loss_of_cells(&ends, &functional);
+    let Worst { value: best, .. } = class(2.0, false).worst(&ends, &functional);
+    let loss = class(2.0, false).worst(&ends, &functional).loss;
     assert!(best <= expected && expected - best <= 1.1 * loss && loss < 2e-3, "{best} {expected} {loss}");
     // With |u| ≤ 1 it is less; with energy enough it is that of all bounded functions.
-    let (bounded, function) = class(2.0, true).worst(&ends, &functional);
+    let Worst { value: bounded, function, .. } = class(2.0, true).worst(&ends, &functional);
     let spent: f64 = function.iter().map(|[level, _]| 0.01 * level * level).sum();
     assert!(bounded < best && (spent - 2.0).abs() < 1e-9 && function.iter().all(|[level, _]| level.abs() <= 1.0));
-    let (free, _) = FunctionClass::Bounded.worst(&ends, &functional);
-    assert!((class(4.0, true).worst(&ends, &functional).0 - free).abs() < 1e-12 && bounded < free);
+    let Worst { value: free, .. } = FunctionClass::Bounded.worst(&ends, &functional);
+    assert!((class(4.0, true).worst(&ends, &functional).value - free).abs() < 1e-12 && bounded < free);
     // u = λh cut off at 1 is the best: no other function of the same energy goes further.
     for seed in 0..200 {
         let other: Vec<f64> =
@@ -250,16 +250,17 @@ fn the_worst_of_a_band_is_a_sine_at_its_peak() {
     };
     let band = |from: f64, to: f64| FunctionClass::Band([from, to]);
     let expected = (0..4000).map(|number| size(3.0 + 0.001 * f64::from(number))).fold(0.0, f64::max);
-    let (best, function) = band(3.0 / std::f64::consts::TAU, 7.0 / std::f64::consts::TAU).worst(&ends, &functional);
-    let loss = band(3.0 / std::f64::consts::TAU, 7.0 / std::f64::consts::TAU).loss_of_cells(&ends, &functional);
+    let Worst { value: best, function, .. } =
+        band(3.0 / std::f64::consts::TAU, 7.0 / std::f64::consts::TAU).worst(&ends, &functional);
+    let loss = band(3.0 / std::f64::consts::TAU, 7.0 / std::f64::consts::TAU).worst(&ends, &functional).loss;
     assert!((best - expected).abs() <= 2.0 * loss && loss < 1e-3, "{best} {expected} {loss}");
     for (cell, [level, slope]) in function.iter().enumerate() {
         assert!((level + slope * ends[cell]).abs() <= 1.0 + 1e-12);
     }
     // A band beside the peak has its maximum at the nearer end.
-    let beside = band(7.5 / std::f64::consts::TAU, 7.6 / std::f64::consts::TAU).worst(&ends, &functional).0;
+    let beside = band(7.5 / std::f64::consts::TAU, 7.6 / std::f64::consts::TAU).worst(&ends, &functional).value;
     assert!((beside - size(7.5).max(size(7.6))).abs() < 1e-3 && beside < best, "{beside}");
     // One frequency.
-    let one = band(4.9 / std::f64::consts::TAU, 4.9 / std::f64::consts::TAU).worst(&ends, &functional).0;
+    let one = band(4.9 / std::f64::consts::TAU, 4.9 / std::f64::consts::TAU).worst(&ends, &functional).value;
     assert!((one - size(4.9)).abs() < 1e-4);
 }

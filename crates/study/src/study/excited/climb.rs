@@ -5,9 +5,9 @@
 //! Else the kernel under that function is another one, and so is the function: u ← sign(Bᵀλ) until the end stops
 //! growing. A step that is worse is halved.
 
-use super::motions::{Asked, ExcitedMotions, in_row};
+use super::motions::{Asked, ExcitedMotions, functional, in_row};
 use super::point::Point;
-use crate::numerics::{Cell, value};
+use crate::numerics::{Worst, value};
 use crate::simulate::Gradient;
 
 /// Halvings of a step that is worse.
@@ -205,11 +205,10 @@ impl Climb {
         // Functions of the parameters to go to.
         let classes = motions.classes(&worst.xi);
         for (input, class) in classes.iter().enumerate() {
-            let of_cell = |by: &[f64]| [self.sign * by[2 * input], self.sign * by[2 * input + 1]];
-            let functional: Vec<Cell> = found.by_inputs.chunks_exact(2 * classes.len()).map(of_cell).collect();
-            let (largest, function) = class.worst(&motions.ends, &functional);
+            let functional = functional(found, self.sign, input, classes.len());
+            let Worst { value: largest, function, loss } = class.worst(&motions.ends, &functional);
             parts.push(largest - value(&functional, &from.functions[input]));
-            cost += class.loss_of_cells(&motions.ends, &functional);
+            cost += loss;
             worst.functions[input] = function;
         }
         (worst, parts, cost)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::limits::Limits;
 use super::point::Point;
 use crate::model::{Class, Excitation};
-use crate::numerics::{FunctionClass, Sample};
+use crate::numerics::{Cell, FunctionClass, Sample};
 use crate::simulate::{
     Functional, Functions, Gradient, NoGradient, Schedule, SimulationError, Simulator, Term, Under, gradients_under,
 };
@@ -18,6 +18,12 @@ pub type Asked<'p> = (&'p Point, Vec<Term>);
 /// An output in a row.
 pub fn in_row(row: usize, output: usize) -> Vec<Term> {
     vec![Term { row, output, weight: 1.0 }]
+}
+
+/// Derivatives of a gradient by one of so many inputs, cell by cell; upwards by the sign.
+pub fn functional(found: &Gradient, sign: f64, input: usize, inputs: usize) -> Vec<Cell> {
+    let of_cell = |by: &[f64]| [sign * by[2 * input], sign * by[2 * input + 1]];
+    found.by_inputs.chunks_exact(2 * inputs).map(of_cell).collect()
 }
 
 /// The equations with excitations as inputs, and the steps.

@@ -5,9 +5,8 @@
 //! long as the end grows.
 
 use super::climb::Climb;
-use super::motions::{ExcitedMotions, in_row};
+use super::motions::{ExcitedMotions, functional, in_row};
 use super::point::Point;
-use crate::numerics::{Cell, FunctionClass};
 use crate::simulate::{Gradient, SimulationError};
 use crate::study::bounding::{FunctionEnd, FunctionEnds, WorstFunction};
 
@@ -84,10 +83,7 @@ fn settled(
 /// When the kernel says that functions switch, s.
 fn switches(motions: &ExcitedMotions, found: &Gradient, ends: &[f64], point: &Point, sign: f64) -> Vec<f64> {
     let classes = motions.classes(&point.xi);
-    let of_input = |(input, class): (usize, &FunctionClass)| {
-        let of_cell = |by: &[f64]| [sign * by[2 * input], sign * by[2 * input + 1]];
-        let functional: Vec<Cell> = found.by_inputs.chunks_exact(2 * classes.len()).map(of_cell).collect();
-        class.switches(ends, &functional)
-    };
-    classes.iter().enumerate().flat_map(of_input).collect()
+    let inputs = classes.len();
+    let by_class = classes.iter().enumerate();
+    by_class.flat_map(|(input, class)| class.switches(ends, &functional(found, sign, input, inputs))).collect()
 }
