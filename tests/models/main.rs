@@ -43,6 +43,7 @@ mod fit;
 mod formulas;
 mod formulations;
 mod gradients;
+mod gradients_through_events;
 mod half_car;
 mod hard_cases;
 mod honesty;

@@ -93,7 +93,7 @@ fn attained(
     validation: &Validation,
 ) -> Result<Option<AttainedEnds>, SimulationError> {
     let is_adaptive = matches!(&study.request.chebyshev, Some(Chebyshev { degree: Degree::Adaptive, .. }));
-    let has_motion = !study.simulator.system.analysis.visits() && schedule.segments().is_none();
+    let has_motion = !study.simulator.system.analysis.visits();
     // A smaller budget is left to the surrogate.
     let is_afforded = study.request.budget.simulations >= Budget::default().simulations;
     let is_wanted = is_adaptive && is_afforded && study.domain.dimension() >= MANY;

@@ -5,6 +5,7 @@
 //! following the same tapes in reverse ([`symdiff::Adjoints`]). So a gradient costs a few simulations. Each lane of a
 //! tile is a gradient of its own.
 //!
+//! - `functional`: sums of outputs that are differentiated;
 //! - `formulas`: formulas of parameters, which need no motion;
 //! - `start`: fixed points of corrections, and the start;
 //! - `path`: states between steps, in bounded memory;
@@ -15,6 +16,7 @@
 
 mod cells;
 mod formulas;
+mod functional;
 mod path;
 mod rows;
 mod start;
@@ -23,10 +25,11 @@ mod tiles;
 
 pub use cells::Functions;
 pub(in crate::simulate) use cells::{TileInputs, TileKernel};
+pub use functional::{Functional, Term, Wanted};
 pub(in crate::simulate) use path::{Path, Stepping};
 pub(in crate::simulate) use rows::{LaneTerm, RowAdjoints};
 pub(in crate::simulate) use start::StartAdjoints;
-pub use tiles::{Functional, Gradient, NoGradient, Term, Under, Wanted, gradients, gradients_under};
+pub use tiles::{Gradient, NoGradient, Under, gradients, gradients_under};
 
 /// Adds values times a factor.
 pub(in crate::simulate) fn add(to: &mut [f64], factor: f64, values: &[f64]) {

@@ -6,6 +6,7 @@ use symdiff::Tile;
 use super::add;
 use super::cells::{Functions, TileInputs, TileKernel};
 use super::formulas::derivatives_of_formulas;
+use super::functional::{Functional, Wanted};
 use super::path::Path;
 use super::rows::{LaneTerm, RowAdjoints};
 use super::start::StartAdjoints;
@@ -17,6 +18,7 @@ use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::ensemble::{tiles, weights};
 use crate::simulate::error::SimulationError;
+use crate::simulate::events::{EventAdjoints, EventSteps};
 use crate::simulate::explicit::{ExplicitAdjoints, ExplicitRow, ExplicitSteps};
 use crate::simulate::interruption::Interruption;
 use crate::simulate::sampling::Instants;
@@ -24,50 +26,6 @@ use crate::simulate::simulator::Simulator;
 
 /// Memories of a tile, in units of that of its steps: values and adjoints.
 const MEMORIES: usize = 2;
-
-/// A gradient that is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
-    /// Number of the sample.
-    pub sample: usize,
-    /// Row of output.
-    pub row: usize,
-    /// Number of the output.
-    pub output: usize,
-}
-
-/// A weighted sum of outputs in rows of a sample.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Functional {
-    /// Number of the sample.
-    pub sample: usize,
-    /// Its terms, one at least.
-    pub terms: Vec<Term>,
-}
-
-/// An output in a row, with its weight.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Term {
-    /// Row of output.
-    pub row: usize,
-    /// Number of the output.
-    pub output: usize,
-    /// Its factor in the sum.
-    pub weight: f64,
-}
-
-impl From<Wanted> for Functional {
-    fn from(Wanted { sample, row, output }: Wanted) -> Self {
-        Self { sample, terms: vec![Term { row, output, weight: 1.0 }] }
-    }
-}
-
-impl Functional {
-    /// The last row that it needs.
-    fn last_row(&self) -> usize {
-        self.terms.iter().map(|term| term.row).max().unwrap_or(0)
-    }
-}
 
 /// A functional of a sample, and its derivatives.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,8 +54,8 @@ pub enum NoGradient {
         /// Its name.
         analysis: &'static str,
     },
-    /// Motions that are cut at events.
-    #[error("gradients do not pass through events yet")]
+    /// Motions that are cut at events, under functions of the time.
+    #[error("gradients by functions of the time do not pass through events")]
     Events,
 }
 
@@ -146,21 +104,32 @@ pub fn gradients_under(
     if simulator.system.analysis.visits() {
         return Err(NoGradient::NoMotion { analysis: simulator.system.analysis.name() });
     }
-    if schedule.segments().is_some() {
+    let is_cut = schedule.segments().is_some();
+    if is_cut && functions.is_some() {
         return Err(NoGradient::Events);
     }
-    // Lanes of a tile end in rows that are near each other.
+    // Lanes of a tile end in rows that are near each other; between events, whose steps are each sample's own, they
+    // are of one sample.
+    let own = |number: usize| if is_cut { wanted[number].sample } else { 0 };
     let mut order: Vec<usize> = (0..wanted.len()).collect();
-    order.sort_by_key(|&number| wanted[number].last_row());
-    let tiles = tiles(wanted.len(), MEMORIES * simulator.program.registers(), rayon::current_num_threads());
-    let parts = tiles.into_par_iter().map(|(first, count, width)| {
+    order.sort_by_key(|&number| (own(number), wanted[number].last_row()));
+    let (registers, threads) = (MEMORIES * simulator.program.registers(), rayon::current_num_threads());
+    let of_group = |group: &[usize]| -> Vec<(Vec<usize>, usize)> {
+        let numbers = |first: usize, count: usize, width: usize| -> Vec<usize> {
+            (0..width).map(|lane| group[first + lane.min(count - 1)]).collect()
+        };
+        let tiles = tiles(group.len(), registers, threads).into_iter();
+        tiles.map(|(first, count, width)| (numbers(first, count, width), count)).collect()
+    };
+    let tiles: Vec<(Vec<usize>, usize)> = order.chunk_by(|&a, &b| own(a) == own(b)).flat_map(of_group).collect();
+    let parts = tiles.into_par_iter().map(|(numbers, count)| {
         if interruption.is_asked() {
             return Err(NoGradient::from(SimulationError::Interrupted));
         }
-        let numbers: Vec<usize> = (0..width).map(|lane| order[first + lane.min(count - 1)]).collect();
         let lanes = numbers.iter().map(|&number| &wanted[number]).collect();
         let inputs = functions.map(|functions| TileInputs::of(&functions, &numbers));
-        let tile = TileOf { simulator, schedule, samples, lanes, lost: vec![None; width], inputs, backwards };
+        let lost = vec![None; numbers.len()];
+        let tile = TileOf { simulator, schedule, samples, lanes, lost, inputs, backwards };
         let mut of_lanes = tile.gradients()?;
         of_lanes.truncate(count);
         Ok(of_lanes)
@@ -335,7 +304,7 @@ impl TileOf<'_> {
     }
 
     /// By the explicit method.
-    fn of_explicit(&self, values: &mut [Vec<f64>], inputs: Option<&TileInputs>) -> Result<ByAll, NoGradient> {
+    fn of_explicit(&mut self, values: &mut [Vec<f64>], inputs: Option<&TileInputs>) -> Result<ByAll, NoGradient> {
         let Self { simulator, schedule, .. } = *self;
         let start = self.assemble(0.0)?;
         let rows: Vec<ExplicitRow> = self
@@ -344,14 +313,13 @@ impl TileOf<'_> {
             .map(|row| ExplicitRow { time: schedule.time(row), terms: self.terms(row) })
             .collect();
         let last = rows.first().map_or(0.0, |row| row.time);
-        let mut ends = schedule.ending_at(Instants::of(simulator)).ends();
-        let needed = ends.partition_point(|&end| end < last) + 1;
-        ends.truncate(needed);
+        let EventSteps { ends, events } = self.steps_to(last)?;
+        let events = EventAdjoints::new(simulator, &start, events, schedule.time(schedule.rows - 1))?;
         let count = ends.len();
         let steps = ExplicitSteps::new(simulator, &start, ends, inputs)?;
         let path = Path::new(steps, count, &mut |_, _| {});
         let mut closing = RowAdjoints::closing(simulator, simulator.free_closure()?, &start).under(inputs);
-        let mut run = ExplicitAdjoints::new(simulator, &start, path)?;
+        let mut run = ExplicitAdjoints::new(simulator, &start, path)?.through(events);
         let by_start = run.pull(&rows, &mut closing, values);
         let mut total = run.finish();
         add(&mut total, 1.0, &closing.finish());
@@ -365,6 +333,25 @@ impl TileOf<'_> {
         let mut kernel = run.kernel().clone();
         kernel.merge(closing.kernel());
         Ok((total, kernel))
+    }
+
+    /// The explicit method's steps to a row at a time, s. Lanes are lost of which a row lies behind that up to which
+    /// their sample can be followed from event to event.
+    fn steps_to(&mut self, last: f64) -> Result<EventSteps, NoGradient> {
+        let Self { simulator, schedule, .. } = *self;
+        let Some(segments) = schedule.segments() else {
+            let mut ends = schedule.ending_at(Instants::of(simulator)).ends();
+            let needed = ends.partition_point(|&end| end < last) + 1;
+            ends.truncate(needed);
+            return Ok(EventSteps { ends, events: Vec::new() });
+        };
+        let sample = &self.samples[self.lanes[0].sample];
+        let steps = EventSteps::of(simulator, segments, sample, last, schedule.time(schedule.rows - 1))?;
+        let reached = steps.ends.last().copied().unwrap_or(0.0);
+        for (lane, lost) in self.lanes.iter().zip(&mut self.lost) {
+            *lost = (schedule.time(lane.last_row()) > reached).then_some(reached);
+        }
+        Ok(steps)
     }
 
     /// Adds what an equilibrium, with which the motion begins, does to adjoints of the parameters.

@@ -8,7 +8,8 @@
 //! - `path`: one sample by the explicit method, whose steps end at events, and `followed`: its word;
 //! - `word`: the words of some samples, and `boundary`: the surfaces between them;
 //! - `stretched`: segments on a time from 0 to 1, `nodes`: states there, and `tile`: samples on it in lockstep;
-//! - `run`: an ensemble, row by row, and `jets`: a jet.
+//! - `run`: an ensemble, row by row, and `jets`: a jet;
+//! - `saltation`: adjoints through events.
 
 mod boundary;
 mod followed;
@@ -17,6 +18,7 @@ pub(in crate::simulate) mod locate;
 mod nodes;
 mod path;
 mod run;
+mod saltation;
 pub(in crate::simulate) mod segments;
 mod stretched;
 mod tile;
@@ -24,5 +26,6 @@ mod word;
 
 pub use jets::segment_jets;
 pub use run::SegmentRun;
+pub(in crate::simulate) use saltation::{EventAdjoints, EventSteps};
 pub use segments::{Boundary, WordsEnd};
 pub use word::segments_of;

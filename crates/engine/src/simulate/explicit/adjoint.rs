@@ -11,6 +11,7 @@ use super::tableau::{DENSE, Row, STAGES, TIMES, WEIGHTS, WITH_DENSE};
 use crate::simulate::adjoint::{LaneTerm, Path, RowAdjoints, StartAdjoints, Stepping, TileInputs, TileKernel, add};
 use crate::simulate::ensemble::{Needs, RowClosure};
 use crate::simulate::error::SimulationError;
+use crate::simulate::events::EventAdjoints;
 use crate::simulate::sampling::Instants;
 use crate::simulate::simulator::Simulator;
 
@@ -96,8 +97,9 @@ pub(in crate::simulate) struct ExplicitAdjoints<'s> {
     closures: StartAdjoints<'s>,
     is_linear: bool,
     closes: bool,
-    /// Of the step that is followed: states of the stages (q and v), their accelerations and multipliers (w and λ), and
-    /// the guesses of these.
+    /// Of the step that is followed: times of the stages, s, their states (q and v), their accelerations and multipliers
+    /// (w and λ), and the guesses of these.
+    times: [f64; WITH_DENSE],
     stages: Vec<Vec<f64>>,
     unknowns: Vec<Vec<f64>>,
     guesses: Vec<Vec<f64>>,
@@ -105,6 +107,7 @@ pub(in crate::simulate) struct ExplicitAdjoints<'s> {
     by_rates: Vec<Vec<f64>>,
     /// Adjoints of functions of the time.
     kernel: TileKernel,
+    events: Option<EventAdjoints<'s>>,
 }
 
 impl<'s> ExplicitAdjoints<'s> {
@@ -125,11 +128,19 @@ impl<'s> ExplicitAdjoints<'s> {
             closures,
             is_linear: needs.linear,
             closes: needs.closure,
+            times: [0.0; WITH_DENSE],
             stages: vec![vec![0.0; size]; WITH_DENSE],
             unknowns: vec![vec![0.0; unknowns]; WITH_DENSE],
             guesses: vec![vec![0.0; unknowns]; WITH_DENSE],
             by_rates: vec![vec![0.0; size]; WITH_DENSE],
+            events: None,
         })
+    }
+
+    /// Through events at the ends of steps.
+    #[must_use]
+    pub fn through(self, events: Option<EventAdjoints<'s>>) -> Self {
+        Self { events, ..self }
     }
 
     /// From the rows, the last first, to the start; the outputs' values are noted in `values` (by lane and term).
@@ -150,6 +161,9 @@ impl<'s> ExplicitAdjoints<'s> {
             while let Some(row) = rows.next_if(|row| row.time >= end) {
                 add(&mut adjoints, 1.0, &of_row(row, &after));
             }
+            if let Some(events) = &mut self.events {
+                events.pull(step, end, &after, &mut adjoints);
+            }
             if let Some(inputs) = inputs {
                 let values = inputs.values(inputs.cell(end));
                 self.memory.set_inputs(values);
@@ -161,7 +175,7 @@ impl<'s> ExplicitAdjoints<'s> {
             let next = unchanged.unwrap_or(after);
             let is_dense = rows.peek().is_some_and(|row| row.time > begin);
             let h = end - begin;
-            self.evaluate(&state, &next, begin, h, if is_dense { WITH_DENSE } else { STAGES - 1 });
+            self.evaluate(&state, &next, step, if is_dense { WITH_DENSE } else { STAGES - 1 });
             self.by_rates.iter_mut().for_each(|by_rate| by_rate.fill(0.0));
             let mut by_state = vec![0.0; state.len()];
             while let Some(row) = rows.next_if(|row| row.time > begin) {
@@ -179,17 +193,17 @@ impl<'s> ExplicitAdjoints<'s> {
                 }
             }
             for stage in (STAGES..WITH_DENSE).rev().filter(|_| is_dense) {
-                let by_stage = self.pull_stage(stage, begin + TIMES[stage] * h);
+                let by_stage = self.pull_stage(stage);
                 self.share(stage, h, &by_stage, &mut by_state);
             }
             if is_dense {
-                let by_next = self.pull_stage(STAGES - 1, end);
+                let by_next = self.pull_stage(STAGES - 1);
                 add(&mut adjoints, 1.0, &by_next);
             }
             self.pull_closure(end, h, &state, &mut adjoints);
             self.share(STAGES - 1, h, &adjoints, &mut by_state);
             for stage in (0..STAGES - 1).rev() {
-                let by_stage = self.pull_stage(stage, begin + TIMES[stage] * h);
+                let by_stage = self.pull_stage(stage);
                 self.share(stage, h, &by_stage, &mut by_state);
             }
             adjoints = by_state;
@@ -217,18 +231,27 @@ impl<'s> ExplicitAdjoints<'s> {
     pub fn finish(&mut self) -> Vec<f64> {
         let mut total = self.memory.finish();
         add(&mut total, 1.0, &self.closures.finish());
+        if let Some(events) = &mut self.events {
+            add(&mut total, 1.0, &events.finish());
+        }
         total
     }
 
     /// The stages of a step, given the states at its ends.
-    fn evaluate(&mut self, state: &[f64], next: &[f64], begin: f64, h: f64, count: usize) {
+    fn evaluate(&mut self, state: &[f64], next: &[f64], step: usize, count: usize) {
         let layout = self.memory.layout();
+        let begin = self.path.stepping().begin(step);
+        let h = self.path.stepping().ends[step] - begin;
         for stage in 0..count {
             let mut at = if stage == STAGES - 1 { next.to_vec() } else { state.to_vec() };
             for &(other, weight) in if stage == STAGES - 1 { &[][..] } else { WEIGHTS[stage] } {
                 self.add_rate(&mut at, h * weight, other);
             }
-            self.memory.set(begin + TIMES[stage] * h, layout.q.start, &at);
+            self.times[stage] = begin + TIMES[stage] * h;
+            if let Some(events) = &mut self.events {
+                events.keep_before(step, &mut self.times[stage], &mut at);
+            }
+            self.memory.set(self.times[stage], layout.q.start, &at);
             let unknowns = layout.w.start..layout.lambda.end;
             self.guesses[stage].copy_from_slice(self.memory.values(unknowns.clone()));
             if self.is_linear {
@@ -250,8 +273,9 @@ impl<'s> ExplicitAdjoints<'s> {
     }
 
     /// Adjoints of a stage's state, from those of its rate. Of the stages that were evaluated the last comes first.
-    fn pull_stage(&mut self, stage: usize, time: f64) -> Vec<f64> {
+    fn pull_stage(&mut self, stage: usize) -> Vec<f64> {
         let layout = self.memory.layout();
+        let time = self.times[stage];
         let by_rate = &self.by_rates[stage];
         let half = by_rate.len() / 2;
         self.memory.set(time, layout.q.start, &self.stages[stage]);

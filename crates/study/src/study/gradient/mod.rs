@@ -12,6 +12,7 @@ use crate::simulate::{NoGradient, SimulationError, Wanted, gradients};
 use crate::study::black_box::needs_equations;
 use crate::study::reduced::expanded;
 use crate::study::sample::{Chosen, Trajectories, sample};
+use crate::study::stepping::segmented_nominal;
 use crate::study::{Options, RunError};
 
 /// Why a model has no gradients.
@@ -85,11 +86,12 @@ fn of_trajectories(trajectories: &Trajectories, description: &Description) -> Re
     };
     let mut outputs: Vec<OutputGradients> = trajectories.outputs.iter().map(empty).collect();
     for (number, (study, subsystem)) in trajectories.studies.iter().zip(trajectories.subsystems).enumerate() {
-        let schedule = &trajectories.steps[number].schedule;
+        let between_events = segmented_nominal(study).map_err(RunError::from)?;
+        let schedule = between_events.as_ref().unwrap_or(&trajectories.steps[number].schedule);
         let center: Sample = study.simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let columns = trajectories.columns[number].iter().enumerate();
         let shown: Vec<(usize, usize)> = columns.filter_map(|(line, column)| Some((line, (*column)?))).collect();
-        let wanted: Vec<Wanted> = (0..schedule.rows)
+        let wanted: Vec<Wanted> = (0..trajectories.steps[number].schedule.rows)
             .flat_map(|row| shown.iter().map(move |&(output, _)| Wanted { sample: 0, row, output }))
             .collect();
         let found = gradients(&study.simulator, schedule, &[center], &wanted, study.interruption)?;

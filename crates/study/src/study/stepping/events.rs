@@ -18,6 +18,24 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
         return Ok(None);
     }
     (study.stage)("searching for events");
+    let schedule = segments_of_samples(study, &event_samples(study))?;
+    // A number that is accumulated over a motion is one of the whole of it.
+    let accumulates = !study.description.reduced.is_empty() || !study.description.requirements.is_empty();
+    let duration = study.description.simulation.duration;
+    let lasts = |schedule: &Schedule| schedule.segments().is_some_and(|segments| segments.horizon >= duration);
+    Ok(schedule.filter(|schedule| !accumulates || lasts(schedule)))
+}
+
+/// Steps between the events of the nominal motion, if there are any.
+pub fn segmented_nominal(study: &Study) -> Result<Option<Schedule>, SimulationError> {
+    if !motion_may_be_cut(study) {
+        return Ok(None);
+    }
+    segments_of_samples(study, &[study.domain.nominal.clone()])
+}
+
+/// Steps between the events that some samples meet.
+fn segments_of_samples(study: &Study, samples: &[Sample]) -> Result<Option<Schedule>, SimulationError> {
     let simulation = &study.description.simulation;
     let (duration, output_step) = (simulation.duration, simulation.output_step);
     let of_steps = match simulation.stepping {
@@ -26,10 +44,7 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     };
     let asked = of_steps.into_iter().chain(study.request.tolerance).map(|tolerance| TUNING.event_share * tolerance);
     let tolerance = asked.fold(TUNING.event_error, f64::min);
-    let segments = segments_of(&study.simulator, &study.domain, &event_samples(study), duration, tolerance)?;
-    // A number that is accumulated over a motion is one of the whole of it.
-    let accumulates = !study.description.reduced.is_empty() || !study.description.requirements.is_empty();
-    let segments = segments.filter(|segments| !accumulates || segments.horizon >= duration);
+    let segments = segments_of(&study.simulator, &study.domain, samples, duration, tolerance)?;
     Ok(segments.map(|segments| Schedule::segmented(duration, output_step, segments)))
 }
 
@@ -91,11 +106,10 @@ fn may_be_cut(study: &Study) -> bool {
     // Errors of jets between events are larger than across contacts that the steps resolve: beside other methods,
     // these steps are kept.
     let within = within && (methods.len() == 1 || methods.iter().all(|(method, _)| *method != Method::Taylor));
-    may_extrapolate(study)
-        && within
-        && !methods.is_empty()
-        && !study.request.keep
-        && study.stored.is_none()
-        // Constraints that open later are not watched for.
-        && study.simulator.mobility.redundant.is_empty()
+    motion_may_be_cut(study) && within && !methods.is_empty() && !study.request.keep && study.stored.is_none()
+}
+
+fn motion_may_be_cut(study: &Study) -> bool {
+    // Constraints that open later are not watched for.
+    may_extrapolate(study) && study.simulator.mobility.redundant.is_empty()
 }
