@@ -40,6 +40,13 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
     interrupt::wait_for(&folder)?;
     let files = write_gradients(&folder, &found, &shown);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    if let Some(from) = found.unreliable_from {
+        console.warning(&format!(
+            "{}: derivatives are not reliable from t = {} s on: a contact or a kink of the equations lies within a step, and the motion cannot be followed from one such event to the next",
+            found.model,
+            short(from)
+        ));
+    }
     answer(&found, args.format, args.run.quiet, console, || {
         overview(&found, &shown) + &format!("  {}: {}\n", folder.display(), file_names(files.iter()))
     })?;

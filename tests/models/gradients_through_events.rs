@@ -113,3 +113,28 @@ simulation: { duration: 2.5, step: 1e-4, output_step: 0.05 }
     };
     are_those_of(text, &[1.0, 1e5, 1.1], motion, &[]);
 }
+
+/// A motion with states that change at instants is not followed from event to event: its derivatives depend on the
+/// steps behind the first contact, and that is reported.
+#[test]
+fn what_cannot_be_followed_is_reported() {
+    let text = |floor: f64| {
+        format!(
+            "
+parameters: {{ h: {{ value: 1 m, tolerance: 2% }} }}
+bodies: {{ ball: {{ mass: 1, coordinates: [y] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  floor: {{ force: {{ on: ball, value: [0, \"1e5 N/m*max({floor} m - ball.y, 0 m)\"] }} }}
+  seen: {{ sampled: {{ input: ball.y, period: 0.1 s }} }}
+initial: {{ ball.y: h, ball.vy: 0 }}
+outputs: {{ y: ball.y, v: ball.vy }}
+simulation: {{ duration: 1, step: 1e-4, output_step: 0.05 }}
+"
+        )
+    };
+    let unreliable_from = |floor: f64| gradient(&read(&text(floor)), &Options::default()).unwrap().unreliable_from;
+    // It falls for 0.4515 s.
+    assert_eq!(unreliable_from(0.0), Some(0.5));
+    assert_eq!(unreliable_from(-10.0), None);
+}

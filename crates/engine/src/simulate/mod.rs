@@ -69,5 +69,5 @@ pub(crate) use start::allowed_residual;
 pub(crate) use statics::Equilibrium;
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;
-pub use unmet_switch::{SwitchSearch, unmet_switch};
+pub use unmet_switch::{SwitchSearch, switched_from, unmet_switch};
 pub use visit::{Visit, reduced_rows};

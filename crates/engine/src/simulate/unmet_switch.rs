@@ -149,6 +149,21 @@ pub fn unmet_switch(
     }))
 }
 
+/// The first row before which a switch changes its sign within a step of the nominal motion.
+///
+/// # Errors
+/// Where the motion cannot be assembled.
+pub fn switched_from(
+    simulator: &Simulator,
+    domain: &ParameterBox,
+    steps: Steps<'_>,
+    interruption: Interruption<'_>,
+) -> Result<Option<usize>, SimulationError> {
+    let Some(program) = simulator.switches() else { return Ok(None) };
+    let observing = Observing { simulator, program, domain, steps, interruption };
+    Ok(observing.run(&[vec![0.0; domain.dimension()]], 1, |_, _, _| ())?.switched_from)
+}
+
 /// Switches whose rates are known and that had one sign only, or the other one by little, with that other one: 0 below
 /// zero, 1 above.
 fn one_sided(program: &SwitchProgram, met: &[Depths]) -> Vec<(usize, usize)> {

@@ -126,7 +126,14 @@ mod tests {
             by_parameters: vec![vec![-2.0, 0.5, 0.0]],
         };
         let parameters = vec![parameter("l1", "m", 1e-4), parameter("k", "N/m", 1.0), parameter("m", "kg", 1.0)];
-        Gradients { model: "crank".into(), times: vec![0.25], parameters, outputs: vec![output], reduced: Vec::new() }
+        Gradients {
+            model: "crank".into(),
+            times: vec![0.25],
+            parameters,
+            outputs: vec![output],
+            reduced: Vec::new(),
+            unreliable_from: None,
+        }
     }
 
     #[test]

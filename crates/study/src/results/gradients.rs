@@ -105,6 +105,9 @@ pub struct Gradients {
     pub outputs: Vec<OutputGradients>,
     /// Reduced outputs and requirements' margins, as far as they follow from the motion and have derivatives.
     pub reduced: Vec<ReducedGradients>,
+    /// Time from which derivatives depend on the steps, s: equations switch within these, and the motion cannot be
+    /// followed from event to event.
+    pub unreliable_from: Option<f64>,
 }
 
 /// Derivatives of a reduced output, or of a requirement's margin.

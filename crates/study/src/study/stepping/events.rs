@@ -26,9 +26,9 @@ pub fn segmented(study: &Study) -> Result<Option<Schedule>, SimulationError> {
     Ok(schedule.filter(|schedule| !accumulates || lasts(schedule)))
 }
 
-/// Steps between the events of the nominal motion, if there are any.
+/// Steps between the events of the nominal motion, if there are any and it can be followed, whatever its scheme.
 pub fn segmented_nominal(study: &Study) -> Result<Option<Schedule>, SimulationError> {
-    if !motion_may_be_cut(study) {
+    if !opens_nothing(study) {
         return Ok(None);
     }
     segments_of_samples(study, &[study.domain.nominal.clone()])
@@ -106,10 +106,15 @@ fn may_be_cut(study: &Study) -> bool {
     // Errors of jets between events are larger than across contacts that the steps resolve: beside other methods,
     // these steps are kept.
     let within = within && (methods.len() == 1 || methods.iter().all(|(method, _)| *method != Method::Taylor));
-    motion_may_be_cut(study) && within && !methods.is_empty() && !study.request.keep && study.stored.is_none()
+    may_extrapolate(study)
+        && within
+        && !methods.is_empty()
+        && !study.request.keep
+        && study.stored.is_none()
+        && opens_nothing(study)
 }
 
-fn motion_may_be_cut(study: &Study) -> bool {
-    // Constraints that open later are not watched for.
-    may_extrapolate(study) && study.simulator.mobility.redundant.is_empty()
+/// Constraints that open later are not watched for.
+fn opens_nothing(study: &Study) -> bool {
+    study.simulator.mobility.redundant.is_empty()
 }
