@@ -10,8 +10,8 @@ use crate::common::random::Random;
 use crate::common::{nominal, output, read, run};
 
 /// A body at rest at a place that a formula gives.
-fn at_rest(parameters: &str, place: &str, more: &str) -> Description {
-    read(&format!(
+fn at_rest_text(parameters: &str, place: &str, more: &str) -> String {
+    format!(
         "
 parameters:
 {parameters}
@@ -22,7 +22,11 @@ simulation: {{ duration: 0.02, step: 0.01, output_step: 0.02 }}
 bounds: {{ chebyshev: {{ order: 3 }} }}
 {more}
 "
-    ))
+    )
+}
+
+fn at_rest(parameters: &str, place: &str, more: &str) -> Description {
+    read(&at_rest_text(parameters, place, more))
 }
 
 fn summary(description: &Description, threads: usize) -> Summary {
@@ -266,4 +270,29 @@ fn a_requirement_has_a_yield_and_capabilities() {
     assert!((fits.share - share).abs() < 2e-5 && fits.interval[0] < share && fits.interval[1] > share, "{fits:?}");
     assert!((fits.cp.unwrap() - 5.0 / 6.0).abs() < 1e-4 && (fits.cpk.unwrap() - 2.0 / 3.0).abs() < 1e-4, "{fits:?}");
     assert!((fits.ppm - 1e6 * (1.0 - share)).abs() < 20.0 && fits.ppm_interval[0] < fits.ppm);
+}
+
+/// A product of fourteen uniform factors: (1 + δ²/3)¹⁴ − 1 is its variance, and quantiles are of a million products.
+/// The corners, of which one is 1.1¹⁴, are no product that anybody makes: errors are those of products.
+#[test]
+fn many_parameters_have_errors_of_products() {
+    const FACTORS: usize = 14;
+    let names: Vec<String> = (0..FACTORS).map(|factor| format!("a{factor}")).collect();
+    let parameters: String = names.iter().map(|name| format!("  {name}: {{ value: 1, tolerance: 10% }}\n")).collect();
+    let place = format!("(0.1 m)*{}", names.join("*"));
+    let text = at_rest_text(&parameters, &place, "statistics: { quantiles: [5%, 95%] }")
+        .replace("chebyshev: { order: 3 }", "tolerance: 1e-2");
+    let description = read(&text);
+    let found = statistics(&description);
+    let deviation = 0.1 * ((1.0 + 0.01_f64 / 3.0).powi(FACTORS as i32) - 1.0).sqrt();
+    near(found.mean[0], 0.1, 2e-3);
+    near(found.deviation[0], deviation, 0.2 * deviation);
+    let mut random = Random(5);
+    let product = |random: &mut Random| (0..FACTORS).map(|_| 0.9 + 0.2 * random.uniform()).product::<f64>() * 0.1;
+    let mut products: Vec<f64> = (0..1_000_000).map(|_| product(&mut random)).collect();
+    products.sort_unstable_by(f64::total_cmp);
+    for (quantile, share) in found.quantiles.iter().zip([0.05, 0.95]) {
+        near(quantile[0], products[(share * 1e6) as usize], 0.4 * deviation);
+    }
+    assert!(found.resolved.iter().all(|resolved| *resolved));
 }

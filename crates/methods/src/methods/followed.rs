@@ -1,6 +1,7 @@
 //! Ends of outputs that were followed along gradients of the simulations themselves: bounds of many parameters, for
 //! which a polynomial over the whole box would take too many samples.
 
+use super::kept::KeptSurrogate;
 use crate::numerics::Range;
 
 /// How an output's spread in one row comes about.
@@ -31,12 +32,19 @@ pub struct FollowedEnds {
     outputs: usize,
     /// By row and output.
     ends: Vec<Followed>,
+    /// Polynomials of the outputs over the whole box, where they are wanted and known.
+    surrogate: Option<KeptSurrogate>,
 }
 
 impl FollowedEnds {
     /// By row and output.
-    pub fn new(outputs: usize, ends: Vec<Followed>) -> Self {
-        Self { outputs, ends }
+    pub fn new(outputs: usize, ends: Vec<Followed>, surrogate: Option<KeptSurrogate>) -> Self {
+        Self { outputs, ends, surrogate }
+    }
+
+    /// Polynomials of the outputs over the whole box, where they are wanted and known.
+    pub(super) fn surrogate(&self) -> Option<&KeptSurrogate> {
+        self.surrogate.as_ref()
     }
 
     /// Of each row the ends of all outputs.

@@ -26,7 +26,7 @@ pub use ensemble::{
     Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
 pub use followed::{Followed, FollowedEnds, Sensitivity};
-pub use kept::KeptSurrogate;
+pub use kept::{KeptRow, KeptSurrogate};
 pub use proof::{EnclosedRow, EnclosureEnd, Lost, Proof};
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};

@@ -10,6 +10,7 @@
 
 mod climb;
 mod ends;
+mod kept;
 mod surface;
 
 use std::time::Instant;
@@ -51,6 +52,10 @@ const WORK: usize = 4;
 /// Fewest and most points of polynomials beside the middle of the box: two more than the parameters.
 const LEAST_POINTS: usize = 16;
 const MOST_POINTS: usize = 32;
+
+/// Points of polynomials that are the surrogate of a run: with so many, what 100 parameters of a chain leave to
+/// statistics is a tenth of their spread.
+const KEPT_POINTS: usize = 64;
 
 /// Value of an output and its gradient (in ξ).
 type Slope = (f64, Vec<f64>);
@@ -196,7 +201,10 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         if self.simulated.stop.is_some() {
             return Ok(None);
         }
-        Ok(Some(FollowedEnds::new(outputs, ends::ends(self, &mut climbs, surfaces.as_ref(), &followed))))
+        let kept = surfaces.as_ref().filter(|_| self.study.request.keep);
+        let kept = kept.and_then(|surfaces| kept::surrogate(self, surfaces, &followed));
+        let ends = ends::ends(self, &mut climbs, surfaces.as_ref(), &followed);
+        Ok(Some(FollowedEnds::new(outputs, ends, kept)))
     }
 
     /// A climb to an end from a point.
@@ -288,7 +296,8 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     fn surfaces(&mut self, rows: &[usize]) -> Result<Option<Followable>, SimulationError> {
         let k = self.study.domain.dimension();
         let mut points = vec![vec![0.0; k]];
-        points.extend(spread(k, (k + 2).clamp(LEAST_POINTS, MOST_POINTS)));
+        let count = if self.study.request.keep { KEPT_POINTS } else { (k + 2).clamp(LEAST_POINTS, MOST_POINTS) };
+        points.extend(spread(k, count));
         self.simulate(&points)?;
         let outputs = self.motions.outputs();
         let of_row = |row: usize| (0..outputs).map(move |output| (row, output));

@@ -12,5 +12,5 @@ pub(super) fn bounds(followed: &FollowedEnds, outputs: usize, rows: usize) -> Me
         bands.set(row, output, found.range, found.error);
         bands.set_sensitivity(row, output, found.sensitivity.clone());
     }
-    bands.finish(0, Simulated::default())
+    MethodResult { kept: followed.surrogate().cloned(), ..bands.finish(0, Simulated::default()) }
 }

@@ -20,7 +20,7 @@ mod total_degree;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
-use super::followed::Followed;
+use super::followed::{Followed, FollowedEnds};
 use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
@@ -332,9 +332,11 @@ fn adapted(
     let is_within = |(row, ends): (usize, &[Followed])| {
         goal.share(row, ends.iter().map(|found| SAFETY_OF_SURROGATE * found.error)) <= 1.0
     };
-    // A surrogate that is to be kept is one of the whole box.
-    if let Some(followed) = ensemble.followed().filter(|_| !request.keep)
-        && (ensemble.domain().dimension() > MOST_ON_GRIDS || followed.rows().enumerate().all(is_within))
+    let are_many = ensemble.domain().dimension() > MOST_ON_GRIDS;
+    // A surrogate that is to be kept is one of the whole box: of fewer parameters a grid has the smaller error.
+    let has_kept = |followed: &&FollowedEnds| !request.keep || are_many && followed.surrogate().is_some();
+    if let Some(followed) = ensemble.followed().filter(has_kept)
+        && (are_many || followed.rows().enumerate().all(is_within))
     {
         return Ok(along_gradients::bounds(followed, ensemble.outputs(), ensemble.rows()));
     }

@@ -14,6 +14,7 @@ mod rays;
 mod special;
 mod subset;
 
+pub use beta::beta_quantile;
 pub use copula::Copula;
 pub use distribution::Distribution;
 pub use estimates::share_interval;

@@ -2,7 +2,7 @@
 //! parameters they come from.
 
 use crate::methods::Sensitivity;
-use crate::numerics::{Derivatives, GradientFit, ParameterBox, Range, SobolDecomposition};
+use crate::numerics::{Derivatives, GradientFit, ParameterBox, Range, SobolDecomposition, SparseBasis};
 
 /// The same for all rows and outputs.
 pub(super) struct Surfaces {
@@ -14,8 +14,8 @@ pub(super) struct Surfaces {
     nominal: Vec<f64>,
 }
 
-/// An output in a row as a polynomial.
-pub(super) struct Surface(Vec<f64>);
+/// An output in a row as a polynomial: coefficients of its terms.
+pub(super) struct Surface(pub Vec<f64>);
 
 impl Surfaces {
     /// Through samples at these ξ, for functions with these derivatives there (in ξ); `None` where they are too few.
@@ -25,6 +25,11 @@ impl Surfaces {
         let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
         let causes = (0..domain.dimension()).map(|axis| domain.cause(axis)).collect();
         Some(Self { fit, decomposition, nominal, causes })
+    }
+
+    /// The polynomials' terms.
+    pub fn basis(&self) -> &SparseBasis {
+        self.fit.basis()
     }
 
     /// From values and gradients (in ξ) at the samples.

@@ -1,13 +1,12 @@
 //! Parameters that agree with measured values.
 //!
 //! `data` reads a table. A run over the model's box gives surrogates of the outputs, with their errors, which
-//! `readings` evaluates at measured times (`interpolation`) and `local` makes polynomials of, along skew axes.
+//! `readings` evaluates at measured times and `local` makes polynomials of, along skew axes.
 //! `least_squares` estimates on them; the last residuals are those of simulations. `set` paves the set of all
 //! consistent parameters, with runs over narrower boxes as it shrinks; `projections` are its shadows on pairs of
 //! parameters. Where it is empty, `unexplained` finds the rows that no parameters explain.
 
 mod data;
-mod interpolation;
 mod least_squares;
 mod local;
 mod projections;
@@ -17,7 +16,7 @@ mod unexplained;
 
 pub use data::{DataError, Measurements, NoiseBound};
 
-use interpolation::Interpolation;
+use crate::numerics::Interpolation;
 use least_squares::{DEVIATION, Minimum, POLISHING, is_short, linearised, minimum};
 use local::{COARSE, Frame, Local, values};
 use readings::{Finer, Run};

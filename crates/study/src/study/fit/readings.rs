@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::data::Measured;
-use super::interpolation::Interpolation;
 use super::{FitError, Measurements};
 use crate::methods::Method;
 use crate::model::{Description, ParameterValue, Stepping};
+use crate::numerics::Interpolation;
 use crate::numerics::ParameterBox;
 use crate::study::allocate::{raise, run_simulations};
 use crate::study::{Evaluator, Kept, Options, run_keeping};

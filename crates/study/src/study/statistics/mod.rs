@@ -7,6 +7,7 @@ mod numbers;
 mod random;
 mod realisations;
 mod requirements;
+mod residuals;
 mod rows;
 mod stack;
 mod zones;
@@ -85,7 +86,7 @@ fn of_run(
         }
     }
     let kept = wide.as_ref().unwrap_or(kept);
-    let rows = Rows::new(description, options, &laws, kept)?;
+    let rows = Rows::new(description, options, &laws, kept)?.with_residuals(shown)?;
     let outputs = rows.outputs(shown)?;
     let (requirements, together) = requirements::all(&rows)?;
     let reduced = numbers::all(&rows)?;

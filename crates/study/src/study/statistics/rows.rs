@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::INTERRUPTED;
 use super::causes::{Cause, causes};
 use super::laws::Laws;
+use super::residuals::{Residual, Residuals, shares_around};
 use crate::model::Description;
 use crate::numerics::largest;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
@@ -38,6 +39,13 @@ const COMPARED: usize = 256;
 /// error.
 const NEAR: (f64, f64) = (1e-4, 0.5);
 
+/// A surrogate whose differences from simulations vary by more than this share of what it varies itself does not follow
+/// the response.
+const FOLLOWS: f64 = 0.5;
+
+/// Differences below this share of the mean are what least squares leave of a constant.
+const ROUNDING: f64 = 1e-8;
+
 /// A difference quotient's step, as a share of the interval's half width.
 const STEP: f64 = 1e-2;
 
@@ -50,6 +58,8 @@ pub(super) struct Rows<'a> {
     evaluator: Evaluator<'a>,
     /// By replicate.
     samples: Vec<Vec<f64>>,
+    /// Of many parameters.
+    residuals: Option<Residuals>,
 }
 
 /// What one row says of one output.
@@ -79,7 +89,16 @@ impl<'a> Rows<'a> {
         // The largest power of two that is not more.
         let count = 1 << (count / REPLICATES).ilog2();
         let samples = (0..REPLICATES).into_par_iter().map(|number| laws.samples(number, count)).collect();
-        Ok(Self { description, options, laws, kept, evaluator, samples })
+        Ok(Self { description, options, laws, kept, evaluator, samples, residuals: None })
+    }
+
+    /// With errors from simulations at samples of the laws, where the parameters are many.
+    ///
+    /// # Errors
+    /// Where these cannot be simulated.
+    pub fn with_residuals(self, outputs: usize) -> Result<Self, String> {
+        let residuals = Residuals::of(self.description, self.options, self.laws, outputs);
+        Ok(Self { residuals: residuals.map_err(|error| error.to_string())?, ..self })
     }
 
     /// Tells the current activity.
@@ -163,23 +182,53 @@ impl<'a> Rows<'a> {
         self.go_on()?;
         let stated = self.kept.error(output);
         let own_error = self.own_error(row, output, stated.total[row]);
-        let shares = &self.description.statistics.quantiles;
+        let residual = self.residual(row, output);
+        let asked = &self.description.statistics.quantiles;
+        let around = if residual.is_some() { shares_around(0.5).len() } else { 1 };
+        let shares: Vec<f64> = match residual {
+            Some(_) => asked.iter().flat_map(|&share| shares_around(share)).collect(),
+            None => asked.clone(),
+        };
         let mut replicates = Replicates::new(shares.len());
         for replicate in 0..REPLICATES {
             self.go_on()?;
-            replicates.add(&mut self.values(row, output, replicate, fewer, own_error.is_some()), shares);
+            replicates.add(&mut self.values(row, output, replicate, fewer, own_error.is_some()), &shares);
         }
+        let (mut mean, deviation) = (replicates.mean(), replicates.deviation());
+        let quantiles = replicates.quantiles();
         let error = stated.total[row] + own_error.unwrap_or(0.0);
-        let with_error = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
+        let mut errors = vec![error; 2 + asked.len()];
+        let mut resolved = !stated.unresolved[row] && error.is_finite();
+        if let Some(residual) = residual {
+            mean.value += residual.mean;
+            mean.sampling += residual.sampling;
+            (errors[0], errors[1]) = (stated.time, residual.deviation + stated.time);
+            for (error, around) in errors[2..].iter_mut().zip(quantiles.chunks_exact(around)) {
+                *error = residual.of_quantile(around) + stated.time;
+            }
+            let follows =
+                residual.deviation <= FOLLOWS * deviation.value || residual.largest[0] <= ROUNDING * mean.value.abs();
+            resolved = follows && errors.iter().all(|error| error.is_finite());
+        }
+        let with_error =
+            |(Estimate { value, sampling }, &error): (Estimate, &f64)| Uncertain { value, sampling, error };
         let (linear, rss) = self.stack(row, output);
+        let asked = quantiles.into_iter().step_by(around);
         Ok(RowStatistics {
-            mean: with_error(replicates.mean()),
-            deviation: with_error(replicates.deviation()),
-            quantiles: replicates.quantiles().into_iter().map(with_error).collect(),
+            mean: with_error((mean, &errors[0])),
+            deviation: with_error((deviation, &errors[1])),
+            quantiles: asked.zip(&errors[2..]).map(with_error).collect(),
             linear,
             rss,
-            resolved: !stated.unresolved[row] && error.is_finite(),
+            resolved,
         })
+    }
+
+    /// Differences of simulations from the surrogate, where the parameters are many.
+    fn residual(&self, row: usize, output: usize) -> Option<Residual> {
+        let residuals = self.residuals.as_ref()?;
+        let surrogate = self.evaluator.values(row, &[output], &residuals.samples);
+        residuals.from(row, output, &surrogate)
     }
 
     /// An output's values in a row, enough of them for mean and deviation.

@@ -1,0 +1,122 @@
+//! What a surrogate of many parameters leaves to simulations at samples of the laws.
+//!
+//! The largest difference over a box of many parameters is in corners that next to no product comes near. Statistics
+//! are told by what products do: the mean of the differences corrects the mean, their deviation limits the error of the
+//! standard deviation (|σ(f) − σ(s)| ≤ σ(f − s)). Where a share δ of the products differs by more than ε, a quantile lies
+//! between those of the surrogate whose shares are δ less and δ more, and ε beyond them.
+
+use super::laws::Laws;
+use crate::model::Description;
+use crate::numerics::Sample;
+use crate::numerics::statistics::{Estimate, REPLICATES, beta_quantile};
+use crate::study::sample::{Chosen, sample};
+use crate::study::{Options, RunError};
+
+/// Of fewer parameters a surrogate's largest difference is told by its validation.
+pub(super) const MANY: usize = 12;
+
+/// Simulations, a power of two.
+const SIMULATIONS: usize = 1 << 10;
+
+/// Half width of a 95 % confidence interval over the standard error.
+const CONFIDENCE: f64 = 1.96;
+
+/// Numbers of simulations that may differ by more than ε, of which the best is taken for each quantile. What that says
+/// of the share of all products has 95 % confidence for all of them together.
+const BEYOND: [usize; 5] = [0, 4, 16, 64, 128];
+const DOUBT: f64 = 0.05 / BEYOND.len() as f64;
+
+/// Simulations of the first outputs, by sample, row and output.
+pub(super) struct Residuals {
+    pub samples: Vec<Sample>,
+    values: Vec<f64>,
+    rows: usize,
+    outputs: usize,
+}
+
+/// Differences of simulations from a surrogate.
+#[derive(Clone, Debug)]
+pub(super) struct Residual {
+    /// Their mean, with the half width of its 95 % confidence interval.
+    pub mean: f64,
+    pub sampling: f64,
+    /// Their standard deviation, at the upper end of its 95 % confidence interval.
+    pub deviation: f64,
+    /// The largest but so many as [`shares_around`] has shares beyond.
+    pub largest: [f64; BEYOND.len()],
+}
+
+impl Residuals {
+    /// Of the first so many outputs; `None` where the parameters are few, or samples cannot be simulated.
+    ///
+    /// # Errors
+    /// Where the model cannot be simulated.
+    pub fn of(
+        description: &Description,
+        options: &Options,
+        laws: &Laws,
+        outputs: usize,
+    ) -> Result<Option<Self>, RunError> {
+        if laws.dimension() <= MANY {
+            return Ok(None);
+        }
+        (options.stage)("samples of the laws");
+        let own = laws.samples(REPLICATES, SIMULATIONS);
+        let samples: Vec<Sample> =
+            own.chunks_exact(laws.dimension()).map(|own| own.iter().copied().collect()).collect();
+        let at = |indices: std::ops::Range<usize>| samples[indices].to_vec();
+        let chosen = Chosen { count: samples.len(), at: &at };
+        let options = Options { threads: options.threads, interrupted: options.interrupted, ..Options::default() };
+        let found = sample(description, &options, chosen, |trajectories| {
+            let (rows, columns) = (trajectories.times.len(), trajectories.outputs.len());
+            let mut values = Vec::with_capacity(SIMULATIONS * rows * outputs);
+            let done = trajectories.each::<RunError>(|chunk| {
+                chunk.chunks_exact(columns.max(1)).for_each(|row| values.extend_from_slice(&row[..outputs]));
+                Ok(())
+            })?;
+            Ok::<_, RunError>(done.map(|_| (values, rows)))
+        })?;
+        Ok(found.map(|(values, rows)| Self { samples, values, rows, outputs }))
+    }
+
+    /// Differences of an output in a row from these values of its surrogate at the samples; `None` where it was not
+    /// simulated there. A product that cannot be simulated leaves them unknown.
+    pub fn from(&self, row: usize, output: usize, surrogate: &[f64]) -> Option<Residual> {
+        if row >= self.rows || output >= self.outputs {
+            return None;
+        }
+        let value = |sample: usize| self.values[(sample * self.rows + row) * self.outputs + output];
+        let differences: Vec<f64> = surrogate.iter().enumerate().map(|(sample, own)| value(sample) - own).collect();
+        let count = differences.len() as f64;
+        let mean = differences.iter().sum::<f64>() / count;
+        let squares: f64 = differences.iter().map(|own| (own - mean) * (own - mean)).sum();
+        let deviation = (squares / (count - 1.0)).sqrt();
+        let mut sizes: Vec<f64> = differences.iter().map(|own| own.abs()).collect();
+        // NaN is the largest.
+        sizes.sort_unstable_by(f64::total_cmp);
+        Some(Residual {
+            mean,
+            sampling: CONFIDENCE * deviation / count.sqrt(),
+            deviation: deviation * (1.0 + CONFIDENCE / (2.0 * count).sqrt()),
+            largest: BEYOND.map(|beyond| if mean.is_nan() { f64::NAN } else { sizes[sizes.len() - 1 - beyond] }),
+        })
+    }
+}
+
+/// The share of a quantile, and pairs of those between which it lies but for what differs by more.
+pub(super) fn shares_around(share: f64) -> Vec<f64> {
+    let beyond = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (SIMULATIONS - count) as f64);
+    let pairs = BEYOND.map(beyond).into_iter().flat_map(|own| [(share - own).max(0.0), (share + own).min(1.0)]);
+    std::iter::once(share).chain(pairs).collect()
+}
+
+impl Residual {
+    /// How far a quantile may be off, given those of the surrogate at the shares around it.
+    pub fn of_quantile(&self, around: &[Estimate]) -> f64 {
+        let value = around[0].value;
+        let pairs = around[1..].chunks_exact(2).zip(self.largest);
+        let errors = pairs.map(|(pair, largest)| (value - pair[0].value).max(pair[1].value - value) + largest);
+        // Written so that the unknown is.
+        errors.reduce(|a, b| if b < a { b } else { a }).unwrap_or(f64::NAN)
+    }
+}
