@@ -154,7 +154,7 @@ fn differs_from(study: &Study, wanted: &[Wanted], [found, others]: [&[Gradient];
     }
     let differs = |(wanted, (own, other)): &(&Wanted, (&Gradient, &Gradient))| {
         let pairs = influences(own).into_iter().zip(influences(other));
-        // Written so that what is not a number differs.
+        // Written so that NaN differs.
         !pairs.map(|(own, other)| (own - other).abs()).all(|change| change <= AGREEMENT * largest[wanted.output])
     };
     let pairs = wanted.iter().zip(found.iter().zip(others));

@@ -2,8 +2,8 @@
 //!
 //! The largest difference over a box of many parameters is in corners that next to no product comes near. Statistics
 //! are told by what products do: the mean of the differences corrects the mean, their deviation limits the error of the
-//! standard deviation (|σ(f) − σ(s)| ≤ σ(f − s)). Where a share δ of the products differs by more than ε, a quantile lies
-//! between those of the surrogate whose shares are δ less and δ more, and ε beyond them.
+//! standard deviation (|σ(f) − σ(s)| ≤ σ(f − s)). Where a share δ of the products differs by more than ε, a quantile
+//! lies between those of the surrogate whose shares are δ less and δ more, and ε beyond them.
 
 use super::laws::Laws;
 use crate::model::Description;
@@ -21,8 +21,8 @@ const SIMULATIONS: usize = 1 << 10;
 /// Half width of a 95 % confidence interval over the standard error.
 const CONFIDENCE: f64 = 1.96;
 
-/// Numbers of simulations that may differ by more than ε, of which the best is taken for each quantile. What that says
-/// of the share of all products has 95 % confidence for all of them together.
+/// Numbers of simulations that may differ by more than ε, of which the best is taken for each quantile. The limits of
+/// the shares of all products have 95 % confidence together.
 const BEYOND: [usize; 5] = [0, 4, 16, 64, 128];
 const DOUBT: f64 = 0.05 / BEYOND.len() as f64;
 

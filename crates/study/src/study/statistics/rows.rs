@@ -39,8 +39,8 @@ const COMPARED: usize = 256;
 /// error.
 const NEAR: (f64, f64) = (1e-4, 0.5);
 
-/// A surrogate whose differences from simulations vary by more than this share of what it varies itself does not follow
-/// the response.
+/// A surrogate does not follow the response if its differences from simulations vary by more than this share of its own
+/// deviation.
 const FOLLOWS: f64 = 0.5;
 
 /// Differences below this share of the mean are what least squares leave of a constant.
@@ -210,14 +210,13 @@ impl<'a> Rows<'a> {
                 residual.deviation <= FOLLOWS * deviation.value || residual.largest[0] <= ROUNDING * mean.value.abs();
             resolved = follows && errors.iter().all(|error| error.is_finite());
         }
-        let with_error =
-            |(Estimate { value, sampling }, &error): (Estimate, &f64)| Uncertain { value, sampling, error };
+        let with_error = |own: Estimate, error: f64| Uncertain { value: own.value, sampling: own.sampling, error };
         let (linear, rss) = self.stack(row, output);
         let asked = quantiles.into_iter().step_by(around);
         Ok(RowStatistics {
-            mean: with_error((mean, &errors[0])),
-            deviation: with_error((deviation, &errors[1])),
-            quantiles: asked.zip(&errors[2..]).map(with_error).collect(),
+            mean: with_error(mean, errors[0]),
+            deviation: with_error(deviation, errors[1]),
+            quantiles: asked.zip(&errors[2..]).map(|(own, &error)| with_error(own, error)).collect(),
             linear,
             rss,
             resolved,

@@ -31,7 +31,7 @@ pub fn segmented_nominal(study: &Study) -> Result<Option<Schedule>, SimulationEr
     if !opens_nothing(study) {
         return Ok(None);
     }
-    segments_of_samples(study, &[study.domain.nominal.clone()])
+    segments_of_samples(study, std::slice::from_ref(&study.domain.nominal))
 }
 
 /// Steps between the events that some samples meet.
