@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use super::closure::Closure;
 use super::followed::FollowedEnds;
 use super::proof::{EnclosedRow, EnclosureEnd, Proof};
 use crate::certificate::Certified;
@@ -375,17 +376,4 @@ pub fn lines(ensemble: &dyn Ensemble, observed: Observed) -> usize {
         Observed::Outputs => ensemble.outputs(),
         Observed::Motion => 2 * ensemble.scales().len() + ensemble.outputs(),
     }
-}
-
-/// Outputs from independent coordinates and their velocities, without time integration.
-pub trait Closure: Sync {
-    /// The independent coordinates.
-    fn independent(&self) -> &[usize];
-
-    /// Whether the outputs depend on velocities.
-    fn needs_velocities(&self) -> bool;
-
-    /// Outputs (output, point) at `count` points, given their parameters (parameter, point) and motions (2n lines,
-    /// point); NaN where there is no solution near a motion.
-    fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64>;
 }

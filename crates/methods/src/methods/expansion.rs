@@ -1,6 +1,6 @@
 //! A row's expanded motion, and the outputs that follow from it through the loop closure.
 
-use super::ensemble::Closure;
+use super::closure::Closure;
 use crate::numerics::{ParameterBox, Phase, SparseBasis, SparseWork};
 
 /// ξ beyond the box by less is of its end.

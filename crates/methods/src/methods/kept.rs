@@ -5,7 +5,7 @@
 //! through its own samples, or follows from the expanded coordinates through a loop closure, which whoever evaluates it
 //! has compiled.
 
-use super::ensemble::Closure;
+use super::closure::Closure;
 use super::expansion::{Expansion, Moves};
 use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
 

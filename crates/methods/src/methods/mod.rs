@@ -4,6 +4,7 @@
 //! which follow the names on the command line, the order of bands in files, the legend of plots and
 //! `mbint explain --methods`. A method sees an [`Ensemble`] and knows neither mechanics nor who runs it.
 
+mod closure;
 mod ensemble;
 mod expansion;
 mod followed;
@@ -21,8 +22,9 @@ mod taylor;
 
 pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose, ends_of_combinations};
+pub use closure::Closure;
 pub use ensemble::{
-    Closure, Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Observed, OfParameters,
+    Combination, DenseMotions, Effort, Ensemble, EnsembleError, Interrupted, JET_WORK, Observed, OfParameters,
     Sampling, Simulated, Stop, StopCause, TooDeep, Until, lines, scan, scan_shard,
 };
 pub use followed::{Followed, FollowedEnds, Sensitivity};

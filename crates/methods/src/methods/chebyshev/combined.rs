@@ -11,7 +11,8 @@ use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
 use super::range_search::{Functions, Previous, RangeSearch};
-use crate::methods::ensemble::{Closure, Combination, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated};
+use crate::methods::closure::Closure;
+use crate::methods::ensemble::{Combination, DenseMotions, Ensemble, EnsembleError, Sampling, Simulated};
 use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
 use crate::methods::validation::Validation;
 use crate::numerics::{CutMotions, ParameterBox, Range, Sample, largest};

@@ -20,7 +20,7 @@ mod total_degree;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Interrupted, Observed, Sampling, Simulated, Until, lines};
-use super::followed::{Followed, FollowedEnds};
+use super::followed::Followed;
 use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
@@ -40,10 +40,6 @@ use sensitivity::SensitivityAnalysis;
 
 /// The least share of a tolerance that is left to the surrogate, whatever the steps take.
 const LEAST_SHARE: f64 = 0.25;
-
-/// For more parameters a sparse grid is not tried where ends that were followed along gradients miss the tolerance: its
-/// nodes and its own search for ends grow with a power of their number.
-const MOST_ON_GRIDS: usize = 12;
 
 /// Highest degree, and most nodes along an axis.
 pub(super) const MOST_ORDER: usize = 200;
@@ -332,11 +328,9 @@ fn adapted(
     let is_within = |(row, ends): (usize, &[Followed])| {
         goal.share(row, ends.iter().map(|found| SAFETY_OF_SURROGATE * found.error)) <= 1.0
     };
-    let are_many = ensemble.domain().dimension() > MOST_ON_GRIDS;
-    // A surrogate that is to be kept is one of the whole box: of fewer parameters a grid has the smaller error.
-    let has_kept = |followed: &&FollowedEnds| !request.keep || are_many && followed.surrogate().is_some();
-    if let Some(followed) = ensemble.followed().filter(has_kept)
-        && (are_many || followed.rows().enumerate().all(is_within))
+    let parameters = ensemble.domain().dimension();
+    if let Some(followed) = ensemble.followed()
+        && along_gradients::are_bounds(followed, parameters, request.keep, is_within)
     {
         return Ok(along_gradients::bounds(followed, ensemble.outputs(), ensemble.rows()));
     }

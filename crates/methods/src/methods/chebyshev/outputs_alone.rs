@@ -6,7 +6,8 @@ use std::ops::Range as Rows;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::methods::ensemble::{Closure, Combination, Ensemble, EnsembleError, Observed, Sampling, Simulated};
+use crate::methods::closure::Closure;
+use crate::methods::ensemble::{Combination, Ensemble, EnsembleError, Observed, Sampling, Simulated};
 use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
 use crate::numerics::{ParameterBox, Range, Sample};
 

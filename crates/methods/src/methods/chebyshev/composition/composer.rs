@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::{Row, RowMotion};
 use crate::methods::chebyshev::range_search::Previous;
-use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
+use crate::methods::closure::Closure;
+use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::numerics::{Course, ParameterBox, Surrogate, SurrogateWork};
 
 /// Motions and outputs of a surrogate's samples in some rows.

@@ -15,7 +15,8 @@ use phases::{as_times, phases, with_turns};
 pub(super) use phases::{courses, turning};
 
 use super::range_search::{Evaluate, Functions, Previous, RangeSearch, block};
-use crate::methods::ensemble::{Closure, Ensemble};
+use crate::methods::closure::Closure;
+use crate::methods::ensemble::Ensemble;
 use crate::methods::expansion::Moves;
 use crate::numerics::{
     Course, Extent, ParameterBox, Phase, Range, Surrogate, SurrogateWork, corners, largest, limits, surrogate_error,

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
+use crate::methods::closure::Closure;
+use crate::methods::ensemble::{Ensemble, EnsembleError};
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{Course, ParameterBox, Phase, Range, SparseBasis};
 

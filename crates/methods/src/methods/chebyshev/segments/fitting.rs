@@ -157,7 +157,8 @@ mod tests {
     use symdiff::taylor_model::ModelSpace;
 
     use super::*;
-    use crate::methods::ensemble::{Closure, Sampling, Simulated};
+    use crate::methods::closure::Closure;
+    use crate::methods::ensemble::{Sampling, Simulated};
     use crate::methods::proof::{EnclosedRow, EnclosureEnd, Proof};
     use crate::numerics::{BoundaryMargins, ParameterBox, STEP_NODES, Sample, Surrogate, largest, spread, step_nodes};
 

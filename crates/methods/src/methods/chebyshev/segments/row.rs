@@ -4,7 +4,8 @@ use super::piece::Piece;
 use super::pieces::Pieces;
 use super::surrogate::Point;
 use crate::methods::chebyshev::sensitivity::Predicted;
-use crate::methods::ensemble::{Closure, Ensemble};
+use crate::methods::closure::Closure;
+use crate::methods::ensemble::Ensemble;
 use crate::numerics::{Extent, Surrogate, largest};
 
 /// A row of output in one part of the box.
