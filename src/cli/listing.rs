@@ -1,4 +1,4 @@
-//! `mbint explain --units`, `--functions`, `--outputs`, `--tuning`, `--exit-codes`: lists of the language and of the
+//! `mbint explain --units`, `--functions`, `--outputs`, `--tuning`, `--exit-codes`, `--codes`: lists of the language and of the
 //! program, from the tables of the code.
 
 use super::Failure;
@@ -9,7 +9,9 @@ use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 use crate::study::tuning;
+use crate::syntax::Code;
 use crate::syntax::tuning::Constant;
+use serde::Serialize;
 
 /// A list of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +21,7 @@ pub(super) enum Listing {
     Outputs,
     Tuning,
     ExitCodes,
+    Codes,
 }
 
 impl Listing {
@@ -30,6 +33,7 @@ impl Listing {
             Self::Outputs => text(&outputs()),
             Self::Tuning => text(&tuning()),
             Self::ExitCodes => text(&Status::ALL.map(Status::docs)),
+            Self::Codes => text(&codes()),
         }
     }
 
@@ -44,6 +48,7 @@ impl Listing {
             Self::Outputs => to_json(&outputs()),
             Self::Tuning => to_json(&tuning()),
             Self::ExitCodes => to_json(&Status::ALL.map(Status::docs)),
+            Self::Codes => to_json(&codes()),
         }
     }
 
@@ -55,6 +60,7 @@ impl Listing {
             Self::Outputs => page(&outputs()),
             Self::Tuning => page(&tuning()),
             Self::ExitCodes => page(&Status::ALL.map(Status::docs)),
+            Self::Codes => page(&codes()),
         }
     }
 }
@@ -77,6 +83,17 @@ fn outputs() -> Vec<OutputDocs> {
         }));
     }
     outputs
+}
+
+/// A code, for those who list it.
+#[derive(Serialize)]
+struct CodeDocs {
+    code: &'static str,
+    title: &'static str,
+}
+
+fn codes() -> Vec<CodeDocs> {
+    Code::ALL.iter().map(|code| CodeDocs { code: code.id(), title: code.title() }).collect()
 }
 
 /// Something listed, a row each.
@@ -179,6 +196,18 @@ impl Row<3> for StatusDocs {
 
     fn cells(&self) -> [String; 3] {
         [self.code.to_string(), self.meaning.to_owned(), self.results.to_owned()]
+    }
+}
+
+impl Row<2> for CodeDocs {
+    const TITLE: &'static str = "Codes of messages";
+    const INTRODUCTION: &'static str = "Messages about mistakes have codes, as in `error[E0401]`. A code is a kind of mistake that has one cure; `mbint explain\n\
+        E0401` prints its page, and editors link to it. Codes that begin with W are warnings. A number never gets another\n\
+        meaning. `mbint explain --codes` prints this list.";
+    const HEADINGS: [(&'static str, Align); 2] = [("code", Align::Left), ("kind of mistake", Align::Left)];
+
+    fn cells(&self) -> [String; 2] {
+        [self.code.to_owned(), self.title.to_owned()]
     }
 }
 

@@ -23,7 +23,7 @@ type Mark = Option<(SystemTime, u64)>;
 
 pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Status, Failure> {
     if request.models.iter().any(|path| is_standard_input(path)) {
-        return Err(Failure::Wrong("standard input does not change: --watch needs a file".to_owned()));
+        return Err(Failure::wrong("standard input does not change: --watch needs a file"));
     }
     let is_quiet = request.quiet;
     let mut known: BTreeMap<String, Snapshot> = BTreeMap::new();

@@ -142,14 +142,14 @@ pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec
         let wrong = |wrong: Diagnostics| {
             // The terminal writes the first `error: ` itself.
             let text = wrong.to_string();
-            Failure::Wrong(text.strip_prefix("error: ").unwrap_or(&text).to_owned())
+            Failure::wrong(text.strip_prefix("error: ").unwrap_or(&text).to_owned())
         };
         laid.extend(read_overlay(path).map_err(wrong)?);
     }
     for all in [&laid[..], set] {
         let twice = |&(i, setting): &(usize, &Override)| all[..i].iter().any(|earlier| earlier.name == setting.name);
         if let Some((_, setting)) = all.iter().enumerate().find(twice) {
-            return Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name)));
+            return Err(Failure::wrong(format!("parameter `{}` is set twice", setting.name)));
         }
     }
     laid.retain(|own| set.iter().all(|setting| setting.name != own.name));

@@ -1,5 +1,6 @@
 //! Values of formulas at the corners of the parameters' intervals, and requirements on them.
 
+use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::formulas::evaluate;
@@ -40,7 +41,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             } else {
                 format!("`{}` {problem}, but is {value}{label}", clip(text))
             };
-            self.error(node.span.clone(), message, None);
+            self.error(Code::OutOfRange, node.span.clone(), message, None);
             return;
         }
     }

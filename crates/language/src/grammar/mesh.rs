@@ -1,5 +1,6 @@
 //! Meshes: files of triangles that a model names.
 
+use crate::syntax::codes::Code;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -40,7 +41,7 @@ impl Value for Mesh {
             Ok(path) => reader.files.full(&path),
             Err(error) => {
                 let help = error.help.clone();
-                reader.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
+                reader.diagnostics.push(Diagnostic::error(error.code, node.span.clone(), error.message).help(help));
                 return None;
             }
         };
@@ -52,7 +53,7 @@ impl Value for Mesh {
             Ok(found) => Some(Self { file: name.clone(), triangles: found.into() }),
             Err(reason) => {
                 let help = "an STL or OBJ file in the model's folder belongs here".to_owned();
-                reader.error(node.span.clone(), format!("`{}` is no mesh: {reason}", clip(name)), help);
+                reader.error(Code::BadMesh, node.span.clone(), format!("`{}` is no mesh: {reason}", clip(name)), help);
                 None
             }
         }

@@ -1,5 +1,6 @@
 //! `on` and `coordinate`: keys that name a joint's coordinate.
 
+use crate::syntax::codes::Code;
 use schemars::{SchemaGenerator, json_schema};
 use symdiff::Formula;
 
@@ -76,7 +77,12 @@ impl Group for Option<OnJoint> {
             return reader.on_joint(fields).map(Some);
         }
         if fields.get("coordinate").is_some() {
-            reader.error(fields.key_span("coordinate"), "`coordinate` goes with `on`, a joint", None);
+            reader.error(
+                Code::MisplacedKey,
+                fields.key_span("coordinate"),
+                "`coordinate` goes with `on`, a joint",
+                None,
+            );
         }
         Some(None)
     }

@@ -1,5 +1,6 @@
 //! Two keys of which the second is larger, or only one may be there.
 
+use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::reader::Reader;
@@ -14,7 +15,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             if let Some((first, second)) = values.filter(|(first, second)| first >= second) {
                 let label = &self.corners[corner].label;
                 let message = format!("`{high}` ({second}) must be larger than `{low}` ({first}){label}");
-                self.error(fields.key_span(high), message, None);
+                self.error(Code::ReversedRange, fields.key_span(high), message, None);
                 return;
             }
         }

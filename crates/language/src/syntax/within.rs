@@ -1,5 +1,6 @@
 //! Which files a model may name: those in its folder or below, and those in a folder that the user names or below.
 
+use super::codes::Code;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -93,7 +94,9 @@ impl Within {
             }
         };
         let message = format!("`{}` {verb} {folder}", clip(name));
-        Err(Box::new(Diagnostic::of_file(message).help(format!("a file that a model names lies {help}"))))
+        Err(Box::new(
+            Diagnostic::of_file(Code::FileNotFound, message).help(format!("a file that a model names lies {help}")),
+        ))
     }
 
     /// Where a path leads that is seen from the model's folder.

@@ -1,6 +1,7 @@
 //! Taylor bounds: the scheme in jet arithmetic gives the Taylor polynomial about the middle of the box, to any order,
 //! from one simulation.
 
+use crate::syntax::codes::Code;
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
@@ -65,7 +66,12 @@ impl Taylor {
         let coefficients = (1..=uncertain).fold(1.0, |count, k| count * (order + k) as f64 / k as f64);
         if coefficients > MOST_COEFFICIENTS {
             let message = format!("order {order} in {uncertain} parameters has {coefficients:.2e} coefficients");
-            reader.error(fields.key_span("order"), message, format!("at most {MOST_COEFFICIENTS:e} can be computed"));
+            reader.error(
+                Code::TooLarge,
+                fields.key_span("order"),
+                message,
+                format!("at most {MOST_COEFFICIENTS:e} can be computed"),
+            );
         }
         Some(Self { order, range: range? })
     }

@@ -1,5 +1,6 @@
 //! `joints:`.
 
+use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::description::Joint;
@@ -52,6 +53,6 @@ fn check_drives(reader: &mut Reader, entries: &[Entry]) {
         };
         let message = format!("the {coordinate} of `{joint}` is prescribed by `{first}` already");
         let help = "leave one of them out, or drive another coordinate".to_owned();
-        reader.error(entries[second].key_span.clone(), message, help);
+        reader.error(Code::DrivenTwice, entries[second].key_span.clone(), message, help);
     }
 }

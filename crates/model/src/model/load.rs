@@ -1,5 +1,6 @@
 //! A file → its [`Description`], or everything that is wrong with it.
 
+use crate::syntax::codes::Code;
 use std::path::Path;
 
 use super::description::{Description, Space};
@@ -21,6 +22,7 @@ use crate::keys;
 use crate::model::names::Reader;
 use crate::robots::mjcf::is_mjcf;
 use crate::robots::urdf::is_urdf;
+use crate::syntax::Coded;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
 use crate::syntax::source::Span;
@@ -175,7 +177,7 @@ pub(super) fn read_from(origin: Origin, text: &str, overrides: &[Override]) -> R
     }
     if let Some(zero) = text.find('\0') {
         let message = "the file is not text: it has a zero byte";
-        diagnostics.push(Diagnostic::error(zero..zero + 1, message));
+        diagnostics.push(Diagnostic::error(Code::NotText, zero..zero + 1, message));
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     }
     let Some(root) = yaml::parse(text, &mut diagnostics) else {
@@ -391,4 +393,10 @@ fn describe(
 
 fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [Entry] {
     node.map_or(&[], |node| reader.named_entries(node, what))
+}
+
+impl Coded for UnknownScene {
+    fn code(&self) -> Option<Code> {
+        Some(Code::UnknownName)
+    }
 }

@@ -1,5 +1,6 @@
 //! `--with FILE`: parameters that a file lays over a model, as `mbint allocate` writes it.
 
+use crate::syntax::codes::Code;
 use std::path::Path;
 
 use crate::expand::overrides::Override;
@@ -47,7 +48,7 @@ pub fn read_overlay(path: &Path) -> Result<Vec<Override>, Diagnostics> {
 }
 
 fn error(diagnostics: &mut Diagnostics, span: Span, message: String, help: impl Into<Option<String>>) {
-    diagnostics.push(Diagnostic::error(span, message).help(help));
+    diagnostics.push(Diagnostic::error(Code::BadOverride, span, message).help(help));
 }
 
 fn entries<'n>(node: &'n Node, diagnostics: &mut Diagnostics) -> &'n [Entry] {

@@ -1,6 +1,7 @@
 //! Formulas of numbers that are known by their names when a sample is over: reduced outputs, and results
 //! that an analysis adds to the outputs.
 
+use crate::syntax::codes::Code;
 use std::ops::Range;
 
 use symdiff::Formula;
@@ -147,7 +148,7 @@ pub(super) fn part(reader: &mut Reader, node: &Node, range: Range<usize>, number
     }
     if let Some((name, span)) = unknown {
         let message = format!("`{name}` is {}", numbers.refusal);
-        reader.error(scalar.place(&node.span, span), message, numbers.help.to_owned());
+        reader.error(Code::UnknownName, scalar.place(&node.span, span), message, numbers.help.to_owned());
         return None;
     }
     let mut mismatches = Vec::new();
@@ -161,7 +162,7 @@ pub(super) fn part(reader: &mut Reader, node: &Node, range: Range<usize>, number
     let dimension = dimension::analyse(&formula, kind, |_| [None; 2], &mut mismatches).dimension();
     for mismatch in mismatches {
         let part = range.start + mismatch.span.start..range.start + mismatch.span.end;
-        reader.error(scalar.place(&node.span, part), mismatch.message, None);
+        reader.error(Code::WrongDimension, scalar.place(&node.span, part), mismatch.message, None);
     }
     Some(Source { formula, dimension })
 }

@@ -1,5 +1,6 @@
 //! Reactions of bearings that teeth push on: refused, for a ratio does not tell where teeth touch, nor at which angle.
 
+use crate::syntax::codes::Code;
 use std::collections::{BTreeMap, HashSet};
 
 use symdiff::Formula;
@@ -42,7 +43,7 @@ pub fn check(reader: &mut Reader, joints: &[Entry], effects: &[Entry], outputs: 
             "give `{teeth}` a `pressure_angle`, e.g. `20 deg`, and between joints, the bearings: then the force of the teeth acts \
              at the pitch point"
         );
-        reader.error(span, message, help);
+        reader.error(Code::IncompleteElement, span, message, help);
     }
 }
 

@@ -28,6 +28,7 @@ use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use crate::syntax::codes::Code;
 use adaptive::{Goal, OutputGoal};
 pub use combined::ends_of_combinations;
 pub use composition::can_compose;
@@ -158,20 +159,30 @@ impl Chebyshev {
                 if expand == Some(Expand::Output) { fields.get("range").or(fields.get("expand")) } else { None };
             if let Some(node) = of_output {
                 let message = "an output is expanded to an order that is given, not to a tolerance".to_owned();
-                reader.error(node.span.clone(), message, "give an `order`, or leave this out".to_owned());
+                reader.error(
+                    Code::BadMethod,
+                    node.span.clone(),
+                    message,
+                    "give an `order`, or leave this out".to_owned(),
+                );
             }
             return Some(unspecified);
         }
         if let (Some(Expand::Coordinates), Some(node)) = (expand, fields.get("range")) {
             let help = "leave it out, or expand the output".to_owned();
-            reader.error(node.span.clone(), "`range` is about an expanded output".to_owned(), help);
+            reader.error(Code::BadMethod, node.span.clone(), "`range` is about an expanded output".to_owned(), help);
         }
         let range = request::range(reader, fields);
         let (order, nodes) = (order?, nodes?);
         let few = order.iter().zip(&nodes).position(|(order, nodes)| nodes <= order);
         if let (Some(few), Some(node)) = (few, fields.get("nodes")) {
             let message = format!("{} nodes are too few for order {}", nodes[few], order[few]);
-            reader.error(node.span.clone(), message, format!("at least {} are needed", order[few] + 1));
+            reader.error(
+                Code::BadMethod,
+                node.span.clone(),
+                message,
+                format!("at least {} are needed", order[few] + 1),
+            );
         }
         let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
         request::check_simulations(reader, fields, key, uncertain.len(), total_degree::samples(&order, &nodes));

@@ -18,6 +18,7 @@
 //! Angles are those of two bodies about z, or of two joints: then the line of centres may turn with the joints' first
 //! bodies.
 
+use crate::syntax::codes::Code;
 use mbint_derive::{Choice, Element};
 use symdiff::{Binary, Formula};
 
@@ -176,7 +177,7 @@ impl Checked for Belt {
             }
             [false, true] => {
                 let message = "`distance` goes with `centers`, the centres of the pulleys";
-                reader.error(fields.key_span("distance"), message, None);
+                reader.error(Code::BadSurface, fields.key_span("distance"), message, None);
             }
             _ => {}
         }

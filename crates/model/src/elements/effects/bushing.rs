@@ -16,6 +16,7 @@
 //! torque q₀ y + e × y of the rotational part y of 𝐊 x, so that V gains ½ xᵀ 𝐊 x. Where 𝐊 is not symmetric, or a
 //! stiffness depends on the motion, there is no potential and none is counted.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
 use symdiff::{Formula, Scalar};
@@ -212,6 +213,6 @@ fn six<'n, S: SymbolTable>(reader: &mut Reader<'_, S>, node: &'n Node, wanted: &
         yaml::Value::Sequence(items) => format!("a list of {}", items.len()),
         _ => node.kind().to_owned(),
     };
-    reader.error(node.span.clone(), format!("{wanted} belong here, but here is {found}"), None);
+    reader.error(Code::WrongShape, node.span.clone(), format!("{wanted} belong here, but here is {found}"), None);
     None
 }

@@ -6,6 +6,7 @@
 //!
 //! |u| is √(u² + ε²), ε = 1 µm/s: the square law has no second derivative at rest. It has no potential.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
@@ -92,14 +93,14 @@ impl Checked for Drag {
         if AERODYNAMIC.into_iter().any(given) {
             if given("quadratic") {
                 let message = "`quadratic` excludes `density`, `drag_coefficient` and `area`";
-                reader.error(fields.key_span("quadratic"), message, None);
+                reader.error(Code::OutOfRange, fields.key_span("quadratic"), message, None);
             }
             for key in AERODYNAMIC {
                 reader.required(fields, key);
             }
         } else if fields.lacks_all(&["quadratic", "linear"]) {
             let help = "or `density`, `drag_coefficient` and `area`".to_owned();
-            reader.error(fields.at.clone(), "a drag needs `quadratic` or `linear`", help);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a drag needs `quadratic` or `linear`", help);
         }
     }
 }

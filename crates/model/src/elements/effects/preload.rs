@@ -7,6 +7,7 @@
 //!
 //! Points that coincide have no line between them.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
@@ -77,7 +78,7 @@ impl Checked for Preload {
                 reader.required(fields, "between");
             }
             [Some(_), Some(_)] => {
-                reader.error(fields.key_span("between"), "`on` and `between` exclude each other", None);
+                reader.error(Code::ExclusiveKeys, fields.key_span("between"), "`on` and `between` exclude each other", None);
             }
             _ => {}
         }

@@ -8,6 +8,7 @@
 //! sat is that of a servo, T the lag with which y follows slow inputs. Since y follows c, which is within the limits, y
 //! does not run up against them. It begins at `initial`.
 
+use crate::syntax::codes::Code;
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -107,12 +108,12 @@ impl Group for RateLimit {
             ["rate", "lower", "upper", "initial"].map(|key| constant(reader, fields, key, false));
         if fields.get("rate").is_none() && fields.get("lower").is_none() && fields.get("upper").is_none() {
             let message = "a rate limit needs `rate`, or `lower` and `upper`";
-            reader.error(fields.at.clone(), message, "without, it would be a `filter`".to_owned());
+            reader.error(Code::IncompleteElement, fields.at.clone(), message, "without, it would be a `filter`".to_owned());
             return None;
         }
         for (key, other) in [("lower", "upper"), ("upper", "lower")] {
             if fields.get(key).is_some() && fields.get(other).is_none() {
-                reader.error(fields.key_span(key), format!("`{key}` goes with `{other}`"), None);
+                reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` goes with `{other}`"), None);
                 return None;
             }
         }

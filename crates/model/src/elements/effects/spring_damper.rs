@@ -14,6 +14,7 @@
 //! leaves nothing behind. A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else
 //! a formula may depend on. With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -151,7 +152,7 @@ fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring
 impl Checked for SpringDamper {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if fields.lacks_all(&["stiffness", "damping", "force"]) {
-            reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
         }
     }
 }

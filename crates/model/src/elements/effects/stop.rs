@@ -6,6 +6,7 @@
 //!
 //! Between the stops nothing acts, and nothing is computed but where s is.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -85,7 +86,7 @@ impl ForceElement for Stop {
 impl Checked for Stop {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if fields.lacks_all(&["lower", "upper"]) {
-            reader.error(fields.at.clone(), "a stop needs `lower` or `upper`", None);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a stop needs `lower` or `upper`", None);
         }
     }
 }

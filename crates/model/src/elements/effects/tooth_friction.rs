@@ -12,6 +12,7 @@
 //! where they are by the constraint: on a worm the force acts at the pitch point and on the bearings; that of teeth
 //! that roll acts along the rims alone.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar};
@@ -143,7 +144,7 @@ impl Checked for ToothFriction {
             MeshKind::Sliding => ("coefficient", "efficiency", "a worm gear has a `coefficient` of friction"),
         };
         if fields.get(other).is_some() {
-            reader.error(fields.key_span(other), what, format!("give `{needed}` instead"));
+            reader.error(Code::MisplacedKey, fields.key_span(other), what, format!("give `{needed}` instead"));
         } else {
             reader.required(fields, needed);
         }
@@ -183,7 +184,7 @@ impl Group for Teeth {
         let Some(kind) = reader.model.mesh_kind(joint) else {
             let message = format!("`{}` has no teeth", reader.model.joint_name(joint));
             let help = "tooth friction acts in joints `gear`, `rack`, `planetary` and `worm`".to_owned();
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::UnsuitableJoint, node.span.clone(), message, help);
             return None;
         };
         Some(Self { joint, kind })

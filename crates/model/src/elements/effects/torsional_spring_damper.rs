@@ -8,6 +8,7 @@
 //! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own
 //! angle φ and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
@@ -100,7 +101,7 @@ impl Checked for TorsionalSpringDamper {
         }
         reader.exclude(fields, ["on", "between"]);
         if fields.lacks_all(&["stiffness", "damping", "torque"]) {
-            reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
         }
     }
 
@@ -110,7 +111,7 @@ impl Checked for TorsionalSpringDamper {
         if let (Some(body), Some(node)) = (free, fields.get("between")) {
             let message = format!("`{}` turns about more than z, so it has no angle", reader.model.body_name(body.0));
             let help = "write `on` with the joint whose angle it acts on, or make it a `bushing`";
-            reader.error(node.span.clone(), message, help.to_owned());
+            reader.error(Code::NoAngle, node.span.clone(), message, help.to_owned());
         }
     }
 }

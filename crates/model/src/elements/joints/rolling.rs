@@ -10,6 +10,7 @@
 //! the force −λ t where it touches: at B with the torque −λ radius. The rail has the opposites there. Both hold
 //! whatever their size: `friction` of a `contact` says when a wheel slips or leaves its rail.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
@@ -50,7 +51,7 @@ impl Checked for Rolling {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if reader.model.is_spatial() {
             let help = "in space `rolling_on_plane` rolls a disc; on a rail a `rack` couples the angle of an axle to the way of its carriage";
-            reader.error(fields.at.clone(), "a `rolling` wheel is one of the plane, but the model is spatial", help.to_owned());
+            reader.error(Code::NotPlanar, fields.at.clone(), "a `rolling` wheel is one of the plane, but the model is spatial", help.to_owned());
         }
     }
 }

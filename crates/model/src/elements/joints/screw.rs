@@ -9,6 +9,7 @@
 //! thread. −Φ_qᵀ λ of the last row is the force −λ a₁ at B and the torque +λ (pitch / 2π) a₁ on the second body, and
 //! the opposite on the first.
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
@@ -97,7 +98,7 @@ impl Checked for Screw {
         };
         if per_angle {
             let help = "a pitch is the advance in a turn: write `5 mm` for 5 mm/rev".to_owned();
-            reader.error(node.span.clone(), "a length an angle stands where a length (m) belongs", help);
+            reader.error(Code::WrongDimension, node.span.clone(), "a length an angle stands where a length (m) belongs", help);
         }
     }
 }

@@ -24,6 +24,7 @@
 //! constraint equates angles, so its multiplier acts as torques about the axes: `instead` is what the force at P stands
 //! for. The difference does no work, and is carried by the bearings. (Norton, *Machine Design* (2014), ch. 12 and 13.)
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::Schema;
 use symdiff::{Formula, Scalar};
@@ -73,7 +74,12 @@ impl Checked for Flanks {
         for key in ["helix_angle", "face"] {
             if fields.get(key).is_some() && fields.get("pressure_angle").is_none() {
                 let help = "e.g. `pressure_angle: 20 deg`".to_owned();
-                reader.error(fields.key_span(key), format!("`{key}` goes with a `pressure_angle`"), help);
+                reader.error(
+                    Code::MisplacedKey,
+                    fields.key_span(key),
+                    format!("`{key}` goes with a `pressure_angle`"),
+                    help,
+                );
             }
         }
     }

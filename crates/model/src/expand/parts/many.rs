@@ -1,5 +1,6 @@
 //! Effects on many: `friction: { joint_friction: { on: all revolute, … } }`.
 
+use crate::syntax::codes::Code;
 use std::sync::Arc;
 
 use super::{Writer, patterns};
@@ -71,7 +72,7 @@ fn one_each(writer: &mut Writer, effect: &Entry, node: &Node) -> Vec<Entry> {
             let help = help.map(|help| format!("{help}; or name joints by a pattern: `all hip_*`"));
             (format!("`{}` is not a kind of joint", clip(wanted)), help)
         };
-        writer.report.error(node.span.clone(), message, help);
+        writer.report.error(Code::UnknownName, node.span.clone(), message, help);
         return Vec::new();
     }
     writer.parts.instances.push(Instance { name: effect.key.clone(), kind: InstanceKind::Effect });

@@ -1,5 +1,6 @@
 //! Parameters of instances: given, the assembly's, or one for all; and those that are whole numbers.
 
+use crate::syntax::codes::Code;
 use std::collections::HashMap;
 
 use symdiff::formula::indices::{self, Index};
@@ -62,7 +63,7 @@ impl Writer<'_, '_> {
         for entry in given.iter().filter(|entry| !own.iter().any(|known| known.key == entry.key)) {
             let help = suggest::help(&entry.key, "parameters of it", own.iter().map(|known| known.key.as_str()));
             let message = format!("assembly `{definition}` has no parameter `{}`", clip(&entry.key));
-            self.report.error(entry.key_span.clone(), message, help);
+            self.report.error(Code::UnknownName, entry.key_span.clone(), message, help);
         }
         let mut parameters = Vec::with_capacity(own.len());
         for entry in own {

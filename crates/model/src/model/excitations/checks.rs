@@ -1,5 +1,6 @@
 //! Checks of limits against the whole model: whether they cross, keep their rates and hold their mean.
 
+use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula};
 
 use super::classes::set_constant;
@@ -26,7 +27,7 @@ pub fn check_limits(reader: &mut Reader, fields: &Fields) {
         let Some(own) = found.and_then(Trajectory::excitation).cloned() else { continue };
         if let Some((key, message)) = problem(reader, &own) {
             let place = entry.value.get(key).map_or_else(|| entry.key_span.clone(), |node| node.span.clone());
-            reader.error(place, message, None);
+            reader.error(Code::BadExcitation, place, message, None);
         }
     }
 }

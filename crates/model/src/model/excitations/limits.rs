@@ -1,5 +1,6 @@
 //! Limits of excitations: `± 5 N`, `20 N ± 10%`, `[lower, upper]`.
 
+use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula, Unary};
 
 use crate::grammar::quantity::Dimension;
@@ -54,7 +55,7 @@ pub fn limits(reader: &mut Reader, node: &Node, dimension: &mut Option<Dimension
             Limits { middle: any_of(reader, &value, dimension)?, reach: Formula::number(0.0) }
         }
         _ => {
-            reader.error(node.span.clone(), "limits belong here", EXAMPLE.to_owned());
+            reader.error(Code::BadExcitation, node.span.clone(), "limits belong here", EXAMPLE.to_owned());
             return None;
         }
     })

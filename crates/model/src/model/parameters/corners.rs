@@ -1,5 +1,6 @@
 //! The corners of the parameters' intervals, at which every formula is checked.
 
+use crate::syntax::codes::Code;
 use std::collections::{HashMap, HashSet};
 
 use crate::grammar::formulas::evaluate;
@@ -46,11 +47,11 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
         .collect();
     if let Some(index) = beyond {
         let message = format!("the model has more than {uncertain} uncertain parameters", uncertain = TUNING.uncertain);
-        reader.error(name_spans[index].clone(), message, None);
+        reader.error(Code::TooLarge, name_spans[index].clone(), message, None);
     }
     for (index, label) in infinite {
         let message = format!("`{}` is not a finite number{label}", reader.model.parameters[index].name);
-        reader.error(name_spans[index].clone(), message, None);
+        reader.error(Code::NotANumber, name_spans[index].clone(), message, None);
     }
     reader.broken = corners.iter().any(|corner| corner.values.iter().any(|value| !value.is_finite()));
     reader.corners_of = moved(&corners, reader.model.parameters.len());

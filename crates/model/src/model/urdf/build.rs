@@ -1,5 +1,6 @@
 //! [`Robot`](crate::robots::urdf::robot::Robot) → bodies and joints of the model.
 
+use crate::syntax::codes::Code;
 use std::collections::HashMap;
 
 use super::bodies::{Group, body};
@@ -89,7 +90,7 @@ fn left_out(reader: &mut Reader, source: &Source, groups: &[Group], of_link: &[(
         let link = &robot.links[joint.child];
         let message =
             format!("link `{}` moves, but has no mass: it is left out, with its joint `{}`", link.name, joint.name);
-        reader.diagnostics.push(Diagnostic::warning(link.span.clone(), message));
+        reader.diagnostics.push(Diagnostic::warning(Code::MasslessLink, link.span.clone(), message));
     }
     left_out
 }

@@ -1,6 +1,7 @@
 //! What the bodies, joints and start values of a robot are made from: its numbers, frames, and where its parts are in
 //! the model.
 
+use crate::syntax::codes::Code;
 use std::collections::HashSet;
 
 use symdiff::Formula;
@@ -59,7 +60,7 @@ pub struct Built {
 pub fn formula(reader: &mut Reader, value: &Value) -> Formula {
     value.formula().unwrap_or_else(|| {
         let message = "too many links are welded together with uncertain numbers";
-        reader.diagnostics.push(Diagnostic::of_file(message));
+        reader.diagnostics.push(Diagnostic::of_file(Code::TooLarge, message));
         Formula::number(f64::NAN)
     })
 }

@@ -1,5 +1,6 @@
 //! Equalities and fixed tendons; actuators are in `actuators`.
 
+use crate::syntax::codes::Code;
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Attribute, Item};
@@ -80,7 +81,9 @@ impl Reader<'_, '_, '_> {
             let help = suggest::help(&attribute.value, what, known.keys().map(String::as_str));
             let singular = what.strip_suffix('s').map_or_else(|| what.to_owned(), |word| word.replace("bodie", "body"));
             let message = format!("unknown {singular} `{}`", clip(&attribute.value));
-            self.values.diagnostics.push(Diagnostic::error(attribute.span.clone(), message).help(help));
+            self.values
+                .diagnostics
+                .push(Diagnostic::error(Code::UnknownName, attribute.span.clone(), message).help(help));
         }
         found
     }
@@ -93,12 +96,17 @@ impl Reader<'_, '_, '_> {
             return Some(joint);
         }
         let message = format!("joint `{}` has more than one coordinate", clip(&attribute.value));
-        self.values.error(attribute.span.clone(), message, "only hinges and slides can stand here".to_owned());
+        self.values.error(
+            Code::UnsuitableJoint,
+            attribute.span.clone(),
+            message,
+            "only hinges and slides can stand here".to_owned(),
+        );
         None
     }
 
     pub fn needs(&mut self, item: &Item, names: &str) {
-        self.values.error(item.span.clone(), format!("`<{}>` needs {names}", item.tag), None);
+        self.values.error(Code::MissingXml, item.span.clone(), format!("`<{}>` needs {names}", item.tag), None);
     }
 
     fn tendon(&mut self, item: &Item) {

@@ -28,6 +28,7 @@ use crate::results::{FormulationVerification, SchemeVerification, Verification};
 use crate::simulate::{
     Integration, Observed, Schedule, SimulationError, Simulator, Steps, choose_independent, integrator,
 };
+use crate::syntax::{Code, Coded};
 
 use balance::balance;
 use derivatives::derivatives;
@@ -268,4 +269,14 @@ fn nominal_motion(
         times: (0..reached).map(|row| schedule.time(row)).collect(),
         states: values.chunks_exact(count).take(reached).map(state).collect(),
     })
+}
+
+impl Coded for VerifyError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::NoSteps(_) => Some(Code::NoSteps),
+            Self::Interrupted => None,
+        }
+    }
 }

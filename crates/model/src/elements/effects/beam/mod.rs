@@ -22,6 +22,7 @@
 mod spatial;
 
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -272,15 +273,15 @@ impl Checked for Beam {
         if self.torsional_stiffness.is_some() {
             if let Some(span) = at("axis") {
                 let help = "give the points frames whose x is along the beam".to_owned();
-                reader.error(span, "in space a beam lies along x of the frames at its ends", help);
+                reader.error(Code::NotPlanar, span, "in space a beam lies along x of the frames at its ends", help);
             }
             return;
         }
         if let (Some(end), Some(span)) = (free, at("between")) {
             let message = format!("`{}` turns about more than z", reader.model.body_name(end.body));
-            reader.error(span, message, NEEDS_TORSION.to_owned());
+            reader.error(Code::NotPlanar, span, message, NEEDS_TORSION.to_owned());
         } else if let Some(span) = at("bending_stiffness_y") {
-            reader.error(span, "in the plane a beam bends about z alone", NEEDS_TORSION.to_owned());
+            reader.error(Code::NotPlanar, span, "in the plane a beam bends about z alone", NEEDS_TORSION.to_owned());
         }
     }
 }

@@ -12,6 +12,7 @@
 //! ρ + r. Each push is the gradient of an energy of its own distance, so that the sum keeps energy, also while a corner
 //! passes over an edge.
 
+use crate::syntax::codes::Code;
 use std::rc::Rc;
 
 use symdiff::Scalar;
@@ -142,6 +143,6 @@ pub fn check_edges<S: SymbolTable>(
             first * second
         );
         let help = "leave out points, or say `corners` instead, which touch alone".to_owned();
-        reader.error(at, message, help);
+        reader.error(Code::TooLarge, at, message, help);
     }
 }

@@ -12,6 +12,7 @@
 //! With another coefficient μ_e along a direction e, μ u becomes μ u + (μ_e − μ) (e · u) e: an ellipse of friction, of
 //! which the force stands against u along its axes alone (Zmitrowicz, Int. J. Solids Struct. 25 (1989) 837).
 
+use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -75,7 +76,7 @@ impl Checked for DryFriction {
             }
             _ => return,
         };
-        reader.error(fields.key_span(key), message, None);
+        reader.error(Code::MissingKey, fields.key_span(key), message, None);
     }
 }
 

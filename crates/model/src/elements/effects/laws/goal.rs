@@ -3,6 +3,7 @@
 //! The rate of a target that depends on t alone is its derivative by t. Of one that follows states or a motion it is a
 //! formula of its own, `target_rate`: the target's derivative would need rates and accelerations.
 
+use crate::syntax::codes::Code;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::effects::Forces;
@@ -34,6 +35,6 @@ pub fn check_rate<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_
     if let Some((name, _)) = moving.filter(|_| fields.get("target_rate").is_none()) {
         let message = format!("`target` follows `{}`, so its rate is not known", crate::syntax::suggest::clip(name));
         let help = format!("`{key}` needs it: say `target_rate`");
-        reader.error(fields.key_span("target"), message, help);
+        reader.error(Code::MisplacedKey, fields.key_span("target"), message, help);
     }
 }
