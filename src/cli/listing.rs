@@ -33,7 +33,7 @@ impl Listing {
             Self::Outputs => text(&outputs()),
             Self::Tuning => text(&tuning()),
             Self::ExitCodes => text(&Status::ALL.map(Status::docs)),
-            Self::Codes => text(&codes()),
+            Self::Codes => codes_text(),
         }
     }
 
@@ -60,7 +60,7 @@ impl Listing {
             Self::Outputs => page(&outputs()),
             Self::Tuning => page(&tuning()),
             Self::ExitCodes => page(&Status::ALL.map(Status::docs)),
-            Self::Codes => page(&codes()),
+            Self::Codes => Code::index(),
         }
     }
 }
@@ -94,6 +94,12 @@ struct CodeDocs {
 
 fn codes() -> Vec<CodeDocs> {
     Code::ALL.iter().map(|code| CodeDocs { code: code.id(), title: code.title() }).collect()
+}
+
+fn codes_text() -> String {
+    let mut table = Table::new([("code", Align::Left), ("kind of mistake", Align::Left)]);
+    codes().iter().for_each(|own| table.row([own.code.to_owned(), own.title.to_owned()]));
+    table.render(0)
 }
 
 /// Something listed, a row each.
@@ -188,7 +194,7 @@ impl Row<3> for StatusDocs {
     const TITLE: &'static str = "Exit codes";
     const INTRODUCTION: &'static str = "`mbint --help` prints the same codes. With several models or scenes the code is \
         that of the worst. A pipe that its reader closes is no error.\n\n\
-        Messages begin with `error:` or `warning:` and say what is wrong, where, and what to do; those about a model's file\n\
+        Messages begin with `error` or `warning`, often with a [code](../errors/index.md), and say what is wrong, where, and what to do; those about a model's file\n\
         show the line. Results go to standard output, messages and progress to standard error; with `--quiet` only errors\n\
         are printed.";
     const HEADINGS: [(&'static str, Align); 3] =
@@ -196,18 +202,6 @@ impl Row<3> for StatusDocs {
 
     fn cells(&self) -> [String; 3] {
         [self.code.to_string(), self.meaning.to_owned(), self.results.to_owned()]
-    }
-}
-
-impl Row<2> for CodeDocs {
-    const TITLE: &'static str = "Codes of messages";
-    const INTRODUCTION: &'static str = "Messages about mistakes have codes, as in `error[E0401]`. A code is a kind of mistake that has one cure; `mbint explain\n\
-        E0401` prints its page, and editors link to it. Codes that begin with W are warnings. A number never gets another\n\
-        meaning. `mbint explain --codes` prints this list.";
-    const HEADINGS: [(&'static str, Align); 2] = [("code", Align::Left), ("kind of mistake", Align::Left)];
-
-    fn cells(&self) -> [String; 2] {
-        [self.code.to_owned(), self.title.to_owned()]
     }
 }
 

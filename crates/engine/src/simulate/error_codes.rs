@@ -7,12 +7,12 @@ impl Coded for SimulationError {
     fn code(&self) -> Option<Code> {
         Some(match self {
             Self::Assembly { .. } => Code::CannotAssemble,
-            Self::OffBranch { .. } => Code::OffBranch,
+            Self::OffBranch { .. } => Code::Infeasible,
             Self::NotExplicit { .. } => Code::NotExplicit,
             Self::BlackBox { .. } | Self::NoAnswer { .. } => Code::ProgramFails,
             Self::Contradiction { .. } | Self::Parted { .. } => Code::Contradiction,
             Self::StartsOutside { .. } => Code::StartsOutside,
-            Self::Singular { .. } => Code::SingularEquations,
+            Self::Singular { .. } => Code::Massless,
             Self::NoEquilibrium { .. } => Code::NoEquilibrium,
             Self::NotDriven { .. } => Code::NotDriven,
             Self::NoResult { .. } => Code::UnknownName,

@@ -95,7 +95,7 @@ impl Within {
         };
         let message = format!("`{}` {verb} {folder}", clip(name));
         Err(Box::new(
-            Diagnostic::of_file(Code::FileNotFound, message).help(format!("a file that a model names lies {help}")),
+            Diagnostic::of_file(Code::OutsideFolder, message).help(format!("a file that a model names lies {help}")),
         ))
     }
 

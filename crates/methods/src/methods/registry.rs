@@ -338,6 +338,6 @@ impl BoundsRequest {
 
 impl Coded for Refusal {
     fn code(&self) -> Option<Code> {
-        Some(Code::MethodRefuses)
+        Some(Code::Unanswerable)
     }
 }

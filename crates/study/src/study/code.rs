@@ -47,6 +47,7 @@ impl Coded for CodeError {
     fn code(&self) -> Option<Code> {
         match self {
             Self::Run(error) => error.code(),
+            Self::None(NoCode::Simulation(error)) => error.code(),
             Self::None(_) => Some(Code::NoCode),
         }
     }

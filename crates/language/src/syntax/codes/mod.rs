@@ -16,6 +16,17 @@ pub use table::Code;
 /// Where the pages are on the web: GitHub shows them.
 const PAGES: &str = "https://github.com/mbint/mbint/blob/main/docs/errors";
 
+/// The model that examples of pages change: a section that an example has stands instead of this one's.
+pub const MODEL: &str = include_str!("pages/model.yaml");
+
+const INTRODUCTION: &str = "\
+Messages about mistakes have codes, as in `error[E0401]`. A code is a kind of mistake that has one cure; `mbint explain
+E0401` prints its page, and editors link to it. Codes of warnings begin with W. A number never gets another meaning.
+`mbint explain --codes` prints this list.
+
+Examples on these pages are whole models where they say so. Elsewhere their sections stand instead of those of this one:
+";
+
 /// Codes of one stage.
 #[derive(Clone, Copy, Debug)]
 pub struct Block {
@@ -53,6 +64,18 @@ impl Code {
     pub fn is_like(text: &str) -> bool {
         let digits = text.strip_prefix(['E', 'e', 'W', 'w']);
         digits.is_some_and(|digits| digits.len() == 4 && digits.chars().all(|c| c.is_ascii_digit()))
+    }
+
+    /// The page of the book that lists all, as Markdown.
+    pub fn index() -> String {
+        let mut page = format!("# Codes of messages\n\n{INTRODUCTION}\n```yaml\n{MODEL}```\n");
+        for block in Self::BLOCKS {
+            page += &format!("\n## {}: {}\n\n| code | kind of mistake |\n|---|---|\n", block.letters, block.about);
+            for code in block.codes {
+                page += &format!("| [{code}]({code}.md) | {} |\n", code.title());
+            }
+        }
+        page
     }
 
     /// Its page, as Markdown.

@@ -313,7 +313,7 @@ impl Coded for DesignError {
         match self {
             Self::Run(error) => error.code(),
             Self::Unsuitable(_) => Some(Code::Unsuitable),
-            Self::NoSurrogate => Some(Code::NoSurrogate),
+            Self::NoSurrogate => Some(Code::Unanswerable),
             Self::Interrupted => None,
         }
     }

@@ -242,7 +242,7 @@ impl Coded for FitError {
         match self {
             Self::Run(error) => error.code(),
             Self::NoParameter => Some(Code::NoParameter),
-            Self::NoSurrogate => Some(Code::NoSurrogate),
+            Self::NoSurrogate => Some(Code::Unanswerable),
             Self::Interrupted => None,
         }
     }

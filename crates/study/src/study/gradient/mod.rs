@@ -177,6 +177,7 @@ impl Coded for GradientError {
     fn code(&self) -> Option<Code> {
         match self {
             Self::Run(error) => error.code(),
+            Self::None(NoGradient::Simulation(error)) => error.code(),
             Self::None(_) | Self::Lost { .. } => Some(Code::NoDerivatives),
             Self::NoParameter => Some(Code::NoParameter),
             Self::NoOutput => Some(Code::Unsuitable),

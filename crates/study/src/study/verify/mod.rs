@@ -17,7 +17,7 @@ mod windows;
 
 use rayon::prelude::*;
 
-use super::black_box::needs_equations;
+use super::black_box::needs_mechanism;
 use super::formulation::compiled;
 use super::{Options, RunError, first_step, pool, scheme};
 use crate::assemble::{BuildError, Questions};
@@ -108,7 +108,7 @@ pub enum VerifyError {
 /// # Errors
 /// Where the model cannot be built or assembled, and at an interruption.
 pub fn verify(description: &Description, options: &Options) -> Result<Verification, VerifyError> {
-    needs_equations(description, "a verification").map_err(RunError::from)?;
+    needs_mechanism(description, "a verification").map_err(RunError::from)?;
     match description.analysis {
         Analysis::Statics => return Err(VerifyError::NoSteps("statics")),
         Analysis::Kinematics => return Err(VerifyError::NoSteps("kinematics")),
