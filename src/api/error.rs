@@ -5,7 +5,6 @@ use std::fmt;
 use crate::export::ExportError;
 use crate::model::UnknownScene;
 use crate::study::{AllocateError, CostError, DataError, DesignError, FitError, GradientError, RunError, VerifyError};
-use crate::syntax::diagnostic::Severity;
 use crate::syntax::{Code, Coded, Diagnostics};
 
 /// Why there is no model, or nothing of it could be run.
@@ -70,9 +69,7 @@ impl Error {
     /// of its first; none at an interruption.
     pub fn code(&self) -> Option<&'static str> {
         let code = match self {
-            Self::Model(diagnostics) => {
-                diagnostics.iter().find(|own| own.severity == Severity::Error).map(|own| own.code)
-            }
+            Self::Model(diagnostics) => diagnostics.code(),
             Self::Scene(error) => error.code(),
             Self::Run(error) => error.code(),
             Self::Unsuitable(_) => Some(Code::Unsuitable),

@@ -14,8 +14,7 @@ use clap::builder::styling::{AnsiColor, Style};
 use serde::Serialize;
 
 use super::Failure;
-use crate::syntax::diagnostic::Severity;
-use crate::syntax::{Code, Diagnostics, harmless, is_harmful};
+use crate::syntax::{Code, Coded, Diagnostics, harmless, is_harmful};
 
 /// A style within a text: `{BOLD}` begins it, `{BOLD:#}` ends it.
 #[derive(Clone, Copy, Debug)]
@@ -140,8 +139,7 @@ impl Console {
         let color = anstream::AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never;
         // They are harmless, and have colours of their own.
         let text = diagnostics.render(color);
-        let first = diagnostics.iter().find(|own| own.severity == Severity::Error).map(|own| own.code);
-        self.first.set(self.first.get().or(first));
+        self.first.set(self.first.get().or_else(|| diagnostics.code()));
         if self.written.as_ref().is_none_or(|written| written.borrow_mut().insert(text.clone())) {
             let _ = anstream::stderr().lock().write_all(text.as_bytes());
         }

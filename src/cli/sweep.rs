@@ -121,7 +121,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
 }
 
 fn setting(text: &str) -> Result<Override, Failure> {
-    Override::parse(text).map_err(|diagnostics| Failure::wrong(format!("--set {text}: {diagnostics}")))
+    Override::parse(text).map_err(|diagnostics| Failure::wrong(format!("--set {text}: {diagnostics}")).of(&diagnostics))
 }
 
 /// Lower and upper bounds of each reduced output, and margins of requirements.

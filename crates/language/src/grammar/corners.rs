@@ -1,11 +1,11 @@
 //! Values of formulas at the corners of the parameters' intervals, and requirements on them.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::formulas::evaluate;
 use super::reader::Reader;
 use super::symbols::{Symbol, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
 

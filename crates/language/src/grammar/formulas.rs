@@ -1,6 +1,5 @@
 //! Numbers and formulas behind keys: parsed, their names resolved, their dimensions and values checked.
 
-use crate::syntax::codes::Code;
 use std::cell::RefCell;
 
 use symdiff::formula::{Names, Vocabulary};
@@ -17,6 +16,7 @@ use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
 use super::{unit_names, unknown};
 use crate::grammar::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;

@@ -1,6 +1,5 @@
 //! Meshes: files of triangles that a model names.
 
-use crate::syntax::codes::Code;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,6 +9,7 @@ use super::element::Value;
 use super::reader::Reader;
 use super::requirement::Quantity;
 use super::symbols::SymbolTable;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::mesh_file::{Triangle, triangles};
 use crate::syntax::regular;

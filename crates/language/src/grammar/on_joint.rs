@@ -1,6 +1,5 @@
 //! `on` and `coordinate`: keys that name a joint's coordinate.
 
-use crate::syntax::codes::Code;
 use schemars::{SchemaGenerator, json_schema};
 use symdiff::Formula;
 
@@ -9,6 +8,7 @@ use super::kinds::name;
 use super::reader::Reader;
 use super::report::Fields;
 use super::symbols::{JointCoordinate, OnJoint, Reference, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::Node;
 
 /// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an

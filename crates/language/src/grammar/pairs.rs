@@ -1,11 +1,11 @@
 //! Two keys of which the second is larger, or only one may be there.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::reader::Reader;
 use super::report::Fields;
 use super::symbols::SymbolTable;
+use crate::syntax::codes::Code;
 
 impl<S: SymbolTable> Reader<'_, S> {
     /// Reports where the second of two keys is not larger than the first.

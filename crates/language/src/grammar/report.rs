@@ -3,16 +3,17 @@
 //! A report knows no names of a model: whatever turns one tree into another needs no more. Reading goes on after an
 //! error, so that one run reports as many as can be found; a method gives `None` only when it has reported why.
 
-use crate::syntax::codes::Code;
 use std::cell::Cell;
 use std::collections::HashMap;
 use std::path::Path;
 
+use super::beside_kind::within_kind;
 use super::mapping::Grammar;
 use super::mentions::Notes;
 use super::names;
 use super::quantity::Dimension;
 use super::values;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -390,23 +391,4 @@ impl Report<'_> {
 /// `a joint` → `joint`.
 fn bare(what: &str) -> &str {
     what.strip_prefix("a ").or_else(|| what.strip_prefix("an ")).unwrap_or(what)
-}
-
-/// What to write where keys stand beside the kind that they belong to, or the kind is the value of one.
-fn within_kind(known: &[&str], entries: &[Entry]) -> Option<String> {
-    let is_kind = |text: &str| known.contains(&text);
-    let mut kinds = entries.iter().filter(|entry| is_kind(&entry.key));
-    match (kinds.next(), kinds.next()) {
-        (Some(kind), None) => {
-            let other = entries.iter().find(|entry| entry.key != kind.key)?;
-            let (kind, other) = (&kind.key, clip(&other.key));
-            Some(format!("what belongs to `{kind}` stands within it: `{{ {kind}: {{ …, {other}: … }} }}`"))
-        }
-        (None, _) => {
-            let mut values = entries.iter().filter_map(|entry| entry.value.scalar());
-            let kind = values.find(|scalar| is_kind(&scalar.text))?;
-            Some(format!("write `{{ {}: {{ … }} }}`, with the other keys within", kind.text))
-        }
-        _ => None,
-    }
 }

@@ -1,7 +1,6 @@
 //! Values that are probably not meant as written: an angle of 30 rad, a length of 150 m beside others of millimetres,
 //! an interval that is a difference.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 use symdiff::formula::Term;
 
@@ -10,6 +9,7 @@ use super::range::{Range, range};
 use super::reader::Reader;
 use super::symbols::{Symbol, SymbolTable};
 use crate::grammar::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;

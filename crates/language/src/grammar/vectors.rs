@@ -1,6 +1,5 @@
 //! Vectors, directions and rotations: `[x, y, z]`, `x`, `{ rpy: … }`, `{ axis: …, angle: … }`, `{ quaternion: … }`.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::formulas::Written;
@@ -10,6 +9,7 @@ use super::quantity::Dimension;
 use super::reader::Reader;
 use super::rotation::Rotation;
 use super::symbols::SymbolTable;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Value};
 

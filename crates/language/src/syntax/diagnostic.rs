@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::codes::Code;
+use super::codes::{Code, Coded};
 use super::source::{Sources, Span, Within};
 
 /// How bad it is.
@@ -248,3 +248,10 @@ impl fmt::Display for Diagnostics {
 }
 
 impl std::error::Error for Diagnostics {}
+
+/// That of the first error.
+impl Coded for Diagnostics {
+    fn code(&self) -> Option<Code> {
+        self.iter().find(|diagnostic| diagnostic.severity == Severity::Error).map(|diagnostic| diagnostic.code)
+    }
+}

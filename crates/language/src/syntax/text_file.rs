@@ -1,10 +1,10 @@
 //! The text of a file, or why it cannot be read.
 
-use super::codes::Code;
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
+use super::codes::Code;
 use super::diagnostic::Diagnostic;
 use super::suggest::clip;
 

@@ -1,10 +1,10 @@
 //! Which files a model may name: those in its folder or below, and those in a folder that the user names or below.
 
-use super::codes::Code;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
+use super::codes::Code;
 use super::diagnostic::Diagnostic;
 use super::harmless;
 use super::suggest::clip;

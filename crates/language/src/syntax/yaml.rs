@@ -3,11 +3,11 @@
 //! Of YAML, a model file uses scalars, sequences and mappings in one document. Anchors, aliases, tags and several
 //! documents are refused: a model is read by people, and read as it is written.
 
-use super::codes::Code;
 use std::collections::HashMap;
 
 use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, options};
 
+use super::codes::Code;
 use super::commas::{join_items, join_values};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::not_yaml;

@@ -1,6 +1,5 @@
 //! Common parts of the methods' requests: their tolerance and budget, and keys that several of them have.
 
-use crate::syntax::codes::Code;
 use std::collections::HashMap;
 
 use super::{BoundsRequest, Method};
@@ -9,6 +8,7 @@ use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::RangeKind;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Value};
 

@@ -1,7 +1,6 @@
 //! Taylor bounds: the scheme in jet arithmetic gives the Taylor polynomial about the middle of the box, to any order,
 //! from one simulation.
 
-use crate::syntax::codes::Code;
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
@@ -14,6 +13,7 @@ use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{RangeKind, TaylorRange};
+use crate::syntax::codes::Code;
 
 /// Coefficients of a Taylor polynomial.
 const MOST_COEFFICIENTS: f64 = 1e5;

@@ -4,12 +4,12 @@
 //! drawing without a dimension too many; one without both closes a chain: it is the sum of the dimensions on the one
 //! path between its faces, each with the sign of its direction.
 
-use crate::syntax::codes::Code;
 use std::collections::{HashMap, VecDeque};
 
 use super::sections::entries_of;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};

@@ -1,7 +1,6 @@
 //! `black_box: { fmu: FILE }`: the unit's description, and parameters that are written as deviations from its start
 //! values, `k: ± 5%`, with these values written out.
 
-use crate::syntax::codes::Code;
 use std::path::{Path, PathBuf};
 
 use mbint_fmu::{BaseUnit, NotRead, Unit, Variable};
@@ -11,6 +10,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Report;
 use crate::grammar::tolerance::{Deviation, Toleranced, is_toleranced, read};
 use crate::grammar::unit;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 

@@ -1,7 +1,6 @@
 //! Numbers of a robot's file as parameters of the model: those that something names, with their deviations in the model
 //! or in attributes of the file.
 
-use crate::syntax::codes::Code;
 use std::collections::{HashMap, HashSet};
 
 use crate::expand::notation::{self, field};
@@ -9,6 +8,7 @@ use crate::expand::overrides::Override;
 use crate::grammar::report::Report;
 use crate::grammar::unit::{Unit, number_and_unit};
 use crate::robots::number::Number;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};

@@ -2,7 +2,6 @@
 //! between each two.
 
 use crate::grammar::{Coordinate, PointRef};
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula};
 
 use super::description::{Description, Effect};
@@ -14,6 +13,7 @@ use crate::grammar::quantity::Dimension;
 use crate::keys;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Value};
 
 /// Keys of rigid bodies that mean nothing here.

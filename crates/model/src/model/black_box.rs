@@ -1,6 +1,5 @@
 //! `black_box:`, and what a model that has one cannot say.
 
-use crate::syntax::codes::Code;
 use std::path::{Path, PathBuf};
 
 use symdiff::Formula;
@@ -14,6 +13,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::read_text;
 use crate::syntax::tuning::TUNING;

@@ -1,7 +1,6 @@
 //! `bodies:`, and references to bodies and their points.
 
 use crate::grammar::{Coordinate, Rotation};
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::beams;
@@ -14,6 +13,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::yaml::{Entry, Node, Value};
 

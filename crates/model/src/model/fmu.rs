@@ -1,6 +1,5 @@
 //! `black_box: { fmu: FILE }`: the variables of a unit that a model sets and wants.
 
-use crate::syntax::codes::Code;
 use mbint_fmu::{Access, Interface, Kind, Task, Unit, Variable, digest};
 
 use super::description::{BoxOutput, FmuProgram};
@@ -10,6 +9,7 @@ use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};

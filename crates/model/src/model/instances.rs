@@ -1,12 +1,12 @@
 //! Instances in the model: their ports, and how they stand.
 
-use crate::syntax::codes::Code;
 use std::collections::HashMap;
 
 use super::description::Standing;
 use super::names::Reader;
 use crate::expand::parts::{GROUND, Inclined, Parts};
 use crate::grammar::SymbolTable;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 
 /// Gives the model its ports, and reports those that are nothing; the bodies are declared.

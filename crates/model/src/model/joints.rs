@@ -1,6 +1,5 @@
 //! `joints:`.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::description::Joint;
@@ -8,6 +7,7 @@ use super::names::Reader;
 use crate::elements::JointKind;
 use crate::elements::joints::Equation;
 use crate::grammar::JointCoordinate;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Value};
 
 /// Notes the names of the joints, so that outputs can refer to them.

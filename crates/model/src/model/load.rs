@@ -1,6 +1,5 @@
 //! A file → its [`Description`], or everything that is wrong with it.
 
-use crate::syntax::codes::Code;
 use std::path::Path;
 
 use super::description::{Description, Space};
@@ -22,15 +21,14 @@ use crate::keys;
 use crate::model::names::Reader;
 use crate::robots::mjcf::is_mjcf;
 use crate::robots::urdf::is_urdf;
-use crate::syntax::Coded;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
-use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::{read_given, text_of};
 use crate::syntax::tuning::TUNING;
 use crate::syntax::within::Within;
 use crate::syntax::yaml::{self, Entry, Node};
+use crate::syntax::{Code, Coded, harmless};
 
 /// What reading a model gave: both may be there when there are only warnings.
 #[derive(Clone, Debug)]

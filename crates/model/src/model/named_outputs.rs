@@ -1,11 +1,11 @@
 //! Outputs that name other outputs: those above them.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::description::Output;
 use super::names::Reader;
 use crate::grammar::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
 

@@ -1,9 +1,9 @@
 //! `--with FILE`: parameters that a file lays over a model, as `mbint allocate` writes it.
 
-use crate::syntax::codes::Code;
 use std::path::Path;
 
 use crate::expand::overrides::Override;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

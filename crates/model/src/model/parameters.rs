@@ -10,7 +10,6 @@ mod spec;
 
 pub use dependent::{deviation_of, seed_of};
 
-use crate::syntax::codes::Code;
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
@@ -28,6 +27,7 @@ use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
 use crate::robots::{mjcf, urdf};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;

@@ -1,6 +1,5 @@
 //! Random excitations: `random`, and `follows`.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::names::Reader;
@@ -15,6 +14,7 @@ use crate::model::parameters::seed_of;
 use crate::model::tuning::TUNING;
 use crate::numerics::Spectrum;
 use crate::numerics::statistics::Normals;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 

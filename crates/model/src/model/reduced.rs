@@ -1,6 +1,5 @@
 //! Outputs that are one number a motion: `stroke: { range: slider.x }`.
 
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula, Unary};
 
 use super::description::{ReducedKind, ReducedOutput};
@@ -12,6 +11,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{clip, list};
 use crate::syntax::yaml::{Entry, Node, Value};
 

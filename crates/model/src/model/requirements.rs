@@ -1,6 +1,5 @@
 //! Requirements on outputs: `clears: x3 >= 0.4 m`.
 
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula, Unary};
 
 use super::description::{Limit, Requirement};
@@ -11,6 +10,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Two sides of a comparison.

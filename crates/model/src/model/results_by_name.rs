@@ -1,7 +1,6 @@
 //! Formulas of numbers that are known by their names when a sample is over: reduced outputs, and results
 //! that an analysis adds to the outputs.
 
-use crate::syntax::codes::Code;
 use std::ops::Range;
 
 use symdiff::Formula;
@@ -11,6 +10,7 @@ use crate::grammar::Symbol;
 use crate::grammar::dimension::{self, Kind};
 use crate::grammar::quantity::Dimension;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
 

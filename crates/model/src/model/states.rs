@@ -1,6 +1,5 @@
 //! `states:`.
 
-use crate::syntax::codes::Code;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use super::description::Analysis;
@@ -10,6 +9,7 @@ use crate::elements::effects::{EffectKind, ForceElement, State};
 use crate::grammar::report::Fields;
 use crate::grammar::{Element, Sensor};
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
 

@@ -1,6 +1,5 @@
 //! `tables:`: functions given by their values, here or in a CSV file.
 
-use crate::syntax::codes::Code;
 use symdiff::{Spline, SplineError};
 
 use super::parameters::unit;
@@ -9,6 +8,7 @@ use crate::grammar::report::Fields;
 use crate::grammar::unit::Unit;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::table::{self, Cell, Line};

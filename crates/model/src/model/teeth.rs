@@ -1,12 +1,12 @@
 //! Reactions of bearings that teeth push on: refused, for a ratio does not tell where teeth touch, nor at which angle.
 
-use crate::syntax::codes::Code;
 use std::collections::{BTreeMap, HashSet};
 
 use symdiff::Formula;
 
 use super::names::Reader;
 use crate::grammar::Symbol;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;

@@ -1,6 +1,5 @@
 //! `trajectories:`.
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::names::Reader;
@@ -10,6 +9,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Value};
 

@@ -1,6 +1,5 @@
 //! Text → XML tree with places; what the parser finds, in words.
 
-use crate::syntax::codes::Code;
 use std::ops::Range;
 
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
@@ -8,6 +7,7 @@ use roxmltree::{Attribute, Document, Node, ParsingOptions};
 use super::budget;
 use super::prefixes::{self, Declared};
 use crate::robots::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;

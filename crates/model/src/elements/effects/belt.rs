@@ -18,7 +18,6 @@
 //! Angles are those of two bodies about z, or of two joints: then the line of centres may turn with the joints' first
 //! bodies.
 
-use crate::syntax::codes::Code;
 use mbint_derive::{Choice, Element};
 use symdiff::{Binary, Formula};
 
@@ -27,6 +26,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, JointCoordinate, Sensor, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Rotating};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// Stretch over which a strand becomes taut, over the first radius.

@@ -16,7 +16,6 @@
 //! torque q₀ y + e × y of the rotational part y of 𝐊 x, so that V gains ½ xᵀ 𝐊 x. Where 𝐊 is not symmetric, or a
 //! stiffness depends on the motion, there is no potential and none is counted.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
 use symdiff::{Formula, Scalar};
@@ -26,6 +25,7 @@ use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Image, Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Matrix, Vector};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml;
 
 /// Springs and dampers between two frames.

@@ -6,13 +6,13 @@
 //!
 //! |u| is √(u² + ε²), ε = 1 µm/s: the square law has no second derivative at rest. It has no potential.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
 use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Components, Fields, Sensor, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// ε, m/s

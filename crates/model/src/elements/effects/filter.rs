@@ -10,7 +10,6 @@
 //! itself is the first state where the numerator is shorter than the denominator. It begins at rest, settled at a
 //! constant input u₀: xₖ₊₁ = (aₙ₋ₖ b₀/a₀ − bₙ₋ₖ) u₀/aₙ.
 
-use crate::syntax::codes::Code;
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -21,6 +20,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::Value;
 
 /// The states behind the output.

@@ -13,7 +13,6 @@
 //! friction is so large that the reaction it needs grows faster than the load it resists, the mechanism jams (Painlevé)
 //! and there is no motion to be found.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar};
@@ -25,6 +24,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Sensor, Node, OnJoint, Reader, Reference, SymbolTable,
 };
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 /// ε, N

@@ -7,13 +7,13 @@
 //!
 //! Points that coincide have no line between them.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
 use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, Sensor, SymbolTable, TimeOrder};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// A constant tension between two points, or a constant force or torque of a joint.

@@ -8,7 +8,6 @@
 //! sat is that of a servo, T the lag with which y follows slow inputs. Since y follows c, which is within the limits, y
 //! does not run up against them. It begins at `initial`.
 
-use crate::syntax::codes::Code;
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -20,6 +19,7 @@ use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// A number that follows another within limits.

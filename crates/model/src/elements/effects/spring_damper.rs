@@ -14,7 +14,6 @@
 //! leaves nothing behind. A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else
 //! a formula may depend on. With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -22,6 +21,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 /// Points nearer than this coincide for a damper of no free length, m. Its square is lost in rounding beside that of a

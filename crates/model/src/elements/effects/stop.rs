@@ -6,7 +6,6 @@
 //!
 //! Between the stops nothing acts, and nothing is computed but where s is.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -14,6 +13,7 @@ use super::laws::impact::Push;
 use super::{ForceElement, Forces, Impact, TypedSensor, effort};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, Sensor, OnJoint, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// Stops at the ends of a joint's range.

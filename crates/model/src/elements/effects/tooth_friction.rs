@@ -12,7 +12,6 @@
 //! where they are by the constraint: on a worm the force acts at the pitch point and on the bearings; that of teeth
 //! that roll acts along the rims alone.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar};
@@ -25,6 +24,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, Group, JointCoordinate, Key, MeshKind, Node, Reader, Reference, Requirement, Sensor, SymbolTable,
 };
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// ε, N m or N

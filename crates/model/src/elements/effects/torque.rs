@@ -8,7 +8,6 @@
 //! In the plane value is about z, counter-clockwise. A motor between two bodies; from the ground, the reaction is the
 //! ground's. It has no potential.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
 use symdiff::Formula;
@@ -18,6 +17,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::{BodyRef, Checked, Fields, Image, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml;
 
 /// A torque on a body, or at a joint.

@@ -8,7 +8,6 @@
 //! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own
 //! angle φ and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
@@ -16,6 +15,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Sensor, OnJoint, Reader, SymbolTable, TimeOrder, Rotating, RotatingJoint};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// A spring and damper between the angles of two bodies, or on the angle of a joint.

@@ -17,7 +17,6 @@
 //! wheel's lowest point slides back, and the force acts there: on the wheel, the radius below the point. Without a
 //! wheel κ = 0.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Binary, Formula, Scalar};
 
@@ -26,6 +25,7 @@ use super::{ForceElement, Forces, Scope, TypedSensor};
 use crate::elements::{Form, Glyph, Shape, SurfaceAt, Surroundings};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, MaterialPoint, Vector};
 
 /// α.

@@ -8,13 +8,13 @@
 //! force or torque: both are zero, and the multiplier λ itself (N for metres, N m for radians), with its sign, stands
 //! for `joint.force`. −Φ_qᵀ λ acts: with `crank.angle = omega*t` the drive's torque on the crank is −λ.
 
-use crate::syntax::codes::Code;
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::Formula;
 
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Symbol, Span, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::Vector;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};

@@ -11,13 +11,13 @@
 //! are those of the force at the pitch point (`teeth`), which is the gear's own reaction; without, they are refused
 //! where something asks for them.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
 use crate::elements::meshing::{Member, Meshing};
 use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader, Rotating, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 use super::teeth::{self, Flanks, Mesh, ToothForce};

@@ -20,7 +20,6 @@
 //! continuous accelerations; trapezoidal ones jump, and with them the forces. Profiles: Biagiotti & Melchiorri,
 //! *Trajectory Planning for Automatic Machines and Robots* (2008), ch. 2 and 3.
 
-use crate::syntax::codes::Code;
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
@@ -29,6 +28,7 @@ use symdiff::{Builder, Formula, Scalar};
 
 use crate::elements::Glyph;
 use crate::grammar::{Checked, Context, Fields, JointCoordinate, OnJoint, Reader, Requirement, SymbolTable, one_of};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};

@@ -11,13 +11,13 @@
 //! the carrier's, and their spin, where it matters, is that of a body with an `angle` alone and an `equation`, φ_p =
 //! φ_c − (φ_s − φ_c) z_s/z_p.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
 use crate::elements::meshing::{Member, Meshing, Rim};
 use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader, RotatingJoint, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 use super::teeth::ALIGNED;

@@ -10,12 +10,12 @@
 //! the force −λ t where it touches: at B with the torque −λ radius. The rail has the opposites there. Both hold
 //! whatever their size: `friction` of a `contact` says when a wheel slips or leaves its rail.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
 use crate::elements::Glyph;
 use crate::grammar::{Checked, Direction, Fields, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::Vector;
 
 use super::rows::planar_normal;

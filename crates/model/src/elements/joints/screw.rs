@@ -9,12 +9,12 @@
 //! thread. −Φ_qᵀ λ of the last row is the force −λ a₁ at B and the torque +λ (pitch / 2π) a₁ on the second body, and
 //! the opposite on the first.
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::Formula;
 
 use crate::grammar::quantity::Dimension;
 use crate::grammar::formulas::Written;
+use crate::syntax::codes::Code;
 use crate::grammar::{Axis, Checked, Fields, JointCoordinate, OnJoint, PointRef, Reader, SymbolTable};
 
 use super::cylindrical::cylindrical;

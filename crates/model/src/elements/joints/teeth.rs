@@ -24,13 +24,13 @@
 //! constraint equates angles, so its multiplier acts as torques about the axes: `instead` is what the force at P stands
 //! for. The difference does no work, and is carried by the bearings. (Norton, *Machine Design* (2014), ch. 12 and 13.)
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use schemars::Schema;
 use symdiff::{Formula, Scalar};
 
 use crate::grammar::{Checked, Fields, OnJoint, Reader, Requirement, SymbolTable};
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 
 use super::Kinematics;
 

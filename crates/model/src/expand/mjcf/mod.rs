@@ -10,7 +10,6 @@ mod effects;
 mod start;
 mod tree;
 
-use crate::syntax::codes::Code;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -21,6 +20,7 @@ use super::overrides::Override;
 use crate::grammar::report::Report;
 use crate::robots::mjcf::values::Values;
 use crate::robots::mjcf::{document, is_mjcf, is_number, read};
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 

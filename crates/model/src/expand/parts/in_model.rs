@@ -1,6 +1,5 @@
 //! Bodies, joints and effects of an assembly, as they are in the model: images in mirrors, and directions of the model.
 
-use crate::syntax::codes::Code;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -10,6 +9,7 @@ use super::{Writer, mirror, patterns};
 use crate::elements::effects::{self, EffectKind};
 use crate::elements::joints::JointKind;
 use crate::grammar::Image;
+use crate::syntax::codes::Code;
 use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;

@@ -1,6 +1,5 @@
 //! `include:`, files of assemblies.
 
-use crate::syntax::codes::Code;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,6 +8,7 @@ use crate::expand::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::keys;
 use crate::syntax;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;

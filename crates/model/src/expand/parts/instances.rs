@@ -1,6 +1,5 @@
 //! `instances:`, copies of assemblies with names, parameters and places of their own.
 
-use crate::syntax::codes::Code;
 use std::sync::Arc;
 
 use super::Writer;
@@ -13,6 +12,7 @@ use crate::expand::instance::{Instance, InstanceKind};
 use crate::expand::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::{Span, Within};
 use crate::syntax::suggest::{self, clip};

@@ -1,11 +1,11 @@
 //! Effects on many: `friction: { joint_friction: { on: all revolute, … } }`.
 
-use crate::syntax::codes::Code;
 use std::sync::Arc;
 
 use super::{Writer, patterns};
 use crate::elements::JointKind;
 use crate::expand::instance::{Instance, InstanceKind};
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};

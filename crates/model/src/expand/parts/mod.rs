@@ -17,7 +17,6 @@ mod repeat;
 mod starts;
 mod turned;
 
-use crate::syntax::codes::Code;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -27,6 +26,7 @@ use super::overrides::Override;
 use super::sections::entries_of;
 use crate::expand::tuning::TUNING;
 use crate::grammar::report::Report;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;

@@ -1,6 +1,5 @@
 //! Parameters of instances: given, the assembly's, or one for all; and those that are whole numbers.
 
-use crate::syntax::codes::Code;
 use std::collections::HashMap;
 
 use symdiff::formula::indices::{self, Index};
@@ -9,6 +8,7 @@ use super::Writer;
 use crate::expand::notation;
 use crate::expand::scenes::draft::overridden;
 use crate::grammar::mentions::NameKind;
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};

@@ -3,12 +3,12 @@
 //! What an instance says of its place are its parameters `at.x` and so on, in the frame of the instance that it is in.
 //! Where it is in the model follows: `at.model.x`, … ([`crate::syntax::frame`]).
 
-use crate::syntax::codes::Code;
 use std::sync::Arc;
 
 use super::{Writer, mirror};
 use crate::grammar::report::Fields;
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::frame::{Frame, PLACE, Turned, about, about_z, product, signed, sum};
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;

@@ -1,6 +1,5 @@
 //! `repeat: { i: 1..6 }`: entries that are there once for each value of an index.
 
-use crate::syntax::codes::Code;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -8,6 +7,7 @@ use symdiff::formula::indices::{self, Index};
 
 use super::Writer;
 use crate::expand::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;

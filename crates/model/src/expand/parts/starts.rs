@@ -1,12 +1,12 @@
 //! Start values of an assembly's parts, as they are in the model's frame.
 
-use crate::syntax::codes::Code;
 use std::sync::Arc;
 
 use super::in_model::Places;
 use super::placement::AXES;
 use super::turned::{orient, replace, text, turn};
 use super::{Writer, mirror};
+use crate::syntax::codes::Code;
 use crate::syntax::frame::{Frame, PLACE, Turned, Vector, signed, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Entry;

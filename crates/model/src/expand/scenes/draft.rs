@@ -1,6 +1,5 @@
 //! The tree of a model while scenes are laid over it.
 
-use crate::syntax::codes::Code;
 use std::collections::{BTreeSet, HashSet};
 
 use super::{LeftOut, unknown};
@@ -9,6 +8,7 @@ use crate::expand::parts::patterns;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::report::{Fields, Report};
 use crate::robots::urdf;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};

@@ -1,6 +1,5 @@
 //! Checks of limits against the whole model: whether they cross, keep their rates and hold their mean.
 
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula};
 
 use super::classes::set_constant;
@@ -11,6 +10,7 @@ use crate::grammar::formulas::evaluate;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 
 /// Reports limits that cross, that change faster than functions between them may, or that do not hold their mean.
 /// Completes classes that depend on the duration.

@@ -1,6 +1,5 @@
 //! Classes of functions within limits: `rate`, `held`, `mean`, `energy`, `band`.
 
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula, Unary};
 
 use super::limits::{Limits, is_of_time, limits};
@@ -10,6 +9,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::model::random::band_of;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Node};
 
 /// Keys of which an excitation has one at most.

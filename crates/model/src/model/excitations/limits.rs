@@ -1,6 +1,5 @@
 //! Limits of excitations: `± 5 N`, `20 N ± 10%`, `[lower, upper]`.
 
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula, Unary};
 
 use crate::grammar::quantity::Dimension;
@@ -8,6 +7,7 @@ use crate::grammar::tolerance::{self, Deviation};
 use crate::grammar::unit::number_and_unit;
 use crate::grammar::{Context, Symbol};
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::Node;
 
 /// An example of limits.

@@ -4,7 +4,6 @@ mod checks;
 mod classes;
 mod limits;
 
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 pub use self::checks::check_limits;
@@ -19,6 +18,7 @@ use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::parameters::{deviation_of, seed_of};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;

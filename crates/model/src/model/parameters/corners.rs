@@ -1,6 +1,5 @@
 //! The corners of the parameters' intervals, at which every formula is checked.
 
-use crate::syntax::codes::Code;
 use std::collections::{HashMap, HashSet};
 
 use crate::grammar::formulas::evaluate;
@@ -8,6 +7,7 @@ use crate::grammar::reader::Corner;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 
 /// Parameters with the values that they take at a corner.

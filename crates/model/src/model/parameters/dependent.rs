@@ -1,7 +1,6 @@
 //! Tolerances of values that depend on uncertain parameters: `s2: { value: s, tolerance: 0.01 mm }` lies around s
 //! wherever s is. The deviation is an uncertain parameter of its own, `s2.deviation`.
 
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula};
 
 use super::spec::Spec;
@@ -10,6 +9,7 @@ use crate::expand::overrides::Override;
 use crate::grammar::dimension::Kind;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Entry;
 

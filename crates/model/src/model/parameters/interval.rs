@@ -1,6 +1,5 @@
 //! How far a parameter may deviate: `tolerance`, `interval`, `plus` and `minus`.
 
-use crate::syntax::codes::Code;
 use symdiff::formula::Term;
 
 use super::{Draft, Spec};
@@ -11,6 +10,7 @@ use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::unit::number_and_unit;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest;
 use crate::syntax::yaml::Node;

@@ -1,6 +1,5 @@
 //! [`Robot`](crate::robots::urdf::robot::Robot) → bodies and joints of the model.
 
-use crate::syntax::codes::Code;
 use std::collections::HashMap;
 
 use super::bodies::{Group, body};
@@ -12,6 +11,7 @@ use crate::model::names::Reader;
 use crate::robots::algebra::{self, Pose};
 use crate::robots::number::Number;
 use crate::robots::urdf::robot::{Joint as UrdfJoint, Kind};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Adds bodies and joints to the model.

@@ -5,7 +5,6 @@
 //! They are called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be left out by these names.
 
 use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
-use crate::syntax::codes::Code;
 use symdiff::Formula;
 
 use super::source::{Built, Source, coordinate, formula};
@@ -18,6 +17,7 @@ use crate::model::names::Reader;
 use crate::robots::number::Number;
 use crate::robots::tuning::TUNING;
 use crate::robots::urdf::robot::{Joint, Kind, Limits};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;

@@ -1,6 +1,5 @@
 //! `bodies: { LINK: { points: … } }`: points that the model gives to links of the robot, in the links' frames.
 
-use crate::syntax::codes::Code;
 use symdiff::{Binary, Formula};
 
 use super::Declared;
@@ -11,6 +10,7 @@ use crate::model::bodies;
 use crate::model::description::Point;
 use crate::model::names::Reader;
 use crate::robots::algebra::{self, Pose};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A point's name in its body: of a link that is welded to another, the link's name goes before it.

@@ -12,7 +12,6 @@ mod link_points;
 mod source;
 mod start;
 
-use crate::syntax::codes::Code;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -25,6 +24,7 @@ use crate::model::names::Reader;
 use crate::robots::tuning::TUNING;
 use crate::robots::urdf::robot::Robot;
 use crate::robots::urdf::{is_number, is_urdf, read};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::text_file;

@@ -1,7 +1,6 @@
 //! What the bodies, joints and start values of a robot are made from: its numbers, frames, and where its parts are in
 //! the model.
 
-use crate::syntax::codes::Code;
 use std::collections::HashSet;
 
 use symdiff::Formula;
@@ -13,6 +12,7 @@ use crate::robots::algebra::{Pose, Value, Vector};
 use crate::robots::names;
 use crate::robots::number::Number;
 use crate::robots::urdf::robot::{Joint, Kind, Robot};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Parsed URDF, and the treatment of its numbers.

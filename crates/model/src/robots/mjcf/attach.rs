@@ -1,7 +1,6 @@
 //! `<replicate>` and `<attach>`: copies of what stands in a body, and parts of other models, whose names, classes and
 //! settings are their own.
 
-use crate::syntax::codes::Code;
 use std::path::Path;
 
 use super::assets::name_of;
@@ -12,6 +11,7 @@ use super::read::{Around, Contents, Reader, Whole};
 use super::values::Values;
 use crate::robots::algebra;
 use crate::robots::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 

@@ -1,6 +1,5 @@
 //! Equalities and fixed tendons; actuators are in `actuators`.
 
-use crate::syntax::codes::Code;
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Attribute, Item};
@@ -9,6 +8,7 @@ use super::robot::{At, Body, Coupling, Equality, Length, Names, Robot, Tendon};
 use super::values::Values;
 use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::names;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 

@@ -1,13 +1,13 @@
 //! MJCF text → elements with places, included files in their places, every name checked against
 //! [`table`](super::table).
 
-use crate::syntax::codes::Code;
 use std::path::{Path, PathBuf};
 
 use super::format::{Fate, Rule};
 use super::table;
 use crate::robots::tuning::TUNING;
 use crate::robots::xml::{self, Element, NAMESPACE, Places};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

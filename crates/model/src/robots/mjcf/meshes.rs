@@ -1,6 +1,5 @@
 //! `<mesh>`: what its triangles enclose, as its `inertia` says; read where the mass of a body needs it.
 
-use crate::syntax::codes::Code;
 use std::path::Path;
 
 use super::document::{Attribute, Item};
@@ -9,6 +8,7 @@ use crate::robots::algebra;
 use crate::robots::meshes::{self, FORMATS, Faults, Measured, Triangle, Way};
 use crate::robots::tuning::TUNING;
 use crate::syntax;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;

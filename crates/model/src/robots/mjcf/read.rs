@@ -112,6 +112,10 @@ pub struct Reader<'r, 'i, 'd> {
 }
 
 impl<'i> Reader<'_, 'i, '_> {
+    fn refuse_second(&mut self, at: &Span, what: &str, name: &str) {
+        self.values.error(Code::NameTaken, at.clone(), format!("a second {what} is called `{}`", clip(name)), None);
+    }
+
     /// A name as it is in the whole model.
     fn written(&self, item: &Item) -> Option<String> {
         item.get("name").map(|name| format!("{}{}{}", self.prefix, name.value, self.suffix))
@@ -161,12 +165,7 @@ impl<'i> Reader<'_, 'i, '_> {
         if let Some(written) = written
             && self.whole.names.bodies.insert(written.clone(), index).is_some()
         {
-            self.values.error(
-                Code::NameTaken,
-                item.span.clone(),
-                format!("a second body is called `{}`", clip(&written)),
-                None,
-            );
+            self.refuse_second(&item.span, "body", &written);
         }
         let (position, rotation) = self.values.frame(item, None, &[]);
         let pose = around.pose.then(&algebra::vector(position), &rotation);
@@ -205,12 +204,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let name = names::in_formulas(&written, self.whole.names.taken_by_sites.entry(body).or_default());
         let index = self.whole.robot.bodies[body].sites.len();
         if self.whole.names.sites.insert(written.clone(), (body, index)).is_some() {
-            self.values.error(
-                Code::NameTaken,
-                named.span.clone(),
-                format!("a second site is called `{}`", clip(&written)),
-                None,
-            );
+            self.refuse_second(&named.span, "site", &written);
         }
         let position = algebra::numbers(&pose.position).unwrap_or_default();
         self.whole.robot.bodies[body].sites.push(Site { name, position, rotation: pose.rotation });
@@ -237,12 +231,7 @@ impl<'i> Reader<'_, 'i, '_> {
         if let Some(written) = written
             && self.whole.names.joints.insert(written.clone(), index).is_some()
         {
-            self.values.error(
-                Code::NameTaken,
-                item.span.clone(),
-                format!("a second joint is called `{}`", clip(&written)),
-                None,
-            );
+            self.refuse_second(&item.span, "joint", &written);
         }
         let vector = |values: &mut Values<'i, '_>, name, or| {
             get(values, name).and_then(|found| values.exact(found)).unwrap_or(or)

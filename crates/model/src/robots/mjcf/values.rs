@@ -1,6 +1,5 @@
 //! Values of attributes: of the element itself, or of its class among the defaults; checked numbers, frames.
 
-use crate::syntax::codes::Code;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -11,6 +10,7 @@ use super::document::{Attribute, Item};
 use super::flags::Flags;
 use crate::robots::algebra::{self, Quaternion, Value};
 use crate::robots::number::Number;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

@@ -4,12 +4,12 @@
 //! [`rewrite`] gives the robot back as a text that urdf-rs reads without error: only what [`format`](super::format)
 //! lists, wrong values replaced after they are reported, so that all errors of a file are found at once.
 
-use crate::syntax::codes::Code;
 use std::fmt::Write;
 
 use super::format::{Absent, Attribute, ROBOT, Rule, Shape};
 use crate::robots::algebra;
 use crate::robots::xml::{EXPAND, Element, NAMESPACE, Places, children, plain};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

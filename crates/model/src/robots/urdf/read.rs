@@ -4,7 +4,6 @@
 //! reads the values; and the remaining checks are relations of values: names, masses, axes, and that links and joints
 //! are one tree.
 
-use crate::syntax::codes::Code;
 use std::collections::{HashMap, HashSet};
 
 use urdf_rs::JointType;
@@ -15,6 +14,7 @@ use super::{check, tree};
 use crate::robots::names;
 use crate::robots::number::Number;
 use crate::robots::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

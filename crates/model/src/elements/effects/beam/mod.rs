@@ -22,7 +22,6 @@
 mod spatial;
 
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -31,6 +30,7 @@ use super::{ForceElement, Forces, LineMass, Section, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 /// A massless beam that bends between two bodies, in space with `torsional_stiffness`.

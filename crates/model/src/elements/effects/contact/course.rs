@@ -1,6 +1,5 @@
 //! Points in a frame, and lines through them of straight edges and arcs, as a file has them.
 
-use crate::syntax::codes::Code;
 use std::ops::Deref;
 
 use schemars::{Schema, SchemaGenerator, json_schema};
@@ -10,6 +9,7 @@ use crate::elements::effects::Forces;
 use crate::elements::form::Bend;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml;
 
 /// Points in a frame.

@@ -14,12 +14,12 @@
 //!
 //! Which faces there are follows from the points, so these are the same for all samples.
 
-use crate::syntax::codes::Code;
 use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use super::solid::Gap;
 use crate::grammar::{Fields, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
 
 /// Most points: each face, edge and corner has instructions of its own.

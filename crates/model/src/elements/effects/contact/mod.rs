@@ -38,7 +38,6 @@ pub(super) mod solid;
 mod surfaces;
 pub(super) mod touch;
 
-use crate::syntax::codes::Code;
 use std::rc::Rc;
 
 use mbint_derive::Element;
@@ -58,6 +57,7 @@ use self::touch::{Law, Surface, Touch};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::elements::{Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Pair, Vector};
 
 /// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block, a hull or edges on one body with a circle,

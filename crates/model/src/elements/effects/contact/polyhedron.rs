@@ -12,7 +12,6 @@
 //! ρ + r. Each push is the gradient of an energy of its own distance, so that the sum keeps energy, also while a corner
 //! passes over an edge.
 
-use crate::syntax::codes::Code;
 use std::rc::Rc;
 
 use symdiff::Scalar;
@@ -24,6 +23,7 @@ use super::rod::Rod;
 use super::solid::Solid;
 use super::touch::{Shape, Surface, Touch};
 use crate::grammar::{Reader, Span, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
 
 /// Most pairs of edges: each has instructions of its own. Two boxes have 144.

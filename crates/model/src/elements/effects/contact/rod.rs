@@ -8,7 +8,6 @@
 //! Against a block see `beside`, against a hull `along_hull`. Lines that cross have one nearest pair of points.
 //! Parallel ones have many: m is the middle of their common part, and ε = 10⁻⁴ the angle at which it takes over.
 
-use crate::syntax::codes::Code;
 use symdiff::Scalar;
 
 use super::along_hull::nearest_to_hull;
@@ -17,6 +16,7 @@ use super::course::Points;
 use super::hull::Hull;
 use super::solid::Segment;
 use crate::grammar::{Fields, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
 
 /// ε of two lines.

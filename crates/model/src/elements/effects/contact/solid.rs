@@ -10,11 +10,11 @@
 //! about edges and corners. Inside of a block, where e = 0, the nearest face pushes: gap = maxᵢ(|pᵢ| − hᵢ) − ρ − r,
 //! which is continuous. A centre on a capsule's line has no nearest side: nothing pushes it.
 
-use crate::syntax::codes::Code;
 use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use crate::grammar::{Reader, Span, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
 
 /// Where two surfaces are to one another.

@@ -12,13 +12,13 @@
 //! With another coefficient μ_e along a direction e, μ u becomes μ u + (μ_e − μ) (e · u) e: an ellipse of friction, of
 //! which the force stands against u along its axes alone (Zmitrowicz, Int. J. Solids Struct. 25 (1989) 837).
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::effects::Forces;
 use crate::grammar::{Checked, Direction, Fields, Reader, Requirement, SymbolTable};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 const AT_LEAST_SLIDING: Requirement = Requirement {
     holds: |value| value >= 1.0,

@@ -3,12 +3,12 @@
 //! The rate of a target that depends on t alone is its derivative by t. Of one that follows states or a motion it is a
 //! formula of its own, `target_rate`: the target's derivative would need rates and accelerations.
 
-use crate::syntax::codes::Code;
 use symdiff::{Formula, Scalar};
 
 use crate::elements::effects::Forces;
 use crate::grammar::{Context, Fields, Reader, Symbol, SymbolTable, TimeOrder};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// A target and its rate.
 pub fn goal<'g>(

@@ -24,7 +24,6 @@
 //! χ = 3 (1 − e²)/(4 v)         Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369
 //! ```
 
-use crate::syntax::codes::Code;
 use mbint_derive::{Choice, Element};
 use schemars::{Schema, SchemaGenerator};
 use symdiff::{Formula, Scalar};
@@ -37,6 +36,7 @@ use crate::grammar::{
     Checked, Fields, JointCoordinate, Node, Quantity, Reader, Requirement, Span, SymbolTable, Value, values,
 };
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 const RESTITUTION: Requirement =
     Requirement { holds: |value| value > 0.0 && value <= 1.0, message: "must be above 0 and at most 1" };

@@ -12,7 +12,6 @@
 //! (1968) 1313): constraint modes, which move one coordinate of one node, then normal modes with all nodes held.
 //! Lengths and rotations are small, in the axes of the body as it stands undeformed; everything is in SI units.
 
-use crate::syntax::codes::Code;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::Builder;
@@ -20,6 +19,7 @@ use symdiff::Builder;
 use crate::grammar::report::Fields;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value};
 use crate::multibody::Vector;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml;
 

@@ -21,7 +21,6 @@ pub(super) mod carried;
 pub mod matrices;
 
 
-use crate::syntax::codes::Code;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
@@ -30,6 +29,7 @@ use super::{ForceElement, Forces, ReducedInertia, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Pair, RelativeDisplacement, Vector};
 
 /// A flexible body by its mass and stiffness matrices: by nodes and modes.
