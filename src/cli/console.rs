@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Style};
 use serde::Serialize;
 
-use super::Failure;
+use super::{Failure, Status};
 use crate::syntax::{Code, Coded, Diagnostics, harmless, is_harmful};
 
 /// A style within a text: `{BOLD}` begins it, `{BOLD:#}` ends it.
@@ -110,6 +110,15 @@ impl Console {
         let shown = code.map_or_else(String::new, |code| format!("[{code}]"));
         self.first.set(self.first.get().or(code));
         self.report(&format!("{RED}error{shown}{RED:#}: {message}\n"));
+    }
+
+    /// Writes why a command ended early; returns the exit status.
+    pub fn failure(&self, failure: &Failure) -> Status {
+        // What comes next is said once for all models.
+        if !failure.is_deferred() {
+            self.coded_error(failure.code(), failure.message());
+        }
+        failure.status()
     }
 
     /// Names the page about the first error that has one.

@@ -1,7 +1,6 @@
 //! Why a command ended early, or a model of several was not run, in words for the user.
 
 use super::Status;
-use super::console::Console;
 use crate::syntax::{Code, Coded};
 
 /// A message, the kind of mistake, and the status with which the command ends.
@@ -32,15 +31,6 @@ impl Failure {
     #[must_use]
     pub fn of(self, error: &impl Coded) -> Self {
         Self { code: error.code(), ..self }
-    }
-
-    /// Reports it; returns the exit status.
-    pub fn report(&self, console: &Console) -> Status {
-        // What comes next is said once for all models.
-        if !self.is_deferred() {
-            console.coded_error(self.code, &self.message);
-        }
-        self.status
     }
 
     pub fn is_deferred(&self) -> bool {

@@ -1,5 +1,5 @@
-//! `mbint explain --units`, `--functions`, `--outputs`, `--tuning`, `--exit-codes`, `--codes`: lists of the language and of the
-//! program, from the tables of the code.
+//! `mbint explain --units`, `--functions`, `--outputs`, `--tuning`, `--exit-codes`, `--codes`: lists of the
+//! language and of the program, from the tables of the code.
 
 use super::Failure;
 use super::console::to_json;

@@ -95,7 +95,7 @@ pub fn main() -> ExitCode {
     let mut console = Console::default();
     let executed = study::caught("the command", || execute(cli.command, &mut console));
     let executed = executed.unwrap_or_else(|error| Err(Failure::failed(error.to_string())));
-    let status = executed.unwrap_or_else(|failure| failure.report(&console));
+    let status = executed.unwrap_or_else(|failure| console.failure(&failure));
     let status = if console.has_failed() { status.max(Status::Failed) } else { status };
     if status != Status::Done {
         console.more();

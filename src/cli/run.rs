@@ -71,7 +71,7 @@ pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told)
             Kind::Alone(job) => run_and_report(&work.path, job, request, console, told),
             Kind::Scenes(scenes) => scenes.run(&work.path, request, console, told),
         };
-        status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
+        status = status.max(done.unwrap_or_else(|failure| console.failure(&failure)));
         if interrupt::asked() {
             status = Status::Interrupted;
             break;

@@ -61,7 +61,7 @@ impl Scenes {
                     Some(done)
                 }
                 Err(failure) => {
-                    status = status.max(failure.report(console));
+                    status = status.max(console.failure(&failure));
                     None
                 }
             };

@@ -36,7 +36,7 @@ pub(super) fn snapshot(args: SnapshotArgs, console: &mut Console) -> Result<Stat
         // The other models run even if one fails.
         let done = study::caught("the model's run", run)
             .unwrap_or_else(|error| Err(Failure::failed(format!("{}: {error}", job.model.name))));
-        status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
+        status = status.max(done.unwrap_or_else(|failure| console.failure(&failure)));
         if interrupt::asked() {
             return Ok(Status::Interrupted);
         }

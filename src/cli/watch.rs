@@ -42,7 +42,7 @@ pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Statu
                 }
             }
         };
-        let status = run_all(&request, console, &mut told).unwrap_or_else(|failure| failure.report(console));
+        let status = run_all(&request, console, &mut told).unwrap_or_else(|failure| console.failure(&failure));
         if !is_quiet {
             console.print(&changes)?;
             let files = count(before.len(), "file", "files");

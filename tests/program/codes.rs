@@ -15,6 +15,7 @@ use mbint::inner::syntax::{Code, MODEL};
 use rayon::prelude::*;
 
 use crate::book::expect_page;
+use crate::place::Place;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -208,6 +209,42 @@ fn codes_keep_their_numbers() {
     } else {
         assert_eq!(recorded, all, "MBINT_UPDATE=1 records the new ones");
     }
+}
+
+#[test]
+fn explain_prints_the_page_of_a_code() {
+    let place = Place::new();
+    for asked in ["E0401", "e0401"] {
+        assert_eq!(place.run(&format!("explain {asked}"), 0).0, Code::UnknownName.page());
+    }
+    let data: serde_json::Value = serde_json::from_str(&place.run("explain E0401 --format json", 0).0).unwrap();
+    assert_eq!((&data["code"], &data["title"]), (&"E0401".into(), &Code::UnknownName.title().into()));
+    assert!(place.run("explain --codes", 0).0.contains("E0401  a name that stands for nothing\n"));
+    let (_, errors) = place.run("explain E0499", 2);
+    assert_eq!(
+        errors,
+        "error: there is no code `E0499`; those of its block are `E0401`, `E0402`, `E0403` and `E0404`\n"
+    );
+    let (_, errors) = place.run("explain E9901", 2);
+    assert!(errors.contains("there is no code `E9901`"), "{errors}");
+    // A file of that name is a model.
+    fs::write(place.path().join("E0401"), MODEL).unwrap();
+    assert!(place.run("explain E0401", 0).0.contains("degree of freedom"));
+}
+
+#[test]
+fn a_failed_command_names_the_page_of_its_first_error() {
+    let place = Place::new();
+    fs::write(place.path().join("arm.yaml"), MODEL.replace("arm.A", "amr.A").replace("mass: 2 kg", "mass: 2 m"))
+        .unwrap();
+    let (_, errors) = place.run("check arm.yaml", 2);
+    assert!(errors.starts_with("error[E0301]: ") && errors.contains("\nerror[E0401]: "), "{errors}");
+    assert!(errors.ends_with("\nmore: mbint explain E0301\n"), "{errors}");
+    let (output, errors) = place.run("check arm.yaml --format json", 2);
+    let data: serde_json::Value = serde_json::from_str(&output).unwrap();
+    assert_eq!((errors.as_str(), &data[0]["diagnostics"][1]["code"]), ("", &"E0401".into()));
+    fs::write(place.path().join("arm.yaml"), MODEL).unwrap();
+    assert_eq!(place.run("check arm.yaml", 0).1, "");
 }
 
 #[test]
