@@ -143,7 +143,7 @@ pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec
             // The terminal writes the first `error[CODE]: ` itself.
             let text = wrong.to_string();
             let head = wrong.code().map_or_else(String::new, |code| format!("error[{code}]: "));
-            Failure::wrong(text.strip_prefix(&head).unwrap_or(&text)).of(&wrong)
+            Failure::wrong(text.strip_prefix(&head).unwrap_or(&text).trim_end()).of(&wrong)
         };
         laid.extend(read_overlay(path).map_err(wrong)?);
     }
