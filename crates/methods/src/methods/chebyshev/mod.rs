@@ -1,8 +1,7 @@
 //! Chebyshev bounds: a polynomial in the parameters, from samples at Chebyshev nodes, and its range.
 //!
-//! The independent coordinates are expanded, from which the outputs follow (`composition`), or the outputs
-//! themselves (the paper's). The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too
-//! (`outputs_alone`).
+//! The independent coordinates are expanded, from which outputs follow (`composition`), or outputs (the paper's).
+//! The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too (`outputs_alone`).
 
 mod adaptive;
 mod along_gradients;
@@ -149,8 +148,7 @@ impl Chebyshev {
         };
         let expand = match fields.get("expand") {
             Some(node) => reader.choice(node, &EXPAND),
-            // A range is asked for of outputs only.
-            None if fields.get("range").is_some() => Some(Expand::Output),
+            None if fields.get("range").is_some() => Some(Expand::Output), // a range is asked for of outputs only
             None => Some(Expand::Coordinates),
         };
         let unspecified = Self::unspecified(uncertain.len(), tolerance);
