@@ -71,5 +71,6 @@ pub mod study {
 }
 
 pub mod syntax {
-    pub use crate::syntax::Diagnostics;
+    pub use crate::syntax::codes::MODEL;
+    pub use crate::syntax::{Code, Diagnostics};
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -27,12 +28,15 @@ class MbintError(RuntimeError):
     Attributes:
         status: its exit status.
         message: what it printed, with the places in the model.
+        code: kind of the first mistake, e.g. ``E0401``, of which ``mbint explain`` has a page; None where it has none.
     """
 
     def __init__(self, status: int, message: str) -> None:
         super().__init__(message or f"mbint ended with status {status}")
         self.status = status
         self.message = message
+        found = re.search(r"^error\[(E\d{4})\]", message, re.MULTILINE)
+        self.code = found[1] if found else None
 
 
 def command() -> str:

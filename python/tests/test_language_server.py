@@ -153,6 +153,7 @@ async def test_an_error_appears_while_typing_with_its_cure(client: LanguageClien
     [wrong] = await editor.diagnostics()
     assert editor.text_in(wrong.range) == "mas" and "did you mean `mass`?" in wrong.message
     assert wrong.severity == lsp.DiagnosticSeverity.Error
+    assert wrong.code == "E0401" and wrong.code_description.href.endswith("/docs/errors/E0401.md")
     params = lsp.CodeActionParams(editor.identifier, wrong.range, lsp.CodeActionContext(diagnostics=[wrong]))
     [action] = await client.text_document_code_action_async(params)
     [edit] = action.edit.changes[editor.uri]

@@ -57,7 +57,7 @@ def test_scenes_are_results_of_their_own() -> None:
 def test_errors_are_those_of_the_command() -> None:
     with pytest.raises(mbint.MbintError, match="no key `mas`|has no `mas`") as caught:
         mbint.run(FALL | {"bodies": {"ball": {"mas": 1, "coordinates": ["y"]}}})
-    assert caught.value.status == 2
+    assert caught.value.status == 2 and caught.value.code == "E0201"
 
 
 def test_values_are_numbers_intervals_or_texts() -> None:

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::export::ExportError;
 use crate::model::UnknownScene;
 use crate::study::{AllocateError, CostError, DataError, DesignError, FitError, GradientError, RunError, VerifyError};
-use crate::syntax::Diagnostics;
+use crate::syntax::{Code, Coded, Diagnostics};
 
 /// Why there is no model, or nothing of it could be run.
 #[derive(thiserror::Error)]
@@ -61,6 +61,29 @@ pub enum Error {
 impl fmt::Debug for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, formatter)
+    }
+}
+
+impl Error {
+    /// The code of the kind of mistake, e.g. `E0901`, of which `mbint explain` has a page: of a model with errors that
+    /// of its first; none at an interruption.
+    pub fn code(&self) -> Option<&'static str> {
+        let code = match self {
+            Self::Model(diagnostics) => diagnostics.code(),
+            Self::Scene(error) => error.code(),
+            Self::Run(error) => error.code(),
+            Self::Unsuitable(_) => Some(Code::Unsuitable),
+            Self::Cost(error) => error.code(),
+            Self::Point { .. } => Some(Code::BadOverride),
+            Self::Interrupted => None,
+            Self::Gradient(error) => error.code(),
+            Self::Verify(error) => error.code(),
+            Self::Data(error) => error.code(),
+            Self::Fit(error) => error.code(),
+            Self::Design(error) => error.code(),
+            Self::Write(error) => error.code(),
+        };
+        code.map(Code::id)
     }
 }
 

@@ -28,17 +28,18 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
         }
         Err(error) => {
             let message = format!("{}: {error}", model.name);
-            return Err(match error {
+            return Err(match &error {
                 AllocateError::Unsuitable(_) | AllocateError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
-                    Failure::Wrong(message)
+                    Failure::wrong(message)
                 }
-                AllocateError::Run(_) => Failure::Failed(message),
-            });
+                AllocateError::Run(_) => Failure::failed(message),
+            }
+            .of(&error));
         }
     };
     interrupt::wait_for(&folder)?;
     let files = write_allocation(&folder, &found);
-    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    let files = files.map_err(|error| Failure::failed(format!("{}: {error}", model.name)).of(&error))?;
     if !args.run.quiet {
         let mut text = overview(&found);
         text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));

@@ -6,5 +6,5 @@ use super::{Failure, Status};
 
 pub(super) fn answer(args: &AnswerFmuArgs) -> Result<Status, Failure> {
     let answered = mbint_fmu::answer(&args.folder, std::io::stdin().lock(), std::io::stdout().lock());
-    answered.map(|()| Status::Done).map_err(|error| Failure::Failed(error.to_string()))
+    answered.map(|()| Status::Done).map_err(|error| Failure::failed(&error))
 }

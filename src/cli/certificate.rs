@@ -27,7 +27,7 @@ struct Answer {
 }
 
 pub(super) fn verify(args: &VerifyCertificateArgs, console: &mut Console) -> Result<Status, Failure> {
-    let wrong = |why: String| Failure::Wrong(format!("{}: {why}", shown(&args.certificate)));
+    let wrong = |why: String| Failure::wrong(format!("{}: {why}", shown(&args.certificate)));
     let text = std::fs::read_to_string(&args.certificate).map_err(|error| wrong(error.to_string()))?;
     let certificate = certificate::read(&text).map_err(|error| wrong(error.to_string()))?;
     let other = match &args.model {
@@ -37,7 +37,7 @@ pub(super) fn verify(args: &VerifyCertificateArgs, console: &mut Console) -> Res
             Err(status) => return Ok(status),
         },
     };
-    let pool = study::pool(args.threads.number()).map_err(|error| Failure::Failed(error.to_string()))?;
+    let pool = study::pool(args.threads.number()).map_err(|error| Failure::failed(&error))?;
     let checked = match other {
         Some(other) => Err(other),
         None => pool.install(|| certificate::check(&certificate)).map_err(|refusal| refusal.to_string()),
@@ -95,7 +95,8 @@ fn compared(
     else {
         return Ok(Ok(Some(format!("the model has no scene {}", certificate.model))));
     };
-    let own = study::equations(&description).map_err(|error| Failure::Wrong(format!("{}: {error}", model.name)))?;
+    let own = study::equations(&description)
+        .map_err(|error| Failure::wrong(format!("{}: {error}", model.name)).of(&error))?;
     Ok(Ok(difference(certificate, &own)))
 }
 

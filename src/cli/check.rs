@@ -12,7 +12,7 @@ use crate::model::{self, Description};
 use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
 use crate::study::{self, Ready, RunError};
-use crate::syntax::{Diagnostics, harmless};
+use crate::syntax::{Code, Coded, Diagnostics, harmless};
 
 /// More names than this are counted, the first few of them named.
 const MOST_NAMED: usize = 12;
@@ -30,6 +30,9 @@ struct Checked {
     /// The error of the mechanism as a whole.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    /// Its code.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error_code: Option<Code>,
     /// Results for its scenes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     scenes: Vec<CheckedScene>,
@@ -53,6 +56,7 @@ impl Checked {
             counts: None,
             diagnostics: Vec::new(),
             error: None,
+            error_code: None,
             scenes: Vec::new(),
             found: Diagnostics::default(),
             tree: String::new(),
@@ -70,6 +74,8 @@ struct CheckedScene {
     counts: Option<Counts>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error_code: Option<Code>,
 }
 
 #[derive(Serialize)]
@@ -132,7 +138,7 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
             for model in &checked {
                 console.diagnostics(&model.found);
                 if let Some(error) = &model.error {
-                    console.error(&format!("{}: {error}", model.file));
+                    console.coded_error(model.error_code, &format!("{}: {error}", model.file));
                 }
                 if let Some(counts) = &model.counts {
                     console.print(&counts.lines())?;
@@ -142,7 +148,8 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
                         (Some(counts), _) => console.print(&counts.lines())?,
                         (None, error) => {
                             let error = error.as_deref().unwrap_or_default();
-                            console.error(&format!("{}: scene {}: {error}", model.file, scene.scene));
+                            let message = format!("{}: scene {}: {error}", model.file, scene.scene);
+                            console.coded_error(scene.error_code, &message);
                         }
                     }
                 }
@@ -171,17 +178,17 @@ fn check_one(path: &Path, given: &Given) -> Checked {
     }
     match reading.description.as_ref().map(Counts::of) {
         None => read,
-        Some(Err(error)) => Checked { error: Some(error.to_string()), ..read },
+        Some(Err(error)) => Checked { error_code: error.code(), error: Some(error.to_string()), ..read },
         Some(Ok(counts)) => Checked { ok: true, counts: Some(counts), ..read },
     }
 }
 
 fn check_scene(scene: &model::Scene) -> CheckedScene {
-    let (counts, error) = match Counts::of(&scene.description) {
-        Ok(counts) => (Some(counts), None),
-        Err(error) => (None, Some(error.to_string())),
-    };
-    CheckedScene { scene: scene.name.clone(), ok: counts.is_some(), counts, error }
+    let nothing = CheckedScene { scene: scene.name.clone(), ok: false, counts: None, error: None, error_code: None };
+    match Counts::of(&scene.description) {
+        Ok(counts) => CheckedScene { ok: true, counts: Some(counts), ..nothing },
+        Err(error) => CheckedScene { error_code: error.code(), error: Some(error.to_string()), ..nothing },
+    }
 }
 
 impl Counts {

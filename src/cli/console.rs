@@ -4,7 +4,7 @@
 //! made harmless here. Styles are therefore not in a text as the terminal's own sequences but as marks, which become
 //! those afterwards.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::io::{self, ErrorKind, Write};
@@ -13,8 +13,8 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Style};
 use serde::Serialize;
 
-use super::Failure;
-use crate::syntax::{Diagnostics, harmless, is_harmful};
+use super::{Failure, Status};
+use crate::syntax::{Code, Coded, Diagnostics, harmless, is_harmful};
 
 /// A style within a text: `{BOLD}` begins it, `{BOLD:#}` ends it.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +66,8 @@ pub(super) struct Console {
     closed: bool,
     /// Whether something could not be written.
     failed: bool,
+    /// The code of the first error.
+    first: Cell<Option<Code>>,
     /// Texts about files already written, where each is written once.
     written: Option<RefCell<BTreeSet<String>>>,
 }
@@ -100,7 +102,30 @@ impl Console {
 
     /// Writes an error in one line to standard error.
     pub fn error(&self, message: &str) {
-        self.report(&format!("{RED}error{RED:#}: {message}\n"));
+        self.coded_error(None, message);
+    }
+
+    /// The same with its code, where it has one.
+    pub fn coded_error(&self, code: Option<Code>, message: &str) {
+        let shown = code.map_or_else(String::new, |code| format!("[{code}]"));
+        self.first.set(self.first.get().or(code));
+        self.report(&format!("{RED}error{shown}{RED:#}: {message}\n"));
+    }
+
+    /// Writes why a command ended early; returns the exit status.
+    pub fn failure(&self, failure: &Failure) -> Status {
+        // What comes next is said once for all models.
+        if !failure.is_deferred() {
+            self.coded_error(failure.code(), failure.message());
+        }
+        failure.status()
+    }
+
+    /// Names the page about the first error that has one.
+    pub fn more(&self) {
+        if let Some(code) = self.first.get() {
+            self.note(&format!("more: mbint explain {code}\n"));
+        }
     }
 
     /// Writes a warning in one line to standard error.
@@ -123,6 +148,7 @@ impl Console {
         let color = anstream::AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never;
         // They are harmless, and have colours of their own.
         let text = diagnostics.render(color);
+        self.first.set(self.first.get().or_else(|| diagnostics.code()));
         if self.written.as_ref().is_none_or(|written| written.borrow_mut().insert(text.clone())) {
             let _ = anstream::stderr().lock().write_all(text.as_bytes());
         }
@@ -157,7 +183,7 @@ pub(super) fn coordinates(n: usize, formulation: &str) -> String {
 /// Indented JSON with a line end; what a terminal could obey is escaped.
 pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);
-    let text = text.map_err(|error| Failure::Failed(format!("cannot write JSON: {error}")))?;
+    let text = text.map_err(|error| Failure::failed(format!("cannot write JSON: {error}")))?;
     let mut escaped = String::with_capacity(text.len() + 1);
     for c in text.chars() {
         match c {

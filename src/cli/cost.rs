@@ -17,7 +17,7 @@ use crate::study::{self, CostError, CostOptions, RunError};
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
     let model = load::load(&args.model, &args.set.given()?, args.run.scene.as_ref(), console)?;
     let Some((model, folder)) = with_folder(model, args.output.as_ref())? else { return Ok(Status::Wrong) };
-    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", model.name));
+    let failed = |error: &dyn std::fmt::Display| Failure::failed(format!("{}: {error}", model.name));
     let progress = Progress::new(&model.name, !args.run.quiet);
     let options = CostOptions {
         tolerance: wanted(&args, &model),
@@ -36,13 +36,13 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
             return Ok(Status::Interrupted);
         }
         Err(error @ CostError::Run(RunError::Refused(_))) => {
-            return Err(Failure::Wrong(format!("{}: {error}", model.name)));
+            return Err(Failure::wrong(format!("{}: {error}", model.name)).of(&error));
         }
-        Err(error) => return Err(failed(&error)),
+        Err(error) => return Err(failed(&error).of(&error)),
     };
     drop(progress);
     interrupt::wait_for(&folder)?;
-    let files = write_cost(&folder, &study).map_err(|error| failed(&error))?;
+    let files = write_cost(&folder, &study).map_err(|error| failed(&error).of(&error))?;
     if !args.run.quiet {
         console.print(&overview(&study, &folder, &files))?;
     }

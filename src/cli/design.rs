@@ -27,17 +27,18 @@ pub(super) fn design(args: DesignArgs, console: &mut Console) -> Result<Status, 
         Err(_) if interrupt::asked() => return Ok(Status::Interrupted),
         Err(error) => {
             let message = format!("{}: {error}", model.name);
-            return Err(match error {
+            return Err(match &error {
                 DesignError::Unsuitable(_) | DesignError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
-                    Failure::Wrong(message)
+                    Failure::wrong(message)
                 }
-                _ => Failure::Failed(message),
-            });
+                _ => Failure::failed(message),
+            }
+            .of(&error));
         }
     };
     interrupt::wait_for(&folder)?;
     let files = write_design(&folder, &found);
-    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    let files = files.map_err(|error| Failure::failed(format!("{}: {error}", model.name)).of(&error))?;
     answer(&found, args.format, args.run.quiet, console, || {
         let mut text = overview(&found);
         text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));

@@ -24,7 +24,7 @@ pub(super) struct EffectDocs {
 /// # Errors
 /// Never, but for a defect of the examples that are counted.
 pub(super) fn all() -> Result<Vec<EffectDocs>, Failure> {
-    let costs = language_costs().map_err(|error| Failure::Wrong(error.to_string()))?;
+    let costs = language_costs().map_err(|error| Failure::wrong(&error).of(&error))?;
     let with_cost = |docs: ElementDocs| {
         let adds = costs.iter().find(|(known, _)| *known == docs.keyword).map(|(_, cost)| *cost);
         EffectDocs { docs, adds }

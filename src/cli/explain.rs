@@ -1,4 +1,4 @@
-//! `mbint explain`: what a model is compiled to, or what the language offers.
+//! `mbint explain`: what a model is compiled to, what the language offers, or the page of a message.
 
 use super::args::{ExplainArgs, Format};
 use super::console::{BOLD, Console, count, to_json};
@@ -8,20 +8,44 @@ use super::{Failure, Status, effects, joints, load, methods};
 use crate::elements::JointKind;
 use crate::results::{Decision, Explanation};
 use crate::study;
+use crate::syntax::Code;
+use serde::Serialize;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
     let Some(path) = &args.model else {
         return console.print(&listed(args)?).map(|()| Status::Done);
     };
+    if let Some(code) = path.to_str().filter(|text| Code::is_like(text) && !path.exists()) {
+        return console.print(&page(code, args.format)?).map(|()| Status::Done);
+    }
     let Some(model) = load::load(path, &args.set.given()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let explanation = study::explain(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
+    let explanation =
+        study::explain(&model).map_err(|error| Failure::wrong(format!("{}: {error}", path.display())).of(&error))?;
     console.print(&match args.format {
         Format::Text => text(&explanation),
         Format::Json => to_json(&explanation)?,
     })?;
     Ok(Status::Done)
+}
+
+/// The page of a code.
+fn page(code: &str, format: Format) -> Result<String, Failure> {
+    let code = Code::find(code).map_err(Failure::wrong)?;
+    match format {
+        Format::Text => Ok(code.page()),
+        Format::Json => to_json(&CodePage { code, title: code.title(), page: code.page(), href: code.href() }),
+    }
+}
+
+/// A code with its page, in Markdown, and the address of that.
+#[derive(Serialize)]
+struct CodePage {
+    code: Code,
+    title: &'static str,
+    page: String,
+    href: String,
 }
 
 /// The list that is asked for.

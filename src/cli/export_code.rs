@@ -22,10 +22,11 @@ pub(super) fn export(args: &ExportArgs, console: &mut Console) -> Result<Status,
     };
     let code = study::code(&model, &args.inputs, version).map_err(|error| {
         let message = format!("{}: {error}", model.name);
-        match error {
-            CodeError::None(_) | CodeError::Run(RunError::Refused(_)) => Failure::Wrong(message),
-            CodeError::Run(_) => Failure::Failed(message),
+        match &error {
+            CodeError::None(_) | CodeError::Run(RunError::Refused(_)) => Failure::wrong(message),
+            CodeError::Run(_) => Failure::failed(message),
         }
+        .of(&error)
     })?;
     if code.singular_steps > 0 {
         console.warning(&format!(
@@ -35,7 +36,7 @@ pub(super) fn export(args: &ExportArgs, console: &mut Console) -> Result<Status,
         ));
     }
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
-    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    prepare_folder(&folder).map_err(|error| Failure::wrong(&error).of(&error))?;
     interrupt::wait_for(&folder)?;
     let mut files = Vec::new();
     if args.formats.c {
@@ -51,7 +52,7 @@ pub(super) fn export(args: &ExportArgs, console: &mut Console) -> Result<Status,
 fn written(folder: &Path, files: &[(String, String)]) -> Result<Vec<PathBuf>, Failure> {
     let write = |(name, text): &(String, String)| {
         let path = folder.join(name);
-        fs::write(&path, text).map_err(|error| Failure::Failed(format!("{}: {error}", path.display())))?;
+        fs::write(&path, text).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
         Ok(path)
     };
     files.iter().map(write).collect()
@@ -66,7 +67,7 @@ fn unit(folder: &Path, code: &CModel, version: FmiVersion, console: &Console) ->
         Err(why) => console.warning(&format!("the unit has sources and no library: {why}")),
     }
     let path = folder.join(format!("{}.fmu", code.identifier));
-    write_archive(&path, &files).map_err(|error| Failure::Failed(error.to_string()))?;
+    write_archive(&path, &files).map_err(|error| Failure::failed(&error).of(&error))?;
     Ok(path)
 }
 

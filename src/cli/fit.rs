@@ -25,9 +25,9 @@ pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failur
         true => std::io::read_to_string(std::io::stdin()),
         false => std::fs::read_to_string(&args.data),
     };
-    let of_data = |error: &dyn std::fmt::Display| Failure::Wrong(format!("{}: {error}", shown(&args.data)));
+    let of_data = |error: &dyn std::fmt::Display| Failure::wrong(format!("{}: {error}", shown(&args.data)));
     let table = table.map_err(|error| of_data(&error))?;
-    let measurements = Measurements::read(&table, &model, &args.noise).map_err(|error| of_data(&error))?;
+    let measurements = Measurements::read(&table, &model, &args.noise).map_err(|error| of_data(&error).of(&error))?;
     let Some((model, folder)) = with_folder(Some(model), args.output.as_ref())? else { return Ok(Status::Wrong) };
     let found = ask(&model.name, &args.run, args.yes, |options| study::fit(&model, &measurements, options));
     let found = match found {
@@ -35,17 +35,18 @@ pub(super) fn fit(args: FitArgs, console: &mut Console) -> Result<Status, Failur
         Err(_) if interrupt::asked() => return Ok(Status::Interrupted),
         Err(error) => {
             let message = format!("{}: {error}", model.name);
-            return Err(match error {
+            return Err(match &error {
                 FitError::NoParameter | FitError::Run(RunError::Costly(_) | RunError::Memory(_)) => {
-                    Failure::Wrong(message)
+                    Failure::wrong(message)
                 }
-                _ => Failure::Failed(message),
-            });
+                _ => Failure::failed(message),
+            }
+            .of(&error));
         }
     };
     interrupt::wait_for(&folder)?;
     let files = write_fit(&folder, &found);
-    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    let files = files.map_err(|error| Failure::failed(format!("{}: {error}", model.name)).of(&error))?;
     answer(&found, args.format, args.run.quiet, console, || {
         let mut text = overview(&found);
         text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));

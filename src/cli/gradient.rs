@@ -23,15 +23,16 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
         Err(error) if error.is_interruption() => return Ok(Status::Interrupted),
         found => found.map_err(|error| {
             let message = format!("{}: {error}", model.name);
-            match *error {
+            match &*error {
                 GradientError::NoParameter | GradientError::NoOutput | GradientError::None(_) => {
-                    Failure::Wrong(message)
+                    Failure::wrong(message)
                 }
                 GradientError::Run(RunError::Costly(_) | RunError::Memory(_) | RunError::Refused(_)) => {
-                    Failure::Wrong(message)
+                    Failure::wrong(message)
                 }
-                GradientError::Run(_) | GradientError::Lost { .. } => Failure::Failed(message),
+                GradientError::Run(_) | GradientError::Lost { .. } => Failure::failed(message),
             }
+            .of(&*error)
         })?,
     };
     let outputs = found.outputs.iter().enumerate();
@@ -39,7 +40,7 @@ pub(super) fn gradient(args: GradientArgs, console: &mut Console) -> Result<Stat
     let shown: Vec<DerivativesAt> = outputs.chain(found.reduced.iter().map(ReducedGradients::at)).collect();
     interrupt::wait_for(&folder)?;
     let files = write_gradients(&folder, &found, &shown);
-    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    let files = files.map_err(|error| Failure::failed(format!("{}: {error}", model.name)).of(&error))?;
     if let Some(from) = found.unreliable_from {
         console.warning(&format!(
             "{}: derivatives are not reliable from t = {} s on: a contact or a kink of the equations lies within a step, and the motion cannot be followed from one such event to the next",

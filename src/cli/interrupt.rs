@@ -47,7 +47,7 @@ pub(super) fn wait_for(folder: &Path) -> Result<(), Failure> {
         }
         !asked()
     };
-    wait_for_folder(folder, &mut waits).map_err(|error| Failure::Failed(error.to_string()))
+    wait_for_folder(folder, &mut waits).map_err(|error| Failure::failed(&error).of(&error))
 }
 
 /// Says whether there are results to keep.

@@ -41,7 +41,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     profile.iter().for_each(|profile| profile.model(name));
     let done = study::caught("the model's run", || run_and_write(job, request));
     profile.iter().for_each(Profile::end);
-    let done = done.unwrap_or_else(|error| Err(Failure::Failed(format!("{name}: {error}"))));
+    let done = done.unwrap_or_else(|error| Err(Failure::failed(format!("{name}: {error}"))));
     if let Some(junit) = &request.junit {
         let outcome = done.as_ref().map(|done| &done.summary);
         junit.add(name, outcome.map_err(Failure::message));
@@ -49,7 +49,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     done
 }
 
-/// A model's bounds, with a bar of the progress meanwhile. What takes too long is [`Failure::Wrong`], and was not
+/// A model's bounds, with a bar of the progress meanwhile. What takes too long is [`Failure::wrong`], and was not
 /// begun.
 pub(super) fn bounds(
     model: &Description,
@@ -89,32 +89,30 @@ pub(super) fn bounds(
     };
     study::run(model, options).map_err(|error| {
         let message = format!("{}: {error}", model.name);
-        match error {
-            study::RunError::Costly(_) | study::RunError::Memory(_) => Failure::Wrong(message),
-            study::RunError::Simulation(SimulationError::Deferred) => Failure::Deferred,
-            _ if !has_begun.load(Ordering::Relaxed) => Failure::Wrong(message),
-            _ => Failure::Failed(message),
+        match &error {
+            study::RunError::Costly(_) | study::RunError::Memory(_) => Failure::wrong(message),
+            study::RunError::Simulation(SimulationError::Deferred) => Failure::deferred(),
+            _ if !has_begun.load(Ordering::Relaxed) => Failure::wrong(message),
+            _ => Failure::failed(message),
         }
+        .of(&error)
     })
 }
 
 fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", job.model.name));
+    let failed = |error: &dyn std::fmt::Display| Failure::failed(format!("{}: {error}", job.model.name));
     // From the first rows on there is something to keep.
     let asked = request.asked();
     let context = || context(&job.files, &asked.set, job.scene.as_deref(), asked.skip_infeasible);
     let store = request.store.as_ref().map(|kept| kept.open(&context())).transpose();
-    let store = store.map_err(|error| failed(&error))?;
+    let store = store.map_err(|error| failed(&error).of(&error))?;
     let kept = request.store.as_ref().zip(store.as_ref());
     let found = bounds(&job.model, &request.settings, kept, &|| interrupt::keep_results(true));
     if let Some((kept, store)) = kept
         && !kept.close(job.number, job.scene.as_deref(), store)
     {
-        found.map_or_else(
-            |failure| if matches!(failure, Failure::Deferred) { Ok(()) } else { Err(failure) },
-            |_| Ok(()),
-        )?;
-        return Err(Failure::Deferred);
+        found.map_or_else(|failure| if failure.is_deferred() { Ok(()) } else { Err(failure) }, |_| Ok(()))?;
+        return Err(Failure::deferred());
     }
     let (bounds, mut summary) = found?;
     if summary.is_cut && bounds.times.is_empty() {
@@ -133,7 +131,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     // What compares scenes compares those of one run.
     if let Some(all) = folder.parent().filter(|_| !job.page && folder == job.folder) {
         interrupt::wait_for(all)?;
-        remove_comparison(all).map_err(|error| failed(&error))?;
+        remove_comparison(all).map_err(|error| failed(&error).of(&error))?;
     }
     let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
     let stage = |name| request.settings.profile.iter().for_each(|profile| profile.stage(name));
@@ -143,7 +141,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let parts = parts.filter(|_| !interrupt::asked());
     stage("writing files");
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
-    let files = files.map_err(|error| failed(&error))?;
+    let files = files.map_err(|error| failed(&error).of(&error))?;
     interrupt::keep_results(false);
     let resolved = || resolution(&bounds, &summary).max(verdicts::status(&summary));
     let within = if summary.beyond_tolerance.is_some() { Status::Unresolved } else { Status::Done };
@@ -163,7 +161,7 @@ fn beside(folder: &Path) -> PathBuf {
 pub(super) fn report(done: &Done, console: &Console) {
     let name = &done.summary.model;
     if let Some(failure) = &done.summary.failure {
-        console.error(&format!("{name}: {failure}"));
+        console.coded_error(done.summary.failure_code, &format!("{name}: {failure}"));
         if done.folder.to_string_lossy().ends_with(".interrupted") {
             let folder = done.folder.display();
             console.warning(&format!(

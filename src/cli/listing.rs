@@ -1,5 +1,5 @@
-//! `mbint explain --units`, `--functions`, `--outputs`, `--tuning`, `--exit-codes`: lists of the language and of the
-//! program, from the tables of the code.
+//! `mbint explain --units`, `--functions`, `--outputs`, `--tuning`, `--exit-codes`, `--codes`: lists of the
+//! language and of the program, from the tables of the code.
 
 use super::Failure;
 use super::console::to_json;
@@ -9,7 +9,9 @@ use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 use crate::study::tuning;
+use crate::syntax::Code;
 use crate::syntax::tuning::Constant;
+use serde::Serialize;
 
 /// A list of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +21,7 @@ pub(super) enum Listing {
     Outputs,
     Tuning,
     ExitCodes,
+    Codes,
 }
 
 impl Listing {
@@ -30,6 +33,7 @@ impl Listing {
             Self::Outputs => text(&outputs()),
             Self::Tuning => text(&tuning()),
             Self::ExitCodes => text(&Status::ALL.map(Status::docs)),
+            Self::Codes => codes_text(),
         }
     }
 
@@ -44,6 +48,7 @@ impl Listing {
             Self::Outputs => to_json(&outputs()),
             Self::Tuning => to_json(&tuning()),
             Self::ExitCodes => to_json(&Status::ALL.map(Status::docs)),
+            Self::Codes => to_json(&codes()),
         }
     }
 
@@ -55,6 +60,7 @@ impl Listing {
             Self::Outputs => page(&outputs()),
             Self::Tuning => page(&tuning()),
             Self::ExitCodes => page(&Status::ALL.map(Status::docs)),
+            Self::Codes => Code::index(),
         }
     }
 }
@@ -77,6 +83,23 @@ fn outputs() -> Vec<OutputDocs> {
         }));
     }
     outputs
+}
+
+/// A code, for those who list it.
+#[derive(Serialize)]
+struct CodeDocs {
+    code: &'static str,
+    title: &'static str,
+}
+
+fn codes() -> Vec<CodeDocs> {
+    Code::ALL.iter().map(|code| CodeDocs { code: code.id(), title: code.title() }).collect()
+}
+
+fn codes_text() -> String {
+    let mut table = Table::new([("code", Align::Left), ("kind of mistake", Align::Left)]);
+    codes().iter().for_each(|own| table.row([own.code.to_owned(), own.title.to_owned()]));
+    table.render(0)
 }
 
 /// Something listed, a row each.
@@ -171,7 +194,7 @@ impl Row<3> for StatusDocs {
     const TITLE: &'static str = "Exit codes";
     const INTRODUCTION: &'static str = "`mbint --help` prints the same codes. With several models or scenes the code is \
         that of the worst. A pipe that its reader closes is no error.\n\n\
-        Messages begin with `error:` or `warning:` and say what is wrong, where, and what to do; those about a model's file\n\
+        Messages begin with `error` or `warning`, often with a [code](../errors/index.md), and say what is wrong, where, and what to do; those about a model's file\n\
         show the line. Results go to standard output, messages and progress to standard error; with `--quiet` only errors\n\
         are printed.";
     const HEADINGS: [(&'static str, Align); 3] =

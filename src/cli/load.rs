@@ -10,6 +10,7 @@ use super::console::Console;
 use crate::model::{self, Description, Override, Reading, Witness};
 use crate::results::ModelFile;
 use crate::study;
+use crate::syntax::Coded;
 
 /// What the command line says of models beside their files.
 #[derive(Clone, Default)]
@@ -72,8 +73,9 @@ pub(super) fn load_all(
         let (files, texts) = files(&reading);
         let all = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
         let name = reading.description.as_ref().map_or_else(String::new, |description| description.name.clone());
-        let scenes =
-            reading.chosen(scenes).map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
+        let scenes = reading
+            .chosen(scenes)
+            .map_err(|error| Failure::wrong(format!("{}: {error}", model::shown(path))).of(&error))?;
         Ok(Model { path: path.clone(), name, scenes, all, files, texts: texts.into() })
     };
     let readings = readings.into_iter().map(|(path, reading)| Some((path, reading?)));
@@ -95,7 +97,7 @@ pub(super) fn load(
     let Some(reading) = read(path, given, console) else { return Ok(None) };
     let Some(scene) = scene else { return Ok(reading.description) };
     let chosen = reading.chosen(std::slice::from_ref(scene));
-    let chosen = chosen.map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
+    let chosen = chosen.map_err(|error| Failure::wrong(format!("{}: {error}", model::shown(path))).of(&error))?;
     Ok(chosen.into_iter().map(|(_, description)| description).next())
 }
 
@@ -106,7 +108,7 @@ pub(super) fn load(
 pub(super) fn input_once(models: &[PathBuf]) -> Result<(), Failure> {
     match models.iter().filter(|path| model::is_standard_input(path)).count() {
         0 | 1 => Ok(()),
-        _ => Err(Failure::Wrong("`-` is named twice, but standard input can be read once only".to_owned())),
+        _ => Err(Failure::wrong("`-` is named twice, but standard input can be read once only")),
     }
 }
 
@@ -140,7 +142,8 @@ fn read(path: &Path, given: &Given, console: &Console) -> Option<Reading> {
         let scenes = reading.scenes.iter_mut().map(|scene| &mut scene.description);
         let replayed = scenes.chain(&mut reading.description).try_for_each(|model| witness.replay(model));
         if let Err(error) = replayed {
-            console.error(&format!("{}: the witness is not one of this model: {error}", model::shown(path)));
+            let message = format!("{}: the witness is not one of this model: {error}", model::shown(path));
+            console.coded_error(error.code(), &message);
             return None;
         }
     }

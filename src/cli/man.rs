@@ -16,14 +16,14 @@ pub(super) fn man(args: &ManArgs, console: &mut Console) -> Result<Status, Failu
             None => &program,
             Some(name) => program
                 .find_subcommand(name)
-                .ok_or_else(|| Failure::Wrong(format!("there is no command `{name}`; `mbint --help` lists them")))?,
+                .ok_or_else(|| Failure::wrong(format!("there is no command `{name}`; `mbint --help` lists them")))?,
         };
         return console.print(&page(command)?).map(|()| Status::Done);
     };
     let all = std::iter::once(&program).chain(program.get_subcommands().filter(|command| !command.is_hide_set()));
     let pages = all.map(|command| Ok((format!("{}.1", name(command)), page(command)?)));
     let pages = pages.collect::<Result<Vec<_>, _>>()?;
-    let written = write_pages(folder, &pages).map_err(|error| Failure::Failed(error.to_string()))?;
+    let written = write_pages(folder, &pages).map_err(|error| Failure::failed(&error).of(&error))?;
     let lines: String = written.iter().map(|path| format!("{}\n", path.display())).collect();
     console.print(&lines)?;
     Ok(Status::Done)
@@ -37,6 +37,6 @@ fn name(command: &Command) -> &str {
 fn page(command: &Command) -> Result<String, Failure> {
     let mut page = Vec::new();
     let rendered = Man::new(command.clone()).render(&mut page);
-    rendered.map_err(|error| Failure::Failed(format!("cannot write the page: {error}")))?;
+    rendered.map_err(|error| Failure::failed(format!("cannot write the page: {error}")))?;
     Ok(String::from_utf8_lossy(&page).into_owned())
 }

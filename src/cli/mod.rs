@@ -15,6 +15,7 @@ mod effects;
 mod excitations;
 mod explain;
 mod export_code;
+mod failure;
 mod fit;
 mod gradient;
 mod interrupt;
@@ -63,47 +64,11 @@ use clap::{CommandFactory, FromArgMatches};
 
 use self::args::{Cli, Color, Command};
 use self::console::Console;
+use self::failure::Failure;
 use self::status::Status;
 use crate::model::shown;
 use crate::study;
 use crate::syntax::harmless;
-
-/// Why a command ended early, or a model of several was not run, in words for the user.
-#[derive(Debug)]
-enum Failure {
-    /// The command or the model has errors.
-    Wrong(String),
-    /// The command was valid and failed.
-    Failed(String),
-    /// Simulations are left to shards.
-    Deferred,
-}
-
-impl Failure {
-    /// Reports it; returns the exit status.
-    fn report(&self, console: &Console) -> Status {
-        // What comes next is said once for all models.
-        if !matches!(self, Self::Deferred) {
-            console.error(self.message());
-        }
-        self.status()
-    }
-
-    fn message(&self) -> &str {
-        match self {
-            Self::Wrong(message) | Self::Failed(message) => message,
-            Self::Deferred => "simulations are left to shards",
-        }
-    }
-
-    fn status(&self) -> Status {
-        match self {
-            Self::Wrong(_) => Status::Wrong,
-            Self::Failed(_) => Status::Failed,
-            Self::Deferred => Status::Deferred,
-        }
-    }
-}
 
 /// The program: reads the process' arguments, executes the command and returns its exit code.
 pub fn main() -> ExitCode {
@@ -129,9 +94,12 @@ pub fn main() -> ExitCode {
     interrupt::listen();
     let mut console = Console::default();
     let executed = study::caught("the command", || execute(cli.command, &mut console));
-    let executed = executed.unwrap_or_else(|error| Err(Failure::Failed(error.to_string())));
-    let status = executed.unwrap_or_else(|failure| failure.report(&console));
+    let executed = executed.unwrap_or_else(|error| Err(Failure::failed(error.to_string())));
+    let status = executed.unwrap_or_else(|failure| console.failure(&failure));
     let status = if console.has_failed() { status.max(Status::Failed) } else { status };
+    if status != Status::Done {
+        console.more();
+    }
     ExitCode::from(status)
 }
 

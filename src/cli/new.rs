@@ -16,7 +16,7 @@ const SCHEMA: &str = "../schemas/mbint.schema.json";
 const NAME_LINE: &str = "model: template\n";
 
 pub(super) fn new(args: &NewArgs, console: &mut Console) -> Result<Status, Failure> {
-    let wrong = |message: String| Err(Failure::Wrong(message));
+    let wrong = |message: String| Err(Failure::wrong(message));
     let given = args.name.to_string_lossy();
     let stem = given.strip_suffix(".yaml").or_else(|| given.strip_suffix(".yml")).unwrap_or(&given);
     let name = stem.rsplit(std::path::is_separator).next().unwrap_or(stem);

@@ -372,6 +372,7 @@ mod tests {
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,
+            failure_code: None,
             excitations: Vec::new(),
             realisations: Vec::new(),
             is_cut: false,

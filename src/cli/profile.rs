@@ -37,7 +37,7 @@ impl Profile {
     /// # Errors
     /// Where the file cannot be made: better now than after hours.
     pub fn new(file: PathBuf) -> Result<Self, Failure> {
-        fs::File::create(&file).map_err(|error| Failure::Wrong(format!("{}: {error}", file.display())))?;
+        fs::File::create(&file).map_err(|error| Failure::wrong(format!("{}: {error}", file.display())))?;
         let profile = Self { file, begun: Instant::now(), spans: Mutex::default() };
         profile.begin(String::new(), None, "reading and checking models");
         Ok(profile)
@@ -72,7 +72,7 @@ impl Profile {
     pub fn finish(&self) -> Result<String, Failure> {
         self.end();
         let spans = self.spans.lock().unwrap_or_else(PoisonError::into_inner);
-        let shown = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", self.file.display()));
+        let shown = |error: &dyn std::fmt::Display| Failure::failed(format!("{}: {error}", self.file.display()));
         let text = serde_json::to_string(&trace(&spans)).map_err(|error| shown(&error))?;
         fs::write(&self.file, text + "\n").map_err(|error| shown(&error))?;
         Ok(table(&spans))

@@ -10,6 +10,7 @@ use super::job::Done;
 use super::request::Job;
 use crate::export::SUMMARY;
 use crate::model;
+use crate::syntax::Code;
 
 /// How a model or a scene ended.
 #[derive(Serialize)]
@@ -23,6 +24,9 @@ pub(super) struct Record {
     /// Why there are no results.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    /// The code of that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error_code: Option<Code>,
     /// Where the results are.
     #[serde(skip_serializing_if = "Option::is_none")]
     folder: Option<String>,
@@ -39,6 +43,7 @@ impl Record {
             model: job.model.name.clone(),
             exit_code: 0,
             error: None,
+            error_code: None,
             folder: None,
             summary: None,
         };
@@ -50,9 +55,12 @@ impl Record {
                 let folder = Some(done.folder.display().to_string());
                 Self { exit_code: done.status.code(), folder, summary, ..nothing }
             }
-            Err(failure) => {
-                Self { exit_code: failure.status().code(), error: Some(failure.message().to_owned()), ..nothing }
-            }
+            Err(failure) => Self {
+                exit_code: failure.status().code(),
+                error: Some(failure.message().to_owned()),
+                error_code: failure.code(),
+                ..nothing
+            },
         }
     }
 }

@@ -15,7 +15,7 @@ const SIZE: usize = 300_000;
 
 pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status, Failure> {
     interrupt::wait_for(&args.folder)?;
-    let file = write_report(&args.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    let file = write_report(&args.folder).map_err(|error| Failure::wrong(&error).of(&error))?;
     console.print(&format!("{}\n", file.display()))?;
     Ok(Status::Done)
 }

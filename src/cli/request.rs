@@ -130,7 +130,7 @@ impl Request {
 /// # Errors
 /// Where the file cannot be read, or is none.
 fn read_witness(path: &Path) -> Result<Witness, Failure> {
-    let wrong = |why: String| Failure::Wrong(format!("{}: {why}", shown(path)));
+    let wrong = |why: String| Failure::wrong(format!("{}: {why}", shown(path)));
     let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     Witness::parse(&text).map_err(|error| wrong(error.to_string()))
 }

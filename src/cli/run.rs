@@ -49,8 +49,8 @@ pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told)
     for Work { path, kind } in &work {
         for job in kind.jobs() {
             let wrong = |error| match kind {
-                Kind::Alone(_) => Failure::Wrong(format!("{}: {error}", shown(path))),
-                Kind::Scenes(_) => Failure::Wrong(format!("{}: {}: {error}", shown(path), job.model.name)),
+                Kind::Alone(_) => Failure::wrong(format!("{}: {error}", shown(path))).of(&error),
+                Kind::Scenes(_) => Failure::wrong(format!("{}: {}: {error}", shown(path), job.model.name)).of(&error),
             };
             // A panic is reported by the run.
             if let Ok(built) = study::caught("the model", || study::built(&job.model)) {
@@ -59,7 +59,7 @@ pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told)
         }
     }
     for job in work.iter().flat_map(|work| work.kind.jobs()) {
-        prepare_folder(&job.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+        prepare_folder(&job.folder).map_err(|error| Failure::wrong(&error).of(&error))?;
     }
 
     for (i, work) in work.iter().enumerate() {
@@ -71,7 +71,7 @@ pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told)
             Kind::Alone(job) => run_and_report(&work.path, job, request, console, told),
             Kind::Scenes(scenes) => scenes.run(&work.path, request, console, told),
         };
-        status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
+        status = status.max(done.unwrap_or_else(|failure| console.failure(&failure)));
         if interrupt::asked() {
             status = Status::Interrupted;
             break;
@@ -122,7 +122,7 @@ pub(super) fn with_folder(
 ) -> Result<Option<(Description, PathBuf)>, Failure> {
     let Some(model) = model else { return Ok(None) };
     let folder = output.cloned().unwrap_or_else(|| results_of(&model.name));
-    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    prepare_folder(&folder).map_err(|error| Failure::wrong(&error).of(&error))?;
     Ok(Some((model, folder)))
 }
 
@@ -137,7 +137,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
             let (first, second) = (other.display(), path.display());
             let message = format!("{first} and {second} would both write the results of `{name}`");
-            return Err(Failure::Wrong(format!("{message}: run them separately, each with its own --output")));
+            return Err(Failure::wrong(format!("{message}: run them separately, each with its own --output")));
         }
         let folder = match &request.output {
             Some(folder) if several => folder.join(stem),

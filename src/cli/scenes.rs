@@ -61,7 +61,7 @@ impl Scenes {
                     Some(done)
                 }
                 Err(failure) => {
-                    status = status.max(failure.report(console));
+                    status = status.max(console.failure(&failure));
                     None
                 }
             };
@@ -81,7 +81,7 @@ impl Scenes {
         } else {
             write_scenes(&self.folder, &self.model, &self.all, &found, request.report)
         };
-        let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", self.model)))?;
+        let files = files.map_err(|error| Failure::failed(format!("{}: {error}", self.model)).of(&error))?;
         if !request.quiet {
             console.print(&self.overview(&ran, &files))?;
         }

@@ -15,13 +15,13 @@ pub(super) fn show(args: &ShowArgs, console: &mut Console) -> Result<Status, Fai
     let Some(model) = load::load(&args.model, &args.set.given()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let mut drawing =
-        study::drawing(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", args.model.display())))?;
+    let mut drawing = study::drawing(&model)
+        .map_err(|error| Failure::wrong(format!("{}: {error}", args.model.display())).of(&error))?;
     read_meshes(&mut drawing, args.model.parent().unwrap_or(Path::new("")), MOST_TRIANGLES);
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
-    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    prepare_folder(&folder).map_err(|error| Failure::wrong(&error).of(&error))?;
     interrupt::wait_for(&folder)?;
-    let file = write_drawing(&folder, &drawing).map_err(|error| Failure::Failed(error.to_string()))?;
+    let file = write_drawing(&folder, &drawing).map_err(|error| Failure::failed(&error).of(&error))?;
     console.print(&match args.format {
         Format::Text => format!("{}{}\n", table(&drawing), file.display()),
         Format::Json => to_json(&drawing)?,

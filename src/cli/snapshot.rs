@@ -35,8 +35,8 @@ pub(super) fn snapshot(args: SnapshotArgs, console: &mut Console) -> Result<Stat
         let run = || if args.check { job.check(&settings, console) } else { job.record(&settings, console) };
         // The other models run even if one fails.
         let done = study::caught("the model's run", run)
-            .unwrap_or_else(|error| Err(Failure::Failed(format!("{}: {error}", job.model.name))));
-        status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
+            .unwrap_or_else(|error| Err(Failure::failed(format!("{}: {error}", job.model.name))));
+        status = status.max(done.unwrap_or_else(|failure| console.failure(&failure)));
         if interrupt::asked() {
             return Ok(Status::Interrupted);
         }
@@ -57,7 +57,7 @@ fn jobs(models: Vec<load::Model>, args: &SnapshotArgs) -> Result<Vec<Job>, Failu
             // Some systems do not distinguish upper and lower case.
             if let Some(other) = taken.insert(folder.join(file.to_lowercase()), path.clone()) {
                 let (first, second) = (shown(&other), shown(&path));
-                return Err(Failure::Wrong(format!(
+                return Err(Failure::wrong(format!(
                     "{first} and {second} have the same snapshot, {}: record them separately, each with its own --output",
                     folder.join(file).display()
                 )));
@@ -77,7 +77,7 @@ impl Job {
     fn table(&self, settings: &Settings) -> Result<String, Failure> {
         let (bounds, summary) = job::bounds(&self.model, settings, None, &|| ())?;
         match summary.failure {
-            Some(failure) => Err(Failure::Failed(format!("{}: {failure}", self.model.name))),
+            Some(failure) => Err(Failure::failed(format!("{}: {failure}", self.model.name))),
             None => Ok(snapshot_table(&bounds)),
         }
     }
@@ -94,7 +94,7 @@ impl Job {
             // A model's name alone has no folder.
             let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
             let written = write_snapshot(folder, &self.file, &text);
-            written.map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
+            written.map_err(|error| Failure::failed(format!("{name}: {error}")).of(&error))?;
         }
         if !settings.quiet {
             let what = if is_as_before { "as recorded in" } else { "recorded in" };
@@ -105,7 +105,7 @@ impl Job {
 
     fn check(&self, settings: &Settings, console: &mut Console) -> Result<Status, Failure> {
         let (name, place) = (&self.model.name, self.place());
-        let wrong = |error: &dyn std::fmt::Display| Failure::Wrong(format!("{}: {error}", shown(&place)));
+        let wrong = |error: &dyn std::fmt::Display| Failure::wrong(format!("{}: {error}", shown(&place)));
         let beside = self.path.parent() == Some(&self.folder);
         let elsewhere = if beside { String::new() } else { format!(" --output {}", shown(&self.folder)) };
         let again = || format!("`mbint snapshot {}{elsewhere}`", shown(&self.path));
@@ -119,7 +119,7 @@ impl Job {
         };
         let before = Snapshot::read(&text).map_err(|error| wrong(&error))?;
         let after = Snapshot::read(&self.table(settings)?)
-            .map_err(|error| Failure::Failed(format!("{name}: the snapshot cannot be read back: {error}")))?;
+            .map_err(|error| Failure::failed(format!("{name}: the snapshot cannot be read back: {error}")))?;
         let found = moved(&before, &after);
         let curves = count(after.curves(), "curve", "curves");
         if found.is_empty() {

@@ -12,11 +12,11 @@ use crate::model::{is_robot, is_standard_input};
 
 pub(super) fn studio(args: StudioArgs, console: &mut Console) -> Result<Status, Failure> {
     if is_standard_input(&args.model) {
-        return Err(Failure::Wrong("standard input cannot be saved: `mbint studio` needs a file".to_owned()));
+        return Err(Failure::wrong("standard input cannot be saved: `mbint studio` needs a file"));
     }
     if is_robot(&args.model) {
         let message = "a robot's file alone is not edited here: name it in a model, by `urdf:` or `mjcf:`";
-        return Err(Failure::Wrong(format!("{}: {message}", args.model.display())));
+        return Err(Failure::wrong(format!("{}: {message}", args.model.display())));
     }
     // From now on Ctrl-C ends the session, and not the program wherever it is.
     interrupt::keep_results(true);
@@ -35,8 +35,8 @@ pub(super) fn studio(args: StudioArgs, console: &mut Console) -> Result<Status, 
         is_ended: &interrupt::asked,
     };
     serve(options).map_err(|error| match error {
-        StudioError::Folder(_) | StudioError::Random(_) => Failure::Failed(error.to_string()),
-        error => Failure::Wrong(error.to_string()),
+        StudioError::Folder(_) | StudioError::Random(_) => Failure::failed(error.to_string()),
+        error => Failure::wrong(error.to_string()),
     })?;
     printed?;
     console.print("the studio has ended\n")?;

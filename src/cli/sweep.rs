@@ -23,7 +23,7 @@ const MOST_RUNS: usize = 100_000;
 fn axis(text: &str) -> Result<Option<Axis>, Failure> {
     let Some((name, range)) = text.split_once('=') else { return Ok(None) };
     let Some((lower, rest)) = range.split_once("..") else { return Ok(None) };
-    let wrong = || Failure::Wrong(format!("`{text}` is not of the form `NAME=FROM..TO:VALUES`, as `l1=0.1..0.2:11`"));
+    let wrong = || Failure::wrong(format!("`{text}` is not of the form `NAME=FROM..TO:VALUES`, as `l1=0.1..0.2:11`"));
     let (upper, rest) = rest.split_once(':').ok_or_else(wrong)?;
     let digits = rest.trim_start().find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.trim_start().len());
     let (values, behind) = rest.trim_start().split_at(digits);
@@ -31,7 +31,7 @@ fn axis(text: &str) -> Result<Option<Axis>, Failure> {
     let (lower, upper) = (number(lower)?, number(upper)?);
     let values: usize = values.parse().map_err(|_| wrong())?;
     if !(2..=MOST_VALUES).contains(&values) {
-        return Err(Failure::Wrong(format!("`{text}`: from 2 to {MOST_VALUES} values can be swept")));
+        return Err(Failure::wrong(format!("`{text}`: from 2 to {MOST_VALUES} values can be swept")));
     }
     let last = (values - 1) as f64;
     // Weights, so that the ends are exact.
@@ -49,18 +49,18 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     }
     if !(1..=2).contains(&axes.len()) {
         let message = "one parameter or two are swept: give `--set NAME=FROM..TO:VALUES` for each";
-        return Err(Failure::Wrong(message.to_owned()));
+        return Err(Failure::wrong(message.to_owned()));
     }
     if let [first, second] = &axes[..]
         && first.name() == second.name()
     {
-        return Err(Failure::Wrong(format!("parameter `{}` is swept twice", first.name())));
+        return Err(Failure::wrong(format!("parameter `{}` is swept twice", first.name())));
     }
     let mut others = overlaid(&args.with, &others)?;
     others.retain(|own| axes.iter().all(|axis| axis.name() != own.name));
     let runs: usize = axes.iter().map(Axis::count).product();
     if runs > MOST_RUNS {
-        return Err(Failure::Wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
+        return Err(Failure::wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
     }
     let settings = Settings { threads: args.run.threads.number(), yes: args.yes, quiet: true, ..Settings::default() };
     console.without_repetition();
@@ -78,7 +78,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
         let Some((_, description)) = model.scenes.into_iter().next() else { return Ok(Status::Wrong) };
         if description.reduced.is_empty() && description.requirements.is_empty() {
             let message = "a sweep is of reduced outputs or requirements, and the model has none: add e.g. `stroke: { range: slider.x }` to `outputs`";
-            return Err(Failure::Wrong(format!("{}: {message}", args.model.display())));
+            return Err(Failure::wrong(format!("{}: {message}", args.model.display())));
         }
         name.clone_from(&description.name);
         let point = match job::bounds(&description, &settings, None, &|| ()) {
@@ -86,7 +86,8 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
                 status = status.max(verdicts::status(&summary));
                 SweepPoint { values, summary: Some(summary) }
             }
-            Err(Failure::Failed(message)) => {
+            Err(failure) if failure.status() == Status::Failed => {
+                let message = failure.message();
                 status = status.max(Status::Failed);
                 console.warning(&format!(
                     "{}: {message}",
@@ -104,9 +105,9 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     }
     let sweep = Sweep { model: name.clone(), axes: axes.iter().map(Axis::heading).collect(), points };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&name));
-    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    prepare_folder(&folder).map_err(|error| Failure::wrong(&error).of(&error))?;
     interrupt::wait_for(&folder)?;
-    let files = write_sweep(&folder, &sweep).map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
+    let files = write_sweep(&folder, &sweep).map_err(|error| Failure::failed(format!("{name}: {error}")).of(&error))?;
     if !args.run.quiet {
         let simulations = sweep.simulations();
         let head = format!(
@@ -120,7 +121,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
 }
 
 fn setting(text: &str) -> Result<Override, Failure> {
-    Override::parse(text).map_err(|diagnostics| Failure::Wrong(format!("--set {text}: {diagnostics}")))
+    Override::parse(text).map_err(|diagnostics| Failure::wrong(format!("--set {text}: {diagnostics}")).of(&diagnostics))
 }
 
 /// Lower and upper bounds of each reduced output, and margins of requirements.

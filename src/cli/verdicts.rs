@@ -34,7 +34,7 @@ impl Junit {
     /// Writes all of them.
     pub fn write(&self) -> Result<(), Failure> {
         let suites = self.suites.lock().unwrap_or_else(PoisonError::into_inner);
-        write_junit(&self.path, &suites).map_err(|error| Failure::Failed(error.to_string()))
+        write_junit(&self.path, &suites).map_err(|error| Failure::failed(&error).of(&error))
     }
 }
 

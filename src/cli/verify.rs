@@ -22,19 +22,20 @@ pub(super) fn verify(args: &VerifyArgs, console: &mut Console) -> Result<Status,
         Err(VerifyError::Interrupted) => return Ok(Status::Interrupted),
         found => found.map_err(|error| {
             let message = format!("{}: {error}", model.name);
-            match error {
-                VerifyError::NoSteps(_) | VerifyError::Run(RunError::Refused(_)) => Failure::Wrong(message),
-                _ => Failure::Failed(message),
+            match &error {
+                VerifyError::NoSteps(_) | VerifyError::Run(RunError::Refused(_)) => Failure::wrong(message),
+                _ => Failure::failed(message),
             }
+            .of(&error)
         })?,
     };
     answer(&found, args.format, args.run.quiet, console, || overview(&found))?;
     if let Some(path) = &args.junit {
         let written = write_junit(path, &[Suite::of_verification(&found)]);
-        written.map_err(|error| Failure::Failed(error.to_string()))?;
+        written.map_err(|error| Failure::failed(&error).of(&error))?;
     }
     if let Some(path) = &args.html {
-        write_verification(path, &found).map_err(|error| Failure::Failed(error.to_string()))?;
+        write_verification(path, &found).map_err(|error| Failure::failed(&error).of(&error))?;
     }
     Ok(if found.is_verified() { Status::Done } else { Status::NotMet })
 }

@@ -23,7 +23,7 @@ type Mark = Option<(SystemTime, u64)>;
 
 pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Status, Failure> {
     if request.models.iter().any(|path| is_standard_input(path)) {
-        return Err(Failure::Wrong("standard input does not change: --watch needs a file".to_owned()));
+        return Err(Failure::wrong("standard input does not change: --watch needs a file"));
     }
     let is_quiet = request.quiet;
     let mut known: BTreeMap<String, Snapshot> = BTreeMap::new();
@@ -42,7 +42,7 @@ pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Statu
                 }
             }
         };
-        let status = run_all(&request, console, &mut told).unwrap_or_else(|failure| failure.report(console));
+        let status = run_all(&request, console, &mut told).unwrap_or_else(|failure| console.failure(&failure));
         if !is_quiet {
             console.print(&changes)?;
             let files = count(before.len(), "file", "files");

@@ -1,6 +1,6 @@
-//! Every file in `tests/bad_models` says at its top what is wrong with it: `# error: 13:13 unknown body `crnk``, each
-//! perhaps with `# help: …`, in a URDF or MJCF `<!-- error: … -->`. Message and place must both be found, and nothing
-//! else.
+//! Every file in `tests/bad_models` says at its top what is wrong with it: `# error[E0401]: 13:13 unknown body `crnk``,
+//! each perhaps with `# help: …`, in a URDF or MJCF `<!-- error[…]: … -->`. Code, message and place must all be found,
+//! and nothing else.
 //!
 //! `{effects}` stands for the list of all effects, which grows.
 //!
@@ -25,7 +25,7 @@ fn slider_crank() -> String {
 
 fn is_expectation(line: &str) -> bool {
     let line = line.strip_prefix("<!-- ").or_else(|| line.strip_prefix("# "));
-    line.is_some_and(|line| ["error: ", "warning: ", "help: "].iter().any(|start| line.starts_with(start)))
+    line.is_some_and(|line| ["error[", "warning[", "help: "].iter().any(|start| line.starts_with(start)))
 }
 
 /// As comments of the file's language; in those of XML no two hyphens stand together.
@@ -52,7 +52,7 @@ fn found(diagnostics: &Diagnostics) -> Vec<String> {
             (Some(line), Some(column)) => format!("{line}:{column} "),
             _ => String::new(),
         };
-        lines.push(format!("# {severity}: {place}{}", record.message));
+        lines.push(format!("# {severity}[{}]: {place}{}", record.code, record.message));
         lines.extend(record.help.map(|help| format!("# help: {}", help.replace(&effects, "{effects}"))));
     }
     lines
@@ -115,7 +115,7 @@ fn an_error_looks_like_rustc() {
     let text = slider_crank().replace("[crank.B, rod.B]", "[crnk.B, rod.B]");
     let diagnostics = model::load_str("models/x.yaml", &text, &[]).unwrap_err();
     let expected = "\
-error: unknown body `crnk`
+error[E0401]: unknown body `crnk`
   --> models/x.yaml:19:23
    |
 19 |   pin:   { revolute: [crnk.B, rod.B] }
@@ -209,11 +209,11 @@ fn a_message_that_comes_often_is_shown_once() {
     let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
     assert_eq!(diagnostics.records().len(), 24);
     let rendered = diagnostics.render(false);
-    assert_eq!(rendered.matches("error: ").count(), 1, "{rendered}");
+    assert_eq!(rendered.matches("error[").count(), 1, "{rendered}");
     assert!(rendered.contains("the same in 23 more places: line 5, 6, 7, 8, 9, 10, 11, 12, …"), "{rendered}");
     let two = text.lines().take(5).collect::<Vec<_>>().join("\n");
     let rendered = model::load_str("x.yaml", &two, &[]).unwrap_err().render(false);
-    assert_eq!(rendered.matches("error: ").count(), 2, "{rendered}");
+    assert_eq!(rendered.matches("error[").count(), 2, "{rendered}");
 }
 
 /// A word that is wrong of several bodies is one habit.
@@ -225,7 +225,7 @@ fn a_slip_of_several_bodies_is_shown_once() {
     let diagnostics = model::load_str("x.yaml", text, &[]).unwrap_err();
     assert_eq!(diagnostics.records().len(), 4);
     let rendered = diagnostics.render(false);
-    assert_eq!(rendered.matches("error: ").count(), 2, "{rendered}");
+    assert_eq!(rendered.matches("error[").count(), 2, "{rendered}");
     assert!(rendered.contains("the same in 2 more places (also of `cam`, `disc`): line 5, 6"), "{rendered}");
 }
 

@@ -179,7 +179,10 @@ fn a_file_where_the_folder_should_be_is_reported_before_the_run() {
     place.model("crank");
     fs::write(place.path().join("taken"), "mine").unwrap();
     let (_, errors) = place.run("run crank.yaml -o taken", 2);
-    assert_eq!(errors, "error: cannot write into the folder taken: not a directory\n");
+    assert_eq!(
+        errors,
+        "error[E1010]: cannot write into the folder taken: not a directory\nmore: mbint explain E1010\n"
+    );
     assert_eq!(fs::read_to_string(place.path().join("taken")).unwrap(), "mine");
 }
 

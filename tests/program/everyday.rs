@@ -224,7 +224,7 @@ fn what_is_not_used_is_one_line() {
     let (told, warned) = place.run("check many.yaml", 0);
     assert!(told.contains("body b0, body b1, body b2, body b3, body b4 and 25 more"), "{told}");
     assert!(!told.contains("b29"), "{told}");
-    assert_eq!(warned.matches("warning: ").count(), 1, "{warned}");
+    assert_eq!(warned.matches("warning[W0701]: ").count(), 1, "{warned}");
     assert!(warned.contains("the same in 3 more places (also of `q`, `r`, `s`)"), "{warned}");
     let data = json(&place.run("check many.yaml --format json", 0).0);
     assert_eq!(data[0]["not_simulated"].as_array().unwrap().len(), 30);

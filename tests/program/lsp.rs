@@ -229,3 +229,26 @@ fn formatted_models_mean_the_same() {
     session.tell("exit", Value::Null);
     assert_eq!(session.code(), 0);
 }
+
+/// A mistake of the text, and one of the mechanism as a whole, which comes when the keyboard rests.
+#[test]
+fn diagnostics_have_codes_with_links() {
+    let folder = tempfile::tempdir().unwrap();
+    let uri = uri(&folder.path().join("arm.yaml"));
+    let good = "bodies: { a: { mass: 0, coordinates: [x] } }\noutputs: { x: a.x }\nsimulation: { duration: 1 }\n";
+    let mut session = Session::new();
+    session.open(&uri, &good.replace("outputs: { x: a.x", "outputs: { x: b.x"));
+    for (code, changed) in [("E0401", good), ("E0913", "")] {
+        let found = loop {
+            let message = session.receive();
+            let found = message["params"]["diagnostics"].as_array();
+            if let Some(found) = found.filter(|found| !found.is_empty()) {
+                break found[0].clone();
+            }
+        };
+        assert_eq!(found["code"], code, "{found}");
+        let href = found["codeDescription"]["href"].as_str().unwrap();
+        assert!(href.ends_with(&format!("/docs/errors/{code}.md")), "{href}");
+        session.change(&uri, 2, changed);
+    }
+}

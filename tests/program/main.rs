@@ -11,6 +11,7 @@ mod book;
 mod certificate;
 mod check_and_run;
 mod cli;
+mod codes;
 mod cost;
 mod declared_units;
 mod dependencies;

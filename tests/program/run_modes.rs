@@ -42,7 +42,7 @@ fn a_run_is_one_json_document() {
     // A document also where nothing was run.
     fs::write(place.path().join("wrong.yaml"), "model: wrong\n").unwrap();
     let (output, errors) = place.run("run --format json wrong.yaml", 2);
-    assert_eq!((json(&output), errors.contains("error: a model needs")), (Value::Array(vec![]), true));
+    assert_eq!((json(&output), errors.contains("error[E0210]: a model needs")), (Value::Array(vec![]), true));
     place.run("run --format json --watch crank.yaml", 2);
 }
 

@@ -245,7 +245,7 @@ fn what_is_left_out_is_reported_where_it_is_named() {
     let text = format!("{CRANK}{EFFECTS}{ASKED}scenes: {{ open: {{ without: [wrist, x] }} }}\n");
     let report = model::load_str("test.yaml", &text, &[]).unwrap_err();
     let expected = "\
-error: unknown joint `wrist`
+error[E0401]: unknown joint `wrist`
   --> test.yaml:28:36
    |
 28 |   rubbing: { joint_friction: { on: wrist, coefficient: 0.1, radius: 5 mm, coulomb: rub } }
@@ -384,7 +384,7 @@ fn scenes_are_chosen_by_name() {
         let output = if arguments.starts_with("explain") { "" } else { " -o nowhere" };
         let (_, errors) = place.run(&format!("{arguments}{output}"), 2);
         assert!(errors.contains(message), "{arguments}: {errors}");
-        assert_eq!(errors.matches("error").count(), 1, "said once: {errors}");
+        assert_eq!(errors.matches("error[").count(), 1, "said once: {errors}");
     }
     assert!(!place.path().join("nowhere").exists());
 }
@@ -438,7 +438,7 @@ bounds: { scan: { points: 3 } }
     fs::write(place.path().join("rocker.yaml"), format!("{text}{scenes}")).unwrap();
     // `check` refuses it, too.
     let (output, errors) = place.run("run rocker.yaml", 2);
-    assert!(errors.starts_with("error: rocker/short: "), "{errors}");
+    assert!(errors.starts_with("error[E0901]: rocker/short: "), "{errors}");
     assert_eq!(errors.matches("error").count(), 1, "{errors}");
     let failed = output.lines().find(|line| line.trim_start().starts_with("short")).unwrap();
     assert!(failed.ends_with("failed"), "{output}");
@@ -449,7 +449,7 @@ bounds: { scan: { points: 3 } }
     // Whether they can be assembled is what `check` tells, scene by scene.
     let (output, errors) = place.run("check rocker.yaml", 2);
     assert_eq!(output.lines().filter(|line| line.starts_with("ok ")).count(), 2, "{output}");
-    assert!(errors.starts_with("error: rocker.yaml: scene short: "), "{errors}");
+    assert!(errors.starts_with("error[E0901]: rocker.yaml: scene short: "), "{errors}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::cli::listing::Listing;
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ExplainArgs {
-    /// Model file; `-` is standard input.
+    /// Model file; `-` is standard input. Or the code of a message, such as `E0401`: prints its page.
     #[arg(value_name = "MODEL", required_unless_present = "list")]
     pub model: Option<PathBuf>,
 
@@ -67,6 +67,10 @@ pub(in crate::cli) struct ListArgs {
     /// List the exit codes.
     #[arg(long)]
     exit_codes: bool,
+
+    /// List the codes of messages.
+    #[arg(long)]
+    codes: bool,
 }
 
 impl ListArgs {
@@ -78,6 +82,7 @@ impl ListArgs {
             (self.outputs, Listing::Outputs),
             (self.tuning, Listing::Tuning),
             (self.exit_codes, Listing::ExitCodes),
+            (self.codes, Listing::Codes),
         ];
         listings.into_iter().find(|(asked, _)| *asked).map(|(_, listing)| listing)
     }

@@ -10,7 +10,7 @@ use crate::cli::load::Given;
 use crate::methods::Proof;
 use crate::model::{Override, read_overlay};
 use crate::results::Method;
-use crate::syntax::Diagnostics;
+use crate::syntax::{Coded, Diagnostics};
 
 /// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
 const MOST_THREADS: i64 = 1024;
@@ -140,16 +140,17 @@ pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec
     let mut laid: Vec<Override> = Vec::new();
     for path in with {
         let wrong = |wrong: Diagnostics| {
-            // The terminal writes the first `error: ` itself.
+            // The terminal writes the first `error[CODE]: ` itself.
             let text = wrong.to_string();
-            Failure::Wrong(text.strip_prefix("error: ").unwrap_or(&text).to_owned())
+            let head = wrong.code().map_or_else(String::new, |code| format!("error[{code}]: "));
+            Failure::wrong(text.strip_prefix(&head).unwrap_or(&text).trim_end()).of(&wrong)
         };
         laid.extend(read_overlay(path).map_err(wrong)?);
     }
     for all in [&laid[..], set] {
         let twice = |&(i, setting): &(usize, &Override)| all[..i].iter().any(|earlier| earlier.name == setting.name);
         if let Some((_, setting)) = all.iter().enumerate().find(twice) {
-            return Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name)));
+            return Err(Failure::wrong(format!("parameter `{}` is set twice", setting.name)));
         }
     }
     laid.retain(|own| set.iter().all(|setting| setting.name != own.name));

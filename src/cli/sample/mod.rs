@@ -35,7 +35,7 @@ pub(super) fn sample(args: SampleArgs, console: &mut Console) -> Result<Status, 
     let points = Points::asked(&args.points)?;
     let Some(points) = points else {
         let message = "give points: `--points FILE`, or `--design sobol:1000` or `lhs:1000`";
-        return Err(Failure::Wrong(message.to_owned()));
+        return Err(Failure::wrong(message.to_owned()));
     };
     let (path, format) = target(args.output, args.format);
     let store = args.store.map(|folder| KeptRun::new(folder, Missing::Simulate));
@@ -98,21 +98,21 @@ impl Sampling<'_> {
         let Some(model) = loaded.and_then(|loaded| loaded.models.into_iter().next()) else { return Ok(Status::Wrong) };
         if model.scenes.len() > 1 {
             let message = format!("{shown}: the model has scenes; choose one by --scene: {}", model.all.join(", "));
-            return Err(Failure::Wrong(message));
+            return Err(Failure::wrong(message));
         }
         let Some((scene, description)) = model.scenes.into_iter().next() else { return Ok(Status::Wrong) };
         if description.outputs.is_empty() {
-            return Err(Failure::Wrong(format!("{shown}: the model has no outputs over time")));
+            return Err(Failure::wrong(format!("{shown}: the model has no outputs over time")));
         }
         let (parameters, domain) = study::uncertain(&description);
         let parameters: Vec<(String, String)> = parameters.into_iter().map(|own| (own.name, own.unit)).collect();
         let points =
-            self.points.of(&parameters, &domain).map_err(|error| Failure::Wrong(format!("{shown}: {error}")))?;
+            self.points.of(&parameters, &domain).map_err(|error| Failure::wrong(format!("{shown}: {error}")))?;
         let name = &description.name;
         let set: Vec<String> = self.given.overrides.iter().map(|setting| setting.text.clone()).collect();
         let context = context(&model.files, &set, scene.as_deref(), false);
         let store = self.store.map(|kept| kept.open(&context)).transpose();
-        let store = store.map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
+        let store = store.map_err(|error| Failure::failed(format!("{name}: {error}")).of(&error))?;
         let progress = Progress::new(name, !self.quiet);
         let there = self.store.filter(|_| !self.quiet).map(KeptRun::there);
         let options = study::Options {
@@ -160,8 +160,8 @@ impl Sampling<'_> {
         let sampled = match done {
             Ok(sampled) => sampled,
             Err(Ended::Run(RunError::Simulation(SimulationError::Deferred))) => return Ok(Status::Deferred),
-            Err(Ended::Run(error)) => return Err(Failure::Failed(format!("{name}: {error}"))),
-            Err(Ended::Export(error)) => return Err(Failure::Failed(format!("{name}: {error}"))),
+            Err(Ended::Run(error)) => return Err(Failure::failed(format!("{name}: {error}")).of(&error)),
+            Err(Ended::Export(error)) => return Err(Failure::failed(format!("{name}: {error}")).of(&error)),
         };
         let Some(study::Sampled { closed, stopped }) = sampled else { return Ok(Status::Interrupted) };
         if closed + stopped > 0 {

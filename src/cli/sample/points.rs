@@ -44,7 +44,7 @@ impl Points {
 
     fn design(text: &str, seed: u64) -> Result<Self, Failure> {
         let wrong = || {
-            Failure::Wrong(format!("`{text}` is no design: `sobol:1000` and `lhs:1000` are, with any number of points"))
+            Failure::wrong(format!("`{text}` is no design: `sobol:1000` and `lhs:1000` are, with any number of points"))
         };
         let (name, count) = text.split_once(':').ok_or_else(wrong)?;
         let design = match name {
@@ -57,7 +57,7 @@ impl Points {
     }
 
     fn table(path: &Path) -> Result<Self, Failure> {
-        let wrong = |message: String| Failure::Wrong(format!("{}: {message}", path.display()));
+        let wrong = |message: String| Failure::wrong(format!("{}: {message}", path.display()));
         let mut text = String::new();
         let read = match is_standard_input(path) {
             true => std::io::stdin().lock().read_to_string(&mut text),

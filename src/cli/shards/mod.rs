@@ -21,7 +21,7 @@ use crate::store::{Asked, Missing, PartStore, Plan, Shard, StoreError, StudyFold
 use crate::study;
 
 fn failed(error: &StoreError) -> Failure {
-    Failure::Failed(error.to_string())
+    Failure::failed(error).of(error)
 }
 
 /// `mbint plan`: lists the simulations, and cuts them into shards.
@@ -32,7 +32,7 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
     let AskedArgs { method, certify, set, scene, skip_infeasible, certify_time } = args.asked.in_order();
     for model in &args.models {
         if crate::model::is_standard_input(model) {
-            return Err(Failure::Wrong("a study needs its models as files: shards read them again".to_owned()));
+            return Err(Failure::wrong("a study needs its models as files: shards read them again"));
         }
         models.push(absolute(model)?);
     }
@@ -77,7 +77,7 @@ pub(super) fn merge(args: MergeArgs, console: &mut Console) -> Result<Status, Fa
     let missing = folder.missing(&plan).map_err(|error| failed(&error))?;
     if !missing.is_empty() {
         let shards = ranges(&missing);
-        return Err(Failure::Failed(format!("{}: shards {shards} are missing; run them first", args.study.display())));
+        return Err(Failure::failed(format!("{}: shards {shards} are missing; run them first", args.study.display())));
     }
     let kept = KeptRun::of_study(args.study.clone(), &plan.asked);
     let (status, shards) = if plan.asked.points.is_some() {
@@ -105,7 +105,7 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     let Plan { asked, shards, .. } = folder.plan().map_err(|error| failed(&error))?;
     let Some(shard) = shards.get(args.index) else {
         let last = shards.len().checked_sub(1).map_or_else(|| "none".to_owned(), |last| format!("0 to {last}"));
-        return Err(Failure::Wrong(format!("there is no shard {}; there are: {last}", args.index)));
+        return Err(Failure::wrong(format!("there is no shard {}; there are: {last}", args.index)));
     };
     let given = given(&asked)?;
     let path = asked.models.get(shard.model).ok_or_else(|| failed(&StoreError::damaged(folder.path())))?;
@@ -134,7 +134,7 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     };
     let name = &description.name;
     study::simulate_parts(&description, &options, &store, &shard.parts)
-        .map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
+        .map_err(|error| Failure::failed(format!("{name}: {error}")).of(&error))?;
     if super::interrupt::asked() { Ok(Status::Interrupted) } else { Ok(Status::Done) }
 }
 
@@ -197,18 +197,18 @@ fn proof(asked: &Asked) -> Option<Proof> {
 fn methods(asked: &Asked) -> Result<Option<Vec<Method>>, Failure> {
     let method = |name: &String| {
         let known = Method::ALL.into_iter().find(|method| method.name() == name);
-        known.ok_or_else(|| Failure::Failed(format!("there is no method `{name}`")))
+        known.ok_or_else(|| Failure::failed(format!("there is no method `{name}`")))
     };
     let methods = asked.methods.iter().map(method).collect::<Result<Vec<_>, _>>()?;
     Ok((!methods.is_empty()).then_some(methods))
 }
 
 fn absolute(path: &Path) -> Result<PathBuf, Failure> {
-    std::path::absolute(path).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))
+    std::path::absolute(path).map_err(|error| Failure::wrong(format!("{}: {error}", path.display())))
 }
 
 fn given(asked: &Asked) -> Result<Given, Failure> {
-    let parse = |text: &String| Override::parse(text).map_err(|_| Failure::Failed(format!("`{text}` cannot be read")));
+    let parse = |text: &String| Override::parse(text).map_err(|_| Failure::failed(format!("`{text}` cannot be read")));
     Ok(Given {
         overrides: asked.set.iter().map(parse).collect::<Result<_, _>>()?,
         root: asked.root.clone(),

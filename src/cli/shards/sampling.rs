@@ -31,7 +31,7 @@ pub(super) fn simulate(
     console: &mut Console,
 ) -> Result<Status, Failure> {
     let ([model], Some(points)) = (&asked.models[..], &asked.points) else {
-        return Err(Failure::Wrong("samples are of one model".to_owned()));
+        return Err(Failure::wrong("samples are of one model"));
     };
     let sampling = Sampling {
         model,

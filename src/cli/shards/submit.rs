@@ -18,12 +18,12 @@ const MOST_REQUEUES: usize = 3;
 
 /// Writes the scripts of a round into the study's folder, and submits them.
 pub(in crate::cli) fn submit(args: &SubmitArgs, console: &mut Console) -> Result<Status, Failure> {
-    let failed = |message: String| Failure::Failed(message);
+    let failed = |message: String| Failure::failed(message);
     let folder =
         std::path::absolute(&args.study).map_err(|error| failed(format!("{}: {error}", args.study.display())))?;
     let output = args.output.as_ref().map(std::path::absolute).transpose();
     let output = output.map_err(|error| failed(error.to_string()))?;
-    [Some(&folder), output.as_ref()].into_iter().flatten().try_for_each(|path| takes(path)).map_err(Failure::Wrong)?;
+    [Some(&folder), output.as_ref()].into_iter().flatten().try_for_each(|path| takes(path)).map_err(Failure::wrong)?;
     let program = std::env::current_exe().map_err(|error| failed(format!("where this program is: {error}")))?;
     let study = StudyFolder::new(&folder);
     let plan = study.plan().map_err(|error| failed(error.to_string()))?;

@@ -22,7 +22,7 @@ fn docs() -> PathBuf {
 }
 
 /// Compares a page with what it should be, or writes it.
-fn expect_page(file: &Path, current: &str) {
+pub(crate) fn expect_page(file: &Path, current: &str) {
     if std::env::var_os("MBINT_UPDATE_DOCS").is_some() {
         std::fs::write(file, current).unwrap();
     }

@@ -115,7 +115,7 @@ fn a_folder_in_the_way_of_a_plot_keeps_all_older_results() {
     fs::create_dir(&path).unwrap();
     let before = seen(&place.path().join("out"));
     let (_, errors) = place.run("run -q pushed.yaml -o out --set m=3±1%", 1);
-    assert!(errors.starts_with("error: pushed: cannot write out/o1.svg: "), "{errors}");
+    assert!(errors.starts_with("error[E1010]: pushed: cannot write out/o1.svg: "), "{errors}");
     assert_eq!(seen(&place.path().join("out")), before);
 }
 

@@ -27,6 +27,7 @@ mod diagnostics;
 mod enclosure;
 mod ensemble;
 mod error;
+mod error_codes;
 mod events;
 mod excitations;
 pub(crate) mod explicit;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::owned::SUMMARY;
 use crate::store::without;
+use crate::syntax::{Code, Coded};
 
 /// Why results could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -51,4 +52,15 @@ pub enum ExportError {
     /// A value cannot be written as JSON.
     #[error("cannot write the results as JSON: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+impl Coded for ExportError {
+    fn code(&self) -> Option<Code> {
+        Some(match self {
+            Self::NoResults { .. } | Self::Read { .. } => Code::NoResults,
+            Self::Folder { .. } | Self::Held { .. } | Self::Write { .. } | Self::Csv(_) | Self::Json(_) => {
+                Code::CannotWrite
+            }
+        })
+    }
 }

@@ -5,6 +5,7 @@ use symdiff::Formula;
 use super::formulas::evaluate;
 use super::reader::Reader;
 use super::symbols::{Symbol, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
 
@@ -40,7 +41,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             } else {
                 format!("`{}` {problem}, but is {value}{label}", clip(text))
             };
-            self.error(node.span.clone(), message, None);
+            self.error(Code::OutOfRange, node.span.clone(), message, None);
             return;
         }
     }

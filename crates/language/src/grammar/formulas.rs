@@ -16,6 +16,7 @@ use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
 use super::{unit_names, unknown};
 use crate::grammar::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -51,7 +52,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let scalar = self.scalar(node, "a number or a formula")?;
         if is_toleranced(&scalar.text) {
             let help = "name it under `parameters`, and write its name here".to_owned();
-            self.error(node.span.clone(), "only a parameter can have a tolerance", help);
+            self.error(Code::MisplacedTolerance, node.span.clone(), "only a parameter can have a tolerance", help);
             return None;
         }
         if self.is_meant_as_interval(node, &scalar.text) {
@@ -60,6 +61,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         if let Some(number) = per_minute(&scalar.text) {
             let help = format!("write `{number} rpm` for revolutions, `{number} rad/min` for radians a minute");
             self.error(
+                Code::AmbiguousUnit,
                 node.span.clone(),
                 format!("`{}` may be revolutions or radians", clip(scalar.text.trim())),
                 help,
@@ -70,7 +72,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         if let Some((value, unit, start)) = number_and_unit(&scalar.text) {
             if unit.starts_with('%') {
                 let help = "write the number itself: 1% is 0.01".to_owned();
-                self.error(node.span.clone(), "`%` can stand only in a tolerance", help);
+                self.error(Code::MisplacedTolerance, node.span.clone(), "`%` can stand only in a tolerance", help);
                 return None;
             }
             // What goes on behind the unit makes a formula of it.
@@ -82,7 +84,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 Ok(_) => {}
                 Err(error) => {
                     let part = start + error.span.start..start + error.span.end;
-                    self.error(scalar.place(&node.span, part), error.message, error.help);
+                    self.error(Code::UnknownUnit, scalar.place(&node.span, part), error.message, error.help);
                     return None;
                 }
             }
@@ -95,7 +97,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let text = &scalar.text[part.clone()];
         let infinite = text.trim().trim_start_matches(['+', '-']).to_lowercase();
         if matches!(infinite.as_str(), ".inf" | ".nan") {
-            self.error(node.span.clone(), format!("`{}` is not a finite number", text.trim()), None);
+            self.error(Code::NotANumber, node.span.clone(), format!("`{}` is not a finite number", text.trim()), None);
             return None;
         }
         let tables: Vec<_> = self.tables.iter().map(|table| (table.name.as_str(), table.spline)).collect();
@@ -115,7 +117,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                     "the formula has more than {formula_terms} operations",
                     formula_terms = TUNING.formula_terms
                 );
-                self.error(node.span.clone(), message, "split it into parameters".to_owned());
+                self.error(Code::TooLarge, node.span.clone(), message, "split it into parameters".to_owned());
                 None
             }
             Ok(formula) => {
@@ -130,7 +132,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 let span = part.start + error.span.start..part.start + error.span.end;
                 let fraction = text.trim_start().starts_with('(').then(|| unit_names::of_fraction(text)).flatten();
                 let help = fraction.map(|fraction| fraction.help_in_parentheses()).or(error.help);
-                self.error(scalar.place(&node.span, span), error.message, help);
+                self.error(Code::BadFormula, scalar.place(&node.span, span), error.message, help);
                 None
             }
         }
@@ -167,7 +169,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                             node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
                         let message = format!("`{}` is not known: only limits of the function are", clip(name));
                         let help = "an excitation has a rate where its `rate` is limited, and no acceleration";
-                        self.error(place, message, help.to_owned());
+                        self.error(Code::NotHere, place, message, help.to_owned());
                     }
                 }
                 Ok(symbol) if self.is_of_model(node, symbol) => {
@@ -178,7 +180,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                     let message = format!("`{}` is in the model's frame, not in that of the instance", clip(name));
                     let help =
                         "in an assembly that is turned or mirrored, use coordinates of joints, or points of the body";
-                    self.error(place, message, help.to_owned());
+                    self.error(Code::NotHere, place, message, help.to_owned());
                 }
                 Ok(_) => {}
                 Err(_) if self.is_of_unread_joint(name) || self.is_unread_output(name) => all_known = false,
@@ -188,7 +190,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                     let part = offset + part.start..offset + part.end;
                     let place =
                         node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
-                    self.diagnostics.push(Diagnostic::error(place, error.message).help(error.help));
+                    self.diagnostics.push(Diagnostic::error(Code::UnknownName, place, error.message).help(error.help));
                 }
             }
         }
@@ -223,7 +225,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;
             let index = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
-            self.error(index, mismatch.message, None);
+            self.error(Code::WrongDimension, index, mismatch.message, None);
         }
         kinds.last().copied().unwrap_or(Kind::Any)
     }
@@ -273,7 +275,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 if !unit.dimension.fits(wanted) {
                     let message = format!("{} stands where {wanted} belongs", unit.dimension);
                     let help = self.other_reading(node);
-                    self.error(node.span.clone(), message, help);
+                    self.error(Code::WrongDimension, node.span.clone(), message, help);
                     return None;
                 }
                 self.refuse_ambiguous(node);
@@ -289,7 +291,12 @@ impl<S: SymbolTable> Reader<'_, S> {
                 let found = self.kind(node, &formula, 0).dimension();
                 if let Some(found) = found.filter(|found| !found.fits(wanted)) {
                     let help = self.other_reading(node);
-                    self.error(node.span.clone(), format!("{found} stands where {wanted} belongs"), help);
+                    self.error(
+                        Code::WrongDimension,
+                        node.span.clone(),
+                        format!("{found} stands where {wanted} belongs"),
+                        help,
+                    );
                 } else {
                     self.refuse_ambiguous(node);
                 }
@@ -329,7 +336,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let formula = self.formula(node, Context::Constant, wanted)?;
         if self.is_uncertain(&formula) {
             let message = "this number is one for all samples, so it cannot depend on an uncertain parameter";
-            self.error(node.span.clone(), message, None);
+            self.error(Code::MustBeCertain, node.span.clone(), message, None);
             return None;
         }
         self.evaluate(&formula, 0).filter(|value| value.is_finite())

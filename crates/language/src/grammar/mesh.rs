@@ -9,6 +9,7 @@ use super::element::Value;
 use super::reader::Reader;
 use super::requirement::Quantity;
 use super::symbols::SymbolTable;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::mesh_file::{Triangle, triangles};
 use crate::syntax::regular;
@@ -40,7 +41,7 @@ impl Value for Mesh {
             Ok(path) => reader.files.full(&path),
             Err(error) => {
                 let help = error.help.clone();
-                reader.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
+                reader.diagnostics.push(Diagnostic::error(error.code, node.span.clone(), error.message).help(help));
                 return None;
             }
         };
@@ -52,7 +53,7 @@ impl Value for Mesh {
             Ok(found) => Some(Self { file: name.clone(), triangles: found.into() }),
             Err(reason) => {
                 let help = "an STL or OBJ file in the model's folder belongs here".to_owned();
-                reader.error(node.span.clone(), format!("`{}` is no mesh: {reason}", clip(name)), help);
+                reader.error(Code::BadMesh, node.span.clone(), format!("`{}` is no mesh: {reason}", clip(name)), help);
                 None
             }
         }

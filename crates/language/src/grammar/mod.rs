@@ -4,6 +4,7 @@
 //! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
 
 mod any_unit;
+mod beside_kind;
 mod corners;
 pub mod declared;
 pub mod dimension;

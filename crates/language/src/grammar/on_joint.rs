@@ -8,6 +8,7 @@ use super::kinds::name;
 use super::reader::Reader;
 use super::report::Fields;
 use super::symbols::{JointCoordinate, OnJoint, Reference, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::Node;
 
 /// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an
@@ -76,7 +77,12 @@ impl Group for Option<OnJoint> {
             return reader.on_joint(fields).map(Some);
         }
         if fields.get("coordinate").is_some() {
-            reader.error(fields.key_span("coordinate"), "`coordinate` goes with `on`, a joint", None);
+            reader.error(
+                Code::MisplacedKey,
+                fields.key_span("coordinate"),
+                "`coordinate` goes with `on`, a joint",
+                None,
+            );
         }
         Some(None)
     }

@@ -5,6 +5,7 @@ use symdiff::Formula;
 use super::reader::Reader;
 use super::report::Fields;
 use super::symbols::SymbolTable;
+use crate::syntax::codes::Code;
 
 impl<S: SymbolTable> Reader<'_, S> {
     /// Reports where the second of two keys is not larger than the first.
@@ -14,7 +15,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             if let Some((first, second)) = values.filter(|(first, second)| first >= second) {
                 let label = &self.corners[corner].label;
                 let message = format!("`{high}` ({second}) must be larger than `{low}` ({first}){label}");
-                self.error(fields.key_span(high), message, None);
+                self.error(Code::ReversedRange, fields.key_span(high), message, None);
                 return;
             }
         }

@@ -6,6 +6,7 @@ use super::reader::Reader;
 use super::report::Fields;
 use super::rotating::Rotating;
 use super::symbols::{JointCoordinate, OnJoint, PointRef, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::syntax::frame::Turned;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Node, Value};
@@ -28,7 +29,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let index = self.find_body(node, body)?;
         if !rest.is_empty() {
             let message = format!("`{}` is a point, but a body belongs here", clip(name));
-            self.error(node.span.clone(), message, format!("write `{body}`"));
+            self.error(Code::WrongShape, node.span.clone(), message, format!("write `{body}`"));
             return None;
         }
         Some(index)
@@ -70,7 +71,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             suggest::help(point, &format!("points of `{name}`"), points)
         };
         let index = scalar.place_of_name(&node.span, name.len() + 1..text.len());
-        self.error(index, format!("body `{name}` has no point `{}`", clip(point)), help);
+        self.error(Code::UnknownName, index, format!("body `{name}` has no point `{}`", clip(point)), help);
         None
     }
 
@@ -98,7 +99,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let known: Vec<String> = self.model.parts_of(instance);
         let help = suggest::help(name, "ports and bodies of it", known.iter().map(String::as_str));
         let message = format!("instance `{instance}` has no port or body `{}`", clip(name));
-        self.error(node.span.clone(), message, help);
+        self.error(Code::UnknownName, node.span.clone(), message, help);
     }
 
     fn find_body(&mut self, node: &Node, name: &str) -> Option<usize> {
@@ -109,7 +110,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         // Braces that could not be filled in.
         let filled = node.scalar().filter(|_| name.contains('{')).and_then(|scalar| scalar.filled().err());
         if let Some(error) = filled {
-            self.error(node.span.clone(), error.message, error.help);
+            self.error(Code::BadRepetition, node.span.clone(), error.message, error.help);
             return None;
         }
         let (message, help) = match self.model.parts_of_beam(name) {
@@ -118,7 +119,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         };
         let place =
             node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place_of_name(&node.span, 0..name.len()));
-        self.error(place, message, help);
+        self.error(Code::UnknownName, place, message, help);
         None
     }
 
@@ -134,7 +135,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     pub fn points(&mut self, node: &Node) -> Option<Vec<PointRef>> {
         let Value::Sequence(items) = &node.value else {
             let message = format!("a list of points belongs here, but here is {}", node.kind());
-            self.error(node.span.clone(), message, None);
+            self.error(Code::WrongShape, node.span.clone(), message, None);
             return None;
         };
         let points: Vec<_> = items.iter().map(|item| self.point_ref(item)).collect();
@@ -148,7 +149,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let name = &*scalar.name();
         let Some(found) = self.model.joint(name) else {
             let help = suggest::help(name, "joints", self.model.joints());
-            self.error(node.span.clone(), format!("unknown joint `{}`", clip(name)), help);
+            self.error(Code::UnknownName, node.span.clone(), format!("unknown joint `{}`", clip(name)), help);
             return None;
         };
         if !self.model.has_coordinate(found, coordinate) && self.unread_joints.iter().any(|unread| unread == name) {
@@ -163,7 +164,12 @@ impl<S: SymbolTable> Reader<'_, S> {
                     ("slides", "prismatic, cylindrical and screw joints slide along theirs")
                 }
             };
-            self.error(node.span.clone(), format!("`{}` is no joint that {what}", clip(name)), help.to_owned());
+            self.error(
+                Code::UnsuitableJoint,
+                node.span.clone(),
+                format!("`{}` is no joint that {what}", clip(name)),
+                help.to_owned(),
+            );
             return None;
         }
         Some(found)
@@ -187,7 +193,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     fn different(&mut self, node: &Node, a: usize, b: usize) -> bool {
         if a == b {
             let message = format!("both ends are on `{}`", self.model.body_name(a));
-            self.error(node.span.clone(), message, "name two different bodies".to_owned());
+            self.error(Code::SameBody, node.span.clone(), message, "name two different bodies".to_owned());
         }
         a != b
     }
@@ -230,7 +236,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                     let name = self.model.body_name(body);
                     let message = format!("`{name}` turns about more than z, so it has no angle");
                     let help = "name two joints, or give the body the coordinate `angle` instead of `orientation`";
-                    self.error(node.span.clone(), message, help.to_owned());
+                    self.error(Code::NoAngle, node.span.clone(), message, help.to_owned());
                 }
             }
             let ground = self.ground_of(pair[0]);
@@ -239,7 +245,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let [first, second] = pair.map(|node| self.joint_ref(node, JointCoordinate::Angle));
         let (first, second) = (first?, second?);
         if first == second {
-            self.error(pair[1].span.clone(), "a joint is not geared with itself", None);
+            self.error(Code::SameBody, pair[1].span.clone(), "a joint is not geared with itself", None);
         }
         Some([Rotating::Joint(first), Rotating::Joint(second)])
     }

@@ -7,11 +7,13 @@ use std::cell::Cell;
 use std::collections::HashMap;
 use std::path::Path;
 
+use super::beside_kind::within_kind;
 use super::mapping::Grammar;
 use super::mentions::Notes;
 use super::names;
 use super::quantity::Dimension;
 use super::values;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -79,8 +81,8 @@ impl<'n> Fields<'n> {
 
 impl Report<'_> {
     /// Reports an error.
-    pub fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.diagnostics.push(Diagnostic::error(span, message).help(help));
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
+        self.diagnostics.push(Diagnostic::error(code, span, message).help(help));
     }
 
     /// The entries of a mapping with free keys; nothing written is an empty mapping.
@@ -90,7 +92,7 @@ impl Report<'_> {
             Value::Scalar(scalar) if scalar.is_null() => &[],
             _ => {
                 let message = format!("{what} are a mapping, but here is {}", node.kind());
-                self.error(node.span.clone(), message, "write `name: …` for each".to_owned());
+                self.error(Code::WrongShape, node.span.clone(), message, "write `name: …` for each".to_owned());
                 &[]
             }
         }
@@ -125,7 +127,7 @@ impl Report<'_> {
             _ => {
                 let message = format!("{what} is a mapping, but here is {}", node.kind());
                 let help = format!("its keys are {}", suggest::list(&keys));
-                self.error(node.span.clone(), message, help);
+                self.error(Code::WrongShape, node.span.clone(), message, help);
                 return None;
             }
         };
@@ -141,7 +143,7 @@ impl Report<'_> {
                 Some(near) => misspelt.push(near),
                 None => strange.push(self.diagnostics.len()),
             }
-            self.error(entry.key_span.clone(), message, help);
+            self.error(Code::UnknownKey, entry.key_span.clone(), message, help);
             if keys.iter().any(|key| ["bodies", "points"].contains(key))
                 && matches!(entry.value.value, Value::Mapping(_))
             {
@@ -158,7 +160,7 @@ impl Report<'_> {
     pub fn required<'n>(&mut self, fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
         let found = fields.get(key);
         if fields.lacks(key) && !self.is_strange(fields, key) {
-            self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
+            self.error(Code::MissingKey, fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
         }
         found
     }
@@ -184,18 +186,23 @@ impl Report<'_> {
                 [entry] => {
                     let message = format!("`{}` is not a kind of {}", clip(&entry.key), bare(what));
                     let help = suggest::help(&entry.key, "kinds", known.iter().copied());
-                    self.error(entry.key_span.clone(), message, help);
+                    self.error(Code::UnknownKind, entry.key_span.clone(), message, help);
                     None
                 }
                 [] => {
-                    self.error(at, format!("{} needs a kind", what), format!("the kinds are {}", kinds()));
+                    self.error(
+                        Code::OneKind,
+                        at,
+                        format!("{} needs a kind", what),
+                        format!("the kinds are {}", kinds()),
+                    );
                     None
                 }
                 [_, second, ..] => {
                     let message = format!("{} has one kind, but `{}` is a second key", what, clip(&second.key));
                     let help = within_kind(known, entries)
                         .unwrap_or_else(|| format!("write `name: {{ kind: … }}`, with one of {}", kinds()));
-                    self.error(second.key_span.clone(), message, help);
+                    self.error(Code::OneKind, second.key_span.clone(), message, help);
                     None
                 }
             },
@@ -205,7 +212,7 @@ impl Report<'_> {
                     Some(kind) => format!("write `{{ {}: {{ … }} }}`, with its keys within", kind.text),
                     None => format!("write `{{ kind: … }}`; the kinds are {}", kinds()),
                 };
-                self.error(if node.is_null() { at } else { node.span.clone() }, message, help);
+                self.error(Code::OneKind, if node.is_null() { at } else { node.span.clone() }, message, help);
                 None
             }
         }
@@ -222,10 +229,10 @@ impl Report<'_> {
                 true => "an index stands in the name of what is repeated: `repeat: { i: 1..6 }`",
                 false => "a name is made of letters, digits and `_`, a letter first",
             };
-            self.error(at.clone(), message, help.to_owned());
+            self.error(Code::BadName, at.clone(), message, help.to_owned());
         } else if let Some(meaning) = names::meaning(name) {
             let message = format!("`{name}` cannot be the name of {what}: in formulas it is {meaning}");
-            self.error(at.clone(), message, None);
+            self.error(Code::BadName, at.clone(), message, None);
             return false;
         }
         well_formed
@@ -235,14 +242,14 @@ impl Report<'_> {
     pub fn is_folder_name(&mut self, name: &str, span: Span, what: &str) -> bool {
         if name.is_empty() {
             let help = "write one, or leave the key out: a model is called like its file".to_owned();
-            self.error(span, format!("the name of {what} is empty"), help);
+            self.error(Code::BadName, span, format!("the name of {what} is empty"), help);
             return false;
         }
         let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
         let fine = name.len() <= 100 && name.chars().all(good);
         if !fine {
             let help = "it names a folder of results: use letters, digits, `_` and `-`".to_owned();
-            self.error(span, format!("`{}` cannot be the name of {what}", clip(name)), help);
+            self.error(Code::BadName, span, format!("`{}` cannot be the name of {what}", clip(name)), help);
         }
         fine
     }
@@ -252,7 +259,12 @@ impl Report<'_> {
         match node.scalar() {
             Some(scalar) if !scalar.is_null() => Some(scalar),
             _ => {
-                self.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), None);
+                self.error(
+                    Code::WrongShape,
+                    node.span.clone(),
+                    format!("{wanted} belongs here, but here is {}", node.kind()),
+                    None,
+                );
                 None
             }
         }
@@ -270,7 +282,7 @@ impl Report<'_> {
             Ok(found) => Some(found),
             Err(error) => {
                 let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
-                self.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
+                self.diagnostics.push(Diagnostic::error(error.code, node.span.clone(), error.message).help(help));
                 None
             }
         }
@@ -285,7 +297,7 @@ impl Report<'_> {
             },
             _ => node.kind().to_owned(),
         };
-        self.error(node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
+        self.error(Code::WrongShape, node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
         None
     }
 
@@ -297,7 +309,12 @@ impl Report<'_> {
             _ => node.kind().to_owned(),
         };
         let wanted = if count == 3 { "three" } else { "four" };
-        self.error(node.span.clone(), format!("a list of {wanted} numbers belongs here, but here is {found}"), None);
+        self.error(
+            Code::WrongShape,
+            node.span.clone(),
+            format!("a list of {wanted} numbers belongs here, but here is {found}"),
+            None,
+        );
         None
     }
 
@@ -310,11 +327,16 @@ impl Report<'_> {
         let [kind] = given.as_slice() else {
             let help = "e.g. `{ rpy: [0, 90 deg, 0] }`, `{ axis: z, angle: 30 deg }` or `{ quaternion: [1, 0, 0, 0] }`";
             let message = "a rotation is one of `rpy`, `axis` with `angle`, and `quaternion`";
-            self.error(node.span.clone(), message, help.to_owned());
+            self.error(Code::OneKind, node.span.clone(), message, help.to_owned());
             return None;
         };
         if *kind != "axis" && fields.get("angle").is_some() {
-            self.error(fields.key_span("angle"), format!("`angle` goes with `axis`, not with `{kind}`"), None);
+            self.error(
+                Code::MisplacedKey,
+                fields.key_span("angle"),
+                format!("`angle` goes with `axis`, not with `{kind}`"),
+                None,
+            );
             return None;
         }
         Some((kind, fields))
@@ -323,7 +345,12 @@ impl Report<'_> {
     /// Reports two keys of which only one may be there, at the first.
     pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
         if fields.get(first).is_some() && fields.get(second).is_some() {
-            self.error(fields.key_span(first), format!("`{first}` and `{second}` exclude each other"), None);
+            self.error(
+                Code::ExclusiveKeys,
+                fields.key_span(first),
+                format!("`{first}` and `{second}` exclude each other"),
+                None,
+            );
         }
     }
 
@@ -331,7 +358,7 @@ impl Report<'_> {
     pub fn check_fits(&mut self, span: &Span, found: Dimension, wanted: Dimension) -> bool {
         let fits = found.fits(wanted);
         if !fits {
-            self.error(span.clone(), format!("{found} stands where {wanted} belongs"), None);
+            self.error(Code::WrongDimension, span.clone(), format!("{found} stands where {wanted} belongs"), None);
         }
         fits
     }
@@ -344,7 +371,7 @@ impl Report<'_> {
         if found.is_none() {
             let message = format!("`{}` is not one of {}", clip(&scalar.text), suggest::list(&words));
             let help = suggest::nearest(&scalar.text, words).map(|near| format!("did you mean `{near}`?"));
-            self.error(node.span.clone(), message, help);
+            self.error(Code::UnknownWord, node.span.clone(), message, help);
         }
         found.map(|(_, value)| *value)
     }
@@ -355,7 +382,7 @@ impl Report<'_> {
         let scalar = self.scalar(node, &wanted)?;
         let number = scalar.text.parse::<usize>().ok().filter(|number| (least..=most).contains(number));
         if number.is_none() {
-            self.error(node.span.clone(), format!("`{}` is not {wanted}", clip(&scalar.text)), None);
+            self.error(Code::OutOfRange, node.span.clone(), format!("`{}` is not {wanted}", clip(&scalar.text)), None);
         }
         number
     }
@@ -364,23 +391,4 @@ impl Report<'_> {
 /// `a joint` → `joint`.
 fn bare(what: &str) -> &str {
     what.strip_prefix("a ").or_else(|| what.strip_prefix("an ")).unwrap_or(what)
-}
-
-/// What to write where keys stand beside the kind that they belong to, or the kind is the value of one.
-fn within_kind(known: &[&str], entries: &[Entry]) -> Option<String> {
-    let is_kind = |text: &str| known.contains(&text);
-    let mut kinds = entries.iter().filter(|entry| is_kind(&entry.key));
-    match (kinds.next(), kinds.next()) {
-        (Some(kind), None) => {
-            let other = entries.iter().find(|entry| entry.key != kind.key)?;
-            let (kind, other) = (&kind.key, clip(&other.key));
-            Some(format!("what belongs to `{kind}` stands within it: `{{ {kind}: {{ …, {other}: … }} }}`"))
-        }
-        (None, _) => {
-            let mut values = entries.iter().filter_map(|entry| entry.value.scalar());
-            let kind = values.find(|scalar| is_kind(&scalar.text))?;
-            Some(format!("write `{{ {}: {{ … }} }}`, with the other keys within", kind.text))
-        }
-        _ => None,
-    }
 }

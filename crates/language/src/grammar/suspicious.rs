@@ -9,6 +9,7 @@ use super::range::{Range, range};
 use super::reader::Reader;
 use super::symbols::{Symbol, SymbolTable};
 use crate::grammar::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
@@ -37,7 +38,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             let help =
                 format!("a bare angle is in rad: write `{0} deg`, or `{0} rad` where that is meant{of}", clip(&text));
             let message = "an angle of more than a turn has no unit";
-            self.diagnostics.push(Diagnostic::warning(node.span.clone(), message).help(help));
+            self.diagnostics.push(Diagnostic::warning(Code::AngleWithoutUnit, node.span.clone(), message).help(help));
         } else if wanted == Dimension::LENGTH && number.abs() > TUNING.large_length && is_new() {
             let help =
                 format!("a bare length is in m: write `{0} mm`, or `{0} m` where that is meant{of}", clip(&text));
@@ -61,9 +62,15 @@ impl<S: SymbolTable> Reader<'_, S> {
         let help = format!("an interval is written `{interval}`, in `parameters`");
         if is_difference {
             let message = "a difference of two numbers, the smaller first, may be meant as an interval";
-            self.diagnostics.push(Diagnostic::warning(node.span.clone(), message).help(help));
+            self.diagnostics
+                .push(Diagnostic::warning(Code::DifferenceOfNumbers, node.span.clone(), message).help(help));
         } else {
-            self.error(node.span.clone(), format!("`{}` looks like an interval", clip(text.trim())), help);
+            self.error(
+                Code::MisplacedTolerance,
+                node.span.clone(),
+                format!("`{}` looks like an interval", clip(text.trim())),
+                help,
+            );
         }
         !is_difference
     }
@@ -80,7 +87,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
         for (span, help) in std::mem::take(&mut self.lengths.large) {
             let message = "a length above 100 m has no unit, beside others of millimetres";
-            self.diagnostics.push(Diagnostic::warning(span, message).help(help));
+            self.diagnostics.push(Diagnostic::warning(Code::LengthWithoutUnit, span, message).help(help));
         }
     }
 }

@@ -11,6 +11,7 @@
 
 use super::fits::ToleranceClass;
 use super::unit::{Unit, number_and_unit};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Scalar, Value};
@@ -77,7 +78,7 @@ pub fn read(node: &Node) -> Result<Toleranced, Box<Diagnostic>> {
             sign(&scalar.text[right.clone()]).map(|_| format!("a tolerance has one `{sign_text}`"))
         };
         if let Some(problem) = problem {
-            let diagnostic = Diagnostic::error(scalar.place(&node.span, all), problem);
+            let diagnostic = Diagnostic::error(Code::BadTolerance, scalar.place(&node.span, all), problem);
             return Err(Box::new(diagnostic.help("e.g. `0.5 m ± 1%`".to_owned())));
         }
         let unit = own_unit(&scalar.text[left.clone()]);
@@ -178,7 +179,9 @@ impl Text<'_> {
         let text = &self.scalar.text[all.clone()];
         let wrong = |message: &str| {
             let place = self.scalar.place(&self.node.span, all.clone());
-            Err(Box::new(Diagnostic::error(place, message).help("e.g. `[0.49, 0.51] m`".to_owned())))
+            Err(Box::new(
+                Diagnostic::error(Code::BadTolerance, place, message).help("e.g. `[0.49, 0.51] m`".to_owned()),
+            ))
         };
         let Some(close) = text.rfind(']') else { return wrong("the interval's `]` is missing") };
         let &[first, _] = text[1..close].split(',').collect::<Vec<_>>().as_slice() else {

@@ -5,6 +5,7 @@ use super::own_names::{LikeName, OwnNames};
 use super::reader::Reader;
 use super::symbols::SymbolTable;
 use super::unit::{Unit, is_part_of_name};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
@@ -63,7 +64,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     fn report(&mut self, node: &Node, like: &LikeName) {
         let message = format!("`{}` is a unit and a name of the model", like.word);
         let help = format!("write `{}` with spaces for the model's own, `{}` for the unit", like.spaced, like.as_unit);
-        self.error(node.span.clone(), message, help);
+        self.error(Code::AmbiguousUnit, node.span.clone(), message, help);
     }
 
     /// Warns of `3/4 in`, where no dimension is asked for.
@@ -71,7 +72,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let Some(fraction) = node.scalar().and_then(|scalar| of_fraction(&scalar.text)) else { return };
         let message = format!("`{}` is {}", fraction.text, fraction.meaning());
         let help = format!("write `{}` where that is meant, `{}` where not", fraction.as_read(), fraction.as_meant());
-        self.diagnostics.push(Diagnostic::warning(node.span.clone(), message).help(help));
+        self.diagnostics.push(Diagnostic::warning(Code::FractionOfUnits, node.span.clone(), message).help(help));
     }
 }
 

@@ -9,6 +9,7 @@ use super::quantity::Dimension;
 use super::reader::Reader;
 use super::rotation::Rotation;
 use super::symbols::SymbolTable;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Value};
 
@@ -41,14 +42,14 @@ impl<S: SymbolTable> Reader<'_, S> {
             Value::Sequence(items) => format!("a list of {}", items.len()),
             _ => node.kind().to_owned(),
         };
-        self.error(node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
+        self.error(Code::WrongShape, node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
         None
     }
 
     /// Something that a model which says `space: planar` cannot have.
     pub fn leaves_the_plane(&mut self, node: &Node) {
         let help = "write `space: spatial`, or leave `space` out".to_owned();
-        self.error(node.span.clone(), "this leaves the plane, but the model is planar", help);
+        self.error(Code::NotPlanar, node.span.clone(), "this leaves the plane, but the model is planar", help);
     }
 
     /// Three formulas of a dimension.
@@ -100,7 +101,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             if axis.iter().all(|formula| self.evaluate(formula, corner) == Some(0.0)) {
                 let label = &self.corners[corner].label;
                 let message = format!("a direction of length zero points nowhere{label}");
-                self.error(node.span.clone(), message, None);
+                self.error(Code::ZeroDirection, node.span.clone(), message, None);
                 break;
             }
         }
@@ -142,7 +143,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             Value::Sequence(items) if items.len() == 4 => items,
             _ => {
                 let help = "the cosine of half the angle first, then the axis times the sine of it".to_owned();
-                self.error(node.span.clone(), "a quaternion is a list of four numbers", help);
+                self.error(Code::WrongShape, node.span.clone(), "a quaternion is a list of four numbers", help);
                 return None;
             }
         };
@@ -150,7 +151,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let [a, b, c, d] = [read.next()?, read.next()?, read.next()?, read.next()?];
         let p: [Formula; 4] = [a?, b?, c?, d?];
         if p.iter().all(|formula| self.evaluate(formula, 0) == Some(0.0)) {
-            self.error(node.span.clone(), "a quaternion of length zero is no rotation", None);
+            self.error(Code::ZeroDirection, node.span.clone(), "a quaternion of length zero is no rotation", None);
             return None;
         }
         Some(Rotation::Quaternion(p))

@@ -1,6 +1,7 @@
 //! What can be wrong with a mechanism that only shows when its equations are written down.
 
 use super::context::Context;
+use crate::syntax::{Code, Coded};
 
 /// Why a description has no equations of motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -53,4 +54,17 @@ pub enum BuildError {
         /// What the formula may depend on.
         allowed: Context,
     },
+}
+
+impl Coded for BuildError {
+    fn code(&self) -> Option<Code> {
+        Some(match self {
+            Self::Contradiction { .. } => Code::Contradiction,
+            Self::NoJointCoordinates { .. } => Code::NoJointCoordinates,
+            Self::Speed => Code::BadMotor,
+            Self::Teeth { .. } => Code::BadTeeth,
+            Self::Massless { .. } => Code::Massless,
+            Self::Name { .. } => Code::NotHere,
+        })
+    }
 }

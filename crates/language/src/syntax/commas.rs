@@ -1,6 +1,7 @@
 //! Formulas that YAML cuts at their commas: between braces, `torque: max(a, b)` is `torque: max(a`, and a key `b)`.
 //! The pieces are put together again, so that the message is about the comma, and not what follows from it.
 
+use super::codes::Code;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::source::Span;
 use super::suggest::clip;
@@ -24,7 +25,7 @@ pub(super) fn join_values(text: &str, entries: Vec<Entry>, diagnostics: &mut Dia
                 let written = text.get(span.clone()).unwrap_or("");
                 let help = format!("quote the text: `\"{}\"`", clip(written));
                 let message = "an unquoted comma ends the text between braces";
-                diagnostics.push(Diagnostic::error(span.clone(), message).help(help));
+                diagnostics.push(Diagnostic::error(Code::UnquotedComma, span.clone(), message).help(help));
                 last.value = Node { span, value: Value::Scalar(Scalar::plain(written, None)) };
             }
             _ => joined.push(entry),
@@ -69,7 +70,9 @@ fn with_point(first: &Node, second: &Entry, diagnostics: &mut Diagnostics) -> No
     let span = first.span.start..second.key_span.end;
     let number = format!("{}.{}", first.scalar().map_or("", |scalar| &scalar.text), second.key);
     let help = format!("decimals stand behind a point: `{}`", clip(&number));
-    diagnostics.push(Diagnostic::error(span.clone(), "a comma ends the number between braces").help(help));
+    diagnostics.push(
+        Diagnostic::error(Code::UnquotedComma, span.clone(), "a comma ends the number between braces").help(help),
+    );
     Node { span, value: Value::Scalar(Scalar::plain(number, None)) }
 }
 
@@ -82,8 +85,10 @@ fn together(text: &str, first: &Node, second: &Span, diagnostics: &mut Diagnosti
     let node = Node { span: span.clone(), value: Value::Scalar(scalar) };
     if !is_open(&node) {
         let help = format!("quote the formula: `\"{}\"`", clip(written));
-        diagnostics
-            .push(Diagnostic::error(span, "an unquoted comma ends the value between braces or brackets").help(help));
+        diagnostics.push(
+            Diagnostic::error(Code::UnquotedComma, span, "an unquoted comma ends the value between braces or brackets")
+                .help(help),
+        );
     }
     node
 }

@@ -5,6 +5,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::codes::{Code, Coded};
 use super::source::{Sources, Span, Within};
 
 /// How bad it is.
@@ -22,6 +23,8 @@ pub enum Severity {
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
+    /// The kind of mistake.
+    pub code: Code,
     /// Description in one line.
     pub message: String,
     /// Where; absent where the file as a whole is meant.
@@ -36,9 +39,10 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error at a place.
-    pub fn error(span: Span, message: impl Into<String>) -> Self {
+    pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
+            code,
             message: message.into(),
             span: Some(span),
             label: None,
@@ -48,13 +52,13 @@ impl Diagnostic {
     }
 
     /// A warning at a place.
-    pub fn warning(span: Span, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(span, message) }
+    pub fn warning(code: Code, span: Span, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, span, message) }
     }
 
     /// An error of the file as a whole.
-    pub fn of_file(message: impl Into<String>) -> Self {
-        Self { span: None, ..Self::error(0..0, message) }
+    pub fn of_file(code: Code, message: impl Into<String>) -> Self {
+        Self { span: None, ..Self::error(code, 0..0, message) }
     }
 
     /// Whether it says that a name stands for nothing.
@@ -99,6 +103,8 @@ pub struct Diagnostics {
 pub struct Record {
     /// An error or a warning.
     pub severity: Severity,
+    /// The kind of mistake: `mbint explain` has a page of it.
+    pub code: Code,
     /// Description of the error.
     pub message: String,
     /// Name of the text.
@@ -224,6 +230,7 @@ impl Diagnostics {
         let place = located.as_ref().map(|(source, span)| source.place(span.start));
         Record {
             severity: diagnostic.severity,
+            code: diagnostic.code,
             message: diagnostic.message.clone(),
             file: source.map_or_else(String::new, |source| source.name.clone()),
             line: place.map(|place| place.line),
@@ -241,3 +248,10 @@ impl fmt::Display for Diagnostics {
 }
 
 impl std::error::Error for Diagnostics {}
+
+/// That of the first error.
+impl Coded for Diagnostics {
+    fn code(&self) -> Option<Code> {
+        self.iter().find(|diagnostic| diagnostic.severity == Severity::Error).map(|diagnostic| diagnostic.code)
+    }
+}

@@ -1,5 +1,6 @@
 //! Text → a tree in which every node knows its place, and the diagnostics that point there.
 
+pub mod codes;
 mod commas;
 pub mod diagnostic;
 pub mod frame;
@@ -19,6 +20,7 @@ pub mod tuning;
 pub mod within;
 pub mod yaml;
 
+pub use codes::{Code, Coded};
 pub use diagnostic::{Diagnostics, Record};
 pub use harmless::{harmless, is_harmful};
 pub use text_file::regular;

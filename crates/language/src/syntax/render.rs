@@ -97,7 +97,7 @@ impl Diagnostics {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let mut group = Group::with_title(level.primary_title(diagnostic.message.as_str()));
+        let mut group = Group::with_title(level.primary_title(diagnostic.message.as_str()).id(diagnostic.code.id()));
         let excerpts = self.excerpts(diagnostic);
         if excerpts.is_empty() {
             group = group.elements(self.sources.first().map(|source| Origin::path(source.name.as_str())));

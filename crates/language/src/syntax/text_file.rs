@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
+use super::codes::Code;
 use super::diagnostic::Diagnostic;
 use super::suggest::clip;
 
@@ -11,7 +12,7 @@ use super::suggest::clip;
 pub fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;
     if !metadata.is_file() && !metadata.is_dir() {
-        return Err(Box::new(Diagnostic::of_file("this is a pipe or a device, not a file")));
+        return Err(Box::new(Diagnostic::of_file(Code::UnreadableFile, "this is a pipe or a device, not a file")));
     }
     read_given(path, most)
 }
@@ -20,7 +21,7 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
 pub fn read_given(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;
     if metadata.is_dir() {
-        return Err(Box::new(Diagnostic::of_file("this is a directory, not a file")));
+        return Err(Box::new(Diagnostic::of_file(Code::UnreadableFile, "this is a directory, not a file")));
     }
     if metadata.len() > most {
         return Err(too_large(metadata.len(), most));
@@ -61,7 +62,7 @@ pub fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> 
             [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "this is UTF-16: save the file as UTF-8",
             _ => "a model file is text in UTF-8: save it as that",
         };
-        Box::new(Diagnostic::of_file(message).help(help.to_owned()))
+        Box::new(Diagnostic::of_file(Code::NotText, message).help(help.to_owned()))
     })
 }
 
@@ -71,10 +72,13 @@ fn cannot(error: io::Error) -> Box<Diagnostic> {
         io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
         _ => error.to_string(),
     };
-    Box::new(Diagnostic::of_file(format!("the file cannot be read: {reason}")))
+    Box::new(Diagnostic::of_file(Code::UnreadableFile, format!("the file cannot be read: {reason}")))
 }
 
 fn too_large(length: u64, most: u64) -> Box<Diagnostic> {
     let (megabytes, limit) = (length as f64 / 1e6, most / 1_000_000);
-    Box::new(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB")))
+    Box::new(Diagnostic::of_file(
+        Code::TooLarge,
+        format!("the file has {megabytes:.1} MB; a model may have {limit} MB"),
+    ))
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
+use super::codes::Code;
 use super::diagnostic::Diagnostic;
 use super::harmless;
 use super::suggest::clip;
@@ -93,7 +94,9 @@ impl Within {
             }
         };
         let message = format!("`{}` {verb} {folder}", clip(name));
-        Err(Box::new(Diagnostic::of_file(message).help(format!("a file that a model names lies {help}"))))
+        Err(Box::new(
+            Diagnostic::of_file(Code::OutsideFolder, message).help(format!("a file that a model names lies {help}")),
+        ))
     }
 
     /// Where a path leads that is seen from the model's folder.

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 
 use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, options};
 
+use super::codes::Code;
 use super::commas::{join_items, join_values};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::not_yaml;
@@ -36,7 +37,7 @@ pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
         };
         if count > TUNING.yaml_events {
             let message = format!("the file has more than {yaml_events} entries", yaml_events = TUNING.yaml_events);
-            builder.diagnostics.push(Diagnostic::error(span, message));
+            builder.diagnostics.push(Diagnostic::error(Code::TooLarge, span, message));
             return None;
         }
         if !builder.event(event, span) {
@@ -45,7 +46,8 @@ pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
     }
     if builder.root.is_none() {
         builder.diagnostics.push(
-            Diagnostic::of_file("the file is empty").help("`mbint new NAME` writes a model to begin with".to_owned()),
+            Diagnostic::of_file(Code::EmptyFile, "the file is empty")
+                .help("`mbint new NAME` writes a model to begin with".to_owned()),
         );
     }
     builder.root
@@ -67,8 +69,8 @@ struct Builder<'t, 'd> {
 }
 
 impl Builder<'_, '_> {
-    fn error(&mut self, span: Span, message: &str, help: &str) {
-        self.diagnostics.push(Diagnostic::error(span, message).help(help.to_owned()));
+    fn error(&mut self, code: Code, span: Span, message: &str, help: &str) {
+        self.diagnostics.push(Diagnostic::error(code, span, message).help(help.to_owned()));
     }
 
     fn syntax_error(&mut self, at: usize, kind: &ErrorKind) {
@@ -79,10 +81,11 @@ impl Builder<'_, '_> {
         let span = at..at + self.text[at..].chars().next().map_or(0, char::len_utf8);
         let diagnostic = match kind {
             ErrorKind::RecursionLimitExceeded => Diagnostic::error(
+                Code::TooLarge,
                 span,
                 format!("mappings and lists nest deeper than {yaml_depth} levels", yaml_depth = TUNING.yaml_depth),
             ),
-            kind => Diagnostic::error(span, format!("this is not YAML: {kind}")),
+            kind => Diagnostic::error(Code::NotYaml, span, format!("this is not YAML: {kind}")),
         };
         self.diagnostics.push(diagnostic.help(not_yaml::help(self.text, at, kind)));
     }
@@ -90,20 +93,27 @@ impl Builder<'_, '_> {
     /// Takes one event; whether to go on.
     fn event(&mut self, event: Event, span: Span) -> bool {
         if event.tag().is_some() {
-            self.error(span.clone(), "tags are not supported", "leave the `!…` out");
+            self.error(Code::UnsupportedYaml, span.clone(), "tags are not supported", "leave the `!…` out");
         }
         match event {
             Event::DocumentStart(..) if self.root.is_some() => {
-                self.error(span, "the file has several documents", "a model is one document: remove the `---`");
+                self.error(
+                    Code::UnsupportedYaml,
+                    span,
+                    "the file has several documents",
+                    "a model is one document: remove the `---`",
+                );
                 return false;
             }
             Event::Anchor(..) => self.error(
+                Code::UnsupportedYaml,
                 span,
                 "anchors are not supported",
                 "name what is used several times as a parameter, and use its name",
             ),
             Event::Alias(_) | Event::UnresolvedAlias(_) => {
                 self.error(
+                    Code::UnsupportedYaml,
                     span.clone(),
                     "aliases are not supported",
                     "name what is used several times as a parameter, and use its name; a product is `a * b`",
@@ -165,8 +175,12 @@ impl Builder<'_, '_> {
                                 "a key is a name"
                             };
                             self.diagnostics.push(
-                                Diagnostic::error(node.span.clone(), format!("{} cannot be a key", node.kind()))
-                                    .help(help.to_owned()),
+                                Diagnostic::error(
+                                    Code::BadKey,
+                                    node.span.clone(),
+                                    format!("{} cannot be a key", node.kind()),
+                                )
+                                .help(help.to_owned()),
                             );
                             self.is_unnamed = true;
                             String::new()
@@ -217,9 +231,13 @@ impl Builder<'_, '_> {
         for entry in entries {
             match first_places.get(&entry.key) {
                 Some(first) => self.diagnostics.push(
-                    Diagnostic::error(entry.key_span, format!("`{}` is given twice", clip(&entry.key)))
-                        .label("again here")
-                        .also(first.clone(), "first here"),
+                    Diagnostic::error(
+                        Code::GivenTwice,
+                        entry.key_span,
+                        format!("`{}` is given twice", clip(&entry.key)),
+                    )
+                    .label("again here")
+                    .also(first.clone(), "first here"),
                 ),
                 None => {
                     first_places.insert(entry.key.clone(), entry.key_span.clone());

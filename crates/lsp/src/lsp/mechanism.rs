@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use crate::model::Description;
 use crate::study;
+use crate::syntax::{Code, Coded};
 
 /// How long an editor has been quiet when mechanisms are examined.
 const QUIET: Duration = Duration::from_millis(400);
@@ -30,7 +31,16 @@ pub struct Answer {
     /// Which reading of it.
     pub reading: u64,
     /// The first error.
-    pub error: Option<String>,
+    pub error: Option<MechanismError>,
+}
+
+/// The error of a mechanism as a whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MechanismError {
+    /// As `mbint check` prints it.
+    pub message: String,
+    /// The kind of mistake.
+    pub code: Option<Code>,
 }
 
 /// Starts to examine models, the latest reading of each; gives each answer to `answer`. Ends with the questions.
@@ -51,16 +61,17 @@ pub fn examine(answer: impl Fn(Answer) + Send + 'static) -> Sender<Question> {
     questions
 }
 
-/// The error of a mechanism, as `mbint check` prints it.
-fn error(scene: &Option<String>, model: &Description) -> Option<String> {
+/// The error of a mechanism.
+fn error(scene: &Option<String>, model: &Description) -> Option<MechanismError> {
     let checked = study::caught("check", || {
         study::ready(model)?;
         study::structure(model).map(|_| ())
     });
-    let error = match checked {
+    let (message, code) = match checked {
         Ok(Ok(())) => return None,
-        Ok(Err(error)) => error.to_string(),
-        Err(error) => error.to_string(),
+        Ok(Err(error)) => (error.to_string(), error.code()),
+        Err(error) => (error.to_string(), None),
     };
-    Some(scene.as_ref().map_or_else(|| error.clone(), |name| format!("scene {name}: {error}")))
+    let message = scene.as_ref().map_or_else(|| message.clone(), |name| format!("scene {name}: {message}"));
+    Some(MechanismError { message, code })
 }

@@ -4,14 +4,16 @@ use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use lsp_types::{
-    CodeAction, CodeActionKind, CodeActionOrCommand, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity,
-    Location, Range, TextEdit, Uri, WorkspaceEdit,
+    CodeAction, CodeActionKind, CodeActionOrCommand, CodeDescription, Diagnostic, DiagnosticRelatedInformation,
+    DiagnosticSeverity, Location, NumberOrString, Range, TextEdit, Uri, WorkspaceEdit,
 };
 
+use super::mechanism::MechanismError;
 use super::text::Text;
 use super::uri::uri_of;
 use super::workspace::{Model, Workspace};
 use crate::grammar::Span;
+use crate::syntax::Code;
 use crate::syntax::diagnostic::Severity;
 use crate::syntax::suggest;
 
@@ -22,7 +24,7 @@ const SOURCE: &str = "mbint";
 pub fn of_model(
     workspace: &Workspace,
     model: &Model,
-    of_mechanism: Option<&str>,
+    of_mechanism: Option<&MechanismError>,
 ) -> BTreeMap<PathBuf, Vec<Diagnostic>> {
     let mut found: BTreeMap<PathBuf, Vec<Diagnostic>> = BTreeMap::new();
     let mut texts: BTreeMap<PathBuf, Text> = BTreeMap::new();
@@ -57,6 +59,8 @@ pub fn of_model(
                 Severity::Error => DiagnosticSeverity::ERROR,
                 Severity::Warning => DiagnosticSeverity::WARNING,
             }),
+            code: Some(NumberOrString::String(own.code.id().to_owned())),
+            code_description: page_of(own.code),
             source: Some(SOURCE.to_owned()),
             message: format!("{}{help}", own.message),
             related_information: (!related.is_empty()).then_some(related),
@@ -69,16 +73,23 @@ pub fn of_model(
             found.entry(path).or_default().push(diagnostic);
         }
     }
-    if let (Some(message), Some(all)) = (of_mechanism, found.get_mut(&model.path)) {
+    if let (Some(error), Some(all)) = (of_mechanism, found.get_mut(&model.path)) {
         all.push(Diagnostic {
             range: Range::default(),
             severity: Some(DiagnosticSeverity::ERROR),
+            code: error.code.map(|code| NumberOrString::String(code.id().to_owned())),
+            code_description: error.code.and_then(page_of),
             source: Some(SOURCE.to_owned()),
-            message: message.to_owned(),
+            message: error.message.clone(),
             ..Diagnostic::default()
         });
     }
     found
+}
+
+/// Where a code is explained.
+fn page_of(code: Code) -> Option<CodeDescription> {
+    Some(CodeDescription { href: code.href().parse().ok()? })
 }
 
 /// Changes that diagnostics at a range propose.

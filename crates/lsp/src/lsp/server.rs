@@ -19,7 +19,7 @@ use lsp_types::{
 };
 use serde::de::DeserializeOwned;
 
-use super::mechanism::{self, Question};
+use super::mechanism::{self, MechanismError, Question};
 use super::problems::{address, of_model};
 use super::requests::{Answers, error, path_of_document};
 use super::schema::Schema;
@@ -144,7 +144,7 @@ struct Server<'c> {
     /// Models whose mechanisms are to be examined.
     questions: Sender<Question>,
     /// The reading of each model, and the error of its mechanism.
-    mechanisms: BTreeMap<PathBuf, (u64, Option<String>)>,
+    mechanisms: BTreeMap<PathBuf, (u64, Option<MechanismError>)>,
     readings: u64,
     /// Diagnostics that the editor has.
     published: BTreeMap<PathBuf, Vec<Diagnostic>>,
@@ -258,7 +258,7 @@ impl<'c> Server<'c> {
     fn publish(&mut self) {
         let mut all: BTreeMap<PathBuf, Vec<Diagnostic>> = BTreeMap::new();
         for model in self.workspace.models() {
-            let of_mechanism = self.mechanisms.get(&model.path).and_then(|(_, error)| error.as_deref());
+            let of_mechanism = self.mechanisms.get(&model.path).and_then(|(_, error)| error.as_ref());
             for (file, found) in of_model(&self.workspace, model, of_mechanism) {
                 let known = all.entry(file).or_default();
                 for diagnostic in found {

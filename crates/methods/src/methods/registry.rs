@@ -8,6 +8,7 @@ use super::result::MethodResult;
 use super::validation::Validation;
 use super::{BoundsRequest, Method};
 use crate::numerics::ParameterBox;
+use crate::syntax::{Code, Coded};
 
 /// Why a method cannot be run, for people.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -332,5 +333,11 @@ impl BoundsRequest {
         }
         request.methods_mut().into_iter().try_for_each(|(_, request)| request.fit(problem))?;
         Ok(request)
+    }
+}
+
+impl Coded for Refusal {
+    fn code(&self) -> Option<Code> {
+        Some(Code::Unanswerable)
     }
 }

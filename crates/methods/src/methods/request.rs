@@ -8,6 +8,7 @@ use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::RangeKind;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Value};
 
@@ -101,7 +102,7 @@ fn tolerance<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Opt
     if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
         let message = format!("a tolerance of {tolerance} is not from {LEAST_TOLERANCE:e} to below 1");
         let help = "it is relative to how far an output ranges: 1e-3 is a thousandth of that".to_owned();
-        reader.error(node.span.clone(), message, help);
+        reader.error(Code::OutOfRange, node.span.clone(), message, help);
         return None;
     }
     Some(tolerance)
@@ -116,7 +117,12 @@ fn budget<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Budget
         && let Some(seconds) = reader.number(node, Dimension::TIME)
     {
         if seconds <= 0.0 {
-            reader.error(node.span.clone(), format!("`seconds` must be positive, but is {seconds}"), None);
+            reader.error(
+                Code::OutOfRange,
+                node.span.clone(),
+                format!("`seconds` must be positive, but is {seconds}"),
+                None,
+            );
         }
         budget.seconds = Some(seconds);
     }
@@ -160,12 +166,17 @@ pub(super) fn per_parameter<S: SymbolTable>(
                 format!("unknown parameter `{}`", clip(&entry.key))
             };
             let help = suggest::help(&entry.key, "uncertain parameters", uncertain.iter().map(String::as_str));
-            reader.error(entry.key_span.clone(), message, help);
+            reader.error(Code::UnknownName, entry.key_span.clone(), message, help);
         }
     }
     for missing in uncertain.iter().filter(|name| !counts.contains_key(name.as_str())) {
         complete = false;
-        reader.error(fields.key_span(key), format!("`{key}` is missing for parameter `{}`", clip(missing)), None);
+        reader.error(
+            Code::MissingKey,
+            fields.key_span(key),
+            format!("`{key}` is missing for parameter `{}`", clip(missing)),
+            None,
+        );
     }
     complete.then(|| uncertain.iter().filter_map(|name| counts.get(name.as_str()).copied()).collect())
 }
@@ -181,7 +192,12 @@ pub(super) fn check_simulations<S: SymbolTable>(
     if simulations > MOST_SIMULATIONS {
         let message = format!("{parameters} parameters make {simulations:.2e} simulations");
         let help = "lower the number, or make fewer parameters uncertain";
-        reader.error(fields.key_span(key), message, format!("at most {MOST_SIMULATIONS:e} can be run: {help}"));
+        reader.error(
+            Code::TooLarge,
+            fields.key_span(key),
+            message,
+            format!("at most {MOST_SIMULATIONS:e} can be run: {help}"),
+        );
     }
 }
 

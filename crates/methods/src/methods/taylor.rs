@@ -13,6 +13,7 @@ use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{RangeKind, TaylorRange};
+use crate::syntax::codes::Code;
 
 /// Coefficients of a Taylor polynomial.
 const MOST_COEFFICIENTS: f64 = 1e5;
@@ -65,7 +66,12 @@ impl Taylor {
         let coefficients = (1..=uncertain).fold(1.0, |count, k| count * (order + k) as f64 / k as f64);
         if coefficients > MOST_COEFFICIENTS {
             let message = format!("order {order} in {uncertain} parameters has {coefficients:.2e} coefficients");
-            reader.error(fields.key_span("order"), message, format!("at most {MOST_COEFFICIENTS:e} can be computed"));
+            reader.error(
+                Code::TooLarge,
+                fields.key_span("order"),
+                message,
+                format!("at most {MOST_COEFFICIENTS:e} can be computed"),
+            );
         }
         Some(Self { order, range: range? })
     }

@@ -9,6 +9,7 @@ use std::collections::{HashMap, VecDeque};
 use super::sections::entries_of;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -97,7 +98,7 @@ pub fn write_out(report: &mut Report, root: Node) -> (Node, Vec<Chain>) {
         if entries.iter().any(|known| known.key == dimension.entry.key) {
             let message = format!("`{}` is in `{key}` as well", clip(&dimension.entry.key));
             let help = "give one of them another name".to_owned();
-            report.error(dimension.entry.key_span.clone(), message, help);
+            report.error(Code::NameTaken, dimension.entry.key_span.clone(), message, help);
         } else {
             // Other outputs may name these.
             let at = if key == "outputs" { outputs } else { entries.len() };
@@ -121,7 +122,7 @@ fn read<'n>(report: &mut Report, entry: &'n Entry, faces: &mut Faces) -> Option<
     let ((from, at_from), (to, at_to)) = (from?, to?);
     if from == to {
         let message = format!("a dimension leads to another face, but `{}` to its own", clip(&entry.key));
-        report.error(at_to, message, "`from` and `to` are two faces".to_owned());
+        report.error(Code::BadChain, at_to, message, "`from` and `to` are two faces".to_owned());
         return None;
     }
     Some(Dimension { entry, ends: [from, to], spans: [at_from, at_to], role: role? })
@@ -134,7 +135,12 @@ fn role(report: &mut Report, fields: &Fields) -> Option<Role> {
     match (fields.get("formula"), valued) {
         (Some(_), Some(key)) => {
             let message = format!("a dimension with a `formula` has no `{key}`");
-            report.error(fields.key_span(key), message, "the formula says how it varies; leave one out".to_owned());
+            report.error(
+                Code::BadChain,
+                fields.key_span(key),
+                message,
+                "the formula says how it varies; leave one out".to_owned(),
+            );
             None
         }
         (Some(_), None) => Some(Role::Measured),
@@ -198,7 +204,7 @@ impl<'f, 'n> Forest<'f, 'n> {
                     clip(&faces.names[to]),
                 );
                 let help = "one dimension of a loop follows from the others: leave out its value".to_owned();
-                report.error(dimension.entry.key_span.clone(), message, help);
+                report.error(Code::BadChain, dimension.entry.key_span.clone(), message, help);
                 continue;
             }
             forest.edges[from].push((number, to));
@@ -266,7 +272,12 @@ impl<'f, 'n> Forest<'f, 'n> {
                 let known = (0..self.edges.len()).filter(|&face| !self.edges[face].is_empty());
                 let known = known.map(|face| self.faces.names[face].as_str());
                 let help = suggest::help(&self.faces.names[face], "faces with dimensions", known);
-                report.error(at.clone(), format!("no dimension with a value leads to `{}`", name(face)), help);
+                report.error(
+                    Code::BadChain,
+                    at.clone(),
+                    format!("no dimension with a value leads to `{}`", name(face)),
+                    help,
+                );
                 return;
             }
         }
@@ -283,6 +294,6 @@ impl<'f, 'n> Forest<'f, 'n> {
             name(to)
         );
         let help = format!("give a dimension between one of {} and one of {}", reached(from), reached(to));
-        report.error(closing.entry.key_span.clone(), message, help);
+        report.error(Code::BadChain, closing.entry.key_span.clone(), message, help);
     }
 }

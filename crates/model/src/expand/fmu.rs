@@ -10,6 +10,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Report;
 use crate::grammar::tolerance::{Deviation, Toleranced, is_toleranced, read};
 use crate::grammar::unit;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
@@ -19,7 +20,7 @@ pub fn unit_of(report: &mut Report, node: &Node) -> Option<(PathBuf, Unit)> {
     let path = match report.files.find(Path::new(""), &name) {
         Ok(path) => report.files.full(&path),
         Err(error) => {
-            report.error(node.span.clone(), error.message, error.help);
+            report.error(error.code, node.span.clone(), error.message, error.help);
             return None;
         }
     };
@@ -27,7 +28,7 @@ pub fn unit_of(report: &mut Report, node: &Node) -> Option<(PathBuf, Unit)> {
         Ok(unit) => Some((path, unit)),
         Err(error) => {
             let what = if matches!(error, NotRead::File(_)) { "cannot be read" } else { "is no FMU" };
-            report.error(node.span.clone(), format!("`{}` {what}: {error}", clip(&name)), None);
+            report.error(Code::BadFmu, node.span.clone(), format!("`{}` {what}: {error}", clip(&name)), None);
             None
         }
     }
@@ -110,7 +111,7 @@ pub fn write_out(report: &mut Report, root: &Node) -> Option<Node> {
                     Some(_) => format!("`{}` has no start value in the unit, from which this deviates", clip(&name)),
                     None => format!("the unit has no variable `{}`, from whose start value this deviates", clip(&name)),
                 };
-                report.error(entry.key_span.clone(), message, help);
+                report.error(Code::BadFmu, entry.key_span.clone(), message, help);
             }
         }
     }

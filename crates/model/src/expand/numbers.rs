@@ -8,6 +8,7 @@ use crate::expand::overrides::Override;
 use crate::grammar::report::Report;
 use crate::grammar::unit::{Unit, number_and_unit};
 use crate::robots::number::Number;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -72,7 +73,7 @@ pub fn entries<'n>(
             let message = format!("the {} has no number `{}`", format.name, clip(&entry.key));
             let help = suggest::nearest(&entry.key, known.iter().copied());
             let help = help.map_or_else(|| format.forms.to_owned(), |near| format!("did you mean `{near}`?"));
-            report.error(entry.key_span.clone(), message, help);
+            report.error(Code::UnknownName, entry.key_span.clone(), message, help);
         }
     }
     entries
@@ -85,7 +86,12 @@ fn parameter(report: &mut Report, number: &Number, written: Option<&Entry>) -> E
             let fields = notation::fields(&scalar(text.clone(), span.clone(), Some(span.start)));
             if fields.iter().any(|field| field.key == "value") {
                 let message = format!("`{}` says no deviation", clip(text));
-                report.error(span.clone(), message, "write `5%`, `± 0.1` or `[lower, upper]`".to_owned());
+                report.error(
+                    Code::BadTolerance,
+                    span.clone(),
+                    message,
+                    "write `5%`, `± 0.1` or `[lower, upper]`".to_owned(),
+                );
             }
             fields
         }

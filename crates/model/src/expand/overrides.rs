@@ -1,6 +1,7 @@
 //! `--set l1=0.16±2%`: parameters from the command line.
 
 use crate::grammar::tolerance;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Scalar, Value};
@@ -33,7 +34,7 @@ impl Override {
     /// Reads the text as one that begins at an offset of the sources.
     pub(crate) fn at(text: &str, offset: usize) -> Result<Self, Box<Diagnostic>> {
         let error = |span: Span, message: &str| {
-            let diagnostic = Diagnostic::error(offset + span.start..offset + span.end, message);
+            let diagnostic = Diagnostic::error(Code::BadOverride, offset + span.start..offset + span.end, message);
             let help = "write `name=value`, `name=value ± tolerance`, or `name=[lower, upper]`";
             Err(Box::new(diagnostic.help(help.to_owned())))
         };

@@ -7,6 +7,7 @@
 use super::sections::entries_of;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -94,7 +95,7 @@ pub fn write_out(report: &mut Report, root: Node) -> (Node, Vec<Zone>) {
         for entry in written.parameters {
             if entries.iter().any(|known| known.key == entry.key) {
                 let message = format!("`{}` is a parameter, and a deviation of a zone as well", clip(&entry.key));
-                report.error(entry.key_span, message, "give the zone another name".to_owned());
+                report.error(Code::NameTaken, entry.key_span, message, "give the zone another name".to_owned());
             } else {
                 entries.push(entry);
             }
@@ -121,7 +122,7 @@ fn points_of_bodies(report: &mut Report, bodies: &mut Node, written: &mut Writte
             let at = own.key_span.clone();
             if body.key.contains('.') {
                 let help = "give it in `zones`, and add its deviations to the position".to_owned();
-                report.error(at, "points of assemblies have no zones", help);
+                report.error(Code::BadZone, at, "points of assemblies have no zones", help);
                 continue;
             }
             let name = format!("{}_{}", body.key, point.key);
@@ -130,7 +131,7 @@ fn points_of_bodies(report: &mut Report, bodies: &mut Node, written: &mut Writte
                 zone.point = Some((body.key.clone(), point.key.clone()));
             }
             if axes[0] != "x" {
-                report.error(at, "the zone of a point is a `disc` or a `sphere`", None);
+                report.error(Code::BadZone, at, "the zone of a point is a `disc` or a `sphere`", None);
                 continue;
             }
             move_position(report, keys, &name, &axes, at);
@@ -149,7 +150,7 @@ fn move_position(report: &mut Report, keys: &mut Vec<Entry>, name: &str, axes: &
     };
     let Value::Sequence(components) = &mut position.value.value else {
         let help = "write `position: [x, y]`".to_owned();
-        report.error(position.value.span.clone(), "the position of a point with a zone is a list", help);
+        report.error(Code::BadZone, position.value.span.clone(), "the position of a point with a zone is a list", help);
         return;
     };
     for (component, axis) in components.iter_mut().zip(axes) {
@@ -167,7 +168,7 @@ fn zone(report: &mut Report, entry: &Entry, name: &str, written: &mut Written) -
     let [kind] = given[..] else {
         let message = format!("`{}` is not one kind of zone", clip(name));
         let help = "give one of `disc`, `sphere`, `cylinder`, `flatness`, `parallelism` and `ellipsoid`".to_owned();
-        report.error(entry.key_span.clone(), message, help);
+        report.error(Code::BadZone, entry.key_span.clone(), message, help);
         return None;
     };
     let law = match fields.get("distribution") {
@@ -176,11 +177,21 @@ fn zone(report: &mut Report, entry: &Entry, name: &str, written: &mut Written) -
     };
     if law == ZoneLaw::RadialNormal && matches!(kind, "flatness" | "parallelism") {
         let message = format!("`{kind}` has no radius to be normal along");
-        report.error(fields.key_span("distribution"), message, "leave it out: it is uniform then".to_owned());
+        report.error(
+            Code::BadZone,
+            fields.key_span("distribution"),
+            message,
+            "leave it out: it is uniform then".to_owned(),
+        );
         return None;
     }
     if let Some(node) = fields.get("correlation").filter(|_| kind != "ellipsoid") {
-        report.error(node.span.clone(), "a `correlation` inclines an ellipse", "leave it out".to_owned());
+        report.error(
+            Code::BadZone,
+            node.span.clone(),
+            "a `correlation` inclines an ellipse",
+            "leave it out".to_owned(),
+        );
         return None;
     }
     let mut writer = Writer { name, at: entry.key_span.clone(), written };
@@ -291,6 +302,7 @@ fn ellipsoid(report: &mut Report, fields: &Fields, node: &Node, writer: &mut Wri
             if value.is_none() || entries.len() != 2 {
                 let help = "a number above -1 and below 1, of two deviations".to_owned();
                 report.error(
+                    Code::BadZone,
                     own.span.clone(),
                     format!("`{}` is no correlation of an ellipse", clip(&scalar.text)),
                     help,
@@ -306,7 +318,12 @@ fn ellipsoid(report: &mut Report, fields: &Fields, node: &Node, writer: &mut Wri
         3 => (ZoneShape::Ball, ball(&hidden[0], &hidden[1], &hidden[2]).to_vec()),
         count => {
             let help = "for more, a law of distribution with correlations says how likely they are".to_owned();
-            report.error(node.span.clone(), format!("an ellipsoid has two or three semi-axes, not {count}"), help);
+            report.error(
+                Code::BadZone,
+                node.span.clone(),
+                format!("an ellipsoid has two or three semi-axes, not {count}"),
+                help,
+            );
             return None;
         }
     };

@@ -11,6 +11,7 @@ use crate::grammar::{Context, Symbol};
 use crate::keys;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -49,19 +50,34 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
     match (word, &analysis) {
         (Some(word), Analysis::Kinematics) if word.text == EQUILIBRIUM => {
             let help = "leave `initial` out: motors say where it is".to_owned();
-            reader.error(node.span.clone(), "there are no forces in kinematics, and no equilibrium of them", help);
+            reader.error(
+                Code::WrongAnalysis,
+                node.span.clone(),
+                "there are no forces in kinematics, and no equilibrium of them",
+                help,
+            );
         }
         (Some(word), _) if word.text != EQUILIBRIUM => {
             let message = format!("`initial` has values by name, or is `{EQUILIBRIUM}`, but is `{}`", clip(&word.text));
-            reader.error(node.span.clone(), message, format!("write `initial: {EQUILIBRIUM}`"));
+            reader.error(Code::WrongAnalysis, node.span.clone(), message, format!("write `initial: {EQUILIBRIUM}`"));
         }
         (None, _) if at_equilibrium => {
             let help = "`guess` says near where to look for the equilibrium".to_owned();
-            reader.error(fields.key_span("initial"), "at an equilibrium no position is given: forces decide it", help);
+            reader.error(
+                Code::WrongAnalysis,
+                fields.key_span("initial"),
+                "at an equilibrium no position is given: forces decide it",
+                help,
+            );
         }
         (None, Analysis::Kinematics) => {
             let help = "`guess` says which of several positions is meant".to_owned();
-            reader.error(fields.key_span("initial"), "in kinematics no position is given: motors decide it", help);
+            reader.error(
+                Code::WrongAnalysis,
+                fields.key_span("initial"),
+                "in kinematics no position is given: motors decide it",
+                help,
+            );
         }
         _ => {}
     }
@@ -72,7 +88,7 @@ fn section_of_modes<'n>(reader: &mut Reader, fields: &Fields<'n>) -> Option<Fiel
     let node = fields.get("modes")?;
     if !matches!(reader.model.analysis, Analysis::Modes(_)) {
         let help = "write `analysis: modes`, or leave it out".to_owned();
-        reader.error(fields.key_span("modes"), "`modes` belongs to `analysis: modes`", help);
+        reader.error(Code::WrongAnalysis, fields.key_span("modes"), "`modes` belongs to `analysis: modes`", help);
         return None;
     }
     reader.fields::<keys::Modes>(node, fields.key_span("modes"))
@@ -109,7 +125,12 @@ fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
         let (name, dimension) = known_output(reader, node)?;
         if !matches!(dimension, Some(Dimension::LENGTH | Dimension::ANGLE)) {
             let message = format!("a load acts along a length or an angle, and `{}` is neither", clip(&name));
-            reader.error(node.span.clone(), message, "name an output such as `tip: rod.B.y`".to_owned());
+            reader.error(
+                Code::WrongAnalysis,
+                node.span.clone(),
+                message,
+                "name an output such as `tip: rod.B.y`".to_owned(),
+            );
             return None;
         }
         Some(name)
@@ -119,7 +140,12 @@ fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
         let node = node?;
         let value = reader.number(node, Dimension::FREQUENCY)?;
         if value <= 0.0 {
-            reader.error(node.span.clone(), format!("a frequency is positive, but this is {value} Hz"), None);
+            reader.error(
+                Code::OutOfRange,
+                node.span.clone(),
+                format!("a frequency is positive, but this is {value} Hz"),
+                None,
+            );
         }
         Some(value).filter(|value| *value > 0.0)
     });
@@ -130,7 +156,7 @@ fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
     let (from, to) = (from?, to?);
     if from >= to {
         let message = format!("frequencies from {from} Hz to {to} Hz are none");
-        reader.error(fields.key_span("to"), message, "`to` is larger than `from`".to_owned());
+        reader.error(Code::ReversedRange, fields.key_span("to"), message, "`to` is larger than `from`".to_owned());
         return None;
     }
     let factor = symdiff::math::exp(std::f64::consts::LN_2 * symdiff::math::log2(to / from) / (points - 1) as f64);
@@ -151,7 +177,7 @@ fn known_output(reader: &mut Reader, node: &Node) -> Option<(String, Option<Dime
         return None;
     }
     let help = suggest::help(&name, "outputs", reader.model.outputs.iter().map(|output| output.name.as_str()));
-    reader.error(node.span.clone(), format!("unknown output `{}`", clip(&name)), help);
+    reader.error(Code::UnknownName, node.span.clone(), format!("unknown output `{}`", clip(&name)), help);
     None
 }
 
@@ -198,7 +224,7 @@ pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
     if let Some(entry) = entries.iter().find(|entry| is_nonholonomic(&entry.key)) {
         let message = format!("`{}` constrains velocities, which say nothing of where it is at rest", clip(&entry.key));
         let help = "ask for `analysis: motion`, from a start that `initial` gives, or leave it out here, e.g. in a scene with `without`";
-        reader.error(entry.key_span.clone(), message, help.to_owned());
+        reader.error(Code::WrongAnalysis, entry.key_span.clone(), message, help.to_owned());
     }
 }
 
@@ -223,7 +249,7 @@ pub fn check_speeds(reader: &mut Reader, entries: &[Entry]) {
     for (at, name) in found {
         let message = format!("`{}` jumps at instants, and no speed can", clip(&name));
         let help = "let a `filter` or a `rate_limit` follow it, and the motor that".to_owned();
-        reader.error(at, message, help);
+        reader.error(Code::WrongAnalysis, at, message, help);
     }
 }
 
@@ -243,7 +269,7 @@ pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 
     };
     if !over_time && !reader.model.reduced.is_empty() {
         let message = format!("a reduced output is one number a motion, and `analysis: {}` has none", analysis.name());
-        reader.error(fields.key_span("outputs"), message, help.to_owned());
+        reader.error(Code::WrongAnalysis, fields.key_span("outputs"), message, help.to_owned());
     }
     if analysis == Analysis::Kinematics {
         check_reduced_without_forces(reader, entries);
@@ -255,7 +281,7 @@ pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 
     };
     if let (Some(message), Some(_)) = (no_taylor, &reader.model.bounds.taylor) {
         let help = "ask for `chebyshev` or `scan`".to_owned();
-        reader.error(fields.key_span("bounds"), message, help);
+        reader.error(Code::WrongAnalysis, fields.key_span("bounds"), message, help);
     }
 }
 
@@ -300,5 +326,10 @@ fn report_force(reader: &mut Reader, name: &str, at: Span) {
         _ => return,
     };
     let message = format!("`{}` is {what}, and kinematics knows no forces", clip(name));
-    reader.error(at, message, "with `analysis: motion`, and masses, it can be asked for".to_owned());
+    reader.error(
+        Code::WrongAnalysis,
+        at,
+        message,
+        "with `analysis: motion`, and masses, it can be asked for".to_owned(),
+    );
 }

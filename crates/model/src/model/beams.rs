@@ -13,6 +13,7 @@ use crate::grammar::quantity::Dimension;
 use crate::keys;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Value};
 
 /// Keys of rigid bodies that mean nothing here.
@@ -56,7 +57,7 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
     for key in RIGID.into_iter().filter(|key| body.get(key).is_some()) {
         let help = "its mass is along it (`mass_per_length`), and its nodes are its points; what is rigid is a body of its own, \
                     joined to a node by `fixed`";
-        reader.error(body.key_span(key), format!("a beam has no `{key}`"), help.to_owned());
+        reader.error(Code::MisplacedKey, body.key_span(key), format!("a beam has no `{key}`"), help.to_owned());
     }
     let (Some(node), at) = (body.get("beam"), body.key_span("beam")) else { return };
     let Some(fields) = reader.fields::<keys::FlexibleBeam>(node, at) else { return };
@@ -65,7 +66,7 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
     }
     for key in OF_SPACE.into_iter().filter(|key| !spatial && fields.get(key).is_some()) {
         let help = "in a model with `space: spatial` it bends about y and twists, too".to_owned();
-        reader.error(fields.key_span(key), format!("a beam of the plane has no `{key}`"), help);
+        reader.error(Code::MisplacedKey, fields.key_span(key), format!("a beam of the plane has no `{key}`"), help);
     }
     let positive = |value: f64| value > 0.0;
     let mut needed = |key: &str, dimension: Dimension| {

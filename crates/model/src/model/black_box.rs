@@ -13,6 +13,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::read_text;
 use crate::syntax::tuning::TUNING;
@@ -58,7 +59,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, entries: &[Entry], model: &Pat
     reader.model.simulation.formulation = Formulation::Absolute;
     for key in OF_MECHANISMS.into_iter().filter(|key| fields.get(key).is_some()) {
         let message = format!("a program answers instead of a mechanism, so `{key}` has no meaning");
-        reader.error(fields.key_span(key), message, "leave out `black_box`, or this".to_owned());
+        reader.error(Code::MisplacedKey, fields.key_span(key), message, "leave out `black_box`, or this".to_owned());
     }
     refuse_steps(reader, fields);
     if fields.get("simulation").is_none() {
@@ -85,7 +86,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, entries: &[Entry], model: &Pat
         None => is_json,
         Some((node, Some(true))) if !is_json => {
             let message = "with `csv` a process ends with its call: the end of the points is the end of its input";
-            reader.error(node.span.clone(), message, "`protocol: json` keeps processes".to_owned());
+            reader.error(Code::BadProgram, node.span.clone(), message, "`protocol: json` keeps processes".to_owned());
             false
         }
         Some((_, asked)) => asked.unwrap_or(is_json),
@@ -96,7 +97,12 @@ pub fn read(reader: &mut Reader, fields: &Fields, entries: &[Entry], model: &Pat
     let time_limit = fields.get("time_limit").and_then(|node| {
         let value = reader.number(node, Dimension::TIME)?;
         if value <= 0.0 {
-            reader.error(node.span.clone(), format!("`time_limit` must be positive, but is {value}"), None);
+            reader.error(
+                Code::OutOfRange,
+                node.span.clone(),
+                format!("`time_limit` must be positive, but is {value}"),
+                None,
+            );
         }
         Some(value)
     });
@@ -162,7 +168,7 @@ fn refuse_steps(reader: &mut Reader, fields: &Fields) {
     for entry in entries.iter().filter(|entry| OF_STEPS.contains(&entry.key.as_str())) {
         let message = format!("the program takes steps of its own, so `{}` has no meaning", clip(&entry.key));
         let help = "`output_step` says where its rows are; a parameter can tell it its steps".to_owned();
-        reader.error(entry.key_span.clone(), message, help);
+        reader.error(Code::BadProgram, entry.key_span.clone(), message, help);
     }
 }
 
@@ -172,14 +178,19 @@ fn command(reader: &mut Reader, node: &Node) -> Option<Vec<String>> {
         Value::Sequence(items) if !items.is_empty() => items,
         _ => {
             let message = format!("a program with its arguments is a list, but here is {}", node.kind());
-            reader.error(node.span.clone(), message, "e.g. `[python3, run.py]`: no shell reads it".to_owned());
+            reader.error(
+                Code::BadProgram,
+                node.span.clone(),
+                message,
+                "e.g. `[python3, run.py]`: no shell reads it".to_owned(),
+            );
             return None;
         }
     };
     let words = items.iter().map(|item| Some(reader.scalar(item, "a program or an argument")?.text.clone()));
     let words = words.collect::<Vec<Option<String>>>().into_iter().collect::<Option<Vec<String>>>()?;
     if words[0].trim().is_empty() {
-        reader.error(items[0].span.clone(), "the program has no name", None);
+        reader.error(Code::BadProgram, items[0].span.clone(), "the program has no name", None);
         return None;
     }
     Some(words)
@@ -200,7 +211,12 @@ fn note_files(reader: &mut Reader, command: &[String], directory: Option<&Path>)
 fn outputs(reader: &mut Reader, node: &Node) -> Option<Vec<BoxOutput>> {
     let entries = reader.named_entries(node, "outputs of the program");
     if entries.is_empty() {
-        reader.error(node.span.clone(), "the program has no outputs", "e.g. `{ x: m, turns: 1 }`".to_owned());
+        reader.error(
+            Code::BadProgram,
+            node.span.clone(),
+            "the program has no outputs",
+            "e.g. `{ x: m, turns: 1 }`".to_owned(),
+        );
         return None;
     }
     let read: Vec<Option<BoxOutput>> = entries.iter().map(|entry| output(reader, entry)).collect();
@@ -211,7 +227,7 @@ fn output(reader: &mut Reader, entry: &Entry) -> Option<BoxOutput> {
     let is_name = reader.name(entry, "an output");
     if reader.model.parameters.iter().any(|parameter| parameter.name == entry.key) {
         let message = format!("`{}` is a parameter: an output of the program needs another name", clip(&entry.key));
-        reader.error(entry.key_span.clone(), message, None);
+        reader.error(Code::NameTaken, entry.key_span.clone(), message, None);
         return None;
     }
     let found = unit(reader, &entry.value)?;
@@ -228,7 +244,7 @@ fn refine(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<Refine> {
         let is_factor = by > 0.0 && by != 1.0;
         if !is_factor {
             let help = "0.5 halves a step's length, 2 doubles a number of steps".to_owned();
-            reader.error(node.span.clone(), format!("a factor of {by} refines nothing"), help);
+            reader.error(Code::OutOfRange, node.span.clone(), format!("a factor of {by} refines nothing"), help);
         }
         is_factor.then_some(by)
     });
@@ -237,12 +253,12 @@ fn refine(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<Refine> {
     let Some(parameter) = reader.model.parameters.iter().position(|own| own.name == name) else {
         let names: Vec<&str> = reader.model.parameters.iter().map(|own| own.name.as_str()).collect();
         let help = suggest::help(&name, "parameters", names);
-        reader.error(node.span.clone(), format!("unknown parameter `{}`", clip(&name)), help);
+        reader.error(Code::UnknownName, node.span.clone(), format!("unknown parameter `{}`", clip(&name)), help);
         return None;
     };
     if reader.is_uncertain(&Formula::name(&name)) {
         let message = format!("`{}` is uncertain, and cannot decide the steps", clip(&name));
-        reader.error(node.span.clone(), message, "name a parameter without a tolerance".to_owned());
+        reader.error(Code::BadProgram, node.span.clone(), message, "name a parameter without a tolerance".to_owned());
         return None;
     }
     Some(Refine { parameter, by: factor? })
@@ -255,7 +271,12 @@ fn directory(reader: &mut Reader, node: &Node, model: &Path) -> Option<PathBuf> 
     let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
     if !folder.is_dir() {
         let message = format!("there is no folder `{}`", clip(name));
-        reader.error(node.span.clone(), message, "it is looked for from the model's folder".to_owned());
+        reader.error(
+            Code::BadProgram,
+            node.span.clone(),
+            message,
+            "it is looked for from the model's folder".to_owned(),
+        );
         return None;
     }
     Some(folder)

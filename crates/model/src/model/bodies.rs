@@ -13,6 +13,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -89,7 +90,7 @@ fn ground(reader: &mut Reader, entry: &Entry) {
     for key in ["mass", "inertia", "center_of_mass", "coordinates", "held", "beam"] {
         if fields.get(key).is_some() {
             let help = "the ground does not move; it can be given `points` and a `shape` only".to_owned();
-            reader.error(fields.key_span(key), format!("the ground has no `{key}`"), help);
+            reader.error(Code::MisplacedKey, fields.key_span(key), format!("the ground has no `{key}`"), help);
         }
     }
     points(reader, &fields, 0);
@@ -159,7 +160,7 @@ fn needs_motion(reader: &mut Reader, node: &Node, prescribed: &[(Coordinate, For
         let help = format!(
             "what does not move is part of the ground: give `{GROUND}` the points; what is driven has a formula of t in `held`"
         );
-        reader.error(node.span.clone(), "a body has at least one coordinate", help);
+        reader.error(Code::BadCoordinates, node.span.clone(), "a body has at least one coordinate", help);
     }
 }
 
@@ -202,7 +203,7 @@ fn tensor(reader: &mut Reader, node: &Node, at: crate::syntax::source::Span) -> 
             let label = &reader.corners[corner].label;
             let message = format!("the inertia tensor is not positive definite{label}");
             let help = "no body turns without inertia; a thin rod has a little about its axis too".to_owned();
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::BadInertia, node.span.clone(), message, help);
             break;
         }
     }
@@ -214,7 +215,7 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
     let Value::Sequence(items) = &node.value else {
         let message = format!("coordinates are a list, but here is {}", node.kind());
         let all = if reader.model.space.spatial { "[x, y, z, orientation]" } else { "[x, y, angle]" };
-        reader.error(node.span.clone(), message, format!("write `{all}`, or fewer of them"));
+        reader.error(Code::BadCoordinates, node.span.clone(), message, format!("write `{all}`, or fewer of them"));
         return usual(reader);
     };
     let mut found: Vec<(&[Coordinate], &Node)> = Vec::new();
@@ -223,7 +224,11 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
         match found.iter().find(|(known, _)| *known == named) {
             Some((_, first)) => {
                 let name = item.scalar().map_or("", |scalar| scalar.text.as_str());
-                let diagnostic = Diagnostic::error(item.span.clone(), format!("coordinate `{name}` is listed twice"));
+                let diagnostic = Diagnostic::error(
+                    Code::BadCoordinates,
+                    item.span.clone(),
+                    format!("coordinate `{name}` is listed twice"),
+                );
                 reader.diagnostics.push(diagnostic.label("again here").also(first.span.clone(), "first here"));
             }
             None => found.push((named, item)),
@@ -233,6 +238,7 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
         found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
     if let [_, second] = rotations.as_slice() {
         reader.error(
+            Code::BadCoordinates,
             second.span.clone(),
             "a body turns by an `angle` about z or by an `orientation`, not by both",
             None,
@@ -252,7 +258,7 @@ fn prescribed(
     let refuse = |reader: &mut Reader, name: &str| {
         let message = format!("`{name}` is a coordinate of the body, so it is not held");
         let help = format!("leave `{name}` out of `coordinates`, or give its start in `initial`");
-        reader.error(held.key_span(name), message, help);
+        reader.error(Code::BadCoordinates, held.key_span(name), message, help);
     };
     let mut values = Vec::new();
     for (name, coordinate) in HELD {
@@ -278,7 +284,12 @@ fn prescribed(
             refuse(reader, if *name == "angle" { "orientation" } else { name });
         }
         if held.get("angle").is_some() {
-            reader.error(held.key_span("angle"), "`angle` and `orientation` exclude each other", None);
+            reader.error(
+                Code::ExclusiveKeys,
+                held.key_span("angle"),
+                "`angle` and `orientation` exclude each other",
+                None,
+            );
         }
         reader.rotation(node, held.key_span("orientation"))
     });
@@ -302,7 +313,7 @@ pub(super) fn is_name_of_point(reader: &mut Reader, entry: &Entry) -> bool {
     let named = reader.name(entry, "a point");
     if named && is_motion(&entry.key) {
         let message = format!("`{}` cannot be the name of a point: it is a part of the body's motion", entry.key);
-        reader.error(entry.key_span.clone(), message, None);
+        reader.error(Code::BadName, entry.key_span.clone(), message, None);
         return false;
     }
     named

@@ -2,6 +2,7 @@
 
 use crate::methods::{BoundsRequest, keys};
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
@@ -19,7 +20,7 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
     if uncertain.is_empty() && !reader.diagnostics.has_errors() {
         let message = "no parameter is uncertain: the bounds will all be the nominal motion";
         let help = "give a parameter a `tolerance` or an `interval`".to_owned();
-        reader.diagnostics.push(Diagnostic::warning(at, message).help(help));
+        reader.diagnostics.push(Diagnostic::warning(Code::NothingUncertain, at, message).help(help));
     }
     Some(BoundsRequest::read(reader, &fields, &uncertain))
 }

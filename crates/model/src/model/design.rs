@@ -10,6 +10,7 @@ use crate::grammar::report::Fields;
 use crate::grammar::tolerance;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -37,19 +38,24 @@ pub fn read(reader: &mut Reader, fields: &Fields, riding: &[Riding]) {
         (Some(_), None) => {
             let help = "e.g. `objective: { least: error }`, or `objective: margin`";
             let message = "`design` needs an `objective`: what the free values are to achieve";
-            reader.error(fields.key_span("design"), message, help.to_owned());
+            reader.error(Code::BadDesign, fields.key_span("design"), message, help.to_owned());
             return;
         }
         (None, Some(_)) => {
             let message = "an `objective` needs a `design`: which nominal values are free";
-            reader.error(fields.key_span("objective"), message, "e.g. `design: { rod: 0.2 to 0.3 m }`".to_owned());
+            reader.error(
+                Code::BadDesign,
+                fields.key_span("objective"),
+                message,
+                "e.g. `design: { rod: 0.2 to 0.3 m }`".to_owned(),
+            );
             return;
         }
         (Some(design), Some(objective)) => (design, objective),
     };
     if !matches!(&design.value, Value::Mapping(entries) if !entries.is_empty()) {
         let help = "e.g. `design: { rod: 0.2 to 0.3 m }`".to_owned();
-        reader.error(design.span.clone(), "free parameters with their ranges belong here", help);
+        reader.error(Code::BadDesign, design.span.clone(), "free parameters with their ranges belong here", help);
         return;
     }
     let free: Vec<Free> = entries(fields).iter().filter_map(|entry| read_free(reader, entry, riding)).collect();
@@ -66,18 +72,23 @@ fn read_free(reader: &mut Reader, entry: &Entry, riding: &[Riding]) -> Option<Fr
     let Some(own) = riding.iter().find(|own| own.name == *name) else {
         let known: Vec<String> = reader.model.parameters.iter().map(|own| own.name.clone()).collect();
         let help = suggest::help(name, "parameters", known.iter().map(String::as_str));
-        reader.error(at, format!("unknown parameter `{}`", clip(name)), help);
+        reader.error(Code::UnknownName, at, format!("unknown parameter `{}`", clip(name)), help);
         return None;
     };
     if !own.is_number {
         let help = "free the parameters that its formula names".to_owned();
-        reader.error(at, format!("`{}` follows from other parameters: its value is not free", clip(name)), help);
+        reader.error(
+            Code::BadDesign,
+            at,
+            format!("`{}` follows from other parameters: its value is not free", clip(name)),
+            help,
+        );
         return None;
     }
     if own.has_class {
         let help = "give the deviations themselves, e.g. `+0.018 mm -0`".to_owned();
         let message = format!("the tolerance class of `{}` depends on the size, which is free", clip(name));
-        reader.error(at, message, help);
+        reader.error(Code::BadDesign, at, message, help);
         return None;
     }
     let [lower, upper] = range(reader, name, &entry.value)?;
@@ -89,7 +100,12 @@ fn range(reader: &mut Reader, name: &str, node: &Node) -> Option<[f64; 2]> {
     let ends = match tolerance::range(node) {
         Ok(Some(ends)) => ends,
         Ok(None) => {
-            reader.error(node.span.clone(), "a range of nominal values belongs here", RANGE.to_owned());
+            reader.error(
+                Code::BadDesign,
+                node.span.clone(),
+                "a range of nominal values belongs here",
+                RANGE.to_owned(),
+            );
             return None;
         }
         Err(error) => {
@@ -103,7 +119,7 @@ fn range(reader: &mut Reader, name: &str, node: &Node) -> Option<[f64; 2]> {
     let (lower, upper) = (lower?, upper?);
     if lower >= upper {
         let message = format!("the range is empty: {lower} is not below {upper}");
-        reader.error(node.span.clone(), message, "the smaller end stands first".to_owned());
+        reader.error(Code::ReversedRange, node.span.clone(), message, "the smaller end stands first".to_owned());
         return None;
     }
     Some([lower, upper])
@@ -119,9 +135,14 @@ fn limit(reader: &mut Reader, node: &Node, dimension: Option<Dimension>) -> Opti
         Written::Formula(formula) => {
             let number = evaluate(&formula, |_| None).filter(|number| number.is_finite());
             if number.is_none() {
-                reader.error(node.span.clone(), "the ends of a range are numbers", RANGE.to_owned());
+                reader.error(Code::BadDesign, node.span.clone(), "the ends of a range are numbers", RANGE.to_owned());
             } else if dimension.is_some_and(|dimension| !dimension.fits(Dimension::NUMBER)) {
-                reader.error(node.span.clone(), "this number has no unit, but the parameter has", RANGE.to_owned());
+                reader.error(
+                    Code::MissingUnit,
+                    node.span.clone(),
+                    "this number has no unit, but the parameter has",
+                    RANGE.to_owned(),
+                );
                 return None;
             }
             number
@@ -138,6 +159,7 @@ fn read_objective(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<O
         let [entry] = given.as_slice() else {
             if !given.is_empty() || own.lacks_all(&["least", "most"]) {
                 reader.error(
+                    Code::BadDesign,
                     node.span.clone(),
                     "an objective is one output",
                     "`{ least: OUTPUT }` or `{ most: OUTPUT }`".to_owned(),
@@ -155,18 +177,23 @@ fn read_objective(reader: &mut Reader, node: &Node, fields: &Fields) -> Option<O
         "cost" => (Objective::Cost, "tolerances are as cheap as requirements allow, and the model has none"),
         other => {
             let message = format!("`{}` is no objective", clip(other));
-            reader.error(node.span.clone(), message, format!("objectives are {help}"));
+            reader.error(Code::BadDesign, node.span.clone(), message, format!("objectives are {help}"));
             return None;
         }
     };
     if reader.model.requirements.is_empty() {
         let help = "e.g. `requirements: { clears: x >= 0.4 m }`".to_owned();
-        reader.error(node.span.clone(), lacking, help);
+        reader.error(Code::BadDesign, node.span.clone(), lacking, help);
         return None;
     }
     if matches!(objective, Objective::Cost) && !reader.model.statistics.is_priced() {
         let help = "e.g. `rod: { value: 0.2 m, tolerance: 0.1 mm, cost: { reciprocal: 2 } }`".to_owned();
-        reader.error(node.span.clone(), "the cost is that of tolerances, and no parameter has a `cost`", help);
+        reader.error(
+            Code::BadDesign,
+            node.span.clone(),
+            "the cost is that of tolerances, and no parameter has a `cost`",
+            help,
+        );
         return None;
     }
     Some(objective)
@@ -187,7 +214,12 @@ pub fn check_used(reader: &mut Reader, fields: &Fields, unused: &[Diagnostic], i
         let message = format!("parameter `{}` is used nowhere", clip(&entry.key));
         if unused.iter().any(|warning| warning.message == message) {
             let message = format!("`{}` is free, but nothing depends on it", clip(&entry.key));
-            reader.error(entry.key_span.clone(), message, "leave it out of `design`, or use it".to_owned());
+            reader.error(
+                Code::BadDesign,
+                entry.key_span.clone(),
+                message,
+                "leave it out of `design`, or use it".to_owned(),
+            );
         }
     }
 }

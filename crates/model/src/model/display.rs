@@ -5,6 +5,7 @@ use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// The key of the formula, where an output is a mapping.
@@ -36,7 +37,7 @@ pub fn read(reader: &mut Reader, node: &Node, output: &str, dimension: Option<Di
         Some(dimension) if !unit.dimension().fits(dimension) => {
             let message = format!("`{output}` is {dimension}, and cannot be shown in `{}`", unit.text);
             let help = format!("a unit of {dimension}, or none: then it is shown in SI");
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::WrongDimension, node.span.clone(), message, help);
         }
         _ => {
             reader.model.display.insert(output.to_owned(), unit);

@@ -9,6 +9,7 @@ use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -31,7 +32,7 @@ pub fn refuse_others(reader: &mut Reader, fields: &Fields) {
             "command" => "`command` and `fmu` exclude each other".to_owned(),
             key => format!("`{key}` belongs to {why}"),
         };
-        reader.error(fields.key_span(key), message, None);
+        reader.error(Code::MisplacedKey, fields.key_span(key), message, None);
     }
 }
 
@@ -51,7 +52,7 @@ pub fn read(
     };
     if wanted.is_empty() {
         let message = "the unit has no outputs that are numbers: name variables under `outputs`";
-        reader.error(file.span.clone(), message, "e.g. `{ x: m, turns: 1 }`".to_owned());
+        reader.error(Code::BadFmu, file.span.clone(), message, "e.g. `{ x: m, turns: 1 }`".to_owned());
         return None;
     }
     check_variables(reader, variables, &wanted);
@@ -59,7 +60,7 @@ pub fn read(
     let step = fields.get("step").and_then(|node| {
         let step = reader.number(node, Dimension::TIME)?;
         if step <= 0.0 {
-            reader.error(node.span.clone(), format!("`step` must be positive, but is {step}"), None);
+            reader.error(Code::OutOfRange, node.span.clone(), format!("`step` must be positive, but is {step}"), None);
         }
         (step > 0.0).then_some(step)
     });
@@ -92,7 +93,7 @@ pub fn check_parameters(reader: &mut Reader, fields: &Fields, entries: &[Entry])
     for (name, span) in unknown {
         let name_in_unit = named(section.get("variables"), &name).to_owned();
         let message = format!("the unit has no variable `{}`, and no formula uses it", clip(&name_in_unit));
-        reader.error(span, message, help(&unit, &name_in_unit, |variable| variable.is_settable));
+        reader.error(Code::BadFmu, span, message, help(&unit, &name_in_unit, |variable| variable.is_settable));
         if let Some(index) = reader.model.parameters.iter().position(|own| own.name == name) {
             reader.used[index] = true;
         }
@@ -106,14 +107,14 @@ fn interface(reader: &mut Reader, fields: &Fields, unit: &Unit, file: &Node) -> 
     let Some(node) = fields.get("interface") else {
         if there.is_empty() {
             let message = "the unit has neither co-simulation nor model exchange";
-            reader.error(file.span.clone(), message, None);
+            reader.error(Code::BadFmu, file.span.clone(), message, None);
         }
         return there.first().copied();
     };
     let asked = reader.choice(node, &INTERFACES)?;
     if !has(asked) {
         let help = INTERFACES.iter().find(|(_, own)| has(*own)).map(|(word, _)| format!("it has `{word}`"));
-        reader.error(node.span.clone(), "the unit does not have this interface", help);
+        reader.error(Code::BadFmu, node.span.clone(), "the unit does not have this interface", help);
         return None;
     }
     Some(asked)
@@ -154,7 +155,7 @@ fn check_variables(reader: &mut Reader, variables: Option<&Node>, wanted: &[Want
         if !known.contains(&entry.key.as_str()) {
             let message = format!("`{}` is neither a parameter nor an output of the unit", clip(&entry.key));
             let help = suggest::help(&entry.key, "parameters and outputs", known);
-            reader.error(entry.key_span.clone(), message, help);
+            reader.error(Code::BadFmu, entry.key_span.clone(), message, help);
         }
     }
 }
@@ -177,7 +178,7 @@ fn parameters(reader: &mut Reader, unit: &Unit, variables: Option<&Node>, entrie
         if !variable.is_settable {
             let message =
                 format!("`{}` cannot be set: it is calculated ({})", clip(&variable.name), variable.causality);
-            reader.error(span, message, help(unit, &variable.name, |own| own.is_settable));
+            reader.error(Code::BadFmu, span, message, help(unit, &variable.name, |own| own.is_settable));
             continue;
         }
         if let (Some(found), Some(own)) = (reader.kinds[index].dimension(), Conversion::of(unit, variable).dimension())
@@ -195,13 +196,13 @@ fn output(reader: &mut Reader, unit_file: &Unit, variable: &str, own: &Wanted) -
     }
     if reader.model.parameters.iter().any(|parameter| parameter.name == own.name) {
         let message = format!("`{}` is a parameter: an output of the unit needs another name", clip(&own.name));
-        reader.error(own.span.clone(), message, "`variables` gives it one".to_owned());
+        reader.error(Code::BadFmu, own.span.clone(), message, "`variables` gives it one".to_owned());
         return None;
     }
     let Some(variable) = unit_file.variable(variable) else {
         let message = format!("the unit has no variable `{}`", clip(variable));
         let kind = |own: &Variable| own.kind.is_ok();
-        reader.error(own.span.clone(), message, help(unit_file, variable, kind));
+        reader.error(Code::BadFmu, own.span.clone(), message, help(unit_file, variable, kind));
         return None;
     };
     let mut access = access(reader, unit_file, variable, &own.name, &own.span)?;
@@ -219,7 +220,7 @@ fn output(reader: &mut Reader, unit_file: &Unit, variable: &str, own: &Wanted) -
                         clip(&variable.name),
                         clip(&declared.text)
                     );
-                    reader.error(node.span.clone(), message, None);
+                    reader.error(Code::WrongDimension, node.span.clone(), message, None);
                     return None;
                 }
             }
@@ -236,7 +237,7 @@ fn access(reader: &mut Reader, unit: &Unit, variable: &Variable, name: &str, spa
         Ok(kind) => *kind,
         Err(word) => {
             let message = format!("`{}` is no number: its type is `{}`", clip(&variable.name), clip(word));
-            reader.error(span.clone(), message, None);
+            reader.error(Code::BadFmu, span.clone(), message, None);
             return None;
         }
     };

@@ -6,6 +6,7 @@ use super::description::Standing;
 use super::names::Reader;
 use crate::expand::parts::{GROUND, Inclined, Parts};
 use crate::grammar::SymbolTable;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 
 /// Gives the model its ports, and reports those that are nothing; the bodies are declared.
@@ -23,7 +24,7 @@ pub fn declare_ports(reader: &mut Reader, parts: &Parts) {
             let message =
                 format!("port `{}` is no body and no point: there is no `{}`", clip(&port.name), clip(&target));
             let help = "write `body` or `body.point`, or `{ on: body, position: … }`".to_owned();
-            reader.error(port.span.clone(), message, help);
+            reader.error(Code::UnknownName, port.span.clone(), message, help);
             reader.model.ports.remove(&port.name);
         }
     }
@@ -58,5 +59,5 @@ fn check_level(reader: &mut Reader, inclined: &Inclined) {
     }
     let message = format!("{} is on level ground, but in this instance the ground is not level", inclined.name);
     let help = "turn the instance about the ground's normal alone, or write the effect in the model".to_owned();
-    reader.error(inclined.at.clone(), message, help);
+    reader.error(Code::BadPlacement, inclined.at.clone(), message, help);
 }

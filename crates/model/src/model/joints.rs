@@ -7,6 +7,7 @@ use super::names::Reader;
 use crate::elements::JointKind;
 use crate::elements::joints::Equation;
 use crate::grammar::JointCoordinate;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Value};
 
 /// Notes the names of the joints, so that outputs can refer to them.
@@ -52,6 +53,6 @@ fn check_drives(reader: &mut Reader, entries: &[Entry]) {
         };
         let message = format!("the {coordinate} of `{joint}` is prescribed by `{first}` already");
         let help = "leave one of them out, or drive another coordinate".to_owned();
-        reader.error(entries[second].key_span.clone(), message, help);
+        reader.error(Code::DrivenTwice, entries[second].key_span.clone(), message, help);
     }
 }

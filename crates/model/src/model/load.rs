@@ -22,13 +22,13 @@ use crate::model::names::Reader;
 use crate::robots::mjcf::is_mjcf;
 use crate::robots::urdf::is_urdf;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
-use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::{read_given, text_of};
 use crate::syntax::tuning::TUNING;
 use crate::syntax::within::Within;
 use crate::syntax::yaml::{self, Entry, Node};
+use crate::syntax::{Code, Coded, harmless};
 
 /// What reading a model gave: both may be there when there are only warnings.
 #[derive(Clone, Debug)]
@@ -175,7 +175,7 @@ pub(super) fn read_from(origin: Origin, text: &str, overrides: &[Override]) -> R
     }
     if let Some(zero) = text.find('\0') {
         let message = "the file is not text: it has a zero byte";
-        diagnostics.push(Diagnostic::error(zero..zero + 1, message));
+        diagnostics.push(Diagnostic::error(Code::NotText, zero..zero + 1, message));
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     }
     let Some(root) = yaml::parse(text, &mut diagnostics) else {
@@ -391,4 +391,10 @@ fn describe(
 
 fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [Entry] {
     node.map_or(&[], |node| reader.named_entries(node, what))
+}
+
+impl Coded for UnknownScene {
+    fn code(&self) -> Option<Code> {
+        Some(Code::UnknownName)
+    }
 }

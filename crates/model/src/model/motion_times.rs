@@ -3,6 +3,7 @@
 use super::description::ReducedKind;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Value};
 
@@ -35,7 +36,7 @@ pub fn check(reader: &mut Reader, outputs: &[Entry], requirements: &[Entry]) {
         };
         let keys: &[&str] = if is_at { &["at", "to"] } else { &["from"] };
         let help = "ask for an earlier time, or give `simulation` a longer `duration`".to_owned();
-        reader.error(place(entry, keys), message, help);
+        reader.error(Code::BadTimes, place(entry, keys), message, help);
     }
 }
 

@@ -5,6 +5,7 @@ use symdiff::Formula;
 use super::description::Output;
 use super::names::Reader;
 use crate::grammar::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
 
@@ -26,7 +27,7 @@ pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], fo
                 };
                 let node = &entry.value;
                 let index = node.scalar().map_or_else(|| node.span.clone(), |text| text.place(&node.span, span));
-                reader.error(index, message, "an output may name those above it".to_owned());
+                reader.error(Code::Circle, index, message, "an output may name those above it".to_owned());
             }
             return None;
         }
@@ -36,7 +37,7 @@ pub(super) fn with_outputs(reader: &mut Reader, entry: &Entry, all: &[Entry], fo
             "with the outputs that it names, the formula has more than {most} operations",
             most = TUNING.formula_terms
         );
-        reader.error(entry.value.span.clone(), message, None);
+        reader.error(Code::TooLarge, entry.value.span.clone(), message, None);
         return None;
     }
     Some(

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::expand::overrides::Override;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -47,7 +48,7 @@ pub fn read_overlay(path: &Path) -> Result<Vec<Override>, Diagnostics> {
 }
 
 fn error(diagnostics: &mut Diagnostics, span: Span, message: String, help: impl Into<Option<String>>) {
-    diagnostics.push(Diagnostic::error(span, message).help(help));
+    diagnostics.push(Diagnostic::error(Code::BadOverride, span, message).help(help));
 }
 
 fn entries<'n>(node: &'n Node, diagnostics: &mut Diagnostics) -> &'n [Entry] {

@@ -27,6 +27,7 @@ use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
 use crate::robots::{mjcf, urdf};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;
@@ -67,6 +68,7 @@ pub(super) fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Overrid
     let mut own = entries.iter().enumerate().filter(|(_, entry)| !is_of_robot(&entry.key));
     if let Some((first, entry)) = own.nth(TUNING.parameters) {
         reader.error(
+            Code::TooLarge,
             entry.key_span.clone(),
             format!("the model has more than {parameters} parameters", parameters = TUNING.parameters),
             None,
@@ -127,7 +129,7 @@ fn find_overrides<'o>(
             None => {
                 let message = format!("unknown parameter `{}`", suggest::clip(&wanted.name));
                 let help = suggest::help(&wanted.name, "parameters", entries.iter().map(|entry| entry.key.as_str()));
-                reader.error(span.clone(), message, help);
+                reader.error(Code::UnknownName, span.clone(), message, help);
             }
         }
     }
@@ -142,7 +144,7 @@ fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Dra
         spec.replace(reader, &wanted.value);
     }
     if spec.value.is_none() && spec.interval.is_none() && !spec.contradictory {
-        reader.error(name_span.clone(), "a parameter needs `value` or `interval`", None);
+        reader.error(Code::NoValue, name_span.clone(), "a parameter needs `value` or `interval`", None);
     }
     let unit = spec.unit.as_ref().and_then(|node| unit(reader, node));
     let value = spec.value.as_ref().and_then(|node| reader.written(node));
@@ -172,7 +174,7 @@ pub(super) fn unit(reader: &mut Reader, node: &Node) -> Option<Unit> {
     match Unit::parse(&scalar.text) {
         Ok(unit) => Some(unit),
         Err(error) => {
-            reader.error(scalar.place(&node.span, error.span), error.message, error.help);
+            reader.error(Code::UnknownUnit, scalar.place(&node.span, error.span), error.message, error.help);
             None
         }
     }
@@ -216,7 +218,12 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
     for (node, key) in [(&draft.spec.distribution, "distribution"), (&draft.spec.cost, "cost")] {
         if let (false, Some(node)) = (draft.spec.is_uncertain(), node) {
             let help = "give it a `tolerance` or an `interval`".to_owned();
-            reader.error(node.span.clone(), format!("the parameter is not uncertain, but has a `{key}`"), help);
+            reader.error(
+                Code::NotUncertain,
+                node.span.clone(),
+                format!("the parameter is not uncertain, but has a `{key}`"),
+                help,
+            );
         }
     }
     settle(reader, draft, index, kind);
@@ -299,7 +306,12 @@ fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -
             if !unit.is_si() {
                 let place = draft.spec.unit.as_ref().map_or_else(|| node.span.clone(), |unit| unit.span.clone());
                 let help = format!("give the unit as `{}`, or leave it out", unit.dimension.unit());
-                reader.error(place, "a formula gives its value in SI units, so its unit must be one", help);
+                reader.error(
+                    Code::MissingUnit,
+                    place,
+                    "a formula gives its value in SI units, so its unit must be one",
+                    help,
+                );
                 return None;
             }
             Some((formula.clone(), Kind::parameter(unit.dimension)))
@@ -331,7 +343,7 @@ pub fn unused(reader: &Reader, entries: &[Entry], is_count: impl Fn(&str) -> boo
     let unused = |entry: &&Entry| is_idle(&entry.key);
     let warning = |entry: &Entry| {
         let message = format!("parameter `{}` is used nowhere", suggest::clip(&entry.key));
-        Diagnostic::warning(entry.key_span.clone(), message)
+        Diagnostic::warning(Code::UnusedParameter, entry.key_span.clone(), message)
     };
     // What a robot's numbers do is in its bodies.
     entries.iter().filter(|entry| !is_of_robot(&entry.key)).filter(unused).map(warning).collect()

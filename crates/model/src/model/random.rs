@@ -14,6 +14,7 @@ use crate::model::parameters::seed_of;
 use crate::model::tuning::TUNING;
 use crate::numerics::Spectrum;
 use crate::numerics::statistics::Normals;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -46,7 +47,7 @@ const LIMITS: [&str; 6] = ["within", "rate", "held", "mean", "energy", "band"];
 pub fn read(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Trajectory> {
     if let Some(key) = LIMITS.iter().find(|key| fields.get(key).is_some()) {
         let message = "a random excitation has no limits";
-        reader.error(fields.key_span(key), message, "leave out either of them".to_owned());
+        reader.error(Code::ExclusiveKeys, fields.key_span(key), message, "leave out either of them".to_owned());
         return None;
     }
     if !matches!(reader.model.analysis, Analysis::Motion | Analysis::Modes(_)) {
@@ -54,13 +55,18 @@ pub fn read(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traje
             "`analysis: {}` does not know random excitations, which are of motions and modes",
             reader.model.analysis.name()
         );
-        reader.error(entry.key_span.clone(), message, None);
+        reader.error(Code::WrongAnalysis, entry.key_span.clone(), message, None);
         return None;
     }
     match (fields.get("random"), fields.get("follows")) {
         (Some(_), Some(_)) => {
             let message = "what follows another excitation has its spectrum";
-            reader.error(fields.key_span("random"), message, "leave out `random`, or `follows`".to_owned());
+            reader.error(
+                Code::BadExcitation,
+                fields.key_span("random"),
+                message,
+                "leave out `random`, or `follows`".to_owned(),
+            );
             None
         }
         (Some(node), None) => {
@@ -70,7 +76,7 @@ pub fn read(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traje
         (None, Some(node)) => follower(reader, entry, fields, node),
         (None, None) => {
             let help = "`after` goes with `follows: NAME`".to_owned();
-            reader.error(fields.key_span("after"), "nothing says what this comes after", help);
+            reader.error(Code::BadExcitation, fields.key_span("after"), "nothing says what this comes after", help);
             None
         }
     }
@@ -96,11 +102,21 @@ fn random(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traject
         (None, Some(node), None) => white(reader, fields, node)?,
         (None, None, Some(node)) => table(reader, fields, node)?,
         (None, None, None) => {
-            reader.error(entry.key_span.clone(), "a random excitation needs a spectrum", EXAMPLE.to_owned());
+            reader.error(
+                Code::BadExcitation,
+                entry.key_span.clone(),
+                "a random excitation needs a spectrum",
+                EXAMPLE.to_owned(),
+            );
             return None;
         }
         _ => {
-            reader.error(entry.key_span.clone(), "a random excitation has one spectrum", EXAMPLE.to_owned());
+            reader.error(
+                Code::BadExcitation,
+                entry.key_span.clone(),
+                "a random excitation has one spectrum",
+                EXAMPLE.to_owned(),
+            );
             return None;
         }
     };
@@ -112,7 +128,7 @@ fn random(reader: &mut Reader, entry: &Entry, fields: &Fields) -> Option<Traject
         Some(node) => {
             let ramp = reader.number(node, Dimension::TIME)?;
             if ramp <= 0.0 {
-                reader.error(node.span.clone(), format!("a begin of {ramp} s is none"), None);
+                reader.error(Code::OutOfRange, node.span.clone(), format!("a begin of {ramp} s is none"), None);
                 return None;
             }
             ramp
@@ -160,7 +176,7 @@ fn road(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Density> {
     let class = ROADS.iter().find(|(name, _)| *name == text);
     if class.is_none() && text.chars().all(char::is_alphabetic) && reader.symbol(&text).is_none() {
         let message = format!("`{}` is no class of a road", clip(&text));
-        reader.error(node.span.clone(), message, "those are `A` to `H`".to_owned());
+        reader.error(Code::BadExcitation, node.span.clone(), message, "those are `A` to `H`".to_owned());
         return None;
     }
     let level = match class {
@@ -216,7 +232,7 @@ fn table(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Density> {
         Value::Sequence(rows) if rows.len() >= 2 => rows,
         _ => {
             let help = "e.g. `[[0.1, 4 N^2*s], [20, 1 N^2*s]]`".to_owned();
-            reader.error(node.span.clone(), "a table of two pairs or more belongs here", help);
+            reader.error(Code::BadExcitation, node.span.clone(), "a table of two pairs or more belongs here", help);
             return None;
         }
     };
@@ -226,7 +242,7 @@ fn table(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Density> {
         let [frequency, density] = reader.two(row, "a pair of a frequency and a density")?;
         let at = positive(reader, frequency, Dimension::FREQUENCY)?;
         if points.last().is_some_and(|[before, _]| at <= *before) {
-            reader.error(frequency.span.clone(), "frequencies ascend", None);
+            reader.error(Code::BadExcitation, frequency.span.clone(), "frequencies ascend", None);
             return None;
         }
         let (formula, own) = reader.any_unit(density, Context::Constant)?;
@@ -236,7 +252,12 @@ fn table(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Density> {
         dimension = dimension.or(own);
         let size = known(reader, &formula).filter(|size| *size > 0.0);
         if size.is_none() {
-            reader.error(density.span.clone(), "a density is a positive number, the same for all samples", None);
+            reader.error(
+                Code::BadExcitation,
+                density.span.clone(),
+                "a density is a positive number, the same for all samples",
+                None,
+            );
         }
         points.push([at, size?]);
     }
@@ -259,7 +280,7 @@ fn positive(reader: &mut Reader, node: &Node, dimension: Dimension) -> Option<f6
     let value = reader.number(node, dimension)?;
     if value <= 0.0 {
         let text = node.scalar().map_or("this", |scalar| scalar.text.trim()).to_owned();
-        reader.error(node.span.clone(), format!("`{}` must be positive", clip(&text)), None);
+        reader.error(Code::OutOfRange, node.span.clone(), format!("`{}` must be positive", clip(&text)), None);
         return None;
     }
     Some(value)
@@ -277,11 +298,11 @@ fn band(reader: &mut Reader, node: &Node, dimension: Dimension, begins_above_zer
     if from < 0.0 || begins_above_zero && from == 0.0 {
         let message =
             if begins_above_zero { "a road has no finite height at 0: begin above it" } else { "must not be negative" };
-        reader.error(lower.span.clone(), message, None);
+        reader.error(Code::BadExcitation, lower.span.clone(), message, None);
         return None;
     }
     if from >= to {
-        reader.error(node.span.clone(), "this band is empty: its end lies below its begin", None);
+        reader.error(Code::BadExcitation, node.span.clone(), "this band is empty: its end lies below its begin", None);
         return None;
     }
     Some([from, to])
@@ -292,7 +313,7 @@ fn refuse(reader: &mut Reader, fields: &Fields, key: &str, message: &str) -> Opt
     if fields.get(key).is_none() {
         return Some(());
     }
-    reader.error(fields.key_span(key), message.to_owned(), None);
+    reader.error(Code::BadExcitation, fields.key_span(key), message.to_owned(), None);
     None
 }
 
@@ -305,7 +326,12 @@ fn follower(reader: &mut Reader, entry: &Entry, fields: &Fields, node: &Node) ->
         let names: Vec<String> =
             reader.model.trajectories.iter().filter(of_random).map(|own| own.name.clone()).collect();
         let help = suggest::help(&name, "random excitations before it", names.iter().map(String::as_str));
-        reader.error(node.span.clone(), format!("no random excitation `{}` stands before this one", clip(&name)), help);
+        reader.error(
+            Code::UnknownName,
+            node.span.clone(),
+            format!("no random excitation `{}` stands before this one", clip(&name)),
+            help,
+        );
         return None;
     };
     let after = reader.required(fields, "after")?;
@@ -334,6 +360,6 @@ pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
     let joints: Vec<String> = reader.model.joints.iter().filter(follows).map(|joint| joint.name.clone()).collect();
     for entry in entries.iter().filter(|entry| joints.contains(&entry.key)) {
         let message = "in `analysis: modes` a joint does not follow a random excitation";
-        reader.error(entry.key_span.clone(), message, "let a force follow it".to_owned());
+        reader.error(Code::BadExcitation, entry.key_span.clone(), message, "let a force follow it".to_owned());
     }
 }

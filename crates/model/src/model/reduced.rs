@@ -11,6 +11,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::{clip, list};
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -56,7 +57,7 @@ pub fn is_of_motion(reader: &mut Reader, entry: &Entry, reduced: &[&str]) -> boo
         let Some(name) = words.find(|word| reduced.contains(word) && reader.symbol(word).is_none()) else { continue };
         let message = format!("`{name}` is one number a motion, but an output is taken from the motion itself");
         let help = format!("requirements may have formulas of reduced outputs: `small: 2*{name} <= 1 m`");
-        reader.error(node.span.clone(), message, help);
+        reader.error(Code::NotHere, node.span.clone(), message, help);
         return false;
     }
     true
@@ -84,18 +85,23 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
         let keys = KINDS.map(|(key, _)| key);
         if fields.lacks_all(&keys) {
             let help = format!("one of {}, with a formula: `stroke: {{ range: slider.x }}`", list(&keys));
-            reader.error(entry.key_span.clone(), "a reduced output needs to say what of the motion it is", help);
+            reader.error(
+                Code::BadReducedOutput,
+                entry.key_span.clone(),
+                "a reduced output needs to say what of the motion it is",
+                help,
+            );
         }
         return;
     };
     if let Some((second, ..)) = asked.next() {
         let message = format!("a reduced output is one number, but `{second}` is a second");
-        reader.error(fields.key_span(second), message, "give it a name of its own".to_owned());
+        reader.error(Code::BadReducedOutput, fields.key_span(second), message, "give it a name of its own".to_owned());
         return;
     }
     for (own, kinds) in OWN {
         if fields.get(own).is_some() && !kinds.contains(&key) {
-            reader.error(fields.key_span(own), format!("`{own}` has no meaning for `{key}`"), None);
+            reader.error(Code::MisplacedKey, fields.key_span(own), format!("`{own}` has no meaning for `{key}`"), None);
         }
     }
     let times = times(reader, &fields);
@@ -113,7 +119,7 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
     let name = entry.key.clone();
     if reader.model.outputs.iter().any(|known| known.name == name) {
         let message = format!("two outputs are called `{name}`: one is a part of a vector");
-        reader.error(entry.key_span.clone(), message, "give one of them another name".to_owned());
+        reader.error(Code::NameTaken, entry.key_span.clone(), message, "give one of them another name".to_owned());
         return;
     }
     if let Some(node) = fields.get("unit") {
@@ -149,7 +155,12 @@ pub(super) fn times(reader: &mut Reader, fields: &Fields) -> Option<(f64, f64)> 
     if from < 0.0 || from >= to {
         let key = if fields.get("from").is_some() { "from" } else { "to" };
         let message = format!("the time from {from} s to {to} s is none");
-        reader.error(fields.key_span(key), message, "`from` is not negative, and before `to`".to_owned());
+        reader.error(
+            Code::BadReducedOutput,
+            fields.key_span(key),
+            message,
+            "`from` is not negative, and before `to`".to_owned(),
+        );
         return None;
     }
     Some((from, to))
@@ -177,7 +188,7 @@ fn sources(
             let width = band.as_ref().and_then(|band| reader.evaluate(band, 0));
             if width.is_some_and(|width| width <= 0.0) {
                 let help = "it is how far from `target` the output may be, to either side".to_owned();
-                reader.error(wide.span.clone(), "a band is positive", help);
+                reader.error(Code::OutOfRange, wide.span.clone(), "a band is positive", help);
                 return None;
             }
             let off = own.formula.combined(Binary::Sub, &target?).applied(Unary::Abs);
@@ -222,7 +233,7 @@ fn straightness(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<(Ve
 fn source(reader: &mut Reader, node: &Node) -> Option<Source> {
     let found = formula_of_outputs(reader, node)?;
     if found.formula.names().next().is_none() {
-        reader.error(node.span.clone(), "constant output: it refers to no variable", None);
+        reader.error(Code::ConstantOutput, node.span.clone(), "constant output: it refers to no variable", None);
     }
     Some(found)
 }
@@ -285,6 +296,7 @@ pub(super) fn relation(reader: &mut Reader, node: &Node) -> Option<(usize, usize
     let [index] = signs.as_slice() else {
         let message = format!("`{}` is not a comparison", clip(text));
         reader.error(
+            Code::BadRequirement,
             node.span.clone(),
             message,
             "write one of `<=`, `>=`, `<` and `>` between two formulas".to_owned(),

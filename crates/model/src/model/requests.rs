@@ -16,6 +16,7 @@ use crate::grammar::{Coordinate, PointRef, Symbol, TimeOrder};
 use crate::keys;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
@@ -38,7 +39,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
                 let coordinate_name = motion_name(coordinate, TimeOrder::Position);
                 let message = format!("body `{owner}` has no coordinate `{coordinate_name}`");
                 let help = format!("add it to `coordinates` of `{owner}`, or give its constant value in `held`");
-                reader.error(entry.key_span.clone(), message, help);
+                reader.error(Code::BadStart, entry.key_span.clone(), message, help);
             }
             (order, motion_dimension(coordinate, order))
         }
@@ -56,7 +57,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
             } else {
                 "name coordinates of bodies here, such as `crank.angle` or `slider.vx`"
             };
-            reader.error(entry.key_span.clone(), message, help.to_owned());
+            reader.error(Code::BadStart, entry.key_span.clone(), message, help.to_owned());
             return None;
         }
     };
@@ -67,7 +68,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
         TimeOrder::Acceleration => Some("an acceleration cannot be chosen: it follows from the forces"),
     };
     if let Some(refusal) = refusal {
-        reader.error(entry.key_span.clone(), refusal, None);
+        reader.error(Code::BadStart, entry.key_span.clone(), refusal, None);
         return None;
     }
     let value = reader.formula(&entry.value, Context::Constant, dimension)?;
@@ -97,7 +98,12 @@ fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
         let error = unknown::unknown(&reader.model, name, Context::Equation);
         let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
         let verbatim = entry.key_span.len() == name.len();
-        reader.error(if verbatim { part } else { entry.key_span.clone() }, error.message, error.help);
+        reader.error(
+            Code::UnknownName,
+            if verbatim { part } else { entry.key_span.clone() },
+            error.message,
+            error.help,
+        );
     }
     found
 }
@@ -112,7 +118,12 @@ fn rotation_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Optio
     let body = reader.model.bodies.iter().position(|body| body.name == owner && owner != GROUND)?;
     if !reader.model.bodies[body].coordinates.contains(&Coordinate::Euler(0)) {
         let help = "a body in space has the coordinate `orientation` unless it says otherwise".to_owned();
-        reader.error(entry.key_span.clone(), format!("body `{owner}` does not turn freely in space"), help);
+        reader.error(
+            Code::BadStart,
+            entry.key_span.clone(),
+            format!("body `{owner}` does not turn freely in space"),
+            help,
+        );
         return Some(None);
     }
     let Some(&(_, in_body, _)) = velocity else {
@@ -120,7 +131,7 @@ fn rotation_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Optio
         return Some(rotation.map(|rotation| StartValue::Orientation { body, rotation }));
     };
     if !velocities {
-        reader.error(entry.key_span.clone(), ONLY_POSITIONS, None);
+        reader.error(Code::BadStart, entry.key_span.clone(), ONLY_POSITIONS, None);
         return Some(None);
     }
     let value = reader.three(&entry.value, Context::Constant, Dimension::ANGULAR_VELOCITY);
@@ -191,7 +202,7 @@ fn parts(reader: &Reader, entry: &Entry) -> Option<Vec<Output>> {
 fn add(reader: &mut Reader, entry: &Entry, output: Output) {
     if reader.model.outputs.iter().any(|known| known.name == output.name) {
         let message = format!("two outputs are called `{}`: one is a part of a vector", output.name);
-        reader.error(entry.key_span.clone(), message, "give one of them another name".to_owned());
+        reader.error(Code::NameTaken, entry.key_span.clone(), message, "give one of them another name".to_owned());
     } else {
         reader.model.outputs.push(output);
     }
@@ -217,7 +228,7 @@ fn output(reader: &mut Reader, entry: &Entry, all: &[Entry]) -> Option<Output> {
     };
     reader.refuse_like_names(node);
     if formula.names().next().is_none() {
-        reader.error(node.span.clone(), "constant output: it refers to no variable", None);
+        reader.error(Code::ConstantOutput, node.span.clone(), "constant output: it refers to no variable", None);
     }
     Some(Output { name: entry.key.clone(), formula, unit, dimension, of_results: false })
 }
@@ -248,7 +259,12 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
         let dimension = if key == "tolerance" { Dimension::NUMBER } else { Dimension::TIME };
         let value = reader.number(node, dimension)?;
         if value <= 0.0 {
-            reader.error(node.span.clone(), format!("`{key}` must be positive, but is {value}"), None);
+            reader.error(
+                Code::OutOfRange,
+                node.span.clone(),
+                format!("`{key}` must be positive, but is {value}"),
+                None,
+            );
             return None;
         }
         Some((value, node))
@@ -269,7 +285,7 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
     let integration = super::scheme::read(reader, fields);
     if fields.get("step").is_some() && fields.get("tolerance").is_some() {
         let place = fields.key_span("tolerance");
-        let diagnostic = Diagnostic::error(place, "`step` and `tolerance` exclude each other");
+        let diagnostic = Diagnostic::error(Code::ExclusiveKeys, place, "`step` and `tolerance` exclude each other");
         let help = "with a tolerance the steps are chosen as they are needed; leave one out".to_owned();
         reader.diagnostics.push(diagnostic.also(fields.key_span("step"), "the step").help(help));
     }
@@ -279,10 +295,15 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
         (Some((step, node)), None) => {
             if step > duration {
                 let message = format!("the step ({step} s) is longer than the duration ({duration} s)");
-                reader.error(node.span.clone(), message, None);
+                reader.error(Code::BadTimes, node.span.clone(), message, None);
             } else if duration / step > TUNING.steps {
                 let message = format!("{:.0e} steps are too many", duration / step);
-                reader.error(node.span.clone(), message, format!("a step of {:e} s makes 10000", duration / 1e4));
+                reader.error(
+                    Code::TooLarge,
+                    node.span.clone(),
+                    message,
+                    format!("a step of {:e} s makes 10000", duration / 1e4),
+                );
             }
             Stepping::Fixed(step)
         }
@@ -314,7 +335,7 @@ fn alpha(reader: &mut Reader, node: &Node) -> Option<f64> {
         } else {
             "the default is -0.1; nearer to 0 dissipates less, but 0 itself is unstable for index-3 equations"
         };
-        reader.error(node.span.clone(), format!("α = {alpha} is outside [-1/3, 0)"), help.to_owned());
+        reader.error(Code::OutOfRange, node.span.clone(), format!("α = {alpha} is outside [-1/3, 0)"), help.to_owned());
         return None;
     }
     Some(alpha.max(-1.0 / 3.0))
@@ -323,19 +344,24 @@ fn alpha(reader: &mut Reader, node: &Node) -> Option<f64> {
 fn check_output_step(reader: &mut Reader, node: &Node, output_step: f64, duration: f64, stepping: Stepping) {
     if output_step > duration * (1.0 + 1e-9) {
         let message = format!("the output step ({output_step} s) is longer than the duration ({duration} s)");
-        reader.error(node.span.clone(), message, None);
+        reader.error(Code::BadTimes, node.span.clone(), message, None);
     } else if duration / output_step > TUNING.rows {
-        reader.error(node.span.clone(), format!("{:.0e} rows of output are too many", duration / output_step), None);
+        reader.error(
+            Code::TooLarge,
+            node.span.clone(),
+            format!("{:.0e} rows of output are too many", duration / output_step),
+            None,
+        );
     } else if let Stepping::Fixed(step) = stepping {
         let steps = output_step / step;
         if steps < 1.0 - 1e-9 {
             let message = format!("the output step ({output_step} s) is shorter than the step ({step} s)");
-            reader.error(node.span.clone(), message, None);
+            reader.error(Code::BadTimes, node.span.clone(), message, None);
         } else if (steps - steps.round()).abs() > 1e-9 * steps {
             let message = format!("the output step ({output_step} s) is not a whole multiple of the step ({step} s)");
             let help =
                 format!("the nearest multiples are {} and {}", tidy(step * steps.floor()), tidy(step * steps.ceil()));
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::BadTimes, node.span.clone(), message, help);
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Two sides of a comparison.
@@ -74,7 +75,12 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
         ["max", "min"].into_iter().filter_map(|key| Some((key, fields.get(key)?))).collect();
     if limits.is_empty() {
         if fields.lacks_all(&["max", "min"]) {
-            reader.error(entry.key_span.clone(), "a requirement needs `max`, `min` or both", None);
+            reader.error(
+                Code::IncompleteElement,
+                entry.key_span.clone(),
+                "a requirement needs `max`, `min` or both",
+                None,
+            );
         }
         return None;
     }
@@ -99,7 +105,7 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
         && max < min
     {
         let message = format!("nothing is between `min` and `max`: {min} is above {max}");
-        reader.error(fields.key_span("max"), message, "`min` is the smaller one".to_owned());
+        reader.error(Code::ReversedRange, fields.key_span("max"), message, "`min` is the smaller one".to_owned());
         return None;
     }
     let found = required(reader, entry, texts.join(" and "), limited, of_reduced, times);
@@ -143,7 +149,12 @@ fn timed(reader: &mut Reader, fields: &Fields, found: Requirement, (from, to): (
     let Some(key) = ["at", "from", "to"].into_iter().find(|key| fields.get(key).is_some()) else { return Some(found) };
     if found.times.is_none() {
         let help = "give the reduced output its own `from` and `to`".to_owned();
-        reader.error(fields.key_span(key), format!("`{key}` has no meaning for what is one number a motion"), help);
+        reader.error(
+            Code::MisplacedKey,
+            fields.key_span(key),
+            format!("`{key}` has no meaning for what is one number a motion"),
+            help,
+        );
         return None;
     }
     let mut text = found.text;

@@ -10,6 +10,7 @@ use crate::grammar::Symbol;
 use crate::grammar::dimension::{self, Kind};
 use crate::grammar::quantity::Dimension;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
 
@@ -147,7 +148,7 @@ pub(super) fn part(reader: &mut Reader, node: &Node, range: Range<usize>, number
     }
     if let Some((name, span)) = unknown {
         let message = format!("`{name}` is {}", numbers.refusal);
-        reader.error(scalar.place(&node.span, span), message, numbers.help.to_owned());
+        reader.error(Code::UnknownName, scalar.place(&node.span, span), message, numbers.help.to_owned());
         return None;
     }
     let mut mismatches = Vec::new();
@@ -161,7 +162,7 @@ pub(super) fn part(reader: &mut Reader, node: &Node, range: Range<usize>, number
     let dimension = dimension::analyse(&formula, kind, |_| [None; 2], &mut mismatches).dimension();
     for mismatch in mismatches {
         let part = range.start + mismatch.span.start..range.start + mismatch.span.end;
-        reader.error(scalar.place(&node.span, part), mismatch.message, None);
+        reader.error(Code::WrongDimension, scalar.place(&node.span, part), mismatch.message, None);
     }
     Some(Source { formula, dimension })
 }

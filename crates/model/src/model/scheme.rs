@@ -4,6 +4,7 @@ use super::description::SchemeChoice;
 use super::names::Reader;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// The words of `scheme`.
@@ -26,14 +27,16 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice
             number => {
                 let message = format!("`extrapolation` combines 2, 3 or 4 step lengths, not {number}");
                 let help = "each level halves the steps; 3 levels take 7 times the steps and are of order 4".to_owned();
-                reader.diagnostics.push(Diagnostic::error(node.span.clone(), message).help(help));
+                reader.diagnostics.push(Diagnostic::error(Code::OutOfRange, node.span.clone(), message).help(help));
                 None
             }
         },
     };
     if let (Some(SchemeChoice::Explicit), Some(node)) = (scheme, fields.get("extrapolation")) {
         let message = "`extrapolation` is of HHT-I3, but the `scheme` is `explicit`";
-        reader.diagnostics.push(Diagnostic::error(node.span.clone(), message).help("leave one of them out".to_owned()));
+        reader.diagnostics.push(
+            Diagnostic::error(Code::ExclusiveKeys, node.span.clone(), message).help("leave one of them out".to_owned()),
+        );
     }
     Some((scheme?, levels?))
 }

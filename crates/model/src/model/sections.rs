@@ -5,6 +5,7 @@ use super::description::Analysis;
 use crate::grammar::names::GROUND;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -60,12 +61,12 @@ pub(super) fn missing_sections(
     let keys: Vec<&str> = missing.iter().map(|(_, key, ..)| *key).filter(|key| fields.lacks(key)).collect();
     if keys.len() > 1 {
         let help = "`mbint new NAME` writes a model to begin with".to_owned();
-        reader.error(fields.at.clone(), format!("a model needs {}", suggest::list(&keys)), help);
+        reader.error(Code::MissingSection, fields.at.clone(), format!("a model needs {}", suggest::list(&keys)), help);
     }
     for (_, key, message, help) in missing {
         let is_said = keys.contains(&key) && (keys.len() > 1 || reader.is_strange(fields, key));
         if !is_said {
-            reader.error(fields.key_span(key), message, help.to_owned());
+            reader.error(Code::MissingSection, fields.key_span(key), message, help.to_owned());
         }
     }
 }
@@ -75,6 +76,7 @@ pub(super) fn no_robot(reader: &mut Reader, fields: &Fields) {
     if fields.get("limits").is_some() {
         let message = "`limits` are those of a robot's joints, but the model names no `urdf`";
         reader.error(
+            Code::MisplacedKey,
             fields.key_span("limits"),
             message,
             "the effect `stop` limits a joint of the model's own".to_owned(),
@@ -82,10 +84,20 @@ pub(super) fn no_robot(reader: &mut Reader, fields: &Fields) {
     }
     if fields.get("controls").is_some() {
         let message = "`controls` are those of a robot's actuators, but the model names no `mjcf`";
-        reader.error(fields.key_span("controls"), message, "an effect acts by a formula of its own".to_owned());
+        reader.error(
+            Code::MisplacedKey,
+            fields.key_span("controls"),
+            message,
+            "an effect acts by a formula of its own".to_owned(),
+        );
     }
     if fields.get("base").is_some() {
         let message = "`base` says how a robot stands, but the model names no `urdf`";
-        reader.error(fields.key_span("base"), message, "a body that no joint holds is free".to_owned());
+        reader.error(
+            Code::MisplacedKey,
+            fields.key_span("base"),
+            message,
+            "a body that no joint holds is free".to_owned(),
+        );
     }
 }

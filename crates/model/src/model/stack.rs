@@ -5,6 +5,7 @@ use super::description::{Analysis, Formulation};
 use crate::grammar::Symbol;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node};
 
@@ -31,7 +32,12 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) {
     reader.model.simulation.formulation = Formulation::Absolute;
     for key in foreign {
         let message = format!("dimensions have no mechanism and no time, so `{key}` has no meaning");
-        reader.error(fields.key_span(key), message, "leave out `analysis: dimensions`, or this".to_owned());
+        reader.error(
+            Code::WrongAnalysis,
+            fields.key_span(key),
+            message,
+            "leave out `analysis: dimensions`, or this".to_owned(),
+        );
     }
 }
 
@@ -50,6 +56,11 @@ pub(super) fn refuse_time(reader: &mut Reader, entries: &[Entry]) {
         found.extend(names.map(|(_, span)| scalar.place(&node.span, span)));
     }
     for at in found {
-        reader.error(at, "dimensions have no time", "with `simulation`, and bodies, outputs are motions".to_owned());
+        reader.error(
+            Code::WrongAnalysis,
+            at,
+            "dimensions have no time",
+            "with `simulation`, and bodies, outputs are motions".to_owned(),
+        );
     }
 }

@@ -9,6 +9,7 @@ use crate::elements::effects::{EffectKind, ForceElement, State};
 use crate::grammar::report::Fields;
 use crate::grammar::{Element, Sensor};
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
 
@@ -54,7 +55,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
         if is_effect || is_parameter {
             let other = if is_effect { "an effect" } else { "a parameter" };
             let message = format!("{other} is called `{}` too", clip(&entry.key));
-            reader.error(entry.key_span.clone(), message, "give the state another name".to_owned());
+            reader.error(Code::NameTaken, entry.key_span.clone(), message, "give the state another name".to_owned());
             continue;
         }
         let state = State::read_node(reader, &entry.value, entry.key_span.clone());
@@ -92,7 +93,7 @@ fn report_loops(reader: &mut Reader, entries: &[Entry]) {
         let message = format!("rates of states depend on one another: {}", names.collect::<Vec<_>>().join(" → "));
         let help = "a rate may depend on states, not on rates in a circle: solve for one of them by hand".to_owned();
         let place = entry.value.get("rate").map_or(&entry.key_span, |node| &node.span).clone();
-        reader.error(place, message, help);
+        reader.error(Code::Circle, place, message, help);
     }
 }
 
@@ -130,7 +131,7 @@ pub fn check_instants(reader: &mut Reader, effects: &[Entry]) {
                 format!("`{}` changes at {:.0e} instants in {duration} s: too many", entry.key, duration / period);
             let help =
                 format!("a period of {:e} s makes 10000; what is sampled that often is continuous", duration / 1e4);
-            reader.error(entry.key_span.clone(), message, help);
+            reader.error(Code::TooLarge, entry.key_span.clone(), message, help);
         }
     }
 }
@@ -145,7 +146,7 @@ pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
     if let (Analysis::Modes(_), Some(entry)) = (analysis, effects.iter().find(is_sampled)) {
         let message = format!("`{}` changes at instants, and modes are of what changes all the time", clip(&entry.key));
         let help = "write it as a state or a filter, its period as a `delay` of half of it; or leave it out here, e.g. in a scene with `without`";
-        reader.error(entry.key_span.clone(), message, help.to_owned());
+        reader.error(Code::WrongAnalysis, entry.key_span.clone(), message, help.to_owned());
     }
     if reader.model.states.is_empty() || analysis != Analysis::Kinematics {
         return;
@@ -154,5 +155,10 @@ pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
     let place = of_effects.map_or_else(|| fields.key_span("states"), |entry| entry.key_span.clone());
     let help =
         "leave them out here, e.g. in a scene with `without`, or ask for `analysis: motion`, `statics` or `modes`";
-    reader.error(place, "states follow from forces and rates, and kinematics knows none", help.to_owned());
+    reader.error(
+        Code::WrongAnalysis,
+        place,
+        "states follow from forces and rates, and kinematics knows none",
+        help.to_owned(),
+    );
 }

@@ -10,6 +10,7 @@ use crate::keys;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
 use crate::numerics::statistics::Copula;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Node, Value};
@@ -57,9 +58,14 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
 fn exposure(reader: &mut Reader, node: &Node) {
     let Some(time) = reader.number(node, Dimension::TIME) else { return };
     if reader.model.trajectories.iter().all(|own| own.random().is_none()) {
-        reader.error(node.span.clone(), "without random excitations, motions do not fail one by one", None);
+        reader.error(
+            Code::BadStatistics,
+            node.span.clone(),
+            "without random excitations, motions do not fail one by one",
+            None,
+        );
     } else if time <= 0.0 {
-        reader.error(node.span.clone(), format!("a time of {time} s is none"), None);
+        reader.error(Code::OutOfRange, node.span.clone(), format!("a time of {time} s is none"), None);
     } else {
         reader.model.statistics.exposure = Some(time);
     }
@@ -67,7 +73,12 @@ fn exposure(reader: &mut Reader, node: &Node) {
 
 fn quantiles(reader: &mut Reader, node: &Node) {
     let Value::Sequence(items) = &node.value else {
-        reader.error(node.span.clone(), "quantiles are a list of shares", "e.g. `[5%, 50%, 95%]`".to_owned());
+        reader.error(
+            Code::BadStatistics,
+            node.span.clone(),
+            "quantiles are a list of shares",
+            "e.g. `[5%, 50%, 95%]`".to_owned(),
+        );
         return;
     };
     let mut shares = Vec::new();
@@ -80,7 +91,7 @@ fn quantiles(reader: &mut Reader, node: &Node) {
         let share = percent.or_else(|| scalar.text.parse().ok()).filter(|share| *share > 0.0 && *share < 1.0);
         let Some(share) = share else {
             let message = format!("`{}` is not a share above 0 and below 1", clip(&scalar.text));
-            reader.error(item.span.clone(), message, "e.g. `95%` or `0.95`".to_owned());
+            reader.error(Code::OutOfRange, item.span.clone(), message, "e.g. `95%` or `0.95`".to_owned());
             return;
         };
         shares.push(share);
@@ -111,7 +122,7 @@ fn default_law(reader: &mut Reader, node: &Node) {
     if named(&scalar.text, anywhere).is_none() {
         let names = ["uniform", "normal", "truncated_normal", "triangular"];
         let message = format!("`{}` is no distribution that needs no numbers", clip(&scalar.text));
-        reader.error(node.span.clone(), message, format!("those are {}", suggest::list(&names)));
+        reader.error(Code::UnknownWord, node.span.clone(), message, format!("those are {}", suggest::list(&names)));
         return;
     }
     let laws = uncertain.into_iter().filter_map(|(name, place)| Some((name, named(&scalar.text, place)?)));
@@ -121,7 +132,7 @@ fn default_law(reader: &mut Reader, node: &Node) {
 fn correlations(reader: &mut Reader, node: &Node) {
     let Value::Sequence(items) = &node.value else {
         let help = "e.g. `[{ of: [a, b], coefficient: 0.8 }]`".to_owned();
-        reader.error(node.span.clone(), "correlations are a list of groups", help);
+        reader.error(Code::BadCorrelation, node.span.clone(), "correlations are a list of groups", help);
         return;
     };
     for item in items {
@@ -144,13 +155,18 @@ fn correlation(reader: &mut Reader, fields: &Fields) -> Option<Correlation> {
         (None, Some(node)) => matrix(reader, node, k)?,
         _ if !fields.lacks_all(&["coefficient", "matrix"]) => return None,
         _ => {
-            reader.error(fields.at.clone(), "a correlation needs `coefficient` or `matrix`", None);
+            reader.error(
+                Code::BadCorrelation,
+                fields.at.clone(),
+                "a correlation needs `coefficient` or `matrix`",
+                None,
+            );
             return None;
         }
     };
     if Copula::new(&matrix).is_err() {
         let help = "the matrix is not positive definite: if a goes with b and b with c, a goes with c".to_owned();
-        reader.error(of.span.clone(), "no random numbers are correlated like this", help);
+        reader.error(Code::BadCorrelation, of.span.clone(), "no random numbers are correlated like this", help);
         return None;
     }
     Some(Correlation { names, matrix })
@@ -158,7 +174,12 @@ fn correlation(reader: &mut Reader, fields: &Fields) -> Option<Correlation> {
 
 fn names(reader: &mut Reader, node: &Node) -> Option<Vec<String>> {
     let Value::Sequence(items) = &node.value else {
-        reader.error(node.span.clone(), "a list of parameters belongs here", "e.g. `[a, b]`".to_owned());
+        reader.error(
+            Code::BadCorrelation,
+            node.span.clone(),
+            "a list of parameters belongs here",
+            "e.g. `[a, b]`".to_owned(),
+        );
         return None;
     };
     let uncertain: Vec<String> = reader.model.uncertain().map(|(_, parameter)| parameter.name.clone()).collect();
@@ -171,18 +192,23 @@ fn names(reader: &mut Reader, node: &Node) -> Option<Vec<String>> {
         if !uncertain.contains(&name) {
             let message = format!("`{}` is no uncertain parameter", clip(&name));
             let help = suggest::help(&name, "uncertain parameters", uncertain.iter().map(String::as_str));
-            reader.error(item.span.clone(), message, help);
+            reader.error(Code::BadCorrelation, item.span.clone(), message, help);
             return None;
         }
         if names.contains(&name) || taken.contains(&name) {
             let help = "give one matrix for all that depend on each other".to_owned();
-            reader.error(item.span.clone(), format!("`{name}` stands in a correlation already"), help);
+            reader.error(
+                Code::BadCorrelation,
+                item.span.clone(),
+                format!("`{name}` stands in a correlation already"),
+                help,
+            );
             return None;
         }
         names.push(name);
     }
     if names.len() < 2 {
-        reader.error(node.span.clone(), "a correlation is one of two parameters at least", None);
+        reader.error(Code::BadCorrelation, node.span.clone(), "a correlation is one of two parameters at least", None);
         return None;
     }
     Some(names)
@@ -193,7 +219,7 @@ fn coefficient(reader: &mut Reader, node: &Node) -> Option<f64> {
     let number = scalar.text.parse::<f64>().ok().filter(|number| (-1.0..=1.0).contains(number));
     if number.is_none() {
         let message = format!("`{}` is no number from -1 to 1", clip(&scalar.text));
-        reader.error(node.span.clone(), message, None);
+        reader.error(Code::BadCorrelation, node.span.clone(), message, None);
     }
     number
 }
@@ -207,12 +233,22 @@ fn matrix(reader: &mut Reader, node: &Node, k: usize) -> Option<Vec<Vec<f64>>> {
         }
     }
     if rows.len() != k || rows.iter().any(|row| row.len() != k) {
-        reader.error(node.span.clone(), format!("a matrix of {k} rows of {k} numbers belongs here"), None);
+        reader.error(
+            Code::BadCorrelation,
+            node.span.clone(),
+            format!("a matrix of {k} rows of {k} numbers belongs here"),
+            None,
+        );
         return None;
     }
     let symmetric = (0..k).all(|i| rows[i][i] == 1.0 && (0..i).all(|j| rows[i][j] == rows[j][i]));
     if !symmetric {
-        reader.error(node.span.clone(), "a matrix of correlations is symmetric, with ones on its diagonal", None);
+        reader.error(
+            Code::BadCorrelation,
+            node.span.clone(),
+            "a matrix of correlations is symmetric, with ones on its diagonal",
+            None,
+        );
         return None;
     }
     Some(rows)

@@ -8,6 +8,7 @@ use crate::grammar::report::Fields;
 use crate::grammar::unit::Unit;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::table::{self, Cell, Line};
@@ -32,13 +33,18 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
         (Some(file), None) => from_file(reader, &fields, file)?,
         (None, Some(points)) => listed(reader, points)?,
         (Some(_), Some(_)) => {
-            reader.error(fields.key_span("points"), "`file` and `points` exclude each other", None);
+            reader.error(
+                Code::ExclusiveKeys,
+                fields.key_span("points"),
+                "`file` and `points` exclude each other",
+                None,
+            );
             return None;
         }
         (None, None) if !fields.lacks_all(&["file", "points"]) => return None,
         (None, None) => {
             let help = "e.g. `{ file: road.csv }` or `{ points: [[0, 0], [1, 2]] }`".to_owned();
-            reader.error(fields.at.clone(), "a table needs `file` or `points`", help);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a table needs `file` or `points`", help);
             return None;
         }
     };
@@ -58,7 +64,12 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
         (true, false) => Spline::linear(&values),
         (true, true) => {
             let help = "leave out `periodic`, or `interpolation: linear`".to_owned();
-            reader.error(fields.key_span("interpolation"), "a periodic table is smooth, not linear", help);
+            reader.error(
+                Code::BadTable,
+                fields.key_span("interpolation"),
+                "a periodic table is smooth, not linear",
+                help,
+            );
             return None;
         }
     };
@@ -79,7 +90,7 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
                     ("a periodic table ends with the value that it begins with", last)
                 }
             };
-            reader.error(place, message, None);
+            reader.error(Code::BadTable, place, message, None);
             None
         }
     }
@@ -96,14 +107,14 @@ fn units(reader: &mut Reader, fields: &Fields) -> Option<[Option<Unit>; 2]> {
 fn listed(reader: &mut Reader, node: &Node) -> Option<Vec<[Number; 2]>> {
     let Value::Sequence(items) = &node.value else {
         let message = format!("a list of pairs belongs here, but here is {}", node.kind());
-        reader.error(node.span.clone(), message, "e.g. `[[0, 0], [1, 2]]`".to_owned());
+        reader.error(Code::WrongShape, node.span.clone(), message, "e.g. `[[0, 0], [1, 2]]`".to_owned());
         return None;
     };
     let number = |reader: &mut Reader, node: &Node| {
         let scalar = reader.scalar(node, "a number")?;
         let value = scalar.text.parse::<f64>().ok().filter(|value| value.is_finite());
         if value.is_none() {
-            reader.error(node.span.clone(), format!("`{}` is not a number", clip(&scalar.text)), None);
+            reader.error(Code::BadTable, node.span.clone(), format!("`{}` is not a number", clip(&scalar.text)), None);
         }
         Some((value?, node.span.clone()))
     };
@@ -121,7 +132,7 @@ fn from_file(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Vec<[N
     let (start, text) = reader.file(node)?;
     let table = table::Table::read(&text);
     let Some(first) = table.lines.first() else {
-        reader.error(node.span.clone(), "the file has no lines of numbers", None);
+        reader.error(Code::BadTable, node.span.clone(), "the file has no lines of numbers", None);
         return None;
     };
     let header = table.is_heading(first).then_some(first);
@@ -130,18 +141,23 @@ fn from_file(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Vec<[N
     for line in &table.lines[usize::from(header.is_some())..] {
         let at = |cell: &Cell| start + cell.start..start + cell.start + cell.text.len();
         if let Some(message) = table.misfit(line) {
-            reader.error(at(&line.cells[0]), message, None);
+            reader.error(Code::BadTable, at(&line.cells[0]), message, None);
             return None;
         }
         let mut number = |column: usize| {
             let Some(cell) = line.cells.get(column) else {
-                reader.error(at(&line.cells[0]), format!("this line has no column {}", column + 1), None);
+                reader.error(
+                    Code::BadTable,
+                    at(&line.cells[0]),
+                    format!("this line has no column {}", column + 1),
+                    None,
+                );
                 return None;
             };
             match table.number(cell) {
                 Ok(number) => Some((number, at(cell))),
                 Err(message) => {
-                    reader.error(at(cell), message, None);
+                    reader.error(Code::BadTable, at(cell), message, None);
                     None
                 }
             }
@@ -166,7 +182,12 @@ fn chosen_columns(reader: &mut Reader, fields: &Fields, header: Option<&Line>) -
             Some(header) => suggest::help(&scalar.text, "columns", header.cells.iter().map(|cell| cell.text)),
             None => Some("the file has no header: give the columns' numbers".to_owned()),
         };
-        reader.error(node.span.clone(), format!("the file has no column `{}`", clip(&scalar.text)), help);
+        reader.error(
+            Code::BadTable,
+            node.span.clone(),
+            format!("the file has no column `{}`", clip(&scalar.text)),
+            help,
+        );
         None
     });
     Some([x?, y?])

@@ -6,6 +6,7 @@ use symdiff::Formula;
 
 use super::names::Reader;
 use crate::grammar::Symbol;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
@@ -42,7 +43,7 @@ pub fn check(reader: &mut Reader, joints: &[Entry], effects: &[Entry], outputs: 
             "give `{teeth}` a `pressure_angle`, e.g. `20 deg`, and between joints, the bearings: then the force of the teeth acts \
              at the pitch point"
         );
-        reader.error(span, message, help);
+        reader.error(Code::IncompleteElement, span, message, help);
     }
 }
 

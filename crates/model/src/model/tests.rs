@@ -298,8 +298,8 @@ fn records_are_for_machines() {
     assert_eq!(
         json,
         serde_json::json!([{
-            "severity": "error", "message": "unknown body or joint `bra`", "file": "x.yaml", "line": 7, "column": 19,
-            "help": "did you mean `bar`?",
+            "severity": "error", "code": "E0401", "message": "unknown body or joint `bra`", "file": "x.yaml", "line": 7,
+            "column": 19, "help": "did you mean `bar`?",
         }])
     );
 }

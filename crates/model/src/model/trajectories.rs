@@ -9,6 +9,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -29,7 +30,12 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
         let named = reader.name(entry, "a trajectory");
         if is_taken(&entry.key) {
             let message = format!("something else is called `{}` too", clip(&entry.key));
-            reader.error(entry.key_span.clone(), message, "give the trajectory another name".to_owned());
+            reader.error(
+                Code::NameTaken,
+                entry.key_span.clone(),
+                message,
+                "give the trajectory another name".to_owned(),
+            );
             continue;
         }
         let found = trajectory(reader, entry);
@@ -55,7 +61,7 @@ fn trajectory(reader: &mut Reader, entry: &Entry) -> Option<Trajectory> {
         ("trapezoidal", None) => Timing::Trapezoidal(None),
         ("trapezoidal", Some(node)) => Timing::Trapezoidal(Some(ramp(reader, node, &points)?)),
         (_, Some(_)) => {
-            reader.error(fields.key_span("ramp"), "`ramp` goes with `timing: trapezoidal`", None);
+            reader.error(Code::MisplacedKey, fields.key_span("ramp"), "`ramp` goes with `timing: trapezoidal`", None);
             return None;
         }
         ("cubic", None) => Timing::Cubic,
@@ -75,6 +81,7 @@ fn listed<'n>(reader: &mut Reader, node: &'n Node) -> Option<&'n [Node]> {
         _ => format!("a list of points belongs here, but here is {}", node.kind()),
     };
     reader.error(
+        Code::BadTrajectory,
         node.span.clone(),
         found,
         "e.g. `[[0, 0 deg], [1.5, 90 deg]]`; a `table` goes through many".to_owned(),
@@ -96,7 +103,7 @@ fn point(
             [time, value, rate] if has_rates => (time, value, Some(rate)),
             [_, _, rate] => {
                 let message = "only with timing `cubic` or `quintic` a point has a rate";
-                reader.error(rate.span.clone(), message, "leave the third number out".to_owned());
+                reader.error(Code::BadTrajectory, rate.span.clone(), message, "leave the third number out".to_owned());
                 return None;
             }
             _ => return no_point(reader, node),
@@ -120,7 +127,7 @@ fn point(
 }
 
 fn no_point(reader: &mut Reader, node: &Node) -> Option<Waypoint> {
-    reader.error(node.span.clone(), "a point is `[time, value]` or `[time, value, rate]`", None);
+    reader.error(Code::BadTrajectory, node.span.clone(), "a point is `[time, value]` or `[time, value, rate]`", None);
     None
 }
 
@@ -142,7 +149,7 @@ fn ascending(reader: &mut Reader, points: &[Waypoint], nodes: &[Node]) -> Option
         let found = moves(reader, pair).find(|([before, after], _)| before >= after);
         if let Some(([before, after], label)) = found {
             let message = format!("times ascend, but {after} s does not come after {before} s{label}");
-            reader.error(node.span.clone(), message, None);
+            reader.error(Code::BadTrajectory, node.span.clone(), message, None);
             return None;
         }
     }
@@ -168,7 +175,12 @@ fn ramp(reader: &mut Reader, node: &Node, points: &[Waypoint]) -> Option<Formula
         });
         if let Some((ramp, length, label)) = short {
             let message = format!("two ramps of {ramp} s do not fit into a move of {length} s{label}");
-            reader.error(node.span.clone(), message, "a ramp is at most half of the shortest move".to_owned());
+            reader.error(
+                Code::BadTrajectory,
+                node.span.clone(),
+                message,
+                "a ramp is at most half of the shortest move".to_owned(),
+            );
             return None;
         }
     }

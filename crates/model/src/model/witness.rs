@@ -16,6 +16,7 @@ use crate::elements::Timing;
 use crate::model::description::{Description, ParameterValue};
 use crate::model::parameters::deviation_of;
 use crate::syntax::table::{Cell, Table};
+use crate::syntax::{Code, Coded};
 
 /// Before a parameter's value.
 const PARAMETER: &str = "# parameter ";
@@ -145,6 +146,12 @@ impl Witness {
             found.ok_or_else(|| unknown("parameter", name))?.value = ParameterValue::Formula(Formula::number(*value));
         }
         Ok(())
+    }
+}
+
+impl Coded for WitnessError {
+    fn code(&self) -> Option<Code> {
+        Some(Code::BadWitness)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::description::Point;
 use crate::expand::zones::{RADIUS, Zone};
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 
 /// Reports zones without a size, and those of points that reach as far as the body's points are apart.
@@ -10,7 +11,7 @@ pub(super) fn check(reader: &mut Reader) {
     let found: Vec<(Span, String)> =
         reader.model.zones.iter().filter_map(|zone| Some((zone.at.clone(), wrong(reader, zone)?))).collect();
     for (at, message) in found {
-        reader.error(at, message, "check the diameter and its unit".to_owned());
+        reader.error(Code::BadZone, at, message, "check the diameter and its unit".to_owned());
     }
 }
 

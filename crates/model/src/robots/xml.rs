@@ -7,6 +7,7 @@ use roxmltree::{Attribute, Document, Node, ParsingOptions};
 use super::budget;
 use super::prefixes::{self, Declared};
 use crate::robots::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -30,7 +31,7 @@ pub fn parse<'t>(
 ) -> Option<(Document<'t>, Places)> {
     let mut places = Places { start, at: 0, length: 0 };
     if let Err((place, message)) = budget::check(text) {
-        diagnostics.push(Diagnostic::error(places.span(place), message));
+        diagnostics.push(Diagnostic::error(Code::BadXml, places.span(place), message));
         return None;
     }
     let mut text = text;
@@ -85,7 +86,7 @@ fn syntax_error(text: &str, places: Places, format: &str, error: &roxmltree::Err
             (format!("this is not XML: {}", clip(message)), None)
         }
     };
-    Diagnostic::error(places.span(offset..offset + length), message).help(help)
+    Diagnostic::error(Code::BadXml, places.span(offset..offset + length), message).help(help)
 }
 
 /// Places of a document's parts among the sources.

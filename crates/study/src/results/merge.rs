@@ -56,6 +56,7 @@ pub fn summary_of_subsystems(subsystems: Vec<Summary>) -> Summary {
         whole.singular_at_start.extend(other.singular_at_start);
         whole.shared_start.extend(other.shared_start);
         whole.singular_configurations.extend(other.singular_configurations);
+        whole.failure_code = whole.failure_code.or(other.failure_code);
         whole.damped_mode = whole.damped_mode.or(other.damped_mode);
         whole.events.extend(other.events);
         whole.excitations.extend(other.excitations);

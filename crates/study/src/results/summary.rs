@@ -9,6 +9,7 @@ use super::{
 };
 use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::TooDeep;
+use crate::syntax::Code;
 
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
@@ -117,6 +118,9 @@ pub struct Summary {
     /// Set when the run stopped early: what happened, and up to which time results were kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
+    /// The code of the kind of mistake that stopped it, where it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure_code: Option<Code>,
     /// Whether it ended before it was done, since it was asked to or took too long.
     #[serde(skip)]
     pub is_cut: bool,

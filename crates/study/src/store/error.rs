@@ -1,5 +1,6 @@
 //! Why a store cannot be used.
 
+use crate::syntax::{Code, Coded};
 use std::path::{Path, PathBuf};
 
 /// Why a store cannot be used.
@@ -54,5 +55,14 @@ impl StoreError {
     /// Of a file that is not what its name says.
     pub fn damaged(path: &Path) -> Self {
         Self::Damaged { path: path.to_owned() }
+    }
+}
+
+impl Coded for StoreError {
+    fn code(&self) -> Option<Code> {
+        Some(match self {
+            Self::Io { .. } | Self::Encoding(_) => Code::CannotWrite,
+            Self::NoStudy { .. } | Self::Damaged { .. } => Code::NoStudy,
+        })
     }
 }

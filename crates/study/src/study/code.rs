@@ -8,6 +8,7 @@ use super::{Options, RunError, pool};
 use crate::c_code::{CModel, CodeRequest, FmiVersion, NoCode, c_code};
 use crate::model::Description;
 use crate::reduce::Reduction;
+use crate::syntax::{Code, Coded};
 
 /// Why a model is not written as source code.
 #[derive(Debug, thiserror::Error)]
@@ -40,4 +41,14 @@ pub fn code(description: &Description, inputs: &[String], version: FmiVersion) -
         let name = description.name.replace('/', "_");
         Ok(c_code(&study.simulator, plan.steps(), CodeRequest { name: &name, inputs, version })?)
     })
+}
+
+impl Coded for CodeError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::None(NoCode::Simulation(error)) => error.code(),
+            Self::None(_) => Some(Code::NoCode),
+        }
+    }
 }

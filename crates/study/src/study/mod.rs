@@ -61,6 +61,7 @@ use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
 use crate::simulate::{SimulationError, Simulator};
 use crate::store::PartStore;
+use crate::syntax::{Code, Coded};
 
 use prepared::Prepared;
 
@@ -243,5 +244,18 @@ fn first_step(description: &Description) -> f64 {
     match description.simulation.stepping {
         Stepping::Fixed(step) => step,
         Stepping::Tolerance(_) => 1e-2 * description.simulation.output_step,
+    }
+}
+
+impl Coded for RunError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Build(error) => error.code(),
+            Self::Simulation(error) => error.code(),
+            Self::Refused(error) => error.code(),
+            Self::Infeasible(_) => Some(Code::Infeasible),
+            Self::Costly(_) | Self::Memory(_) => Some(Code::TooCostly),
+            Self::Internal(_) | Self::Threads(_) => None,
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! One subsystem's study: the step schedule that all samples share, and the methods under it.
 
 use super::RunError;
-use super::answers::{Ran, Results, conclude};
+use super::answers::{Note, Ran, Results, conclude};
 use super::attained::bound_along;
 use super::black_box::{ask_nominal, repeat};
 use super::bounding::{Bounded, Doubts, note_nominal, timed, unknown};
@@ -43,7 +43,7 @@ pub(super) fn run(study: &Study) -> Result<Ran, RunError> {
     }
     ask_nominal(study)?;
     let (plan, failure) = planned(study, explicit_samples)?;
-    let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
+    let failure = failure.map(|failure| Note::of(&failure, "what does not need that sample is kept"));
     let results = methods(study, plan)?;
     repeat(study, results.bounded.validation.as_ref().map(|(validation, _)| validation))?;
     Ok(conclude(study, results, failure))

@@ -1,8 +1,7 @@
 //! Chebyshev bounds: a polynomial in the parameters, from samples at Chebyshev nodes, and its range.
 //!
-//! The independent coordinates are expanded, from which the outputs follow (`composition`), or the outputs
-//! themselves (the paper's). The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too
-//! (`outputs_alone`).
+//! The independent coordinates are expanded, from which outputs follow (`composition`), or outputs (the paper's).
+//! The degree is given, or grows until a tolerance is met (`adaptive`); of outputs too (`outputs_alone`).
 
 mod adaptive;
 mod along_gradients;
@@ -28,6 +27,7 @@ use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
+use crate::syntax::codes::Code;
 use adaptive::{Goal, OutputGoal};
 pub use combined::ends_of_combinations;
 pub use composition::can_compose;
@@ -144,30 +144,29 @@ impl Chebyshev {
         };
         let expand = match fields.get("expand") {
             Some(node) => reader.choice(node, &EXPAND),
-            // A range is asked for of outputs only.
-            None if fields.get("range").is_some() => Some(Expand::Output),
+            None if fields.get("range").is_some() => Some(Expand::Output), // a range is asked for of outputs only
             None => Some(Expand::Coordinates),
         };
         let unspecified = Self::unspecified(uncertain.len(), tolerance);
         if fields.get("order").is_none() && fields.get("nodes").is_none() && unspecified.degree == Degree::Adaptive {
-            let of_output =
-                if expand == Some(Expand::Output) { fields.get("range").or(fields.get("expand")) } else { None };
-            if let Some(node) = of_output {
-                let message = "an output is expanded to an order that is given, not to a tolerance".to_owned();
-                reader.error(node.span.clone(), message, "give an `order`, or leave this out".to_owned());
+            let asked = fields.get("range").or(fields.get("expand"));
+            if let Some(node) = asked.filter(|_| expand == Some(Expand::Output)) {
+                let message = "an output is expanded to an order that is given, not to a tolerance";
+                let help = "give an `order`, or leave this out".to_owned();
+                reader.error(Code::BadMethod, node.span.clone(), message, help);
             }
             return Some(unspecified);
         }
         if let (Some(Expand::Coordinates), Some(node)) = (expand, fields.get("range")) {
             let help = "leave it out, or expand the output".to_owned();
-            reader.error(node.span.clone(), "`range` is about an expanded output".to_owned(), help);
+            reader.error(Code::BadMethod, node.span.clone(), "`range` is about an expanded output", help);
         }
         let range = request::range(reader, fields);
         let (order, nodes) = (order?, nodes?);
-        let few = order.iter().zip(&nodes).position(|(order, nodes)| nodes <= order);
-        if let (Some(few), Some(node)) = (few, fields.get("nodes")) {
-            let message = format!("{} nodes are too few for order {}", nodes[few], order[few]);
-            reader.error(node.span.clone(), message, format!("at least {} are needed", order[few] + 1));
+        let few = order.iter().zip(&nodes).find(|(order, nodes)| nodes <= order);
+        if let (Some((order, nodes)), Some(node)) = (few, fields.get("nodes")) {
+            let message = format!("{nodes} nodes are too few for order {order}");
+            reader.error(Code::BadMethod, node.span.clone(), message, format!("at least {} are needed", order + 1));
         }
         let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
         request::check_simulations(reader, fields, key, uncertain.len(), total_degree::samples(&order, &nodes));

@@ -26,6 +26,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, JointCoordinate, Sensor, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Rotating};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// Stretch over which a strand becomes taut, over the first radius.
@@ -176,7 +177,7 @@ impl Checked for Belt {
             }
             [false, true] => {
                 let message = "`distance` goes with `centers`, the centres of the pulleys";
-                reader.error(fields.key_span("distance"), message, None);
+                reader.error(Code::BadSurface, fields.key_span("distance"), message, None);
             }
             _ => {}
         }

@@ -25,6 +25,7 @@ use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Image, Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Matrix, Vector};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml;
 
 /// Springs and dampers between two frames.
@@ -212,6 +213,6 @@ fn six<'n, S: SymbolTable>(reader: &mut Reader<'_, S>, node: &'n Node, wanted: &
         yaml::Value::Sequence(items) => format!("a list of {}", items.len()),
         _ => node.kind().to_owned(),
     };
-    reader.error(node.span.clone(), format!("{wanted} belong here, but here is {found}"), None);
+    reader.error(Code::WrongShape, node.span.clone(), format!("{wanted} belong here, but here is {found}"), None);
     None
 }

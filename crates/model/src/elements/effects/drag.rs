@@ -12,6 +12,7 @@ use symdiff::Formula;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Components, Fields, Sensor, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// ε, m/s
@@ -92,14 +93,14 @@ impl Checked for Drag {
         if AERODYNAMIC.into_iter().any(given) {
             if given("quadratic") {
                 let message = "`quadratic` excludes `density`, `drag_coefficient` and `area`";
-                reader.error(fields.key_span("quadratic"), message, None);
+                reader.error(Code::OutOfRange, fields.key_span("quadratic"), message, None);
             }
             for key in AERODYNAMIC {
                 reader.required(fields, key);
             }
         } else if fields.lacks_all(&["quadratic", "linear"]) {
             let help = "or `density`, `drag_coefficient` and `area`".to_owned();
-            reader.error(fields.at.clone(), "a drag needs `quadratic` or `linear`", help);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a drag needs `quadratic` or `linear`", help);
         }
     }
 }

@@ -20,6 +20,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::Value;
 
 /// The states behind the output.
@@ -263,7 +264,7 @@ impl Coefficients {
         let nodes = list(Some(node));
         if nodes.is_empty() {
             let help = "the highest power of s comes first, e.g. `[0.01 s^2, 0.14 s, 1]`".to_owned();
-            reader.error(node.span.clone(), format!("`{key}` is a list of coefficients"), help);
+            reader.error(Code::BadFilter, node.span.clone(), format!("`{key}` is a list of coefficients"), help);
             return None;
         }
         let read: Vec<_> = nodes.iter().map(|node| reader.any_unit(node, Context::Constant)).collect();
@@ -297,7 +298,7 @@ fn check_order<S: SymbolTable>(
     } else {
         return Some(());
     };
-    reader.error(fields.get(key).map_or_else(|| fields.at.clone(), |node| node.span.clone()), message, help.to_owned());
+    reader.error(Code::BadFilter, fields.get(key).map_or_else(|| fields.at.clone(), |node| node.span.clone()), message, help.to_owned());
     None
 }
 

@@ -24,6 +24,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Sensor, Node, OnJoint, Reader, Reference, SymbolTable,
 };
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 /// ε, N
@@ -165,7 +166,7 @@ impl Checked for JointFriction {
         let given = |key: &str| fields.get(key).is_some();
         if fields.lacks_all(&["coefficient", "coulomb", "viscous"]) && given("on") {
             let message = "a joint friction needs `coefficient`, `coulomb` or `viscous`";
-            reader.error(fields.at.clone(), message, None);
+            reader.error(Code::IncompleteElement, fields.at.clone(), message, None);
         }
     }
 
@@ -214,7 +215,7 @@ impl Group for FrictionJoint {
         let Some(mode) = reader.model.friction_mode(joint) else {
             let message = format!("joint friction does not know how `{}` rubs", reader.model.joint_name(joint));
             let help = "it acts in revolute, prismatic and cylindrical joints".to_owned();
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::UnsuitableJoint, node.span.clone(), message, help);
             return None;
         };
         Some(Self { joint, mode })

@@ -13,6 +13,7 @@ use symdiff::Formula;
 use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, Sensor, SymbolTable, TimeOrder};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// A constant tension between two points, or a constant force or torque of a joint.
@@ -77,7 +78,7 @@ impl Checked for Preload {
                 reader.required(fields, "between");
             }
             [Some(_), Some(_)] => {
-                reader.error(fields.key_span("between"), "`on` and `between` exclude each other", None);
+                reader.error(Code::ExclusiveKeys, fields.key_span("between"), "`on` and `between` exclude each other", None);
             }
             _ => {}
         }

@@ -19,6 +19,7 @@ use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// A number that follows another within limits.
@@ -107,12 +108,12 @@ impl Group for RateLimit {
             ["rate", "lower", "upper", "initial"].map(|key| constant(reader, fields, key, false));
         if fields.get("rate").is_none() && fields.get("lower").is_none() && fields.get("upper").is_none() {
             let message = "a rate limit needs `rate`, or `lower` and `upper`";
-            reader.error(fields.at.clone(), message, "without, it would be a `filter`".to_owned());
+            reader.error(Code::IncompleteElement, fields.at.clone(), message, "without, it would be a `filter`".to_owned());
             return None;
         }
         for (key, other) in [("lower", "upper"), ("upper", "lower")] {
             if fields.get(key).is_some() && fields.get(other).is_none() {
-                reader.error(fields.key_span(key), format!("`{key}` goes with `{other}`"), None);
+                reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` goes with `{other}`"), None);
                 return None;
             }
         }

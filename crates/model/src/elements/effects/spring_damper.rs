@@ -21,6 +21,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 /// Points nearer than this coincide for a damper of no free length, m. Its square is lost in rounding beside that of a
@@ -151,7 +152,7 @@ fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring
 impl Checked for SpringDamper {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if fields.lacks_all(&["stiffness", "damping", "force"]) {
-            reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
         }
     }
 }

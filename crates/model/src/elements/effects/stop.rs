@@ -13,6 +13,7 @@ use super::laws::impact::Push;
 use super::{ForceElement, Forces, Impact, TypedSensor, effort};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, Sensor, OnJoint, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// Stops at the ends of a joint's range.
@@ -85,7 +86,7 @@ impl ForceElement for Stop {
 impl Checked for Stop {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if fields.lacks_all(&["lower", "upper"]) {
-            reader.error(fields.at.clone(), "a stop needs `lower` or `upper`", None);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a stop needs `lower` or `upper`", None);
         }
     }
 }

@@ -24,6 +24,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, Group, JointCoordinate, Key, MeshKind, Node, Reader, Reference, Requirement, Sensor, SymbolTable,
 };
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// ε, N m or N
@@ -143,7 +144,7 @@ impl Checked for ToothFriction {
             MeshKind::Sliding => ("coefficient", "efficiency", "a worm gear has a `coefficient` of friction"),
         };
         if fields.get(other).is_some() {
-            reader.error(fields.key_span(other), what, format!("give `{needed}` instead"));
+            reader.error(Code::MisplacedKey, fields.key_span(other), what, format!("give `{needed}` instead"));
         } else {
             reader.required(fields, needed);
         }
@@ -183,7 +184,7 @@ impl Group for Teeth {
         let Some(kind) = reader.model.mesh_kind(joint) else {
             let message = format!("`{}` has no teeth", reader.model.joint_name(joint));
             let help = "tooth friction acts in joints `gear`, `rack`, `planetary` and `worm`".to_owned();
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::UnsuitableJoint, node.span.clone(), message, help);
             return None;
         };
         Some(Self { joint, kind })

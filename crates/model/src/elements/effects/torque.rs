@@ -17,6 +17,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::{BodyRef, Checked, Fields, Image, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml;
 
 /// A torque on a body, or at a joint.
@@ -89,7 +90,7 @@ impl Checked for Torque {
                 for key in ["from", "frame"].into_iter().filter(|key| fields.get(key).is_some()) {
                     let message =
                         format!("a torque at a joint has no `{key}`: it acts about the joint's axis, between its bodies");
-                    reader.error(fields.key_span(key), message, None);
+                    reader.error(Code::MisplacedKey, fields.key_span(key), message, None);
                 }
                 if let Some(node) = fields.get("value").filter(|node| matches!(node.value, yaml::Value::Sequence(_))) {
                     reader.scalar(node, "a number or a formula");
@@ -99,7 +100,7 @@ impl Checked for Torque {
                 let message = format!("the torque and its reaction both act on `{}`", reader.model.body_name(on));
                 let key = if self.from.is_some() { "from" } else { "on" };
                 let span = fields.get(key).map_or_else(|| fields.at.clone(), |node| node.span.clone());
-                reader.error(span, message, "name two different bodies".to_owned());
+                reader.error(Code::SameBody, span, message, "name two different bodies".to_owned());
             }
             TorqueOn::Body(_) => {}
         }

@@ -15,6 +15,7 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Sensor, OnJoint, Reader, SymbolTable, TimeOrder, Rotating, RotatingJoint};
+use crate::syntax::codes::Code;
 use crate::multibody::BuildError;
 
 /// A spring and damper between the angles of two bodies, or on the angle of a joint.
@@ -100,7 +101,7 @@ impl Checked for TorsionalSpringDamper {
         }
         reader.exclude(fields, ["on", "between"]);
         if fields.lacks_all(&["stiffness", "damping", "torque"]) {
-            reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+            reader.error(Code::IncompleteElement, fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
         }
     }
 
@@ -110,7 +111,7 @@ impl Checked for TorsionalSpringDamper {
         if let (Some(body), Some(node)) = (free, fields.get("between")) {
             let message = format!("`{}` turns about more than z, so it has no angle", reader.model.body_name(body.0));
             let help = "write `on` with the joint whose angle it acts on, or make it a `bushing`";
-            reader.error(node.span.clone(), message, help.to_owned());
+            reader.error(Code::NoAngle, node.span.clone(), message, help.to_owned());
         }
     }
 }

@@ -25,6 +25,7 @@ use super::{ForceElement, Forces, Scope, TypedSensor};
 use crate::elements::{Form, Glyph, Shape, SurfaceAt, Surroundings};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, MaterialPoint, Vector};
 
 /// α.
@@ -217,11 +218,11 @@ impl Checked for Tyre {
         let has = |key: &str| fields.get(key).is_some();
         if has("curvature") && !has("shape") {
             let message = "`curvature` goes with `shape`, both of the magic formula";
-            reader.error(fields.key_span("curvature"), message, None);
+            reader.error(Code::MisplacedKey, fields.key_span("curvature"), message, None);
         }
         for key in ["radius", "slip_stiffness", "friction_along"].into_iter().filter(|key| has(key)) {
             if fields.lacks("wheel") {
-                reader.error(fields.key_span(key), format!("`{key}` goes with `wheel`, the body that rolls"), None);
+                reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` goes with `wheel`, the body that rolls"), None);
                 return;
             }
         }
@@ -232,7 +233,7 @@ impl Checked for Tyre {
             if !reader.model.is_spatial() {
                 for key in ["cornering_stiffness", "steer"].into_iter().filter(|key| has(key)) {
                     let help = "seen from the side a tyre has forces along the ground alone; in space it has both".to_owned();
-                    reader.error(fields.key_span(key), format!("with a `wheel` in the plane there is no `{key}`"), help);
+                    reader.error(Code::MisplacedKey, fields.key_span(key), format!("with a `wheel` in the plane there is no `{key}`"), help);
                 }
             }
         } else {

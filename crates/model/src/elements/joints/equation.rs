@@ -14,6 +14,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::Formula;
 
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Symbol, Span, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::Vector;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
@@ -60,7 +61,7 @@ impl Group for Equation {
     }
 
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
-        reader.error(fields.at.clone(), "an equation is a text, but here is a mapping", None);
+        reader.error(Code::WrongShape, fields.at.clone(), "an equation is a text, but here is a mapping", None);
         None
     }
 
@@ -84,7 +85,7 @@ impl Element for Equation {
         let text = scalar.text.as_str();
         let Some(equals) = equals_sign(text) else {
             let help = "write `left = right`, e.g. `crank.angle = omega*t`".to_owned();
-            reader.error(node.span.clone(), "an equation has two sides", help);
+            reader.error(Code::BadEquation, node.span.clone(), "an equation has two sides", help);
             return None;
         };
         let mut side = |start: usize, end: usize| {
@@ -99,7 +100,7 @@ impl Element for Equation {
         if let (Some(a), Some(b)) = (left_kind.dimension(), right_kind.dimension())
             && !a.fits(b)
         {
-            reader.error(node.span.clone(), format!("{a} cannot equal {b}"), None);
+            reader.error(Code::BadEquation, node.span.clone(), format!("{a} cannot equal {b}"), None);
         }
         let moves = left.names().chain(right.names()).any(|(name, _)| {
             matches!(
@@ -108,7 +109,7 @@ impl Element for Equation {
             )
         });
         if !moves {
-            reader.error(node.span.clone(), "the equation constrains nothing: no coordinate stands in it", None);
+            reader.error(Code::BadEquation, node.span.clone(), "the equation constrains nothing: no coordinate stands in it", None);
         }
         Some(Self { left, right })
     }

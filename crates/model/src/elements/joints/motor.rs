@@ -28,6 +28,7 @@ use symdiff::{Builder, Formula, Scalar};
 
 use crate::elements::Glyph;
 use crate::grammar::{Checked, Context, Fields, JointCoordinate, OnJoint, Reader, Requirement, SymbolTable, one_of};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
@@ -222,22 +223,22 @@ impl Checked for Motor {
         let chosen: Vec<&str> = ["position", "speed", "to"].into_iter().filter(|key| given(key)).collect();
         let [chosen] = chosen.as_slice() else {
             let help = "e.g. `speed: 60 rpm`, `position: 0.1*sin(3*t)` or `to: 90 deg` with a `profile`".to_owned();
-            reader.error(fields.at.clone(), "a motor has one of `position`, `speed` and `to`", help);
+            reader.error(Code::BadMotor, fields.at.clone(), "a motor has one of `position`, `speed` and `to`", help);
             return;
         };
         if *chosen == "position" {
             for key in ["from", "profile", "start", "duration", "ramp"].into_iter().filter(|key| given(key)) {
-                reader.error(fields.key_span(key), format!("`{key}` does not go with `position`"), None);
+                reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` does not go with `position`"), None);
             }
             return;
         }
         if !given("profile") {
             for key in PROFILED.into_iter().filter(|key| given(key)) {
-                reader.error(fields.key_span(key), format!("`{key}` goes with a `profile`"), None);
+                reader.error(Code::MisplacedKey, fields.key_span(key), format!("`{key}` goes with a `profile`"), None);
             }
             if *chosen == "to" {
                 let help = "cycloidal, quintic or trapezoidal".to_owned();
-                reader.error(fields.key_span("to"), "`to` needs a `profile` and a `duration`", help);
+                reader.error(Code::BadMotor, fields.key_span("to"), "`to` needs a `profile` and a `duration`", help);
             }
             return;
         }
@@ -258,7 +259,7 @@ impl Checked for Motor {
 
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if self.profile.is_some_and(|profile| profile != Profile::Trapezoidal) && fields.get("ramp").is_some() {
-            reader.error(fields.key_span("ramp"), "`ramp` goes with the trapezoidal profile", None);
+            reader.error(Code::MisplacedKey, fields.key_span("ramp"), "`ramp` goes with the trapezoidal profile", None);
         }
         let (Some(node), Some(speed)) = (fields.get("speed"), &self.speed) else { return };
         if self.profile.is_some() {
@@ -267,11 +268,11 @@ impl Checked for Motor {
         } else if speed.names().any(|(name, _)| reader.resolve(name, Context::Time).is_err()) {
             if fields.get("from").is_some() {
                 let help = "say the coordinate at the start in `initial`".to_owned();
-                reader.error(fields.key_span("from"), "`from` does not go with a speed that follows the motion", help);
+                reader.error(Code::BadMotor, fields.key_span("from"), "`from` does not go with a speed that follows the motion", help);
             }
         } else if !is_integrable(speed) {
             let help = "polynomials, sin, cos, exp, sqrt, min, max, floor, smoothstep and `if` of straight lines with `and` and `or`, and their sums can be; or give it as `position`";
-            reader.error(node.span.clone(), "this speed cannot be integrated by formulas", help.to_owned());
+            reader.error(Code::BadMotor, node.span.clone(), "this speed cannot be integrated by formulas", help.to_owned());
         }
     }
 }

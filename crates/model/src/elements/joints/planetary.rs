@@ -17,6 +17,7 @@ use symdiff::{Formula, Scalar};
 use crate::elements::Glyph;
 use crate::elements::meshing::{Member, Meshing, Rim};
 use crate::grammar::{Checked, Fields, JointCoordinate, MeshKind, OnJoint, Reader, RotatingJoint, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 use super::teeth::ALIGNED;
@@ -95,7 +96,7 @@ impl Checked for Planetary {
         let given: Vec<&str> = KEYS.into_iter().filter(|key| fields.get(key).is_some()).collect();
         if given.len() < 2 {
             let help = "name the joints of two of `sun`, `ring` and `carrier` at least; a member that is not named stands still".to_owned();
-            reader.error(fields.key_span("ratio"), "one wheel alone is no planetary set", help);
+            reader.error(Code::IncompleteElement, fields.key_span("ratio"), "one wheel alone is no planetary set", help);
             return;
         }
         let members = self.members();
@@ -103,7 +104,7 @@ impl Checked for Planetary {
             let earlier = members[..second].iter().position(|first| first.is_some() && *first == members[second]);
             if let Some(first) = earlier {
                 let message = format!("`{}` and `{key}` are the same joint", KEYS[first]);
-                reader.error(fields.key_span(key), message, None);
+                reader.error(Code::SameBody, fields.key_span(key), message, None);
             }
         }
     }

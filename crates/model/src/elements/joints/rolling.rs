@@ -15,6 +15,7 @@ use symdiff::Formula;
 
 use crate::elements::Glyph;
 use crate::grammar::{Checked, Direction, Fields, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::Vector;
 
 use super::rows::planar_normal;
@@ -50,7 +51,7 @@ impl Checked for Rolling {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if reader.model.is_spatial() {
             let help = "in space `rolling_on_plane` rolls a disc; on a rail a `rack` couples the angle of an axle to the way of its carriage";
-            reader.error(fields.at.clone(), "a `rolling` wheel is one of the plane, but the model is spatial", help.to_owned());
+            reader.error(Code::NotPlanar, fields.at.clone(), "a `rolling` wheel is one of the plane, but the model is spatial", help.to_owned());
         }
     }
 }

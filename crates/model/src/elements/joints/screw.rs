@@ -14,6 +14,7 @@ use symdiff::Formula;
 
 use crate::grammar::quantity::Dimension;
 use crate::grammar::formulas::Written;
+use crate::syntax::codes::Code;
 use crate::grammar::{Axis, Checked, Fields, JointCoordinate, OnJoint, PointRef, Reader, SymbolTable};
 
 use super::cylindrical::cylindrical;
@@ -97,7 +98,7 @@ impl Checked for Screw {
         };
         if per_angle {
             let help = "a pitch is the advance in a turn: write `5 mm` for 5 mm/rev".to_owned();
-            reader.error(node.span.clone(), "a length an angle stands where a length (m) belongs", help);
+            reader.error(Code::WrongDimension, node.span.clone(), "a length an angle stands where a length (m) belongs", help);
         }
     }
 }

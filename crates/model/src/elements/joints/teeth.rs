@@ -30,6 +30,7 @@ use symdiff::{Formula, Scalar};
 
 use crate::grammar::{Checked, Fields, OnJoint, Reader, Requirement, SymbolTable};
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 
 use super::Kinematics;
 
@@ -73,7 +74,12 @@ impl Checked for Flanks {
         for key in ["helix_angle", "face"] {
             if fields.get(key).is_some() && fields.get("pressure_angle").is_none() {
                 let help = "e.g. `pressure_angle: 20 deg`".to_owned();
-                reader.error(fields.key_span(key), format!("`{key}` goes with a `pressure_angle`"), help);
+                reader.error(
+                    Code::MisplacedKey,
+                    fields.key_span(key),
+                    format!("`{key}` goes with a `pressure_angle`"),
+                    help,
+                );
             }
         }
     }

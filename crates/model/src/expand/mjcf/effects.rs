@@ -8,6 +8,7 @@ use super::tree::{Sections, keys, list, map, text, value, values};
 use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::mjcf::robot::{At, Coupling, Equality, Joint, Kind, Tendon};
 use crate::robots::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value as Tree};
@@ -41,13 +42,13 @@ pub fn add(
     for entry in controls {
         if entry.value.scalar().is_none() {
             let message = format!("a number or a formula belongs here, but here is {}", entry.value.kind());
-            diagnostics.push(Diagnostic::error(entry.value.span.clone(), message));
+            diagnostics.push(Diagnostic::error(Code::WrongShape, entry.value.span.clone(), message));
         }
         if !robot.actuators.iter().any(|actuator| actuator.name == entry.key) {
             let names = robot.actuators.iter().map(|actuator| actuator.name.as_str());
             let help = suggest::help(&entry.key, "actuators", names);
             let message = format!("the MJCF has no actuator `{}`", clip(&entry.key));
-            diagnostics.push(Diagnostic::error(entry.key_span.clone(), message).help(help));
+            diagnostics.push(Diagnostic::error(Code::UnknownName, entry.key_span.clone(), message).help(help));
         }
     }
 }
@@ -113,7 +114,9 @@ fn several(sections: &mut Sections, source: &Source, joint: &Joint, diagnostics:
         // The format has them for free joints too, where they are rarely meant.
         if source.acts(number) {
             let message = format!("joint `{}` has {what}, which only hinges and slides may have", joint.name);
-            diagnostics.push(Diagnostic::error(number.span.clone(), message).help("leave it out, or 0".to_owned()));
+            diagnostics.push(
+                Diagnostic::error(Code::BadLimits, number.span.clone(), message).help("leave it out, or 0".to_owned()),
+            );
         }
     }
     if !source.acts(&joint.damping) {
@@ -135,7 +138,8 @@ fn several(sections: &mut Sections, source: &Source, joint: &Joint, diagnostics:
 fn stops(sections: &mut Sections, source: &Source, limits: &Entry, diagnostics: &mut Diagnostics) {
     let Some(impact) = limits.value.get("impact") else {
         let help = "e.g. `limits: { impact: { stiffness: 1e4 } }`".to_owned();
-        diagnostics.push(Diagnostic::error(limits.key_span.clone(), "`limits` needs `impact`").help(help));
+        diagnostics
+            .push(Diagnostic::error(Code::BadLimits, limits.key_span.clone(), "`limits` needs `impact`").help(help));
         return;
     };
     let mut acts = false;
@@ -148,7 +152,11 @@ fn stops(sections: &mut Sections, source: &Source, limits: &Entry, diagnostics: 
         acts = true;
     }
     if !acts {
-        diagnostics.push(Diagnostic::error(limits.key_span.clone(), "no joint of the robot has limits"));
+        diagnostics.push(Diagnostic::error(
+            Code::BadLimits,
+            limits.key_span.clone(),
+            "no joint of the robot has limits",
+        ));
     }
 }
 

@@ -20,6 +20,7 @@ use super::overrides::Override;
 use crate::grammar::report::Report;
 use crate::robots::mjcf::values::Values;
 use crate::robots::mjcf::{document, is_mjcf, is_number, read};
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -48,7 +49,7 @@ pub fn write_out(report: &mut Report, root: &Node, model: &Path, overrides: &[(O
     for key in ["urdf", "base"] {
         if let Some(other) = sections.iter().find(|entry| entry.key == key) {
             let message = format!("`{key}` and `mjcf` exclude each other");
-            report.error(other.key_span.clone(), message, None);
+            report.error(Code::ExclusiveKeys, other.key_span.clone(), message, None);
             return None;
         }
     }
@@ -56,7 +57,7 @@ pub fn write_out(report: &mut Report, root: &Node, model: &Path, overrides: &[(O
     let path = match report.files.find(Path::new(""), &file) {
         Ok(path) => path,
         Err(error) => {
-            report.error(entry.value.span.clone(), error.message, error.help);
+            report.error(error.code, entry.value.span.clone(), error.message, error.help);
             return None;
         }
     };
@@ -75,7 +76,7 @@ pub fn write_out(report: &mut Report, root: &Node, model: &Path, overrides: &[(O
         } else {
             "the file has no `<body>` in its `<worldbody>`: it may be one that others include"
         };
-        report.error(place, "nothing of this robot can move", help.to_owned());
+        report.error(Code::NothingMoves, place, "nothing of this robot can move", help.to_owned());
         return None;
     }
     let words = numbers::words(root, overrides);

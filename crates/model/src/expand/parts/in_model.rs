@@ -9,6 +9,7 @@ use super::{Writer, mirror, patterns};
 use crate::elements::effects::{self, EffectKind};
 use crate::elements::joints::JointKind;
 use crate::grammar::Image;
+use crate::syntax::codes::Code;
 use crate::syntax::frame::{Frame, PLACE, Turned, about_z, product, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
@@ -111,7 +112,12 @@ impl Writer<'_, '_> {
         if some && others && is_odd && mirror::tells_turns(entry) {
             let message = format!("`{}` is joints that turn and others, which have other images", clip(&on.text));
             let at = kinds.first()?.value.get("on")?.span.clone();
-            self.report.error(at, message, "write an effect for those that turn and one for the others".to_owned());
+            self.report.error(
+                Code::BadPlacement,
+                at,
+                message,
+                "write an effect for those that turn and one for the others".to_owned(),
+            );
         }
         Some(some)
     }
@@ -133,7 +139,7 @@ impl Writer<'_, '_> {
             let name = body.key.strip_prefix(scope.prefix()).unwrap_or(&body.key);
             let message = format!("the coordinates of `{name}` are along the model's axes, but the instance is turned");
             let help = "give it all coordinates, and guide it by a joint such as `prismatic`".to_owned();
-            self.report.error(span, message, help);
+            self.report.error(Code::BadPlacement, span, message, help);
             return;
         }
         let mut held: Vec<Entry> = match keys.iter().find(|key| key.key == "held").map(|key| &key.value.value) {

@@ -8,6 +8,7 @@ use crate::expand::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::keys;
 use crate::syntax;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -42,7 +43,7 @@ fn names(writer: &mut Writer, node: &Node, folder: &Path, included: &mut Include
         let (name, span) = (scalar.text.clone(), item.span.clone());
         match writer.report.files.find(folder, &name) {
             Ok(path) => file(writer, path, &span, included),
-            Err(error) => writer.report.error(span, error.message, error.help),
+            Err(error) => writer.report.error(error.code, span, error.message, error.help),
         }
     }
 }
@@ -51,7 +52,7 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
     if let Some(first) = included.open.iter().position(|open| *open == path) {
         let circle = included.open[first..].iter().chain([&path]).map(|path| clip(&path.display().to_string()));
         let message = format!("files include each other in a circle: {}", circle.collect::<Vec<_>>().join(" → "));
-        writer.report.error(span.clone(), message, None);
+        writer.report.error(Code::Circle, span.clone(), message, None);
         return;
     }
     if included.read.contains(&path) {
@@ -59,6 +60,7 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
     }
     if included.read.len() == TUNING.files {
         writer.report.error(
+            Code::TooLarge,
             span.clone(),
             format!("the model includes more than {files} files", files = TUNING.files),
             None,
@@ -71,7 +73,7 @@ fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included
         Ok(text) => text,
         Err(error) => {
             let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
-            writer.report.diagnostics.push(Diagnostic::error(span.clone(), error.message).help(help));
+            writer.report.diagnostics.push(Diagnostic::error(error.code, span.clone(), error.message).help(help));
             return;
         }
     };

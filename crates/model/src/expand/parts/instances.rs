@@ -12,6 +12,7 @@ use crate::expand::instance::{Instance, InstanceKind};
 use crate::expand::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::{Span, Within};
 use crate::syntax::suggest::{self, clip};
@@ -66,7 +67,7 @@ impl Writer<'_, '_> {
             let message =
                 format!("`{}` acts on every body of the model, and so does not belong to an assembly", kind.key);
             let help = format!("write `{}` among the `effects` of the model: it acts on all instances", effect.key);
-            self.report.error(kind.key_span.clone(), message, help);
+            self.report.error(Code::WorldEffect, kind.key_span.clone(), message, help);
         }
     }
 
@@ -88,14 +89,14 @@ impl Writer<'_, '_> {
                         let help =
                             suggest::help(&scalar.text, "parameters of it", entries.iter().map(|e| e.key.as_str()));
                         let message = format!("assembly `{name}` has no parameter `{}`", clip(&scalar.text));
-                        self.report.error(item.span.clone(), message, help);
+                        self.report.error(Code::UnknownName, item.span.clone(), message, help);
                     }
                 }
             }
             _ if shared.scalar().is_some_and(|scalar| scalar.text == "all") => {}
             _ => {
                 let message = format!("`all` or a list of parameters belongs here, but here is {}", shared.kind());
-                self.report.error(shared.span.clone(), message, "write `[name, name]`".to_owned());
+                self.report.error(Code::WrongShape, shared.span.clone(), message, "write `[name, name]`".to_owned());
             }
         }
         let scope = Arc::new(scope_of_shared(name));
@@ -133,13 +134,13 @@ impl Writer<'_, '_> {
             let mut known: Vec<&str> = self.definitions.keys().map(String::as_str).collect();
             known.sort_unstable();
             let help = suggest::help(&of, "assemblies", known);
-            self.report.error(node.span.clone(), format!("unknown assembly `{}`", clip(&of)), help);
+            self.report.error(Code::UnknownName, node.span.clone(), format!("unknown assembly `{}`", clip(&of)), help);
             return;
         };
         if around.contains(&of) || around.len() == TUNING.depth {
             let names: Vec<String> = around.iter().chain([&of]).map(|name| clip(name)).collect();
             let message = format!("an assembly is in itself: {}", names.join(" → "));
-            self.report.error(node.span.clone(), message, None);
+            self.report.error(Code::Circle, node.span.clone(), message, None);
             return;
         }
         let name = format!("{outer}{}", entry.key);
@@ -242,7 +243,7 @@ impl Writer<'_, '_> {
             _ => return true,
         };
         let message = format!("`{}` cannot be the name of a part or an instance", entry.key);
-        self.report.error(entry.key_span.clone(), message, why.to_owned());
+        self.report.error(Code::BadName, entry.key_span.clone(), message, why.to_owned());
         false
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{Writer, patterns};
 use crate::elements::JointKind;
 use crate::expand::instance::{Instance, InstanceKind};
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -71,7 +72,7 @@ fn one_each(writer: &mut Writer, effect: &Entry, node: &Node) -> Vec<Entry> {
             let help = help.map(|help| format!("{help}; or name joints by a pattern: `all hip_*`"));
             (format!("`{}` is not a kind of joint", clip(wanted)), help)
         };
-        writer.report.error(node.span.clone(), message, help);
+        writer.report.error(Code::UnknownName, node.span.clone(), message, help);
         return Vec::new();
     }
     writer.parts.instances.push(Instance { name: effect.key.clone(), kind: InstanceKind::Effect });

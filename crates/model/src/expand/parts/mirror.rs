@@ -12,6 +12,7 @@ use crate::elements::shapes::ShapeKind;
 use crate::grammar::mapping::Grammar;
 use crate::grammar::{Image, KeyImage};
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -50,7 +51,7 @@ impl Writer<'_, '_> {
             if images.iter().any(|known| known.name == found.key && matches!(known.image, Image::Unknown)) {
                 let message = format!("`{}` of a `{}` cannot be mirrored", found.key, kind.key);
                 let help = "write the mirrored assembly out, or give the parts that differ to the model".to_owned();
-                self.report.error(found.key_span.clone(), message, help);
+                self.report.error(Code::BadPlacement, found.key_span.clone(), message, help);
             }
         }
         add_defaults(keys, &images, &kind.key_span);
@@ -63,7 +64,7 @@ impl Writer<'_, '_> {
     pub(super) fn image_of_body(&mut self, entry: &mut Entry, mirrors: Mirrors) {
         let Value::Mapping(keys) = &mut entry.value.value else { return };
         if let Some(beam) = keys.iter().find(|key| key.key == "beam" && mirrors.axes().next().is_some()) {
-            self.report.error(beam.key_span.clone(), "a beam that bends cannot be mirrored", None);
+            self.report.error(Code::BadPlacement, beam.key_span.clone(), "a beam that bends cannot be mirrored", None);
         }
         let images = <keys::Body as Grammar>::images();
         mirrors.axes().for_each(|axis| image_of_keys(keys, &images, axis, None));

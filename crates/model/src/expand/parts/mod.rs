@@ -26,6 +26,7 @@ use super::overrides::Override;
 use super::sections::entries_of;
 use crate::expand::tuning::TUNING;
 use crate::grammar::report::Report;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;
@@ -160,7 +161,7 @@ impl Writer<'_, '_> {
     /// Reports that a name is there twice.
     fn twice(&mut self, name: &str, span: &Span, first: &Span) {
         let message = format!("`{}` is given twice", crate::syntax::suggest::clip(name));
-        let diagnostic = Diagnostic::error(span.clone(), message).label("again here");
+        let diagnostic = Diagnostic::error(Code::GivenTwice, span.clone(), message).label("again here");
         self.report.diagnostics.push(diagnostic.also(first.clone(), "first here"));
     }
 
@@ -171,7 +172,7 @@ impl Writer<'_, '_> {
             self.is_full = true;
             let message = format!("written out, the model has more than {nodes} entries", nodes = TUNING.nodes);
             let help = "have fewer instances and repetitions".to_owned();
-            self.report.error(at.clone(), message, help);
+            self.report.error(Code::TooLarge, at.clone(), message, help);
         }
         !self.is_full
     }

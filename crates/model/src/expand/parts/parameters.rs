@@ -8,6 +8,7 @@ use super::Writer;
 use crate::expand::notation;
 use crate::expand::scenes::draft::overridden;
 use crate::grammar::mentions::NameKind;
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
@@ -62,7 +63,7 @@ impl Writer<'_, '_> {
         for entry in given.iter().filter(|entry| !own.iter().any(|known| known.key == entry.key)) {
             let help = suggest::help(&entry.key, "parameters of it", own.iter().map(|known| known.key.as_str()));
             let message = format!("assembly `{definition}` has no parameter `{}`", clip(&entry.key));
-            self.report.error(entry.key_span.clone(), message, help);
+            self.report.error(Code::UnknownName, entry.key_span.clone(), message, help);
         }
         let mut parameters = Vec::with_capacity(own.len());
         for entry in own {

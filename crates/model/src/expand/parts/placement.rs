@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::{Writer, mirror};
 use crate::grammar::report::Fields;
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::frame::{Frame, PLACE, Turned, about, about_z, product, signed, sum};
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::scope::Scope;
@@ -78,7 +79,12 @@ impl Writer<'_, '_> {
             Value::Mapping(_) => {
                 let at = self.report.fields::<keys::PlaceFile>(node, fields.key_span("at"))?;
                 if at.get("angle").is_some() && at.get("rotation").is_some() {
-                    self.report.error(at.key_span("angle"), "`angle` and `rotation` exclude each other", None);
+                    self.report.error(
+                        Code::ExclusiveKeys,
+                        at.key_span("angle"),
+                        "`angle` and `rotation` exclude each other",
+                        None,
+                    );
                     return None;
                 }
                 placement.numbers.extend(at.get("angle").map(|angle| ("angle".to_owned(), angle.clone(), "rad")));
@@ -99,7 +105,7 @@ impl Writer<'_, '_> {
                     let help = "e.g. `at: [0.5 m, 0]`, or `at: { position: [0.5 m, 0], angle: 30 deg }`".to_owned();
                     let message =
                         format!("a position of two or three numbers belongs here, but here is {}", position.kind());
-                    self.report.error(position.span.clone(), message, help);
+                    self.report.error(Code::WrongShape, position.span.clone(), message, help);
                     return None;
                 }
             }
@@ -147,12 +153,17 @@ impl Writer<'_, '_> {
         }
         let Value::Sequence(items) = &axis.value else {
             let message = format!("`x`, `y`, `z` or a list of three numbers belongs here, but here is {}", axis.kind());
-            self.report.error(axis.span.clone(), message, None);
+            self.report.error(Code::WrongShape, axis.span.clone(), message, None);
             return None;
         };
         self.report.list_of(axis, 3)?;
         if items.iter().all(|item| item.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0))) {
-            self.report.error(axis.span.clone(), "a direction of length zero points nowhere", None);
+            self.report.error(
+                Code::ZeroDirection,
+                axis.span.clone(),
+                "a direction of length zero points nowhere",
+                None,
+            );
             return None;
         }
         let names = AXES.map(|axis| format!("axis_{axis}"));

@@ -3,6 +3,7 @@
 use super::{Writer, mirror};
 use crate::grammar::mentions::NameKind;
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::mirrors::Mirrors;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -63,7 +64,7 @@ impl Writer<'_, '_> {
                 bodies.iter().filter_map(|body| Some(body.key.strip_prefix(prefix)?.to_owned())).collect();
             let short = body.strip_prefix(prefix).unwrap_or(&body);
             let help = suggest::help(short, "bodies", known.iter().map(String::as_str));
-            self.report.error(on.span.clone(), format!("unknown body `{}`", clip(&body)), help);
+            self.report.error(Code::UnknownName, on.span.clone(), format!("unknown body `{}`", clip(&body)), help);
             return None;
         };
         let Value::Mapping(keys) = &mut found.value.value else { return None };

@@ -7,6 +7,7 @@ use symdiff::formula::indices::{self, Index};
 
 use super::Writer;
 use crate::expand::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -94,7 +95,12 @@ impl Writer<'_, '_> {
                     Err(error) => {
                         let verbatim = key_span.len() == entry.key.len();
                         let part = key_span.start + error.span.start..key_span.start + error.span.end;
-                        self.report.error(if verbatim { part } else { key_span }, error.message, error.help);
+                        self.report.error(
+                            Code::BadRepetition,
+                            if verbatim { part } else { key_span },
+                            error.message,
+                            error.help,
+                        );
                         return None;
                     }
                 }
@@ -121,7 +127,7 @@ impl Writer<'_, '_> {
                 if !entry.key.contains('{') {
                     let key = clip(&entry.key);
                     let help = format!("put the index into the name, in braces: `{key}_{{i}}`");
-                    self.report.error(span, format!("all copies are called `{key}`"), help);
+                    self.report.error(Code::BadRepetition, span, format!("all copies are called `{key}`"), help);
                 }
                 return;
             }
@@ -133,7 +139,7 @@ impl Writer<'_, '_> {
         let span = repeat.span.start + shift..repeat.span.end + shift;
         let Value::Mapping(entries) = &repeat.value else {
             let message = format!("`{REPEAT}` is a mapping of indices, but here is {}", repeat.kind());
-            self.report.error(span, message, "e.g. `repeat: { i: 1..6 }`".to_owned());
+            self.report.error(Code::BadRepetition, span, message, "e.g. `repeat: { i: 1..6 }`".to_owned());
             return None;
         };
         let mut scopes = vec![outer];
@@ -147,7 +153,7 @@ impl Writer<'_, '_> {
                 let values = self.values(&entry.value, shift, scope)?;
                 if next.len() + values.len() > TUNING.copies {
                     let message = format!("`{REPEAT}` makes more than {copies} copies", copies = TUNING.copies);
-                    self.report.error(span, message, None);
+                    self.report.error(Code::TooLarge, span, message, None);
                     return None;
                 }
                 next.extend(values.into_iter().map(|value| Arc::new(scope.with(&entry.key, value))));
@@ -162,7 +168,12 @@ impl Writer<'_, '_> {
         let span = node.span.start + shift..node.span.end + shift;
         if let Value::Sequence(items) = &node.value {
             if items.is_empty() {
-                self.report.error(span, "an index needs a value", "e.g. `[left, right]`".to_owned());
+                self.report.error(
+                    Code::BadRepetition,
+                    span,
+                    "an index needs a value",
+                    "e.g. `[left, right]`".to_owned(),
+                );
                 return None;
             }
             let word = |item: &Node| {
@@ -177,13 +188,13 @@ impl Writer<'_, '_> {
         let range = match indices::range(&scalar.text, &|name| scope.whole(name)) {
             Ok(range) => range,
             Err(error) => {
-                self.report.error(scalar.place(&node.span, error.span), error.message, error.help);
+                self.report.error(Code::BadRepetition, scalar.place(&node.span, error.span), error.message, error.help);
                 return None;
             }
         };
         if range.end().saturating_sub(*range.start()) >= TUNING.copies as i64 {
             let message = format!("`{}` makes more than {} copies", clip(&scalar.text), TUNING.copies);
-            self.report.error(span, message, None);
+            self.report.error(Code::TooLarge, span, message, None);
             return None;
         }
         Some(range.map(Index::Number).collect())
@@ -208,7 +219,7 @@ impl Writer<'_, '_> {
             if self.parts.counts.contains(&change.key) {
                 let message = format!("a scene cannot change how often `{}` repeats something", clip(&change.key));
                 let help = "`--set` can; or make it a model of its own".to_owned();
-                self.report.error(change.key_span.clone(), message, help);
+                self.report.error(Code::BadRepetition, change.key_span.clone(), message, help);
             }
         }
     }

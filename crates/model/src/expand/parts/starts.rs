@@ -6,6 +6,7 @@ use super::in_model::Places;
 use super::placement::AXES;
 use super::turned::{orient, replace, text, turn};
 use super::{Writer, mirror};
+use crate::syntax::codes::Code;
 use crate::syntax::frame::{Frame, PLACE, Turned, Vector, signed, sum};
 use crate::syntax::scope::Scope;
 use crate::syntax::yaml::Entry;
@@ -94,6 +95,7 @@ impl Writer<'_, '_> {
                 let name = own_name(start, scope);
                 let message = format!("`{name}` is about an axis of the model, but the instance is turned");
                 self.report.error(
+                    Code::BadStart,
                     start.key_span.clone(),
                     message,
                     "give `orientation`, or coordinates of joints".to_owned(),
@@ -115,7 +117,7 @@ impl Writer<'_, '_> {
         if frame.turned == Turned::InSpace {
             let name = own_name(start, scope);
             let message = format!("`{name}` is about the model's z, but the instance is turned in space");
-            self.report.error(start.key_span.clone(), message, "give coordinates of joints".to_owned());
+            self.report.error(Code::BadStart, start.key_span.clone(), message, "give coordinates of joints".to_owned());
             return;
         }
         if frame.mirrors.turns_back(2) {
@@ -155,7 +157,12 @@ impl Writer<'_, '_> {
                 let name = own_name(start, scope);
                 let message = format!("`{name}` is given without `{wanted}`, but the instance is turned");
                 let all = if frame.turned == Turned::InSpace { "all three" } else { "both" };
-                self.report.error(start.key_span.clone(), message, format!("give {all}, or the coordinates of joints"));
+                self.report.error(
+                    Code::BadStart,
+                    start.key_span.clone(),
+                    message,
+                    format!("give {all}, or the coordinates of joints"),
+                );
                 return;
             };
             let is_negative = if is_rate { frame.mirrors.turns_back(other) } else { frame.mirrors.flips(other) };

@@ -8,6 +8,7 @@ use crate::expand::parts::patterns;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::report::{Fields, Report};
 use crate::robots::urdf;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -130,7 +131,7 @@ impl Draft {
             if sections.iter().all(|section| self.out.contains(&(*section, name.clone()))) && !sections.is_empty()
                 || robots
             {
-                report.error(span, format!("`{}` is left out already", clip(&name)), None);
+                report.error(Code::BadScene, span, format!("`{}` is left out already", clip(&name)), None);
             } else if sections.is_empty() && self.has_robot() {
                 // Perhaps one of the robot's, which are known when its file is read.
                 self.robot.kept.retain(|(kept, _)| *kept != name);
@@ -159,7 +160,7 @@ impl Draft {
                 self.unknown(report, &name, span);
             } else {
                 let help = "`with` puts in what the model, a scene that is extended or this one's `without` leaves out";
-                report.error(span, format!("`{}` is not left out", clip(&name)), help.to_owned());
+                report.error(Code::BadScene, span, format!("`{}` is not left out", clip(&name)), help.to_owned());
             }
         }
     }
@@ -215,7 +216,7 @@ impl Draft {
                     let names = parameters.iter().map(|known| known.key.as_str());
                     let help = suggest::help(&entry.key, "parameters", names);
                     let message = format!("unknown parameter `{}`", clip(&entry.key));
-                    report.error(entry.key_span.clone(), message, help);
+                    report.error(Code::UnknownName, entry.key_span.clone(), message, help);
                 }
             }
         }
@@ -265,7 +266,12 @@ fn replace(entries: &mut Vec<Entry>, entry: Entry) {
 fn names(report: &mut Report, node: &Node, wanted: &str) -> Vec<(String, Span)> {
     let Value::Sequence(items) = &node.value else {
         let help = "write `[name, name]`".to_owned();
-        report.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), help);
+        report.error(
+            Code::WrongShape,
+            node.span.clone(),
+            format!("{wanted} belongs here, but here is {}", node.kind()),
+            help,
+        );
         return Vec::new();
     };
     let name = |item: &Node| {

@@ -10,6 +10,7 @@ use crate::expand::tuning::TUNING;
 use crate::grammar::mentions::NameKind;
 use crate::grammar::report::{Fields, Report};
 use crate::keys;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -134,6 +135,7 @@ impl<'n> Scenes<'n> {
 fn layers<'n>(report: &mut Report, mut entries: &'n [Entry]) -> Vec<Layer<'n>> {
     if let Some(beyond) = entries.get(TUNING.scenes) {
         report.error(
+            Code::TooLarge,
             beyond.key_span.clone(),
             format!("the model has more than {scenes} scenes", scenes = TUNING.scenes),
             None,
@@ -146,7 +148,7 @@ fn layers<'n>(report: &mut Report, mut entries: &'n [Entry]) -> Vec<Layer<'n>> {
         let alike = |layer: &&Layer| layer.entry.key.to_lowercase() == entry.key.to_lowercase();
         if let Some(other) = layers.iter().find(alike) {
             let message = format!("`{}` and `{}` differ in upper and lower case only", other.entry.key, entry.key);
-            let diagnostic = Diagnostic::error(entry.key_span.clone(), message)
+            let diagnostic = Diagnostic::error(Code::NameTaken, entry.key_span.clone(), message)
                 .help("folders of results are called after scenes, and on some systems these would be one".to_owned());
             report.diagnostics.push(diagnostic.also(other.entry.key_span.clone(), "the other"));
         }
@@ -172,7 +174,7 @@ fn extended(report: &mut Report, layers: &[Layer], index: usize) -> Option<usize
     if found.is_none() {
         let others = layers.iter().map(|layer| layer.entry.key.as_str());
         let help = suggest::help(name, "scenes", others.filter(|other| *other != layers[index].entry.key));
-        report.error(node.span.clone(), format!("unknown scene `{}`", clip(name)), help);
+        report.error(Code::UnknownName, node.span.clone(), format!("unknown scene `{}`", clip(name)), help);
     }
     found
 }
@@ -190,7 +192,7 @@ fn break_circle(report: &mut Report, layers: &mut [Layer], start: usize) {
             let names: Vec<String> = chain.iter().map(|&layer| clip(&layers[layer].entry.key)).collect();
             let message = format!("scenes extend each other in a circle: {}", names.join(" → "));
             let place = layers[start].fields.get("extends").map(|node| node.span.clone());
-            report.error(place.unwrap_or_default(), message, None);
+            report.error(Code::Circle, place.unwrap_or_default(), message, None);
             layers[start].extends = None;
             return;
         }
@@ -201,5 +203,5 @@ fn break_circle(report: &mut Report, layers: &mut [Layer], start: usize) {
 pub fn unknown<'k>(report: &mut Report, name: &str, span: Span, known: impl IntoIterator<Item = &'k str>) {
     let message = format!("there is no effect, joint or output `{}`", clip(name));
     let help = suggest::help(name, "names", known);
-    report.error(span, message, help);
+    report.error(Code::UnknownName, span, message, help);
 }

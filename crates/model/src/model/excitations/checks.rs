@@ -10,6 +10,7 @@ use crate::grammar::formulas::evaluate;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 
 /// Reports limits that cross, that change faster than functions between them may, or that do not hold their mean.
 /// Completes classes that depend on the duration.
@@ -26,7 +27,7 @@ pub fn check_limits(reader: &mut Reader, fields: &Fields) {
         let Some(own) = found.and_then(Trajectory::excitation).cloned() else { continue };
         if let Some((key, message)) = problem(reader, &own) {
             let place = entry.value.get(key).map_or_else(|| entry.key_span.clone(), |node| node.span.clone());
-            reader.error(place, message, None);
+            reader.error(Code::BadExcitation, place, message, None);
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::model::random::band_of;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Node};
 
 /// Keys of which an excitation has one at most.
@@ -33,7 +34,12 @@ pub fn read(
     let class = given.next();
     if let (Some((first, _)), Some((second, _))) = (class, given.next()) {
         let help = format!("leave out `{first}`, or `{second}`");
-        reader.error(fields.key_span(second), format!("`{first}` and `{second}` are of different classes"), help);
+        reader.error(
+            Code::ExclusiveKeys,
+            fields.key_span(second),
+            format!("`{first}` and `{second}` are of different classes"),
+            help,
+        );
         return None;
     }
     let whole = |reach: Formula| Limits { middle: Formula::number(0.0), reach };
@@ -77,7 +83,12 @@ pub fn read(
         }
         (None, _) => {
             if fields.lacks_all(&["within", "rate", "energy"]) {
-                reader.error(entry.key_span.clone(), "an excitation needs limits", EXAMPLE.to_owned());
+                reader.error(
+                    Code::BadExcitation,
+                    entry.key_span.clone(),
+                    "an excitation needs limits",
+                    EXAMPLE.to_owned(),
+                );
             }
             return None;
         }
@@ -102,7 +113,7 @@ fn period(reader: &mut Reader, node: &Node) -> Option<f64> {
     let formula =
         reader.formula_that(node, Context::Constant, Dimension::TIME, |held| held > 0.0, "must be positive")?;
     if reader.is_uncertain(&formula) {
-        reader.error(node.span.clone(), "a period is the same for all samples", None);
+        reader.error(Code::MustBeCertain, node.span.clone(), "a period is the same for all samples", None);
         return None;
     }
     reader.evaluate(&formula, 0).filter(|period| period.is_finite() && *period > 0.0)
@@ -126,7 +137,12 @@ fn refuse_time(reader: &mut Reader, node: &Node, formulas: [&Formula; 2], key: &
         return Some(());
     }
     let message = format!("with `{key}`, limits do not change in time");
-    reader.error(node.span.clone(), message, "add what changes to the formulas that use it".to_owned());
+    reader.error(
+        Code::BadExcitation,
+        node.span.clone(),
+        message,
+        "add what changes to the formulas that use it".to_owned(),
+    );
     None
 }
 

@@ -7,6 +7,7 @@ use crate::grammar::tolerance::{self, Deviation};
 use crate::grammar::unit::number_and_unit;
 use crate::grammar::{Context, Symbol};
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::Node;
 
 /// An example of limits.
@@ -54,7 +55,7 @@ pub fn limits(reader: &mut Reader, node: &Node, dimension: &mut Option<Dimension
             Limits { middle: any_of(reader, &value, dimension)?, reach: Formula::number(0.0) }
         }
         _ => {
-            reader.error(node.span.clone(), "limits belong here", EXAMPLE.to_owned());
+            reader.error(Code::BadExcitation, node.span.clone(), "limits belong here", EXAMPLE.to_owned());
             return None;
         }
     })

@@ -18,6 +18,7 @@ use crate::grammar::report::Fields;
 use crate::keys;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::parameters::{deviation_of, seed_of};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Entry;
@@ -33,7 +34,12 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
         let is_taken = |section: &&str| fields.get(section).is_some_and(|section| section.get(&entry.key).is_some());
         if OTHERS.iter().any(is_taken) {
             let message = format!("something else is called `{}` too", clip(&entry.key));
-            reader.error(entry.key_span.clone(), message, "give the excitation another name".to_owned());
+            reader.error(
+                Code::NameTaken,
+                entry.key_span.clone(),
+                message,
+                "give the excitation another name".to_owned(),
+            );
             continue;
         }
         let Some(found) = excitation(reader, entry).filter(|_| named) else { continue };
@@ -89,7 +95,7 @@ pub fn check_joints(reader: &mut Reader, entries: &[Entry]) {
     for (index, excitation) in found {
         let message =
             format!("a joint cannot follow the excitation `{}`: its acceleration is not known", clip(&excitation));
-        reader.error(index, message, "let a force follow it, or a `servo`".to_owned());
+        reader.error(Code::BadExcitation, index, message, "let a force follow it, or a `servo`".to_owned());
     }
 }
 
@@ -106,7 +112,7 @@ pub fn unused(reader: &mut Reader, fields: &Fields) -> Vec<Diagnostic> {
             _ => continue,
         };
         let message = format!("excitation `{}` is used nowhere", clip(&entry.key));
-        warnings.push(Diagnostic::warning(entry.key_span.clone(), message));
+        warnings.push(Diagnostic::warning(Code::UnusedExcitation, entry.key_span.clone(), message));
     }
     warnings
 }

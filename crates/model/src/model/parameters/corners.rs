@@ -7,6 +7,7 @@ use crate::grammar::reader::Corner;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 
 /// Parameters with the values that they take at a corner.
@@ -46,11 +47,11 @@ pub fn read(reader: &mut Reader, name_spans: &[Span]) {
         .collect();
     if let Some(index) = beyond {
         let message = format!("the model has more than {uncertain} uncertain parameters", uncertain = TUNING.uncertain);
-        reader.error(name_spans[index].clone(), message, None);
+        reader.error(Code::TooLarge, name_spans[index].clone(), message, None);
     }
     for (index, label) in infinite {
         let message = format!("`{}` is not a finite number{label}", reader.model.parameters[index].name);
-        reader.error(name_spans[index].clone(), message, None);
+        reader.error(Code::NotANumber, name_spans[index].clone(), message, None);
     }
     reader.broken = corners.iter().any(|corner| corner.values.iter().any(|value| !value.is_finite()));
     reader.corners_of = moved(&corners, reader.model.parameters.len());

@@ -8,6 +8,7 @@ use crate::keys;
 use crate::model::description::{Cost, Grade};
 use crate::model::names::Reader;
 use crate::numerics::iso286;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
@@ -19,7 +20,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, nominal: f64, kind:
         }
         let message = format!("`{}` is no cost", clip(&scalar.text));
         let help = "write `fixed`, `{ reciprocal: 2 }` or `{ grades: { IT7: 5, IT9: 2 } }`".to_owned();
-        reader.error(node.span.clone(), message, help);
+        reader.error(Code::BadCost, node.span.clone(), message, help);
         return None;
     }
     let fields = reader.fields::<keys::CostKinds>(node, node.span.clone())?;
@@ -27,7 +28,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, nominal: f64, kind:
         (Some(node), None) => return positive(reader, node).map(Cost::Reciprocal),
         (None, Some(grades)) => grades,
         _ => {
-            reader.error(node.span.clone(), "a cost is `reciprocal`, or has `grades`", None);
+            reader.error(Code::BadCost, node.span.clone(), "a cost is `reciprocal`, or has `grades`", None);
             return None;
         }
     };
@@ -42,7 +43,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, nominal: f64, kind:
         known.push(Grade { name: entry.key.clone(), tolerance: tolerance?, cost: cost? });
     }
     if known.is_empty() {
-        reader.error(grades.span.clone(), "there is no grade", None);
+        reader.error(Code::BadCost, grades.span.clone(), "there is no grade", None);
         return None;
     }
     known.sort_by(|a, b| a.tolerance.total_cmp(&b.tolerance));
@@ -56,13 +57,18 @@ fn tolerance(reader: &mut Reader, draft: &Draft, entry: &Entry, size: f64, kind:
         let node = Node { span: entry.key_span.clone(), value: Value::Scalar(scalar) };
         let found = interval::bare_number(reader, draft, &node, kind)?;
         if found <= 0.0 {
-            reader.error(entry.key_span.clone(), "the tolerance of a grade is positive", None);
+            reader.error(Code::BadCost, entry.key_span.clone(), "the tolerance of a grade is positive", None);
             return None;
         }
         return Some(found);
     };
     if kind.dimension().is_some_and(|dimension| dimension != Dimension::LENGTH) {
-        reader.error(entry.key_span.clone(), "ISO 286 is about lengths, but the parameter is none", None);
+        reader.error(
+            Code::BadCost,
+            entry.key_span.clone(),
+            "ISO 286 is about lengths, but the parameter is none",
+            None,
+        );
         return None;
     }
     let width = grade.parse::<u8>().ok().and_then(|grade| iso286::tolerance(grade, size.abs()));
@@ -70,7 +76,7 @@ fn tolerance(reader: &mut Reader, draft: &Draft, entry: &Entry, size: f64, kind:
         let message = format!("`{}` of a size of {} mm is not in ISO 286-1's table", clip(&entry.key), 1e3 * size);
         let help =
             "grades are IT5 to IT12, sizes above 0 up to 3150 mm; give a `size`, or tolerances such as `0.02 mm`";
-        reader.error(entry.key_span.clone(), message, help.to_owned());
+        reader.error(Code::BadCost, entry.key_span.clone(), message, help.to_owned());
     }
     width.map(|width| 0.5 * width)
 }

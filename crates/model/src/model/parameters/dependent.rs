@@ -9,6 +9,7 @@ use crate::expand::overrides::Override;
 use crate::grammar::dimension::Kind;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Entry;
 
@@ -63,7 +64,7 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
         if !reader.model.parameters.iter().any(|known| known.name == wanted.name) {
             let message = format!("`{}` has no deviation of its own", wanted.name.trim_end_matches(DEVIATION));
             let help = "a parameter with a tolerance whose value depends on an uncertain one has".to_owned();
-            reader.error(span.clone(), message, help);
+            reader.error(Code::NotUncertain, span.clone(), message, help);
         }
     }
 }
@@ -111,7 +112,7 @@ pub fn finish(
     if let Some(node) = &draft.spec.interval {
         let message = "the value depends on an uncertain parameter, so that this interval is not one around it";
         let help = "give a `tolerance`, or `plus` and `minus`".to_owned();
-        reader.error(node.span.clone(), message, help);
+        reader.error(Code::BadTolerance, node.span.clone(), message, help);
         return;
     }
     let Some((above, below)) = interval::deviations(reader, draft, nominal, kind) else { return };

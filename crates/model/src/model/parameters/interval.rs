@@ -10,6 +10,7 @@ use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::unit::number_and_unit;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest;
 use crate::syntax::yaml::Node;
@@ -27,7 +28,7 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
         let (lower, upper) = (lower?, upper?);
         if lower > upper {
             let help = format!("the smaller one stands first: `[{}, {}]`", text(second), text(first));
-            reader.error(node.span.clone(), "the interval is reversed", help);
+            reader.error(Code::ReversedRange, node.span.clone(), "the interval is reversed", help);
             return None;
         }
         let nominal = match (value, nominal) {
@@ -36,7 +37,7 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
         };
         if !(lower..=upper).contains(&nominal) {
             let place = value.as_ref().map_or_else(|| node.span.clone(), |value| value.span.clone());
-            let diagnostic = Diagnostic::error(place, "the value lies outside its interval");
+            let diagnostic = Diagnostic::error(Code::BadTolerance, place, "the value lies outside its interval");
             reader.diagnostics.push(diagnostic.also(node.span.clone(), "the interval"));
             return None;
         }
@@ -53,7 +54,7 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
     if !(lower.is_finite() && upper.is_finite() && (upper - lower).is_finite()) {
         let written = [tolerance, plus, minus].into_iter().flatten().next();
         let place = written.map_or_else(|| 0..0, |node| node.span.clone());
-        reader.error(place, "the parameter's limits are no finite numbers", None);
+        reader.error(Code::NotANumber, place, "the parameter's limits are no finite numbers", None);
         return None;
     }
     Some([nominal, lower, upper])
@@ -64,7 +65,12 @@ fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &Kind) ->
     let size = size?;
     if kind.dimension() != Some(Dimension::LENGTH) {
         let help = "e.g. `12 mm H7`".to_owned();
-        reader.error(node.span.clone(), "a tolerance class is of a length, and this value is none", help);
+        reader.error(
+            Code::BadClass,
+            node.span.clone(),
+            "a tolerance class is of a length, and this value is none",
+            help,
+        );
         return None;
     }
     // Without the rounding error of 12 mm in metres.
@@ -76,7 +82,7 @@ fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &Kind) ->
             Some([lower + (upper - lower) / 2.0, lower, upper])
         }
         Err(error) => {
-            reader.error(node.span.clone(), error.to_string(), None);
+            reader.error(Code::BadClass, node.span.clone(), error.to_string(), None);
             None
         }
     }
@@ -87,7 +93,12 @@ pub fn deviations(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind
     let Spec { tolerance, plus, minus, class, .. } = &draft.spec;
     if let Some(node) = class {
         let help = "give the deviations themselves, e.g. `tolerance: 0.01 mm`".to_owned();
-        reader.error(node.span.clone(), "a tolerance class needs a size that no uncertain parameter changes", help);
+        reader.error(
+            Code::BadClass,
+            node.span.clone(),
+            "a tolerance class needs a size that no uncertain parameter changes",
+            help,
+        );
         return None;
     }
     let (above, below) = match tolerance {
@@ -122,7 +133,7 @@ fn deviation(
     };
     let negative = percent.map_or(deviation, |(percent, ..)| percent) < 0.0;
     if negative {
-        reader.error(node.span.clone(), "a tolerance cannot be negative", None);
+        reader.error(Code::BadTolerance, node.span.clone(), "a tolerance cannot be negative", None);
         return None;
     }
     Some(deviation)
@@ -145,7 +156,12 @@ pub fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut K
                 return None;
             }
             if formula.names().next().is_some() {
-                reader.error(node.span.clone(), "the limits of a parameter are numbers, not formulas", None);
+                reader.error(
+                    Code::BadTolerance,
+                    node.span.clone(),
+                    "the limits of a parameter are numbers, not formulas",
+                    None,
+                );
                 return None;
             }
             let own_unit = matches!(draft.value, Some(Written::Quantity { .. })) && draft.unit.is_none();
@@ -154,7 +170,7 @@ pub fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut K
                 let unit =
                     draft.spec.value.as_ref().and_then(Node::scalar).and_then(|scalar| number_and_unit(&scalar.text));
                 let help = format!("e.g. `{} {}`", text(node), unit.map_or("m", |(_, unit, _)| unit));
-                reader.error(node.span.clone(), "this number has no unit, but the value has", help);
+                reader.error(Code::MissingUnit, node.span.clone(), "this number has no unit, but the value has", help);
                 return None;
             }
             let dimension = reader.kind(node, &formula, 0).dimension();
@@ -165,7 +181,12 @@ pub fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut K
             let in_si = dimension.is_some();
             let number = evaluate(&formula, |_| None).filter(|number| number.is_finite());
             if number.is_none() {
-                reader.error(node.span.clone(), format!("`{}` is not a finite number", text(node)), None);
+                reader.error(
+                    Code::NotANumber,
+                    node.span.clone(),
+                    format!("`{}` is not a finite number", text(node)),
+                    None,
+                );
             }
             match draft.unit {
                 Some(unit) if !in_si => number.map(|number| unit.to_si(number)),

@@ -8,6 +8,7 @@ use crate::model::description::Law;
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
 use crate::numerics::statistics::Distribution;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest;
 use crate::syntax::yaml::{Node, Value};
 
@@ -68,7 +69,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
                 "table" => ("`table` needs its points", "e.g. `{ table: [[0.1, 0], [0.2, 1], [0.3, 0]] }`".to_owned()),
                 _ => ("this is no distribution", format!("the distributions are {}", suggest::list(&NAMES))),
             };
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::BadDistribution, node.span.clone(), message, help);
         }
         return law;
     }
@@ -86,7 +87,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             let sigma = number("sigma", third)?;
             if sigma <= 0.0 {
                 let place = fields.get("sigma").map_or(node.span.clone(), |node| node.span.clone());
-                reader.error(place, "a standard deviation is positive", None);
+                reader.error(Code::BadDistribution, place, "a standard deviation is positive", None);
                 return None;
             }
             let by_tolerance = fields.get("sigma").is_none();
@@ -106,7 +107,12 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
                     let mode = place.moved(written, true);
                     let [first, last] = place.ends();
                     if !(first..=last).contains(&written) {
-                        reader.error(node.span.clone(), "the mode lies outside of the interval", None);
+                        reader.error(
+                            Code::BadDistribution,
+                            node.span.clone(),
+                            "the mode lies outside of the interval",
+                            None,
+                        );
                         return None;
                     }
                     mode
@@ -136,7 +142,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
             };
             if median <= 0.0 || lower <= 0.0 {
                 let help = format!("the median is {median}, and the interval begins at {lower}");
-                reader.error(at, "a lognormal law is one of positive values", help);
+                reader.error(Code::BadDistribution, at, "a lognormal law is one of positive values", help);
                 return None;
             }
             Distribution::Lognormal { median, sigma: sigma?, lower: 0.0, upper: f64::INFINITY }
@@ -155,7 +161,12 @@ pub fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
     let scalar = reader.scalar(node, "a positive number")?;
     let number = scalar.text.parse::<f64>().ok().filter(|number| *number > 0.0 && number.is_finite());
     if number.is_none() {
-        reader.error(node.span.clone(), format!("`{}` is not a positive number", suggest::clip(&scalar.text)), None);
+        reader.error(
+            Code::BadDistribution,
+            node.span.clone(),
+            format!("`{}` is not a positive number", suggest::clip(&scalar.text)),
+            None,
+        );
     }
     number
 }
@@ -164,7 +175,7 @@ pub fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
 fn table(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind: &mut Kind) -> Option<Vec<(f64, f64)>> {
     let Value::Sequence(items) = &node.value else {
         let help = "e.g. `[[0.1, 0], [0.2, 1], [0.3, 0]]`".to_owned();
-        reader.error(node.span.clone(), "a table is a list of pairs of value and density", help);
+        reader.error(Code::BadDistribution, node.span.clone(), "a table is a list of pairs of value and density", help);
         return None;
     };
     let [lower, upper] = place.ends();
@@ -175,23 +186,38 @@ fn table(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind: &m
         let scalar = reader.scalar(density, "a density")?;
         let value = scalar.text.parse::<f64>().ok().filter(|value| *value >= 0.0 && value.is_finite());
         let Some(value) = value else {
-            reader.error(density.span.clone(), "a density is a number that is not negative", None);
+            reader.error(
+                Code::BadDistribution,
+                density.span.clone(),
+                "a density is a number that is not negative",
+                None,
+            );
             return None;
         };
         let slack = 1e-9 * (upper - lower);
         if !(lower - slack..=upper + slack).contains(&x_value) {
-            reader.error(x.span.clone(), "this value lies outside of the interval", None);
+            reader.error(Code::BadDistribution, x.span.clone(), "this value lies outside of the interval", None);
             return None;
         }
         let x_value = place.moved(x_value.clamp(lower, upper), true);
         if points.last().is_some_and(|last| last.0 >= x_value) {
-            reader.error(x.span.clone(), "values ascend, but this one does not come after the one before", None);
+            reader.error(
+                Code::BadDistribution,
+                x.span.clone(),
+                "values ascend, but this one does not come after the one before",
+                None,
+            );
             return None;
         }
         points.push((x_value.clamp(place.lower, place.upper), value));
     }
     if points.len() < 2 || points.iter().all(|point| point.1 == 0.0) {
-        reader.error(node.span.clone(), "a table has two points at least, and a density somewhere", None);
+        reader.error(
+            Code::BadDistribution,
+            node.span.clone(),
+            "a table has two points at least, and a density somewhere",
+            None,
+        );
         return None;
     }
     Some(points)

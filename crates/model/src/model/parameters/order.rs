@@ -2,6 +2,7 @@
 
 use super::Draft;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest;
 
@@ -61,7 +62,7 @@ fn report_circle(reader: &mut Reader, drafts: &[Draft], circle: &[usize]) {
     let shown: Vec<String> = circle.iter().take(8).map(|&index| name(index)).collect();
     let more = if circle.len() > 8 { " → …" } else { "" };
     let message = format!("parameters depend on each other in a circle: {}{more} → {}", shown.join(" → "), shown[0]);
-    let mut diagnostic = Diagnostic::error(drafts[circle[0]].name_span.clone(), message);
+    let mut diagnostic = Diagnostic::error(Code::Circle, drafts[circle[0]].name_span.clone(), message);
     for &index in circle.iter().skip(1).take(3) {
         diagnostic = diagnostic.also(drafts[index].name_span.clone(), "also in it");
     }

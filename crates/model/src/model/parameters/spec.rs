@@ -5,6 +5,7 @@ use crate::grammar::tolerance::{self, Deviation, Toleranced};
 use crate::grammar::unit::number_and_unit;
 use crate::keys;
 use crate::model::names::Reader;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -101,7 +102,7 @@ impl Spec {
         let second = if in_value { ways.next() } else { ways.nth(1) };
         if let Some(second) = second {
             let message = "`tolerance`, `interval` and `plus`/`minus` say the same thing";
-            reader.error(second.span.clone(), message, "give one of them".to_owned());
+            reader.error(Code::ExclusiveKeys, second.span.clone(), message, "give one of them".to_owned());
             self.contradictory = true;
             return;
         }
@@ -142,13 +143,23 @@ impl Spec {
             Ok(Toleranced { value: Some(number), deviation: None }) => self.tolerance = Some(number),
             Ok(Toleranced { value: None, deviation: Some(Deviation::Between(_)) }) => {
                 let help = "write `interval: [lower, upper]`, or the deviations as `+0.01 -0.02`".to_owned();
-                reader.error(node.span.clone(), "a tolerance is a deviation, but here is an interval", help);
+                reader.error(
+                    Code::BadTolerance,
+                    node.span.clone(),
+                    "a tolerance is a deviation, but here is an interval",
+                    help,
+                );
                 self.contradictory = true;
             }
             Ok(Toleranced { value: None, deviation }) => self.deviate(deviation),
             Ok(Toleranced { value: Some(_), deviation: Some(_) }) => {
                 let help = "write the value behind `value`".to_owned();
-                reader.error(node.span.clone(), "a tolerance is a deviation, but here is a value with one", help);
+                reader.error(
+                    Code::BadTolerance,
+                    node.span.clone(),
+                    "a tolerance is a deviation, but here is a value with one",
+                    help,
+                );
                 self.contradictory = true;
             }
             Err(error) => {
@@ -185,7 +196,7 @@ impl Spec {
         if let Some(unit) = units.next() {
             let place = self.place();
             let help = format!("write `{value} {unit} ± …`");
-            reader.error(place, "the deviation has a unit, but the value has none", help);
+            reader.error(Code::MissingUnit, place, "the deviation has a unit, but the value has none", help);
         }
     }
 

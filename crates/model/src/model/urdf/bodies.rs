@@ -15,6 +15,7 @@ use crate::robots::algebra::{self, Pose, Value, Vector};
 use crate::robots::masses::{Part, center, inertia};
 use crate::robots::number::Number;
 use crate::robots::urdf::robot::{Joint, Kind};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Links that are welded together.
@@ -44,13 +45,13 @@ pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usi
         }
         let verb = if taken.contains("and") { "are" } else { "is" };
         let message = format!("link `{}` moves, but has no mass: {taken} {verb} taken", root.name);
-        reader.diagnostics.push(Diagnostic::warning(root.span.clone(), message));
+        reader.diagnostics.push(Diagnostic::warning(Code::MasslessLink, root.span.clone(), message));
     } else if let Some(least) = too_small(&mass, &inertia) {
         let message = format!(
             "link `{}` has next to no inertia about some axis: {least:.1e} kg m² are added about each",
             root.name
         );
-        reader.diagnostics.push(Diagnostic::warning(root.span.clone(), message));
+        reader.diagnostics.push(Diagnostic::warning(Code::MasslessLink, root.span.clone(), message));
         (0..3).for_each(|i| inertia[i][i] = algebra::sum(&[inertia[i][i].clone(), algebra::number(least)]));
     }
     let coordinates = [Coordinate::X, Coordinate::Y, Coordinate::Z].into_iter().chain(Coordinate::ORIENTATION);

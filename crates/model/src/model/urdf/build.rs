@@ -11,6 +11,7 @@ use crate::model::names::Reader;
 use crate::robots::algebra::{self, Pose};
 use crate::robots::number::Number;
 use crate::robots::urdf::robot::{Joint as UrdfJoint, Kind};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Adds bodies and joints to the model.
@@ -89,7 +90,7 @@ fn left_out(reader: &mut Reader, source: &Source, groups: &[Group], of_link: &[(
         let link = &robot.links[joint.child];
         let message =
             format!("link `{}` moves, but has no mass: it is left out, with its joint `{}`", link.name, joint.name);
-        reader.diagnostics.push(Diagnostic::warning(link.span.clone(), message));
+        reader.diagnostics.push(Diagnostic::warning(Code::MasslessLink, link.span.clone(), message));
     }
     left_out
 }

@@ -17,6 +17,7 @@ use crate::model::names::Reader;
 use crate::robots::number::Number;
 use crate::robots::tuning::TUNING;
 use crate::robots::urdf::robot::{Joint, Kind, Limits};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
@@ -37,7 +38,7 @@ pub fn read<'r>(
 ) -> Vec<RobotEffect<'r>> {
     let mut found = Vec::new();
     if let Some((_, at)) = limits.as_ref().filter(|_| !source.robot.joints.iter().any(is_limited)) {
-        reader.error(at.clone(), "no joint of the robot has limits", None);
+        reader.error(Code::BadLimits, at.clone(), "no joint of the robot has limits", None);
     }
     let impacts =
         limits.map(|(node, at)| [Kind::Revolute, Kind::Prismatic].map(|kind| impact(reader, source, node, &at, kind)));
@@ -54,7 +55,7 @@ pub fn read<'r>(
                 found.push(stop(reader, source, joint, limits, on, impact));
             } else if joint.kind != Kind::Continuous {
                 let message = format!("joint `{}` has no limits: no stop acts in it", joint.name);
-                reader.diagnostics.push(Diagnostic::warning(joint.span.clone(), message));
+                reader.diagnostics.push(Diagnostic::warning(Code::NoLimits, joint.span.clone(), message));
             }
         }
     }
@@ -161,7 +162,12 @@ fn check_range(reader: &mut Reader, name: &str, span: Span, lower: &Formula, upp
         if let Some((lower, upper)) = values.filter(|(lower, upper)| lower >= upper) {
             let label = reader.corners[corner].label.clone();
             let message = format!("a stop at {lower} and one at {upper} leave this joint no room to move{label}");
-            reader.error(span, message, format!("correct the limits, or leave the stops out: `without: [{name}]`"));
+            reader.error(
+                Code::BadLimits,
+                span,
+                message,
+                format!("correct the limits, or leave the stops out: `without: [{name}]`"),
+            );
             return;
         }
     }

@@ -10,6 +10,7 @@ use crate::model::bodies;
 use crate::model::description::Point;
 use crate::model::names::Reader;
 use crate::robots::algebra::{self, Pose};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A point's name in its body: of a link that is welded to another, the link's name goes before it.
@@ -37,7 +38,7 @@ pub fn declare(reader: &mut Reader, built: &Built, of_links: &[(usize, &Entry)])
             let points = &mut reader.model.bodies[place.body].points;
             if points.iter().any(|known| known.name == name) {
                 let message = format!("`{}` has a point or a link called `{}` already", entry.key, point.key);
-                reader.error(point.key_span.clone(), message, None);
+                reader.error(Code::NameTaken, point.key_span.clone(), message, None);
                 continue;
             }
             points.push(Point { name, position: [0.0; 3].map(Formula::number), rotation: None });
@@ -61,7 +62,7 @@ impl Declared {
                      own has another name",
                     entry.key
                 );
-                reader.error(other.key_span.clone(), message, help);
+                reader.error(Code::MisplacedKey, other.key_span.clone(), message, help);
                 continue;
             }
             let (Some(node), Some(place)) = (fields.get("points"), self.built.frames[link]) else { continue };
@@ -83,7 +84,7 @@ impl Declared {
                         let message =
                             format!("link `{}` is welded to `{body}`, and its points have its own axes", entry.key);
                         let help = format!("give `{body}` the point with its rotation");
-                        reader.error(turned.span.clone(), message, help);
+                        reader.error(Code::MisplacedKey, turned.span.clone(), message, help);
                         continue;
                     }
                     let (_, pose) = &self.built.places[link];

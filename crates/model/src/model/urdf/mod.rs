@@ -24,6 +24,7 @@ use crate::model::names::Reader;
 use crate::robots::tuning::TUNING;
 use crate::robots::urdf::robot::Robot;
 use crate::robots::urdf::{is_number, is_urdf, read};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::text_file;
@@ -87,7 +88,7 @@ impl Urdf {
                 let alone = is_urdf(model);
                 let span = if alone { None } else { Some(node.span.clone()) };
                 let message = if alone { error.message } else { error.message.replacen("the file", "the URDF", 1) };
-                reader.diagnostics.push(Diagnostic { span, message, help: error.help, ..Diagnostic::of_file("") });
+                reader.diagnostics.push(Diagnostic { span, message, ..*error });
                 return None;
             }
         };
@@ -125,7 +126,7 @@ impl Urdf {
         for joint in &self.robot.joints {
             if reader.model.joints.iter().any(|known| known.name == joint.name) {
                 let message = format!("the model has a joint that is called like the URDF's `{}`", joint.name);
-                reader.diagnostics.push(Diagnostic::error(joint.span.clone(), message));
+                reader.diagnostics.push(Diagnostic::error(Code::NameTaken, joint.span.clone(), message));
             }
         }
         let source = Source { robot: &self.robot, floating: self.floating, words: &self.words, named: &named };
@@ -162,7 +163,7 @@ impl Declared {
             start::outputs(reader, &source, &self.built);
             if reader.model.outputs.is_empty() {
                 let help = "with `base: floating` in a model that names the file, the whole moves".to_owned();
-                reader.error(self.at.clone(), "nothing of this robot can move", help);
+                reader.error(Code::NothingMoves, self.at.clone(), "nothing of this robot can move", help);
             }
         }
     }

@@ -12,6 +12,7 @@ use crate::robots::algebra::{Pose, Value, Vector};
 use crate::robots::names;
 use crate::robots::number::Number;
 use crate::robots::urdf::robot::{Joint, Kind, Robot};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Parsed URDF, and the treatment of its numbers.
@@ -59,7 +60,7 @@ pub struct Built {
 pub fn formula(reader: &mut Reader, value: &Value) -> Formula {
     value.formula().unwrap_or_else(|| {
         let message = "too many links are welded together with uncertain numbers";
-        reader.diagnostics.push(Diagnostic::of_file(message));
+        reader.diagnostics.push(Diagnostic::of_file(Code::TooLarge, message));
         Formula::number(f64::NAN)
     })
 }

@@ -4,6 +4,7 @@ use super::couplings::Reader;
 use super::document::{Attribute, Item};
 use super::robot::{Actuator, Law, Length, Memory};
 use super::values::Values;
+use crate::syntax::codes::Code;
 
 impl Reader<'_, '_, '_> {
     /// Reads an actuator.
@@ -102,10 +103,15 @@ impl Reader<'_, '_, '_> {
                 let found = get(self.values, "dampratio")?;
                 let [ratio] = self.values.exact::<1>(&found)?;
                 if ratio < 0.0 {
-                    self.values.error(found.span, "the damping ratio of this actuator is negative", None);
+                    self.values.error(
+                        Code::BadXmlValue,
+                        found.span,
+                        "the damping ratio of this actuator is negative",
+                        None,
+                    );
                 } else if ratio > 0.0 && kv.value != 0.0 {
                     let help = "both say how large the damping is: give one".to_owned();
-                    self.values.error(item.span.clone(), "an actuator has `kv` or `dampratio`", help);
+                    self.values.error(Code::MissingXml, item.span.clone(), "an actuator has `kv` or `dampratio`", help);
                 }
                 Some(ratio).filter(|ratio| *ratio > 0.0)
             }
@@ -140,7 +146,7 @@ impl Reader<'_, '_, '_> {
             _ => 0.0,
         };
         if time < 0.0 {
-            values.error(item.span.clone(), "the time constant of this actuator is negative", None);
+            values.error(Code::BadXmlValue, item.span.clone(), "the time constant of this actuator is negative", None);
         }
         Some((time > 0.0).then_some(Memory::Lag(time)))
     }
@@ -155,13 +161,18 @@ impl Reader<'_, '_, '_> {
         let joint = match on.terms.as_slice() {
             [(joint, _)] => &self.robot.joints[*joint],
             _ => {
-                self.values.error(found.span, "only a joint has a range that `inheritrange` could mean", None);
+                self.values.error(
+                    Code::BadXmlValue,
+                    found.span,
+                    "only a joint has a range that `inheritrange` could mean",
+                    None,
+                );
                 return None;
             }
         };
         let Some(ends) = joint.range.as_ref() else {
             let message = format!("joint `{}` has no range that `inheritrange` could mean", joint.name);
-            self.values.error(found.span, message, None);
+            self.values.error(Code::BadXmlValue, found.span, message, None);
             return None;
         };
         let [lower, upper] = ends.each_ref().map(|end| end.value + joint.reference);
@@ -183,7 +194,7 @@ impl Reader<'_, '_, '_> {
         let holds = limited.unwrap_or(self.values.settings.autolimits && ends.is_some());
         let ends = ends.filter(|_| holds)?;
         if ends[0] >= ends[1] {
-            self.values.error(item.span.clone(), format!("the ends of `{key}` are reversed"), None);
+            self.values.error(Code::BadXmlValue, item.span.clone(), format!("the ends of `{key}` are reversed"), None);
         }
         Some(ends)
     }

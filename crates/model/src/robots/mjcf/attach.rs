@@ -11,6 +11,7 @@ use super::read::{Around, Contents, Reader, Whole};
 use super::values::Values;
 use crate::robots::algebra;
 use crate::robots::tuning::TUNING;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 
@@ -18,12 +19,12 @@ impl<'i> Reader<'_, 'i, '_> {
     /// Copies, each moved against the one before, with their number behind every name.
     pub fn replicate(&mut self, item: &'i Item, body: usize, around: &Around, contents: &mut Contents<'i>) {
         let Some(found) = item.get("count") else {
-            self.values.error(item.span.clone(), "`<replicate>` needs `count`", None);
+            self.values.error(Code::MissingXml, item.span.clone(), "`<replicate>` needs `count`", None);
             return;
         };
         let Some([count]) = self.values.exact::<1>(found) else { return };
         if count < 1.0 || count.fract() != 0.0 {
-            self.values.error(found.span.clone(), "`count` is a whole number, at least 1", None);
+            self.values.error(Code::BadXmlValue, found.span.clone(), "`count` is a whole number, at least 1", None);
             return;
         }
         let offset = item.get("offset").and_then(|found| self.values.exact::<3>(found)).unwrap_or([0.0; 3]);
@@ -47,6 +48,7 @@ impl<'i> Reader<'_, 'i, '_> {
         *self.whole.copies += 1;
         if *self.whole.copies == TUNING.mjcf_copies + 1 {
             self.values.error(
+                Code::TooLarge,
                 item.span.clone(),
                 format!("the model has more than {mjcf_copies} copies", mjcf_copies = TUNING.mjcf_copies),
                 None,
@@ -58,14 +60,18 @@ impl<'i> Reader<'_, 'i, '_> {
     /// Another model's world, or a body of it with all that couples and drives it.
     pub fn attach(&mut self, item: &'i Item, body: usize, around: &Around, contents: &mut Contents<'i>) {
         let Some(model) = item.get("model") else {
-            self.values.error(item.span.clone(), "`<attach>` needs `model`", None);
+            self.values.error(Code::MissingXml, item.span.clone(), "`<attach>` needs `model`", None);
             return;
         };
         let models = || self.root.of("asset").flat_map(|asset| asset.of("model"));
         let Some(asset) = models().find(|known| name_of(known).as_ref() == Some(&model.value)) else {
             let names: Vec<String> = models().filter_map(name_of).collect();
             let help = suggest::help(&model.value, "models", names.iter().map(String::as_str));
-            let error = Diagnostic::error(model.span.clone(), format!("unknown model `{}`", clip(&model.value)));
+            let error = Diagnostic::error(
+                Code::UnknownName,
+                model.span.clone(),
+                format!("unknown model `{}`", clip(&model.value)),
+            );
             self.values.diagnostics.push(error.help(help));
             return;
         };
@@ -88,7 +94,7 @@ impl<'i> Reader<'_, 'i, '_> {
                 let mut worlds = root.of("worldbody");
                 let Some((found, class)) = worlds.find_map(|world| find(world, None, &named.value)) else {
                     let message = format!("the model `{}` has no body `{}`", clip(&model.value), clip(&named.value));
-                    reader.values.error(named.span.clone(), message, None);
+                    reader.values.error(Code::UnknownName, named.span.clone(), message, None);
                     return;
                 };
                 let class = class.and_then(|holder| reader.values.class_of(holder, None, "childclass"));

@@ -8,6 +8,7 @@ use super::robot::{At, Body, Coupling, Equality, Length, Names, Robot, Tendon};
 use super::values::Values;
 use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::names;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 
@@ -80,7 +81,9 @@ impl Reader<'_, '_, '_> {
             let help = suggest::help(&attribute.value, what, known.keys().map(String::as_str));
             let singular = what.strip_suffix('s').map_or_else(|| what.to_owned(), |word| word.replace("bodie", "body"));
             let message = format!("unknown {singular} `{}`", clip(&attribute.value));
-            self.values.diagnostics.push(Diagnostic::error(attribute.span.clone(), message).help(help));
+            self.values
+                .diagnostics
+                .push(Diagnostic::error(Code::UnknownName, attribute.span.clone(), message).help(help));
         }
         found
     }
@@ -93,12 +96,17 @@ impl Reader<'_, '_, '_> {
             return Some(joint);
         }
         let message = format!("joint `{}` has more than one coordinate", clip(&attribute.value));
-        self.values.error(attribute.span.clone(), message, "only hinges and slides can stand here".to_owned());
+        self.values.error(
+            Code::UnsuitableJoint,
+            attribute.span.clone(),
+            message,
+            "only hinges and slides can stand here".to_owned(),
+        );
         None
     }
 
     pub fn needs(&mut self, item: &Item, names: &str) {
-        self.values.error(item.span.clone(), format!("`<{}>` needs {names}", item.tag), None);
+        self.values.error(Code::MissingXml, item.span.clone(), format!("`<{}>` needs {names}", item.tag), None);
     }
 
     fn tendon(&mut self, item: &Item) {

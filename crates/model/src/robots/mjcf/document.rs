@@ -7,6 +7,7 @@ use super::format::{Fate, Rule};
 use super::table;
 use crate::robots::tuning::TUNING;
 use crate::robots::xml::{self, Element, NAMESPACE, Places};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -70,8 +71,8 @@ struct Reader<'d> {
 }
 
 impl Reader<'_> {
-    fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.diagnostics.push(Diagnostic::error(span, message).help(help));
+    fn error(&mut self, code: Code, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
+        self.diagnostics.push(Diagnostic::error(code, span, message).help(help));
     }
 
     /// The elements of a file: the outermost, or, of a file that is included in an element, those in its outermost.
@@ -86,7 +87,7 @@ impl Reader<'_> {
                     Some(_) => error.message.replacen("the file", &format!("the file `{}`", clip(&name)), 1),
                     None => error.message,
                 };
-                self.diagnostics.push(Diagnostic { span: at, message, ..Diagnostic::of_file("") }.help(error.help));
+                self.diagnostics.push(Diagnostic { span: at, message, ..*error });
                 return;
             }
         };
@@ -99,7 +100,7 @@ impl Reader<'_> {
         if tag != "mujoco" && (within.is_none() || tag != "mujocoinclude" && Some(tag) != within) {
             let message = format!("an MJCF is a `<mujoco>`, but here is `<{}>`", clip(tag));
             let help = (tag == "robot").then(|| "a `<robot>` is a URDF: name it by `urdf`".to_owned());
-            self.error(places.tag(root), message, help);
+            self.error(Code::WrongRobot, places.tag(root), message, help);
             return;
         }
         self.open.push(path.to_owned());
@@ -125,7 +126,7 @@ impl Reader<'_> {
 
     fn include(&mut self, element: Element, places: Places, within: &str, found: &mut Vec<Item>) {
         let Some(file) = xml::plain(element, "file") else {
-            self.error(places.tag(element), "`<include>` needs `file`", None);
+            self.error(Code::MissingXml, places.tag(element), "`<include>` needs `file`", None);
             return;
         };
         let span = places.value(file);
@@ -146,12 +147,13 @@ impl Reader<'_> {
     /// The path of another file, unless that may not be read.
     fn found(&mut self, name: &str, span: &Span) -> Option<PathBuf> {
         match self.within.find(&self.folder, name) {
-            Err(error) => self.error(span.clone(), error.message, error.help),
+            Err(error) => self.error(error.code, span.clone(), error.message, error.help),
             Ok(path) if self.open.contains(&path) => {
-                self.error(span.clone(), format!("`{}` includes itself", clip(name)), None);
+                self.error(Code::Circle, span.clone(), format!("`{}` includes itself", clip(name)), None);
             }
             Ok(_) if self.files == TUNING.mjcf_files => {
                 self.error(
+                    Code::TooLarge,
                     span.clone(),
                     format!("the model includes more than {mjcf_files} files", mjcf_files = TUNING.mjcf_files),
                     None,
@@ -173,7 +175,7 @@ impl Reader<'_> {
         match rule.fate {
             Fate::Ignored(_) => return None,
             Fate::Refused(why) => {
-                self.error(span, format!("`<{tag}>` is not supported"), why.to_owned());
+                self.error(Code::UnsupportedXml, span, format!("`<{tag}>` is not supported"), why.to_owned());
                 return None;
             }
             Fate::Supported => {}
@@ -186,7 +188,7 @@ impl Reader<'_> {
                     "the files have more than {} elements, or nest deeper than {}",
                     TUNING.mjcf_items, TUNING.mjcf_levels
                 );
-                self.error(span, message, None);
+                self.error(Code::TooLarge, span, message, None);
             }
             self.levels -= 1;
             return None;
@@ -216,7 +218,7 @@ impl Reader<'_> {
             }
             if let Some((_, why)) = rule.refusal(name).filter(|(harmless, _)| !own && !is_same(value, harmless)) {
                 let message = format!("`{name}` of `<{}>` is not supported", rule.tag);
-                self.error(places.attribute(attribute), message, why.to_owned());
+                self.error(Code::UnsupportedXml, places.attribute(attribute), message, why.to_owned());
                 continue;
             }
             found.push(Attribute { name: name.to_owned(), value: value.to_owned(), span, own });
@@ -227,8 +229,10 @@ impl Reader<'_> {
     /// A misspelt name is an error; any other may be of a later version.
     fn unknown<'k>(&mut self, span: Span, message: String, name: &str, known: impl Iterator<Item = &'k str>) {
         match suggest::nearest(name, known) {
-            Some(near) => self.error(span, message, format!("did you mean `{near}`?")),
-            None => self.diagnostics.push(Diagnostic::warning(span, format!("{message}: it is ignored"))),
+            Some(near) => self.error(Code::UnknownXml, span, message, format!("did you mean `{near}`?")),
+            None => {
+                self.diagnostics.push(Diagnostic::warning(Code::XmlIgnored, span, format!("{message}: it is ignored")))
+            }
         }
     }
 }

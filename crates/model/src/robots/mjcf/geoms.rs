@@ -7,6 +7,7 @@ use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::masses::{self, Part};
 use crate::robots::meshes::Measured;
 use crate::robots::tuning::TUNING;
+use crate::syntax::codes::Code;
 
 /// The mass of geoms with the inertia about their centre in the body's frame.
 pub struct Solid {
@@ -65,7 +66,7 @@ pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize
     if let Some(wrong) =
         ["mass", "density"].into_iter().find(|name| item.get(name).is_some_and(|_| single(name) < Some(0.0)))
     {
-        values.error(item.span.clone(), format!("the {wrong} of this geom is negative"), None);
+        values.error(Code::BadXmlValue, item.span.clone(), format!("the {wrong} of this geom is negative"), None);
         return None;
     }
     let (pose, volume, inertia) = match (shape, get(values, "mesh")) {
@@ -77,12 +78,17 @@ pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize
             (center, size, inertia.map(|row| row.map(|moment| moment / size)))
         }
         (Shape::Mesh, None) => {
-            values.error(item.span.clone(), "a geom that is a mesh needs `mesh`", None);
+            values.error(Code::MissingXml, item.span.clone(), "a geom that is a mesh needs `mesh`", None);
             return None;
         }
         (_, Some(mesh)) => {
             let help = "give the body an `<inertial>`, or the geom no mass: `mass=\"0\"`".to_owned();
-            values.error(mesh.span.clone(), "a shape that is fitted to a mesh is not supported", help);
+            values.error(
+                Code::UnsupportedXml,
+                mesh.span.clone(),
+                "a shape that is fitted to a mesh is not supported",
+                help,
+            );
             return None;
         }
         _ => {
@@ -125,7 +131,7 @@ fn placed<'i>(
         let line = [a - d, b - e, c - f];
         let length = line.iter().map(|part| part * part).sum::<f64>().sqrt();
         if length == 0.0 {
-            values.error(found.span.clone(), "both ends of `fromto` are the same point", None);
+            values.error(Code::BadXmlValue, found.span.clone(), "both ends of `fromto` are the same point", None);
             return None;
         }
         pose.position = algebra::vector([(a + d) / 2.0, (b + e) / 2.0, (c + f) / 2.0]);
@@ -139,7 +145,7 @@ fn placed<'i>(
     }
     if sizes.len() < needed || sizes[..needed].iter().any(|size| *size <= 0.0) {
         let span = get(values, "size").map_or_else(|| item.span.clone(), |found| found.span.clone());
-        values.error(span, format!("the `size` of this geom has {needed} numbers above zero"), None);
+        values.error(Code::BadXmlValue, span, format!("the `size` of this geom has {needed} numbers above zero"), None);
         return None;
     }
     sizes.resize(3, 0.0);

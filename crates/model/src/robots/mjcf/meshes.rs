@@ -8,6 +8,7 @@ use crate::robots::algebra;
 use crate::robots::meshes::{self, FORMATS, Faults, Measured, Triangle, Way};
 use crate::robots::tuning::TUNING;
 use crate::syntax;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::regular;
@@ -21,7 +22,11 @@ pub fn measured(values: &mut Values, named: &Attribute) -> Option<Measured> {
         Some(item) => read(values, item, &named.value),
         None => {
             let help = suggest::help(&named.value, "meshes", values.meshes.by_name.keys().map(String::as_str));
-            let error = Diagnostic::error(named.span.clone(), format!("unknown mesh `{}`", clip(&named.value)));
+            let error = Diagnostic::error(
+                Code::UnknownName,
+                named.span.clone(),
+                format!("unknown mesh `{}`", clip(&named.value)),
+            );
             values.diagnostics.push(error.help(help));
             None
         }
@@ -40,7 +45,12 @@ fn read<'i>(values: &mut Values<'i, '_>, item: &'i Item, name: &str) -> Option<M
             let way = values.word(found, &ways)?;
             if way.is_none() {
                 let help = "the inertia may be `exact`, `legacy` or `shell`, or the body's `<inertial>`".to_owned();
-                values.error(found.span.clone(), "the inertia of a mesh's convex hull is not computed", help);
+                values.error(
+                    Code::UnsupportedXml,
+                    found.span.clone(),
+                    "the inertia of a mesh's convex hull is not computed",
+                    help,
+                );
             }
             way?
         }
@@ -70,7 +80,7 @@ fn read<'i>(values: &mut Values<'i, '_>, item: &'i Item, name: &str) -> Option<M
     };
     if let Some(wrong) = wrong {
         let help = "mend the mesh, or give the body an `<inertial>`".to_owned();
-        values.error(item.span.clone(), wrong, help);
+        values.error(Code::BadMesh, item.span.clone(), wrong, help);
         return None;
     }
     if way == Way::Unsigned && !is_closed {
@@ -93,21 +103,31 @@ fn from_file(values: &mut Values, file: &Attribute) -> Option<Vec<Triangle>> {
     let path = match path {
         Ok(path) => meshes.files.full(&path),
         Err(error) => {
-            values.error(file.span.clone(), error.message, error.help);
+            values.error(error.code, file.span.clone(), error.message, error.help);
             return None;
         }
     };
     let bytes = match regular(&path, syntax::tuning::TUNING.mesh_bytes) {
         Ok(bytes) => bytes,
         Err(error) => {
-            values.error(file.span.clone(), format!("the mesh `{}` cannot be read: {error}", clip(&file.value)), None);
+            values.error(
+                Code::BadMesh,
+                file.span.clone(),
+                format!("the mesh `{}` cannot be read: {error}", clip(&file.value)),
+                None,
+            );
             return None;
         }
     };
     let triangles = meshes::triangles(&path, &bytes);
     if triangles.is_none() {
         let message = format!("`{}` is no mesh of triangles", clip(&file.value));
-        values.error(file.span.clone(), message, format!("files of meshes are {}", suggest::list(&FORMATS)));
+        values.error(
+            Code::BadMesh,
+            file.span.clone(),
+            message,
+            format!("files of meshes are {}", suggest::list(&FORMATS)),
+        );
     }
     triangles
 }
@@ -116,7 +136,7 @@ fn from_file(values: &mut Values, file: &Attribute) -> Option<Vec<Triangle>> {
 fn written(values: &mut Values, item: &Item) -> Option<Vec<Triangle>> {
     let (Some(corners), Some(faces)) = (item.get("vertex"), item.get("face")) else {
         let help = "without `face` the mesh is a convex hull, which is not computed".to_owned();
-        values.error(item.span.clone(), "`<mesh>` needs `file`, or `vertex` and `face`", help);
+        values.error(Code::BadMesh, item.span.clone(), "`<mesh>` needs `file`, or `vertex` and `face`", help);
         return None;
     };
     let corner_numbers = values.parsed(corners, usize::MAX)?;
@@ -128,7 +148,12 @@ fn written(values: &mut Values, item: &Item) -> Option<Vec<Triangle>> {
     let found = meshes::indexed(corner_numbers, face_numbers.iter().copied());
     let found = found.filter(|found| more.is_empty() && rest.is_empty() && !found.is_empty());
     if found.is_none() {
-        values.error(faces.span.clone(), "`face` has three places of corners of `vertex` a triangle, from 0", None);
+        values.error(
+            Code::BadMesh,
+            faces.span.clone(),
+            "`face` has three places of corners of `vertex` a triangle, from 0",
+            None,
+        );
     }
     found
 }
@@ -182,7 +207,7 @@ pub fn warn(values: &mut Values) {
             1 => String::new(),
             count => format!(", and {} more meshes", count - 1),
         };
-        let warning = Diagnostic::warning(span.clone(), format!("{message} ({first}{others})"));
+        let warning = Diagnostic::warning(Code::MeshIgnored, span.clone(), format!("{message} ({first}{others})"));
         values.diagnostics.push(warning.help(help.to_owned()));
     }
 }

@@ -12,6 +12,7 @@ use crate::robots::algebra::{self, Pose, Quaternion};
 use crate::robots::masses::Part;
 use crate::robots::names;
 use crate::robots::number::Number;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
@@ -49,7 +50,7 @@ pub fn robot<'i>(root: &'i Item, values: &mut Values<'i, '_>) -> Option<Robot> {
     if let [first, _, ..] = touching.as_slice() {
         let message = "contacts of geoms are ignored: bodies pass through each other and through the floor";
         let help = "an effect `contact` says which surfaces touch".to_owned();
-        values.diagnostics.push(Diagnostic::warning(first.clone(), message).help(help));
+        values.diagnostics.push(Diagnostic::warning(Code::ContactsIgnored, first.clone(), message).help(help));
     }
     meshes::warn(values);
     if let Some(total) = values.settings.total_mass {
@@ -111,6 +112,10 @@ pub struct Reader<'r, 'i, 'd> {
 }
 
 impl<'i> Reader<'_, 'i, '_> {
+    fn refuse_second(&mut self, at: &Span, what: &str, name: &str) {
+        self.values.error(Code::NameTaken, at.clone(), format!("a second {what} is called `{}`", clip(name)), None);
+    }
+
     /// A name as it is in the whole model.
     fn written(&self, item: &Item) -> Option<String> {
         item.get("name").map(|name| format!("{}{}{}", self.prefix, name.value, self.suffix))
@@ -160,7 +165,7 @@ impl<'i> Reader<'_, 'i, '_> {
         if let Some(written) = written
             && self.whole.names.bodies.insert(written.clone(), index).is_some()
         {
-            self.values.error(item.span.clone(), format!("a second body is called `{}`", clip(&written)), None);
+            self.refuse_second(&item.span, "body", &written);
         }
         let (position, rotation) = self.values.frame(item, None, &[]);
         let pose = around.pose.then(&algebra::vector(position), &rotation);
@@ -187,7 +192,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let joints = &self.whole.robot.bodies[index].joints;
         if joints.iter().any(free) && (joints.len() > 1 || parent != 0) {
             let help = "a free joint is the only one of a body in the world".to_owned();
-            self.values.error(item.span.clone(), "this body cannot have a free joint", help);
+            self.values.error(Code::UnsupportedXml, item.span.clone(), "this body cannot have a free joint", help);
         }
     }
 
@@ -199,7 +204,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let name = names::in_formulas(&written, self.whole.names.taken_by_sites.entry(body).or_default());
         let index = self.whole.robot.bodies[body].sites.len();
         if self.whole.names.sites.insert(written.clone(), (body, index)).is_some() {
-            self.values.error(named.span.clone(), format!("a second site is called `{}`", clip(&written)), None);
+            self.refuse_second(&named.span, "site", &written);
         }
         let position = algebra::numbers(&pose.position).unwrap_or_default();
         self.whole.robot.bodies[body].sites.push(Site { name, position, rotation: pose.rotation });
@@ -207,7 +212,7 @@ impl<'i> Reader<'_, 'i, '_> {
 
     fn joint(&mut self, item: &'i Item, body: usize, around: &Around) {
         if body == 0 {
-            self.values.error(item.span.clone(), "the world does not move", None);
+            self.values.error(Code::UnsupportedXml, item.span.clone(), "the world does not move", None);
             return;
         }
         let class = if item.tag == "joint" { self.values.class_of(item, around.class, "class") } else { None };
@@ -226,7 +231,7 @@ impl<'i> Reader<'_, 'i, '_> {
         if let Some(written) = written
             && self.whole.names.joints.insert(written.clone(), index).is_some()
         {
-            self.values.error(item.span.clone(), format!("a second joint is called `{}`", clip(&written)), None);
+            self.refuse_second(&item.span, "joint", &written);
         }
         let vector = |values: &mut Values<'i, '_>, name, or| {
             get(values, name).and_then(|found| values.exact(found)).unwrap_or(or)
@@ -235,7 +240,12 @@ impl<'i> Reader<'_, 'i, '_> {
         let axis = vector(self.values, "axis", [0.0, 0.0, 1.0]);
         let length = axis.iter().map(|part: &f64| part * part).sum::<f64>().sqrt();
         if length < 1e-10 {
-            self.values.error(item.span.clone(), format!("the axis of joint `{name}` has no direction"), None);
+            self.values.error(
+                Code::ZeroDirection,
+                item.span.clone(),
+                format!("the axis of joint `{name}` has no direction"),
+                None,
+            );
         }
         let (axis, at) = (axis.map(|part| part / length), algebra::vector(position));
         let turned = algebra::rotate(&around.pose.rotation, &algebra::vector(axis));
@@ -254,7 +264,7 @@ impl<'i> Reader<'_, 'i, '_> {
             let (found, value) = scalar(values, key);
             if value < 0.0 && key != "springref" {
                 let span = found.map_or_else(|| item.span.clone(), |found: &Attribute| found.span.clone());
-                values.error(span, format!("the {key} of joint `{name}` is negative"), None);
+                values.error(Code::BadXmlValue, span, format!("the {key} of joint `{name}` is negative"), None);
             }
             values.number(item, found, format!("joint.{name}.{key}"), value * scale - less, unit)
         };
@@ -308,7 +318,7 @@ impl<'i> Reader<'_, 'i, '_> {
         if ends[0] >= ends[1] {
             let span = range.map_or_else(|| item.span.clone(), |found| found.span.clone());
             let name = range.map_or("range", |found| &found.name);
-            self.values.error(span, format!("the ends of `{name}` are reversed"), None);
+            self.values.error(Code::BadXmlValue, span, format!("the ends of `{name}` are reversed"), None);
         }
         Some(ends)
     }
@@ -343,12 +353,12 @@ impl<'i> Reader<'_, 'i, '_> {
     fn inertial(&mut self, item: &Item) -> Option<(Solid, Quaternion)> {
         let (center, mut rotation) = self.values.frame(item, None, &[]);
         let Some(mass) = item.get("mass") else {
-            self.values.error(item.span.clone(), "`<inertial>` needs `mass`", None);
+            self.values.error(Code::MissingXml, item.span.clone(), "`<inertial>` needs `mass`", None);
             return None;
         };
         let [mass] = self.values.exact(mass)?;
         if mass < 0.0 {
-            self.values.error(item.span.clone(), "this mass is negative", None);
+            self.values.error(Code::BadXmlValue, item.span.clone(), "this mass is negative", None);
             return None;
         }
         let inertia = match (item.get("diaginertia"), item.get("fullinertia")) {
@@ -362,7 +372,12 @@ impl<'i> Reader<'_, 'i, '_> {
             }
             (None, None) => [0.0; 6],
             (Some(_), Some(found)) => {
-                self.values.error(found.span.clone(), "`diaginertia` and `fullinertia` exclude each other", None);
+                self.values.error(
+                    Code::ExclusiveKeys,
+                    found.span.clone(),
+                    "`diaginertia` and `fullinertia` exclude each other",
+                    None,
+                );
                 return None;
             }
         };

@@ -10,6 +10,7 @@ use super::document::{Attribute, Item};
 use super::flags::Flags;
 use crate::robots::algebra::{self, Quaternion, Value};
 use crate::robots::number::Number;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -81,8 +82,8 @@ impl<'i, 'd> Values<'i, 'd> {
         values
     }
 
-    pub fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.diagnostics.push(Diagnostic::error(span, message).help(help));
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
+        self.diagnostics.push(Diagnostic::error(code, span, message).help(help));
     }
 
     fn class(&mut self, item: &'i Item, parent: Option<usize>) {
@@ -94,7 +95,12 @@ impl<'i, 'd> Values<'i, 'd> {
             None => (self.classes.len(), parent.or_else(|| self.by_name.get(MAIN).copied())),
         };
         if same.is_none() && self.by_name.contains_key(name) {
-            self.error(item.span.clone(), format!("a second class of defaults is called `{}`", clip(name)), None);
+            self.error(
+                Code::NameTaken,
+                item.span.clone(),
+                format!("a second class of defaults is called `{}`", clip(name)),
+                None,
+            );
         }
         self.classes.push(Class { parent, item });
         self.by_name.insert(name.to_owned(), index);
@@ -112,7 +118,12 @@ impl<'i, 'd> Values<'i, 'd> {
         }
         if self.choice(item, "coordinate", &[("local", true), ("global", false)]) == Some(false) {
             let span = item.get("coordinate").map_or_else(|| item.span.clone(), |found| found.span.clone());
-            self.error(span, "global coordinates are not supported: MuJoCo has them no more", None);
+            self.error(
+                Code::UnsupportedXml,
+                span,
+                "global coordinates are not supported: MuJoCo has them no more",
+                None,
+            );
         }
         if let Some(sequence) = item.get("eulerseq") {
             let axes: Vec<(usize, bool)> = sequence
@@ -127,7 +138,12 @@ impl<'i, 'd> Values<'i, 'd> {
                 &[a, b, c] if sequence.value.len() == 3 => self.settings.euler = [a, b, c],
                 _ => {
                     let help = "e.g. `xyz`, about axes that turn with the frame, or `XYZ`, about fixed ones".to_owned();
-                    self.error(sequence.span.clone(), "`eulerseq` is three letters of x, y and z", help);
+                    self.error(
+                        Code::BadXmlValue,
+                        sequence.span.clone(),
+                        "`eulerseq` is three letters of x, y and z",
+                        help,
+                    );
                 }
             }
         }
@@ -169,7 +185,7 @@ impl<'i, 'd> Values<'i, 'd> {
         if known.is_none() {
             let message = format!("`{}` is not a value of `{}`", clip(&found.value), found.name);
             let help = suggest::help(&found.value, "values", words.iter().map(|(word, _)| *word));
-            self.error(found.span.clone(), message, help);
+            self.error(Code::BadXmlValue, found.span.clone(), message, help);
         }
         known.map(|(_, value)| *value)
     }
@@ -185,7 +201,12 @@ impl<'i, 'd> Values<'i, 'd> {
         if found.is_none() {
             let help = suggest::help(&class.value, "classes", self.by_name.keys().map(String::as_str));
             self.diagnostics.push(
-                Diagnostic::error(class.span.clone(), format!("unknown class `{}`", clip(&class.value))).help(help),
+                Diagnostic::error(
+                    Code::UnknownName,
+                    class.span.clone(),
+                    format!("unknown class `{}`", clip(&class.value)),
+                )
+                .help(help),
             );
         }
         found
@@ -221,14 +242,14 @@ impl<'i, 'd> Values<'i, 'd> {
                 Some(number) => numbers.push(number),
                 None => {
                     let message = format!("`{}` is not a finite number", clip(part));
-                    self.error(attribute.span.clone(), message, None);
+                    self.error(Code::BadXmlValue, attribute.span.clone(), message, None);
                     return None;
                 }
             }
         }
         if numbers.is_empty() || numbers.len() > most {
             let message = format!("`{}` has {most} numbers, but here are {}", attribute.name, numbers.len());
-            self.error(attribute.span.clone(), message, None);
+            self.error(Code::BadXmlValue, attribute.span.clone(), message, None);
             return None;
         }
         Some(numbers)
@@ -241,7 +262,7 @@ impl<'i, 'd> Values<'i, 'd> {
         let found = numbers.try_into().ok();
         if found.is_none() {
             let message = format!("`{}` has {N} numbers, but here are {count}", attribute.name);
-            self.error(attribute.span.clone(), message, None);
+            self.error(Code::BadXmlValue, attribute.span.clone(), message, None);
         }
         found
     }
@@ -256,7 +277,12 @@ impl<'i, 'd> Values<'i, 'd> {
         const WORDS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
         let own: Vec<&Attribute> = WORDS.iter().filter_map(|name| item.get(name)).collect();
         if let [_, second, ..] = own.as_slice() {
-            self.error(second.span.clone(), format!("a second orientation of one `<{}>`", item.tag), None);
+            self.error(
+                Code::BadXmlValue,
+                second.span.clone(),
+                format!("a second orientation of one `<{}>`", item.tag),
+                None,
+            );
         }
         let found = own.first().copied().or_else(|| WORDS.iter().find_map(|name| self.get(item, class, tags, name)));
         let Some(found) = found else { return algebra::identity() };
@@ -274,7 +300,7 @@ impl<'i, 'd> Values<'i, 'd> {
         };
         let Some(rotation) = rotation else { return algebra::identity() };
         normalised(&rotation).unwrap_or_else(|| {
-            self.error(found.span.clone(), format!("`{}` has no direction", found.name), None);
+            self.error(Code::ZeroDirection, found.span.clone(), format!("`{}` has no direction", found.name), None);
             algebra::identity()
         })
     }

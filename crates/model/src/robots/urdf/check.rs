@@ -9,6 +9,7 @@ use std::fmt::Write;
 use super::format::{Absent, Attribute, ROBOT, Rule, Shape};
 use crate::robots::algebra;
 use crate::robots::xml::{EXPAND, Element, NAMESPACE, Places, children, plain};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -40,8 +41,8 @@ struct Check<'d> {
 }
 
 impl Check<'_> {
-    fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.diagnostics.push(Diagnostic::error(span, message).help(help));
+    fn error(&mut self, code: Code, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
+        self.diagnostics.push(Diagnostic::error(code, span, message).help(help));
     }
 
     fn version_of(&mut self, robot: Element) -> Version {
@@ -52,11 +53,11 @@ impl Check<'_> {
         match version {
             None => {
                 let message = format!("`{}` is not a version of URDF", clip(attribute.value()));
-                self.error(span, message, "the versions are `1.0`, `1.1` and `1.2`".to_owned());
+                self.error(Code::BadXmlValue, span, message, "the versions are `1.0`, `1.1` and `1.2`".to_owned());
             }
             Some(version) if version > LATEST => {
                 let message = format!("URDF {} is not known: it is read as URDF 1.2", clip(attribute.value().trim()));
-                self.diagnostics.push(Diagnostic::warning(span, message));
+                self.diagnostics.push(Diagnostic::warning(Code::XmlIgnored, span, message));
             }
             Some(_) => {}
         }
@@ -90,7 +91,7 @@ impl Check<'_> {
             for (index, child) in found.enumerate() {
                 if index > 0 && !rule.repeats {
                     let message = format!("a second `<{}>` in one `<{}>`", rule.tag, element.tag_name().name());
-                    self.error(self.places.tag(child), message, None);
+                    self.error(Code::GivenTwice, self.places.tag(child), message, None);
                     break;
                 }
                 self.element(child, rule);
@@ -127,7 +128,7 @@ impl Check<'_> {
                 Some(NAMESPACE) if !rule.uncertain.contains(&name) => {
                     let message = format!("`<{}>` has no number `{}`", rule.tag, clip(name));
                     let help = suggest::help(name, "numbers of it", rule.uncertain.iter().copied());
-                    self.error(span, message, help);
+                    self.error(Code::UnknownXml, span, message, help);
                 }
                 _ => {}
             }
@@ -146,8 +147,10 @@ impl Check<'_> {
     /// A misspelt name is an error; any other may be an extension, which another program understands.
     fn unknown<'k>(&mut self, span: Span, message: String, name: &str, known: impl Iterator<Item = &'k str>) {
         match suggest::nearest(name, known) {
-            Some(near) => self.error(span, message, format!("did you mean `{near}`?")),
-            None => self.diagnostics.push(Diagnostic::warning(span, format!("{message}: it is ignored"))),
+            Some(near) => self.error(Code::UnknownXml, span, message, format!("did you mean `{near}`?")),
+            None => {
+                self.diagnostics.push(Diagnostic::warning(Code::XmlIgnored, span, format!("{message}: it is ignored")))
+            }
         }
     }
 
@@ -157,7 +160,7 @@ impl Check<'_> {
         let Some(attribute) = plain(element, rule.name) else {
             if rule.absent == Absent::Error {
                 let message = format!("`<{}>` needs `{}`", element.tag_name().name(), rule.name);
-                self.error(self.places.tag(element), message, None);
+                self.error(Code::MissingXml, self.places.tag(element), message, None);
             }
             return (rule.absent != Absent::Default).then(instead);
         };
@@ -168,7 +171,7 @@ impl Check<'_> {
                 let known = words.contains(&value);
                 if !known {
                     let message = format!("`{}` is not a type of joint", clip(value));
-                    self.error(span, message, suggest::help(value, "types", words.iter().copied()));
+                    self.error(Code::BadXmlValue, span, message, suggest::help(value, "types", words.iter().copied()));
                 }
                 known
             }
@@ -182,14 +185,14 @@ impl Check<'_> {
         if parts.len() != count {
             let words = if count == 3 { "three" } else { "four" };
             let message = format!("`{name}` has {words} numbers, but here are {}", parts.len());
-            self.error(span, message, None);
+            self.error(Code::BadXmlValue, span, message, None);
             return false;
         }
         let is_number = |part: &str| part.parse::<f64>().is_ok_and(f64::is_finite);
         let wrong: Vec<&str> = parts.into_iter().filter(|part| !is_number(part)).collect();
         for part in &wrong {
             let help = part.contains("${").then(|| EXPAND.to_owned());
-            self.error(span.clone(), format!("`{}` is not a finite number", clip(part)), help);
+            self.error(Code::BadXmlValue, span.clone(), format!("`{}` is not a finite number", clip(part)), help);
         }
         wrong.is_empty()
     }
@@ -203,11 +206,16 @@ impl Check<'_> {
         let &[x, y, z, w] = parts.as_slice() else { return };
         if self.version < QUATERNIONS {
             let help = "write `version=\"1.1\"` in `<robot …>`, or give the rotation as `rpy`".to_owned();
-            self.error(span, "`quat_xyzw` belongs to URDF 1.1, and this file is of an earlier version", help);
+            self.error(
+                Code::BadXmlValue,
+                span,
+                "`quat_xyzw` belongs to URDF 1.1, and this file is of an earlier version",
+                help,
+            );
         } else if plain(origin, "rpy").is_some() {
-            self.error(span, "`rpy` and `quat_xyzw` exclude each other", None);
+            self.error(Code::ExclusiveKeys, span, "`rpy` and `quat_xyzw` exclude each other", None);
         } else if parts.iter().all(|part| *part == 0.0) {
-            self.error(span, "a quaternion of zeros is no rotation", None);
+            self.error(Code::ZeroDirection, span, "a quaternion of zeros is no rotation", None);
         } else {
             let [roll, pitch, yaw] = algebra::angles_of([w, x, y, z]);
             self.write("rpy", &format!("{roll:?} {pitch:?} {yaw:?}"));
@@ -223,12 +231,17 @@ impl Check<'_> {
         if end("lower", f64::NEG_INFINITY) > end("upper", f64::INFINITY) {
             let joint = limit.parent_element().and_then(|joint| plain(joint, "name")).map_or("", |name| name.value());
             let message = format!("the limits of joint `{}` are reversed", clip(joint));
-            self.error(self.places.value_or_tag(limit, "lower"), message, None);
+            self.error(Code::BadXmlValue, self.places.value_or_tag(limit, "lower"), message, None);
             hold = false;
         }
         for name in ["effort", "velocity", "acceleration", "deceleration", "jerk"] {
             if open && value(name).is_some_and(|value| value < 0.0) {
-                self.error(self.places.value_or_tag(limit, name), format!("`{name}` cannot be negative"), None);
+                self.error(
+                    Code::BadXmlValue,
+                    self.places.value_or_tag(limit, name),
+                    format!("`{name}` cannot be negative"),
+                    None,
+                );
                 hold = false;
             }
         }

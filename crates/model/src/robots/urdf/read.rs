@@ -14,6 +14,7 @@ use super::{check, tree};
 use crate::robots::names;
 use crate::robots::number::Number;
 use crate::robots::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -31,6 +32,7 @@ pub fn read(text: &str, start: usize, diagnostics: &mut Diagnostics) -> Option<R
         Ok(values) => values,
         Err(error) => {
             reader.error(
+                Code::BadXml,
                 places.tag(root),
                 format!("urdf-rs cannot read this file: {}", clip(&error.to_string())),
                 None,
@@ -67,24 +69,24 @@ impl Numbers<'_, '_, '_> {
 }
 
 impl Reader<'_> {
-    fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.diagnostics.push(Diagnostic::error(span, message).help(help));
+    fn error(&mut self, code: Code, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
+        self.diagnostics.push(Diagnostic::error(code, span, message).help(help));
     }
 
     fn warn(&mut self, span: Span, message: String) {
-        self.diagnostics.push(Diagnostic::warning(span, message));
+        self.diagnostics.push(Diagnostic::warning(Code::MasslessLink, span, message));
     }
 
     fn is_urdf(&mut self, root: Element) -> bool {
         if root.tag_name().name() != "robot" {
             let message = format!("a URDF is a `<robot>`, but here is `<{}>`", clip(root.tag_name().name()));
-            self.error(self.places.tag(root), message, None);
+            self.error(Code::WrongRobot, self.places.tag(root), message, None);
             return false;
         }
         let of_xacro = |node: &Element| node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"));
         let found = root.descendants().filter(Element::is_element).find(of_xacro);
         if let Some(found) = found {
-            self.error(self.places.tag(found), "this is xacro, not yet URDF", EXPAND.to_owned());
+            self.error(Code::WrongRobot, self.places.tag(found), "this is xacro, not yet URDF", EXPAND.to_owned());
         }
         found.is_none()
     }
@@ -98,14 +100,19 @@ impl Reader<'_> {
         for (element, link) in children(root, "link").zip(&values.links) {
             let Some(name) = self.name(element, "link", &link.name, &mut taken) else { continue };
             if links.insert(link.name.as_str(), robot.links.len()).is_some() {
-                self.error(self.places.tag(element), format!("a second link is called `{}`", clip(&link.name)), None);
+                self.error(
+                    Code::NameTaken,
+                    self.places.tag(element),
+                    format!("a second link is called `{}`", clip(&link.name)),
+                    None,
+                );
             }
             let inertial = child(element, "inertial").and_then(|found| self.inertial(found, &link.inertial, &name));
             let visuals = visuals.link(element);
             robot.links.push(Link { name, span: self.places.tag(element), inertial, visuals });
         }
         if robot.links.is_empty() {
-            self.error(self.places.tag(root), "a robot needs at least one link", None);
+            self.error(Code::MissingXml, self.places.tag(root), "a robot needs at least one link", None);
             return None;
         }
         let mut taken = HashSet::new();
@@ -115,7 +122,12 @@ impl Reader<'_> {
             let Some(name) = self.name(element, "joint", &joint.name, &mut taken) else { continue };
             let Some(found) = self.joint(element, joint, name, &links) else { continue };
             if joints.insert(joint.name.as_str(), robot.joints.len()).is_some() {
-                self.error(self.places.tag(element), format!("a second joint is called `{}`", clip(&joint.name)), None);
+                self.error(
+                    Code::NameTaken,
+                    self.places.tag(element),
+                    format!("a second joint is called `{}`", clip(&joint.name)),
+                    None,
+                );
             }
             if let (Some(mimic), Some(place)) = (&joint.mimic, child(element, "mimic")) {
                 mimics.push((robot.joints.len(), place, mimic));
@@ -131,7 +143,7 @@ impl Reader<'_> {
     /// A name as formulas can have it.
     fn name(&mut self, element: Element, what: &str, written: &str, taken: &mut HashSet<String>) -> Option<String> {
         if written.trim().is_empty() {
-            self.error(self.places.tag(element), format!("a {what} needs a `name`"), None);
+            self.error(Code::MissingXml, self.places.tag(element), format!("a {what} needs a `name`"), None);
             return None;
         }
         Some(names::in_formulas(written, taken))
@@ -153,13 +165,18 @@ impl Reader<'_> {
     fn inertial(&mut self, element: Element, values: &urdf_rs::Inertial, name: &str) -> Option<Inertial> {
         let origin = self.origin(element, &values.origin, &format!("link.{name}.com"));
         let Some(found) = child(element, "mass") else {
-            self.error(self.places.tag(element), format!("the inertial of link `{name}` needs a `<mass>`"), None);
+            self.error(
+                Code::MissingXml,
+                self.places.tag(element),
+                format!("the inertial of link `{name}` needs a `<mass>`"),
+                None,
+            );
             return None;
         };
         let mass = values.mass.value;
         if mass < 0.0 {
             let span = self.places.value_or_tag(found, "value");
-            self.error(span, format!("the mass of link `{name}` is negative"), None);
+            self.error(Code::BadXmlValue, span, format!("the mass of link `{name}` is negative"), None);
         }
         let prefix = format!("link.{name}");
         let mass_number = Numbers { places: self.places, element: Some(found), prefix: &prefix };
@@ -195,7 +212,7 @@ impl Reader<'_> {
     ) -> Option<Joint> {
         if plain(element, "type").is_none() {
             let help = format!("the types are {}", suggest::list(&Kind::WORDS));
-            self.error(self.places.tag(element), format!("joint `{name}` needs a `type`"), help);
+            self.error(Code::MissingXml, self.places.tag(element), format!("joint `{name}` needs a `type`"), help);
         }
         let kind = match values.joint_type {
             JointType::Revolute => Kind::Revolute,
@@ -212,7 +229,7 @@ impl Reader<'_> {
         if axis == [0.0; 3] && !matches!(kind, Kind::Fixed | Kind::Floating) {
             let found = child(element, "axis").unwrap_or(element);
             let span = self.places.value_or_tag(found, "xyz");
-            self.error(span, format!("the axis of joint `{name}` has no direction"), None);
+            self.error(Code::ZeroDirection, span, format!("the axis of joint `{name}` has no direction"), None);
         }
         let units = if kind.turns() { ["N*m*s/rad", "N*m", "rad", "rad/s"] } else { ["N*s/m", "N", "m", "m/s"] };
         let prefix = format!("joint.{name}");
@@ -221,7 +238,7 @@ impl Reader<'_> {
         for (what, value) in [("damping", dynamics.damping), ("friction", dynamics.friction)] {
             if let (true, Some(found)) = (value < 0.0, numbers.element) {
                 let span = self.places.value_or_tag(found, what);
-                self.error(span, format!("the {what} of joint `{name}` is negative"), None);
+                self.error(Code::BadXmlValue, span, format!("the {what} of joint `{name}` is negative"), None);
             }
         }
         let limits = child(element, "limit").map(|found| self.limits(found, &values.limit, &prefix, units));
@@ -264,14 +281,19 @@ impl Reader<'_> {
         links: &HashMap<&str, usize>,
     ) -> Option<usize> {
         let Some(element) = child(joint, end).filter(|element| plain(*element, "link").is_some()) else {
-            self.error(self.places.tag(joint), format!("joint `{name}` needs `<{end} link=\"…\"/>`"), None);
+            self.error(
+                Code::MissingXml,
+                self.places.tag(joint),
+                format!("joint `{name}` needs `<{end} link=\"…\"/>`"),
+                None,
+            );
             return None;
         };
         let link = links.get(written).copied();
         if link.is_none() {
             let span = self.places.value_or_tag(element, "link");
             let help = suggest::help(written, "links", links.keys().copied());
-            self.error(span, format!("unknown link `{}`", clip(written)), help);
+            self.error(Code::UnknownName, span, format!("unknown link `{}`", clip(written)), help);
         }
         link
     }
@@ -284,14 +306,14 @@ impl Reader<'_> {
         joints: &HashMap<&str, usize>,
     ) -> Option<Mimic> {
         if plain(element, "joint").is_none() {
-            self.error(self.places.tag(element), "`<mimic>` needs `joint`", None);
+            self.error(Code::MissingXml, self.places.tag(element), "`<mimic>` needs `joint`", None);
             return None;
         }
         let joint = joints.get(values.joint.as_str()).copied().filter(|joint| *joint != index);
         if joint.is_none() {
             let help = suggest::help(&values.joint, "joints", joints.keys().copied());
             let message = format!("no other joint is called `{}`", clip(&values.joint));
-            self.error(self.places.value_or_tag(element, "joint"), message, help);
+            self.error(Code::UnknownName, self.places.value_or_tag(element, "joint"), message, help);
         }
         let (multiplier, offset) = (values.multiplier.unwrap_or(1.0), values.offset.unwrap_or(0.0));
         Some(Mimic { joint: joint?, multiplier, offset })

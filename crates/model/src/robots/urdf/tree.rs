@@ -1,6 +1,7 @@
 //! Links and joints must be one tree.
 
 use super::robot::Robot;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 
 /// Finds the root and the order of the joints; says why there is none.
@@ -12,7 +13,7 @@ pub fn order(robot: &mut Robot, diagnostics: &mut Diagnostics) -> bool {
             let name = &robot.links[joint.child].name;
             let message = format!("link `{name}` is the child of two joints: a URDF is a tree");
             let help = "close a loop by a joint in a YAML model that names the file".to_owned();
-            let error = Diagnostic::error(joint.span.clone(), message).help(help);
+            let error = Diagnostic::error(Code::NotATree, joint.span.clone(), message).help(help);
             diagnostics.push(error.also(robot.joints[first].span.clone(), "the first one"));
             return false;
         }
@@ -22,13 +23,13 @@ pub fn order(robot: &mut Robot, diagnostics: &mut Diagnostics) -> bool {
     let roots: Vec<usize> = (0..robot.links.len()).filter(|&link| above[link].is_none()).collect();
     let Some(&root) = roots.first() else {
         let message = "every link is the child of a joint: the links form a loop, but a URDF is a tree";
-        diagnostics.push(Diagnostic::error(robot.links[0].span.clone(), message));
+        diagnostics.push(Diagnostic::error(Code::NotATree, robot.links[0].span.clone(), message));
         return false;
     };
     if let Some(&second) = roots.get(1) {
         let [first, other] = [root, second].map(|link| &robot.links[link]);
         let message = format!("no joint leads to link `{}`, nor to `{}`: a URDF has one root", other.name, first.name);
-        let error = Diagnostic::error(other.span.clone(), message);
+        let error = Diagnostic::error(Code::NotATree, other.span.clone(), message);
         diagnostics.push(error.also(first.span.clone(), "the first root"));
         return false;
     }
@@ -43,7 +44,7 @@ pub fn order(robot: &mut Robot, diagnostics: &mut Diagnostics) -> bool {
         let stray = (0..robot.joints.len()).find(|joint| !reached(joint));
         let span = stray.map_or(0..0, |joint| robot.joints[joint].span.clone());
         let message = "this joint is in a loop that the root does not lead to: a URDF is a tree";
-        diagnostics.push(Diagnostic::error(span, message));
+        diagnostics.push(Diagnostic::error(Code::NotATree, span, message));
         return false;
     }
     true

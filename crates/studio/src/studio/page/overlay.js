@@ -4,7 +4,7 @@ import { element } from './data.js';
 // the text area, whose own letters are clear.
 
 /** @typedef {{start: {line: number, character: number}, end: {line: number, character: number}}} Range */
-/** @typedef {{range: Range, severity?: number, message: string}} Problem */
+/** @typedef {{range: Range, severity?: number, message: string, code?: string, codeDescription?: {href: string}}} Problem */
 /** @typedef {{from: number, to: number, kind: string}} Part */
 
 /** Words of a line of YAML, by their kinds. */

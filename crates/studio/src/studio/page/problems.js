@@ -29,12 +29,13 @@ export class Problems {
 
   /** @param {Listed} listed @param {number} number of the list */
   row({ uri, name, problem }, number) {
-    const { range, severity, message } = problem;
+    const { range, severity, message, code, codeDescription } = problem;
     const place = `${name}:${range.start.line + 1}:${range.start.character + 1}`;
     const [first, ...help] = message.split('\n');
     const jump = element('button', { type: 'button', class: 'jump' }, [element('code', {}, [place]), ` ${first}`]);
     jump.addEventListener('click', () => this.go(uri, range));
-    const row = element('li', { class: severity === 2 ? 'warning' : 'error' }, [jump, ...help.map((line) => element('small', {}, [line]))]);
+    const page = code && codeDescription ? [element('a', { class: 'code', href: codeDescription.href, target: '_blank', rel: 'noreferrer' }, [code])] : [];
+    const row = element('li', { class: severity === 2 ? 'warning' : 'error' }, [jump, ...page, ...help.map((line) => element('small', {}, [line]))]);
     this.fixes(uri, range).then((fixes) => number === this.shown && row.append(...fixes));
     return row;
   }

@@ -17,6 +17,7 @@ use crate::model::Description;
 use crate::numerics::statistics::normal_quantile;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, NotMet, Summary, ToleranceZone, TradePoint, Verdict};
 use crate::simulate::SimulationError;
+use crate::syntax::{Code, Coded};
 use choose::{Chosen, choose};
 use items::with_tolerances;
 pub(in crate::study) use items::{Choice, Item, items};
@@ -339,6 +340,15 @@ impl Allocator<'_> {
             let Some(chosen) = choose(slack, &self.wide.items, &start) else { break };
             start.clone_from(&chosen.multiples);
             allocation.trade.push(point(number as f64 * step, self.cost(&chosen.multiples)));
+        }
+    }
+}
+
+impl Coded for AllocateError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::Unsuitable(_) => Some(Code::Unsuitable),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::keeping::kept;
 use super::results::{Ran, Results};
 use crate::study::black_box::no_answer;
 use crate::study::bounding::{bands, contributions};
-use crate::study::internal::{InternalError, caught};
+use crate::study::internal::caught;
 use crate::study::problem::Study;
 use crate::study::stepping::{events_followed, events_of_parts};
 use symdiff::math;
@@ -22,6 +22,7 @@ use crate::results::{
 use crate::simulate::{
     EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps,
 };
+use crate::syntax::{Code, Coded};
 
 /// Said of results that the user did not wait for.
 const INTERRUPTED: &str =
@@ -33,8 +34,25 @@ const WORTH_TELLING: f64 = 1e-3;
 /// A step resolves a mode that turns by this angle, rad, in it.
 const RESOLVING: f64 = 0.1;
 
+/// Why a run ended early, or what of it is left out, for people.
+pub struct Note {
+    text: String,
+    code: Option<Code>,
+}
+
+impl Note {
+    /// What an error stopped, and what is kept nevertheless.
+    pub fn of(error: &SimulationError, kept: &str) -> Self {
+        Self { text: format!("{error}; {kept}"), code: error.code() }
+    }
+
+    fn uncoded(text: impl ToString) -> Self {
+        Self { text: text.to_string(), code: None }
+    }
+}
+
 /// Bounds up to the last row of which something is known, and the summary.
-pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ran {
+pub fn conclude(study: &Study, mut results: Results, note: Option<Note>) -> Ran {
     let stop = results.bounded.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
     // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
     let rows = results.bounded.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
@@ -57,18 +75,18 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<String>) -> Ra
         functions: function_witnesses(study, &results.bounded),
         certified: results.bounded.outcomes().filter_map(|outcome| outcome.result.certified.clone()).collect(),
     };
-    let notes = || results.bounded.outcomes().find_map(|outcome| outcome.result.note.clone());
-    let interrupted = || study.interruption.is_asked().then(|| INTERRUPTED.to_owned());
+    let noted = || results.bounded.outcomes().find_map(|outcome| outcome.result.note.clone());
+    let interrupted = || study.interruption.is_asked().then(|| Note::uncoded(INTERRUPTED));
     let stopped = stop.map(|(stop, sample)| {
         caught("a message", || failure(study, &results.bounded.plan.schedule, &stop, &sample))
-            .unwrap_or_else(|error| error.to_string())
+            .unwrap_or_else(Note::uncoded)
     });
-    let internal = results.internal.iter().map(InternalError::to_string);
-    let failures: Vec<String> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
-    let failure = (!failures.is_empty()).then(|| failures.join("; "));
+    let internal = results.internal.iter().map(Note::uncoded);
+    let notes = || noted().map(Note::uncoded);
+    let failures: Vec<Note> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
     let whole = results.bounded.whole().min(rows);
     let kept = kept(study, &mut results, whole);
-    let summary = summary(study, results, &bounds, failure);
+    let summary = summary(study, results, &bounds, &failures);
     Ran { bounds, summary, whole, kept }
 }
 
@@ -85,30 +103,32 @@ fn witnesses(results: &Results, rows: usize) -> Vec<Witness> {
 }
 
 /// What happened where a sample stopped, for people.
-fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> String {
+fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> Note {
     let parameters = study.simulator.with_names(sample);
     let Stop { sample: index, time, .. } = *stop;
     match stop.cause.clone() {
         StopCause::NoAnswer { why } => {
             let failed = no_answer(study, sample, why);
-            format!("{failed}; bounds that need it are unknown, a scan is of the others")
+            Note::of(&failed, "bounds that need it are unknown, a scan is of the others")
         }
         StopCause::SingularJet => {
-            format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
+            let failed = SimulationError::SingularJet { time };
+            Note { text: format!("{failed}: Taylor bounds are unknown from there on"), code: failed.code() }
         }
         StopCause::Locked { constraint, residual } => {
             let locked = study.simulator.locked(OpenConstraint { constraint, residual }, time, parameters);
-            format!("{locked}; results up to that time are kept")
+            Note::of(&locked, "results up to that time are kept")
         }
         StopCause::NotConverged { equation } => {
             if let Some(term) = no_number(study, schedule, stop.row, sample) {
                 let failed = SimulationError::NotFinite { term, time, parameters };
-                return format!("{failed}; results up to that time are kept");
+                return Note::of(&failed, "results up to that time are kept");
             }
             let equation = study.simulator.equation_name(equation);
             let failed = SimulationError::NotConverged { sample: index, time, equation, parameters };
-            format!(
-                "{failed}; bounds that need it are kept up to that time, a scan is of those that went on. Try a smaller step"
+            Note::of(
+                &failed,
+                "bounds that need it are kept up to that time, a scan is of those that went on. Try a smaller step",
             )
         }
     }
@@ -137,7 +157,7 @@ fn damped_mode(results: &Results, bounds: &Bounds) -> Option<DampedMode> {
     })
 }
 
-fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<String>) -> Summary {
+fn summary(study: &Study, results: Results, bounds: &Bounds, failures: &[Note]) -> Summary {
     let system = &study.simulator.system;
     let mobility = &study.simulator.mobility;
     let names = |constraints: &[ConstraintId]| system.constraint_names(constraints);
@@ -213,7 +233,9 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         pieces: Vec::new(),
         not_simulated: Vec::new(),
         subsystems: Vec::new(),
-        failure,
+        failure: (!failures.is_empty())
+            .then(|| failures.iter().map(|failure| failure.text.as_str()).collect::<Vec<_>>().join("; ")),
+        failure_code: failures.iter().find_map(|failure| failure.code),
         is_cut: false,
     }
 }

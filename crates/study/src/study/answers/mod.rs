@@ -13,7 +13,7 @@ mod results;
 
 pub use analysis::arrange;
 pub use assemblies::of as assemblies;
-pub use conclude::conclude;
+pub use conclude::{Note, conclude};
 pub use keeping::keep_surrogate;
 pub use kept::{Evaluator, Kept};
 pub use results::{Ran, Results};

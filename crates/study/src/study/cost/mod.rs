@@ -18,6 +18,7 @@ use crate::compile::compile_switches;
 use crate::methods::{MOST_SIMULATIONS, Varied, can_compose};
 use crate::model::{Description, Stepping};
 use crate::results::{CostMethod, CostPoint, CostReference, CostStudy, cost_curves, pareto};
+use crate::syntax::{Code, Coded};
 
 use grid::{Setting, settings, smoothest, uncertain};
 use plan::Plan;
@@ -271,5 +272,15 @@ fn mark(points: &mut [CostPoint], own: f64) {
     let places: Vec<(f64, f64)> = points.iter().map(|point| point.place(own)).collect();
     for index in pareto(&places) {
         points[index].front = true;
+    }
+}
+
+impl Coded for CostError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::TooCostly { .. } | Self::TooMany { .. } => Some(Code::TooCostly),
+            Self::Reference(_) => None,
+        }
     }
 }

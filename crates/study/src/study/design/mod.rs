@@ -27,6 +27,7 @@ use std::ops::Range;
 use super::{Options, RunError, pool, reduced, statistics};
 use crate::model::{Description, Objective};
 use crate::results::{Criterion, DesignKind, DesignObjective, DesignParameter, DesignPoint, DesignStudy};
+use crate::syntax::{Code, Coded};
 use allocated::at_cost;
 use axes::{Axes, without_tolerances};
 use front::{front, front_beside};
@@ -305,4 +306,15 @@ fn found(
     }
     all.optima.sort_by(|a, b| a.merit.order(&b.merit));
     Ok(all)
+}
+
+impl Coded for DesignError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::Unsuitable(_) => Some(Code::Unsuitable),
+            Self::NoSurrogate => Some(Code::Unanswerable),
+            Self::Interrupted => None,
+        }
+    }
 }

@@ -7,6 +7,7 @@ use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::{Description, Output};
 use crate::syntax::suggest;
 use crate::syntax::table::{Cell, Line, Table};
+use crate::syntax::{Code, Coded};
 
 /// (√5 − 1)/2
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -260,4 +261,10 @@ fn measured(
         values.push(Measured { line, time: time.min(end), output, value, noise });
     }
     Ok(values)
+}
+
+impl Coded for DataError {
+    fn code(&self) -> Option<Code> {
+        Some(Code::BadData)
+    }
 }

@@ -27,6 +27,7 @@ use super::{Chosen, Options, RunError, pool, sample, uncertain};
 use crate::model::Description;
 use crate::numerics::{ParameterBox, Sample};
 use crate::results::{Fit, FitOutput, FitParameter, FitRow};
+use crate::syntax::{Code, Coded};
 
 /// Extent of the box in which least squares begin, in multiples of the consistent set's.
 const AROUND: f64 = 4.0;
@@ -234,4 +235,15 @@ fn simulated(
         };
         Ok(measurements.values.iter().map(of).collect())
     })
+}
+
+impl Coded for FitError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::NoParameter => Some(Code::NoParameter),
+            Self::NoSurrogate => Some(Code::Unanswerable),
+            Self::Interrupted => None,
+        }
+    }
 }

@@ -15,6 +15,7 @@ use crate::study::reduced::expanded;
 use crate::study::sample::{Chosen, Trajectories, sample};
 use crate::study::stepping::{StepPlan, segmented_nominal};
 use crate::study::{Options, RunError};
+use crate::syntax::{Code, Coded};
 
 /// Gradients with two kinds of steps agree to this share of the largest influence.
 const AGREEMENT: f64 = 0.01;
@@ -168,6 +169,18 @@ impl GradientError {
         match self {
             Self::None(NoGradient::Simulation(error)) | Self::Run(RunError::Simulation(error)) => *error == interrupted,
             _ => false,
+        }
+    }
+}
+
+impl Coded for GradientError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::None(NoGradient::Simulation(error)) => error.code(),
+            Self::None(_) | Self::Lost { .. } => Some(Code::NoDerivatives),
+            Self::NoParameter => Some(Code::NoParameter),
+            Self::NoOutput => Some(Code::Unsuitable),
         }
     }
 }

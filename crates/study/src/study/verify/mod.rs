@@ -17,7 +17,7 @@ mod windows;
 
 use rayon::prelude::*;
 
-use super::black_box::needs_equations;
+use super::black_box::needs_mechanism;
 use super::formulation::compiled;
 use super::{Options, RunError, first_step, pool, scheme};
 use crate::assemble::{BuildError, Questions};
@@ -28,6 +28,7 @@ use crate::results::{FormulationVerification, SchemeVerification, Verification};
 use crate::simulate::{
     Integration, Observed, Schedule, SimulationError, Simulator, Steps, choose_independent, integrator,
 };
+use crate::syntax::{Code, Coded};
 
 use balance::balance;
 use derivatives::derivatives;
@@ -107,7 +108,7 @@ pub enum VerifyError {
 /// # Errors
 /// Where the model cannot be built or assembled, and at an interruption.
 pub fn verify(description: &Description, options: &Options) -> Result<Verification, VerifyError> {
-    needs_equations(description, "a verification").map_err(RunError::from)?;
+    needs_mechanism(description, "a verification").map_err(RunError::from)?;
     match description.analysis {
         Analysis::Statics => return Err(VerifyError::NoSteps("statics")),
         Analysis::Kinematics => return Err(VerifyError::NoSteps("kinematics")),
@@ -268,4 +269,14 @@ fn nominal_motion(
         times: (0..reached).map(|row| schedule.time(row)).collect(),
         states: values.chunks_exact(count).take(reached).map(state).collect(),
     })
+}
+
+impl Coded for VerifyError {
+    fn code(&self) -> Option<Code> {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::NoSteps(_) => Some(Code::NoSteps),
+            Self::Interrupted => None,
+        }
+    }
 }

@@ -30,6 +30,7 @@ use super::{ForceElement, Forces, LineMass, Section, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Vector};
 
 /// A massless beam that bends between two bodies, in space with `torsional_stiffness`.
@@ -272,15 +273,15 @@ impl Checked for Beam {
         if self.torsional_stiffness.is_some() {
             if let Some(span) = at("axis") {
                 let help = "give the points frames whose x is along the beam".to_owned();
-                reader.error(span, "in space a beam lies along x of the frames at its ends", help);
+                reader.error(Code::NotPlanar, span, "in space a beam lies along x of the frames at its ends", help);
             }
             return;
         }
         if let (Some(end), Some(span)) = (free, at("between")) {
             let message = format!("`{}` turns about more than z", reader.model.body_name(end.body));
-            reader.error(span, message, NEEDS_TORSION.to_owned());
+            reader.error(Code::NotPlanar, span, message, NEEDS_TORSION.to_owned());
         } else if let Some(span) = at("bending_stiffness_y") {
-            reader.error(span, "in the plane a beam bends about z alone", NEEDS_TORSION.to_owned());
+            reader.error(Code::NotPlanar, span, "in the plane a beam bends about z alone", NEEDS_TORSION.to_owned());
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::elements::effects::Forces;
 use crate::elements::form::Bend;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Vector};
+use crate::syntax::codes::Code;
 use crate::syntax::yaml;
 
 /// Points in a frame.
@@ -53,7 +54,7 @@ fn items<'n, S: SymbolTable>(reader: &mut Reader<'_, S>, node: &'n Node) -> Opti
         _ => {
             let help = "e.g. `[[0, 0], [0.2, 0], [0.2, 0.1]]`".to_owned();
             let message = "a list of points belongs here, each a list of two or three numbers";
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::WrongShape, node.span.clone(), message, help);
             None
         }
     }
@@ -101,12 +102,12 @@ impl Course {
         let count = self.0.len();
         if count < least {
             let article = if key.starts_with('o') { "an" } else { "a" };
-            reader.error(at, format!("{article} `{key}` has {least} points or more, not {count}"), None);
+            reader.error(Code::BadSurface, at, format!("{article} `{key}` has {least} points or more, not {count}"), None);
             return;
         }
         let is_open = least == 2;
         if is_open && self.0[0].radius.is_some() {
-            reader.error(at, format!("a `{key}` does not begin with an arc: there is no point before"), None);
+            reader.error(Code::BadSurface, at, format!("a `{key}` does not begin with an arc: there is no point before"), None);
             return;
         }
         let edges = if is_open { count - 1 } else { count };
@@ -124,7 +125,7 @@ impl Course {
                 let label = reader.corners[corner].label.clone();
                 if chord == 0.0 {
                     let help = (end == 1).then(|| "it closes by itself: leave its last point out".to_owned());
-                    reader.error(at, format!("points {start} and {end} of the `{key}` are one point{label}"), help);
+                    reader.error(Code::BadSurface, at, format!("points {start} and {end} of the `{key}` are one point{label}"), help);
                     return;
                 }
                 if let Some(radius) = radius.filter(|radius| 2.0 * radius.abs() <= chord) {
@@ -132,7 +133,7 @@ impl Course {
                         "points {start} and {end} of the `{key}` are {chord} m apart: an arc of radius {radius} m does not reach{label}"
                     );
                     let help = "an arc is less than half a turn; give it a point in between".to_owned();
-                    reader.error(at, message, help);
+                    reader.error(Code::BadSurface, at, message, help);
                     return;
                 }
             }

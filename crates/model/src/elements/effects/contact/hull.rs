@@ -19,6 +19,7 @@ use symdiff::{Builder, Formula, Scalar};
 use super::course::Points;
 use super::solid::Gap;
 use crate::grammar::{Fields, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
 
 /// Most points: each face, edge and corner has instructions of its own.
@@ -265,7 +266,7 @@ pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, ke
     let at = fields.key_span(key);
     if !reader.model.is_spatial() {
         let help = if key == "hull" { "in the plane it is a `polygon`" } else { "in the plane name its `corners`" };
-        reader.error(at, format!("a `{key}` needs `space: spatial`"), help.to_owned());
+        reader.error(Code::NotPlanar, at, format!("a `{key}` needs `space: spatial`"), help.to_owned());
         return;
     }
     if points.iter().flatten().any(|formula| reader.is_uncertain(formula)) {
@@ -274,11 +275,11 @@ pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, ke
         let message = format!(
             "points of a `{key}` are the same for all samples, so they cannot depend on an uncertain parameter"
         );
-        reader.error(at, message, help);
+        reader.error(Code::MustBeCertain, at, message, help);
         return;
     }
     if points.len() > MOST {
-        reader.error(at, format!("a `{key}` has at most {MOST} points, not {}", points.len()), None);
+        reader.error(Code::BadSurface, at, format!("a `{key}` has at most {MOST} points, not {}", points.len()), None);
         return;
     }
     let Some(numbers) = numbers(reader, points) else { return };
@@ -289,7 +290,7 @@ pub fn check<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, ke
             "a plate of no thickness is a thin `box`"
         };
         let message = format!("a `{key}` needs four points or more that do not lie in one plane");
-        reader.error(at, message, help.to_owned());
+        reader.error(Code::BadSurface, at, message, help.to_owned());
     }
 }
 

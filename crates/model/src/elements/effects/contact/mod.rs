@@ -57,6 +57,7 @@ use self::touch::{Law, Surface, Touch};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::elements::{Shape, SurfaceAt, Surroundings};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Pair, Vector};
 
 /// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block, a hull or edges on one body with a circle,
@@ -313,9 +314,9 @@ impl Checked for Contact {
         if fields.get("friction_along").is_some() {
             let at = fields.key_span("friction_along");
             if fields.get("friction").is_none() {
-                reader.error(at, "`friction_along` needs `friction`, which holds across it", None);
+                reader.error(Code::MissingKey, at, "`friction_along` needs `friction`, which holds across it", None);
             } else if let Some(edges) = ["path", "polygon"].into_iter().find(|key| fields.get(key).is_some()) {
-                reader.error(at, format!("`friction_along` does not go with `{edges}`"), None);
+                reader.error(Code::MisplacedKey, at, format!("`friction_along` does not go with `{edges}`"), None);
             }
         }
         rod::check_keys(reader, fields, &SURFACES);
@@ -325,29 +326,29 @@ impl Checked for Contact {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
                 let message =
                     "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `height`, `capsule`, `block` or `hull`";
-                reader.error(fields.at.clone(), message, help);
+                reader.error(Code::IncompleteElement, fields.at.clone(), message, help);
             }
             ["capsule"] => {
                 if fields.lacks_all(&["rounding"]) {
                     let message = "a `capsule` needs `rounding`, which is its radius";
-                    reader.error(fields.key_span("capsule"), message, None);
+                    reader.error(Code::MisplacedKey, fields.key_span("capsule"), message, None);
                 }
             }
             [edges @ ("path" | "polygon" | "block" | "hull")] => {
                 if fields.lacks_all(&["rounding", "radius"]) {
                     let message = format!("a `{edges}` needs `rounding`, or a `radius` of what touches it");
                     let help = "surfaces are told apart to that depth".to_owned();
-                    reader.error(fields.key_span(edges), message, help);
+                    reader.error(Code::IncompleteElement, fields.key_span(edges), message, help);
                 }
             }
             [surface] => {
                 if fields.get("rounding").is_some() {
                     let message = format!("`rounding` goes with `path`, `polygon`, `capsule`, `block` or `hull`, not with `{surface}`");
-                    reader.error(fields.key_span("rounding"), message, None);
+                    reader.error(Code::MisplacedKey, fields.key_span("rounding"), message, None);
                 }
             }
             [first, second, ..] => {
-                reader.error(fields.key_span(second), format!("`{first}` and `{second}` exclude each other"), None);
+                reader.error(Code::ExclusiveKeys, fields.key_span(second), format!("`{first}` and `{second}` exclude each other"), None);
             }
         }
     }

@@ -23,6 +23,7 @@ use super::rod::Rod;
 use super::solid::Solid;
 use super::touch::{Shape, Surface, Touch};
 use crate::grammar::{Reader, Span, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
 
 /// Most pairs of edges: each has instructions of its own. Two boxes have 144.
@@ -142,6 +143,6 @@ pub fn check_edges<S: SymbolTable>(
             first * second
         );
         let help = "leave out points, or say `corners` instead, which touch alone".to_owned();
-        reader.error(at, message, help);
+        reader.error(Code::TooLarge, at, message, help);
     }
 }

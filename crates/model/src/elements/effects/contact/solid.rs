@@ -14,6 +14,7 @@ use symdiff::{Builder, Formula, Scalar};
 
 use super::course::Points;
 use crate::grammar::{Reader, Span, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{Pair, Vector};
 
 /// Where two surfaces are to one another.
@@ -141,7 +142,7 @@ pub(in crate::elements) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>
     let [start, end] = &**ends else {
         let message = format!("a `{key}` has 2 points, not {}", ends.len());
         let help = (key == "capsule").then(|| "several in a row are a `path`, in the plane".to_owned());
-        reader.error(at, message, help);
+        reader.error(Code::BadSurface, at, message, help);
         return;
     };
     for corner in 0..reader.corners.len() {
@@ -153,7 +154,7 @@ pub(in crate::elements) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>
             let label = &reader.corners[corner].label;
             let message = format!("the ends of the `{key}` are one point{label}");
             let help = (key == "capsule").then(|| "a ball is a `circle`, as a shape a `sphere`".to_owned());
-            reader.error(at, message, help);
+            reader.error(Code::BadSurface, at, message, help);
             return;
         }
     }
@@ -169,7 +170,7 @@ pub(in crate::elements) fn check_lengths<S: SymbolTable>(reader: &mut Reader<'_,
             let (axis, length) = (["x", "y", "z"][axis], length.unwrap_or_default());
             let label = &reader.corners[corner].label;
             let message = format!("a `{key}` has a length above 0 along {axis}, not {length}{label}");
-            reader.error(at, message, None);
+            reader.error(Code::BadSurface, at, message, None);
             return;
         }
     }

@@ -18,6 +18,7 @@ use symdiff::{Formula, Scalar};
 use crate::elements::effects::Forces;
 use crate::grammar::{Checked, Direction, Fields, Reader, Requirement, SymbolTable};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 const AT_LEAST_SLIDING: Requirement = Requirement {
     holds: |value| value >= 1.0,
@@ -75,7 +76,7 @@ impl Checked for DryFriction {
             }
             _ => return,
         };
-        reader.error(fields.key_span(key), message, None);
+        reader.error(Code::MissingKey, fields.key_span(key), message, None);
     }
 }
 

@@ -8,6 +8,7 @@ use symdiff::{Formula, Scalar};
 use crate::elements::effects::Forces;
 use crate::grammar::{Context, Fields, Reader, Symbol, SymbolTable, TimeOrder};
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 /// A target and its rate.
 pub fn goal<'g>(
@@ -34,6 +35,6 @@ pub fn check_rate<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_
     if let Some((name, _)) = moving.filter(|_| fields.get("target_rate").is_none()) {
         let message = format!("`target` follows `{}`, so its rate is not known", crate::syntax::suggest::clip(name));
         let help = format!("`{key}` needs it: say `target_rate`");
-        reader.error(fields.key_span("target"), message, help);
+        reader.error(Code::MisplacedKey, fields.key_span("target"), message, help);
     }
 }

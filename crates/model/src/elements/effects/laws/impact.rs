@@ -36,6 +36,7 @@ use crate::grammar::{
     Checked, Fields, JointCoordinate, Node, Quantity, Reader, Requirement, Span, SymbolTable, Value, values,
 };
 use crate::multibody::BuildError;
+use crate::syntax::codes::Code;
 
 const RESTITUTION: Requirement =
     Requirement { holds: |value| value > 0.0 && value <= 1.0, message: "must be above 0 and at most 1" };
@@ -127,7 +128,7 @@ impl Checked for Impact {
         reader.required(fields, "impact_velocity");
         if given("dissipation") {
             let message = "`dissipation` and `restitution` exclude each other";
-            reader.error(fields.key_span("dissipation"), message, None);
+            reader.error(Code::MisplacedKey, fields.key_span("dissipation"), message, None);
         }
     }
 }
@@ -139,7 +140,12 @@ impl Value for Exponent {
             return Some(Self(exponent));
         }
         let help = "1 is a linear spring, 1.5 Hertz's contact of curved surfaces".to_owned();
-        reader.error(node.span.clone(), format!("an exponent from 1 to 3 belongs here, not {exponent}"), help);
+        reader.error(
+            Code::OutOfRange,
+            node.span.clone(),
+            format!("an exponent from 1 to 3 belongs here, not {exponent}"),
+            help,
+        );
         None
     }
 

@@ -19,6 +19,7 @@ use symdiff::Builder;
 use crate::grammar::report::Fields;
 use crate::grammar::{Image, Node, Quantity, Reader, Span, SymbolTable, Value};
 use crate::multibody::Vector;
+use crate::syntax::codes::Code;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml;
 
@@ -106,7 +107,7 @@ impl Matrices {
         let at = |key: &str| fields.key_span(key);
         match read.defect(reader.model.is_spatial()) {
             Some((key, message, help)) => {
-                reader.error(at(key), message, help.to_owned());
+                reader.error(Code::BadMatrix, at(key), message, help.to_owned());
                 None
             }
             None => Some(read),
@@ -182,7 +183,7 @@ impl Places {
             let [space, plane] = sizes;
             let message = format!("the {what} matrix has {} rows, not {space} (in the plane {plane})", rows.len());
             let help = "six rows a node (in the plane x, y and angle), then one a mode".to_owned();
-            reader.error(node.span.clone(), message, help);
+            reader.error(Code::BadMatrix, node.span.clone(), message, help);
             return None;
         };
         let index = |row: usize| match plane {
@@ -200,7 +201,7 @@ impl Places {
                 let message =
                     format!("row {} of the {what} matrix has {} numbers, not {wanted}", row + 1, values.len());
                 let help = "every row has all numbers, or every row ends with its diagonal".to_owned();
-                reader.error(entries.span.clone(), message, help);
+                reader.error(Code::BadMatrix, entries.span.clone(), message, help);
                 return None;
             }
             for (column, value) in values.into_iter().enumerate() {
@@ -215,7 +216,7 @@ impl Places {
                         let message = format!(
                             "the {what} matrix is not symmetric: row {row} has {value} in column {column}, row {column} has {above} in column {row}"
                         );
-                        reader.error(entries.span.clone(), message, None);
+                        reader.error(Code::BadMatrix, entries.span.clone(), message, None);
                         return None;
                     }
                     matrix[(j, i)] = 0.5 * (above + value);
@@ -279,7 +280,7 @@ fn nodes<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node) -> Option<Vec<
             &[x, y, z] => found.push([x, y, z]),
             others => {
                 let message = format!("a position has two or three numbers, not {}", others.len());
-                reader.error(item.span.clone(), message, None);
+                reader.error(Code::WrongShape, item.span.clone(), message, None);
                 return None;
             }
         }
@@ -291,7 +292,7 @@ fn list<'n, S: SymbolTable>(reader: &mut Reader<'_, S>, node: &'n Node, wanted: 
     match &node.value {
         yaml::Value::Sequence(items) if !items.is_empty() => Some(items),
         _ => {
-            reader.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), None);
+            reader.error(Code::WrongShape, node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), None);
             None
         }
     }
@@ -305,7 +306,7 @@ fn numbers<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node) -> Option<Ve
         let Some(number) = scalar.text.parse::<f64>().ok().filter(|number| number.is_finite()) else {
             let help = "matrices are plain numbers in SI units; `mass` and `stiffness` of the effect may be uncertain"
                 .to_owned();
-            reader.error(item.span.clone(), format!("`{}` is not a number", clip(&scalar.text)), help);
+            reader.error(Code::NotANumber, item.span.clone(), format!("`{}` is not a number", clip(&scalar.text)), help);
             return None;
         };
         found.push(number);

@@ -29,6 +29,7 @@ use super::{ForceElement, Forces, ReducedInertia, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, PointRef, Reader, Sensor, SymbolTable};
+use crate::syntax::codes::Code;
 use crate::multibody::{BuildError, Pair, RelativeDisplacement, Vector};
 
 /// A flexible body by its mass and stiffness matrices: by nodes and modes.
@@ -139,13 +140,13 @@ impl Checked for Superelement {
         let (named, known) = (self.nodes.len(), self.matrices.nodes.len());
         if named != known {
             let message = format!("{named} nodes are named, but the matrices have {known}");
-            reader.error(fields.key_span("nodes"), message, None);
+            reader.error(Code::BadMatrix, fields.key_span("nodes"), message, None);
         }
         let twice = (1..named).find(|&node| self.nodes[..node].iter().any(|other| other.body == self.nodes[node].body));
         if let Some(node) = twice {
             let body = reader.model.body_name(self.nodes[node].body).to_owned();
             let help = "each node is a frame of a body of its own".to_owned();
-            reader.error(fields.key_span("nodes"), format!("two nodes are on body `{body}`"), help);
+            reader.error(Code::SameBody, fields.key_span("nodes"), format!("two nodes are on body `{body}`"), help);
         }
     }
 }

@@ -1,0 +1,23 @@
+//! The cure where keys stand beside the kind that they belong to.
+
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::Entry;
+
+/// What to write where keys stand beside the kind that they belong to, or the kind is the value of one.
+pub fn within_kind(known: &[&str], entries: &[Entry]) -> Option<String> {
+    let is_kind = |text: &str| known.contains(&text);
+    let mut kinds = entries.iter().filter(|entry| is_kind(&entry.key));
+    match (kinds.next(), kinds.next()) {
+        (Some(kind), None) => {
+            let other = entries.iter().find(|entry| entry.key != kind.key)?;
+            let (kind, other) = (&kind.key, clip(&other.key));
+            Some(format!("what belongs to `{kind}` stands within it: `{{ {kind}: {{ …, {other}: … }} }}`"))
+        }
+        (None, _) => {
+            let mut values = entries.iter().filter_map(|entry| entry.value.scalar());
+            let kind = values.find(|scalar| is_kind(&scalar.text))?;
+            Some(format!("write `{{ {}: {{ … }} }}`, with the other keys within", kind.text))
+        }
+        _ => None,
+    }
+}
