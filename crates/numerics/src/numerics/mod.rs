@@ -20,6 +20,7 @@ mod brink;
 mod cheapest;
 mod chebyshev;
 mod chebyshev_series;
+pub mod clock;
 mod course;
 mod decay;
 mod design;

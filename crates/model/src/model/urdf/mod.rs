@@ -26,7 +26,6 @@ use crate::robots::urdf::robot::Robot;
 use crate::robots::urdf::{is_number, is_urdf, read};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
-use crate::syntax::text_file;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 const FORMAT: Format = Format {
@@ -79,7 +78,7 @@ impl Urdf {
         let file = reader.scalar(node, "the path of a URDF")?.text.clone();
         let found = reader.files.find(Path::new(""), &file).and_then(|path| {
             let path = reader.files.full(&path);
-            Ok((text_file::read_text(&path, TUNING.file_bytes)?, path))
+            Ok((reader.files.read(&path, TUNING.file_bytes)?, path))
         });
         let (text, path) = match found {
             Ok(found) => found,
