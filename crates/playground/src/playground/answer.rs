@@ -1,0 +1,76 @@
+//! What a page is answered.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::question::{Question, Task};
+use super::running::{Host, Run, Unrun, run};
+use crate::syntax::diagnostic::Record;
+
+/// The answer. What is not known of a model is absent.
+#[derive(Debug, Default, Serialize)]
+struct Answer {
+    /// The model's name, if it has no errors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    /// Its scenes.
+    scenes: Vec<String>,
+    /// The scene that was chosen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scene: Option<String>,
+    diagnostics: Vec<Record>,
+    /// The diagnostics as a terminal shows them.
+    listing: String,
+    /// Why there are no results.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    /// Whether it was not run because that would take long.
+    waits: bool,
+    /// The summary as a terminal shows it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    summary: Option<String>,
+    /// What to know before believing the results.
+    warnings: Vec<String>,
+    /// Files of the results by their names: tables, plots, the report.
+    files: BTreeMap<String, String>,
+}
+
+/// Answers a question; both are JSON.
+pub fn answer(question: &[u8], host: &dyn Host) -> Vec<u8> {
+    let answer = match serde_json::from_slice(question) {
+        Ok(question) => of(&question, host),
+        Err(error) => Answer { error: Some(format!("the question cannot be read: {error}")), ..Answer::default() },
+    };
+    // All of it is text and numbers.
+    serde_json::to_vec(&answer).unwrap_or_default()
+}
+
+fn of(question: &Question, host: &dyn Host) -> Answer {
+    let reading = question.read().reading;
+    let diagnostics = &reading.diagnostics;
+    let scenes: Vec<String> = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
+    let asked = question.scene.as_ref().filter(|asked| scenes.contains(asked));
+    let scene = asked.or(scenes.first()).cloned();
+    let mut answer = Answer {
+        name: reading.description.as_ref().map(|description| description.name.clone()),
+        diagnostics: diagnostics.records(),
+        listing: diagnostics.render(false),
+        scenes,
+        scene,
+        ..Answer::default()
+    };
+    if question.task == Task::Check || answer.name.is_none() {
+        return answer;
+    }
+    match run(reading, answer.scene.as_deref(), question.costly, host) {
+        Ok(Run { summary, warnings, files, failure }) => {
+            Answer { summary: Some(summary), warnings, files, error: failure, ..answer }
+        }
+        Err(Unrun { why, waits }) => {
+            answer.error = Some(why);
+            answer.waits = waits;
+            answer
+        }
+    }
+}
