@@ -6,7 +6,7 @@
 
 // Rooms of the crates below keep their names here.
 use mbint_engine::simulate;
-use mbint_export::export;
+use mbint_export::{export, overview};
 use mbint_language::syntax;
 use mbint_model::model;
 use mbint_study::{results, study};

@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::export::{MOST_TRIANGLES, ReportParts, read_meshes, result_files};
 use crate::model::Reading;
+use crate::overview::{overview, plain, warnings};
 use crate::results::{Provenance, RunRequest};
 use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions, Options, REPORT_SIZE, RunError};
@@ -65,8 +66,8 @@ pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dy
     // All files of results are texts.
     let text = |(name, bytes): (String, Vec<u8>)| (name, String::from_utf8_lossy(&bytes).into_owned());
     Ok(Run {
-        summary: String::new(),
-        warnings: Vec::new(),
+        summary: plain(&overview(&summary)),
+        warnings: warnings(&bounds, &summary),
         failure: summary.failure.clone(),
         files: files.into_iter().map(text).collect(),
     })
