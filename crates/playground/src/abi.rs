@@ -1,8 +1,8 @@
 //! The functions by which a page's worker and the engine speak to each other, all over linear memory: the only unsafe
 //! code of this crate.
 //!
-//! The worker allocates a question, asks it, and reads the answer: four bytes of its length, least first, then its
-//! text. An instance that has stopped (a panic, no more memory) is not asked again.
+//! The worker allocates a question, asks it, reads the answer and releases it: four bytes of its length, least first,
+//! then its text. An instance that has stopped (a panic, no more memory) is not asked again.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::panic::set_hook;
@@ -75,12 +75,12 @@ pub extern "C" fn allocate(length: usize) -> *mut u8 {
     Box::leak(vec![0; length].into_boxed_slice()).as_mut_ptr()
 }
 
-/// Answers a question, whose room it takes.
+/// Answers a question, whose room it takes; the answer is to be released.
 ///
 /// # Safety
 /// `question` and `length` are those of [`allocate`], once.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn ask(question: *mut u8, length: usize) -> *const u8 {
+pub unsafe extern "C" fn ask(question: *mut u8, length: usize) -> *mut u8 {
     static BEGUN: Once = Once::new();
     BEGUN.call_once(|| {
         set_clock(|| seconds());
@@ -95,5 +95,18 @@ pub unsafe extern "C" fn ask(question: *mut u8, length: usize) -> *const u8 {
     let mut bytes = Vec::with_capacity(4 + answer.len());
     bytes.extend_from_slice(&(answer.len() as u32).to_le_bytes());
     bytes.extend_from_slice(&answer);
-    Box::leak(bytes.into_boxed_slice()).as_ptr()
+    Box::leak(bytes.into_boxed_slice()).as_mut_ptr()
+}
+
+/// Releases an answer.
+///
+/// # Safety
+/// `answer` is one of [`ask`], once.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn release(answer: *mut u8) {
+    // SAFETY: by the contract, the block begins with the length of the rest.
+    drop(unsafe {
+        let length = 4 + u32::from_le_bytes(answer.cast::<[u8; 4]>().read()) as usize;
+        Box::from_raw(std::ptr::slice_from_raw_parts_mut(answer, length))
+    });
 }

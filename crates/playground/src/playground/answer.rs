@@ -20,8 +20,6 @@ struct Answer {
     #[serde(skip_serializing_if = "Option::is_none")]
     scene: Option<String>,
     diagnostics: Vec<Record>,
-    /// The diagnostics as a terminal shows them.
-    listing: String,
     /// Why there are no results.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
@@ -48,14 +46,12 @@ pub fn answer(question: &[u8], host: &dyn Host) -> Vec<u8> {
 
 fn of(question: &Question, host: &dyn Host) -> Answer {
     let reading = question.read().reading;
-    let diagnostics = &reading.diagnostics;
     let scenes: Vec<String> = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
     let asked = question.scene.as_ref().filter(|asked| scenes.contains(asked));
     let scene = asked.or(scenes.first()).cloned();
     let mut answer = Answer {
         name: reading.description.as_ref().map(|description| description.name.clone()),
-        diagnostics: diagnostics.records(),
-        listing: diagnostics.render(false),
+        diagnostics: reading.diagnostics.records(),
         scenes,
         scene,
         ..Answer::default()
