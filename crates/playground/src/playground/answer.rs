@@ -70,3 +70,57 @@ fn of(question: &Question, host: &dyn Host) -> Answer {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    struct Silent;
+
+    impl Host for Silent {
+        fn progress(&self, _stage: &str, _fraction: f64) {}
+    }
+
+    fn asked(task: &str, more: &Value) -> Value {
+        let mut question = json!({ "task": task, "model": "m/a.yaml" });
+        question.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        serde_json::from_slice(&answer(question.to_string().as_bytes(), &Silent)).unwrap()
+    }
+
+    #[test]
+    fn texts_stand_for_files() {
+        let robot = include_str!("../../../../models/arm.urdf");
+        let answer = asked("check", &json!({ "model": "arm.urdf", "files": { "arm.urdf": robot } }));
+        assert_eq!((&answer["diagnostics"], &answer["name"]), (&json!([]), &json!("arm")), "{answer}");
+        assert!(answer.get("summary").is_none());
+    }
+
+    #[test]
+    fn errors_have_places() {
+        let answer = asked("run", &json!({ "files": { "m/a.yaml": "model: a\nbodys: {}\n" } }));
+        let found = answer["diagnostics"].as_array().unwrap();
+        let is_there = |record: &&Value| record["line"] == 2 && record["file"] == "m/a.yaml";
+        assert!(found.iter().any(|record| is_there(&record)), "{answer}");
+        assert!(answer.get("name").is_none() && answer["files"] == json!({}));
+    }
+
+    #[test]
+    fn a_question_that_cannot_be_read_says_so() {
+        let answer: Value = serde_json::from_slice(&answer(b"{}", &Silent)).unwrap();
+        assert!(
+            answer["error"].as_str().unwrap().starts_with("the question cannot be read: missing field"),
+            "{answer}"
+        );
+    }
+
+    #[test]
+    fn a_run_has_its_summary_and_its_files() {
+        let text = include_str!("../../../../models/pendulum.yaml");
+        let answer = asked("run", &json!({ "files": { "m/a.yaml": text } }));
+        assert!(answer["summary"].as_str().unwrap().starts_with("pendulum: "), "{answer}");
+        let files = answer["files"].as_object().unwrap();
+        assert!(["bounds.csv", "report.html", "summary.json"].iter().all(|name| files.contains_key(*name)));
+    }
+}
