@@ -1,5 +1,5 @@
-//! Styles of a text for people. They are not in a text as a terminal's own sequences, since texts hold names from files,
-//! but as marks, which become those sequences, or nothing, when the text is shown.
+//! Styles of a text for people. They are not in a text as a terminal's own sequences, since texts hold names from
+//! files, but as marks, which become those sequences, or nothing, when the text is shown.
 
 use std::fmt::{self, Write};
 
