@@ -212,6 +212,7 @@ async function parts() {
 
 const holder = document.getElementById('mbint-playground');
 if (holder) {
+  for (const name of ['editor.css', 'playground.css']) document.head.append(element('link', { rel: 'stylesheet', href: String(new URL(name, import.meta.url)) }));
   const found = await parts();
   if (found) Object.assign(globalThis, { playground: new Playground(holder, found.module, found.files) });
 }
