@@ -139,7 +139,7 @@ simulation: { duration: 1, step: 0.01 }
   await page.fill('#mbint-playground textarea', `model: "${name}"\nbodys: { "${name}": {} }\n`);
   await page.waitForFunction(() => document.querySelector('#mbint-playground .problems').textContent.includes('bodys'));
   const text = await page.textContent('#mbint-playground .problems');
-  assert.ok(text.includes(name) && /2:1.*bodys/s.test(text), text);
+  assert.ok(text.includes(name.slice(0, 40)) && /2:1.*bodys/s.test(text), text);
   assert.deepEqual(wrong, []);
 });
 
