@@ -133,7 +133,7 @@ outputs: { x: b.x }
 simulation: { duration: 1, step: 0.01 }
 `;
   await page.goto(`${address}/playground.html#text=${encodeURIComponent(hostile)}`);
-  await page.waitForFunction(() => globalThis.playground?.editor.text.startsWith('model:'));
+  await page.waitForFunction(() => globalThis.playground?.editor?.text.startsWith('model:'));
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await results('<title>hostile');
   await page.fill('#mbint-playground textarea', `model: "${name}"\nbodys: { "${name}": {} }\n`);
