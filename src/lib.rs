@@ -21,7 +21,7 @@ pub use syntax::Diagnostics;
 // Rooms of the crates below keep their names here.
 use mbint_certificate::certificate;
 use mbint_engine::{assemble, c_code, compile, reduce, simulate};
-use mbint_export::export;
+use mbint_export::{export, overview};
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;
 use mbint_model::{elements, model};

@@ -4,11 +4,11 @@ use super::args::AllocateArgs;
 use super::console::{BOLD, Console, count, file_names};
 use super::question::ask;
 use super::run::with_folder;
-use super::table::{Align, Table};
-use super::verdicts::{requirements, short};
-use super::{Failure, Status, interrupt, load, statistics};
+use super::{Failure, Status, interrupt, load};
 use crate::export::{OVERLAY, rounded, shown_unit, write_allocation};
 use crate::grammar::display_unit::ShownUnit;
+use crate::overview::{Align, Table};
+use crate::overview::{requirements, short, yields};
 use crate::results::{AllocatedTolerance, Allocation, Criterion, ToleranceZone};
 use crate::study::{self, AllocateError, AllocateOptions, RunError};
 
@@ -100,7 +100,7 @@ fn overview(found: &Allocation) -> String {
     if !found.requirements.is_empty() && found.criterion == Criterion::WorstCase {
         text += &format!("{}\n", requirements(&found.requirements));
     }
-    text += &statistics::yields(&found.yields);
+    text += &yields(&found.yields);
     if !found.yields.is_empty() {
         text += "\n";
     }

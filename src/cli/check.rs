@@ -274,7 +274,7 @@ impl Counts {
             self.spatial_because.as_ref().map_or_else(String::new, |why| format!("  in space: {why}\n"))
                 + &self.analysis.map_or_else(String::new, |analysis| format!("  {analysis}\n"))
                 + &self.asks.as_ref().map_or_else(String::new, |asks| format!("  a run asks first: {asks}\n"))
-                + &super::assemblies::lines(&self.assemblies)
+                + &crate::overview::assemblies(&self.assemblies)
                 + &structure::lines(&self.structure),
         )
     }
@@ -326,7 +326,7 @@ mod tests {
                 moves_at_start: false,
             },
         };
-        let plain = |counts: &Counts| crate::cli::console::plain(&counts.lines());
+        let plain = |counts: &Counts| crate::overview::plain(&counts.lines());
         let first = |counts: &Counts| plain(counts).lines().next().unwrap_or_default().to_owned();
         insta::assert_snapshot!(first(&counts), @"ok slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");
         counts.redundant_constraints = vec!["pin.x".into(), "pin.y".into()];

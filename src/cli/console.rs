@@ -6,7 +6,6 @@
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
-use std::fmt;
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
 
@@ -14,49 +13,24 @@ use clap::builder::styling::{AnsiColor, Style};
 use serde::Serialize;
 
 use super::{Failure, Status};
+use crate::overview::{Mark, RED, YELLOW};
 use crate::syntax::{Code, Coded, Diagnostics, harmless, is_harmful};
 
-/// A style within a text: `{BOLD}` begins it, `{BOLD:#}` ends it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Mark(char);
-
-/// Ends every style. Marks are code points that Unicode keeps free of characters.
-const END: char = '\u{fdd0}';
-
-/// Headings.
-pub(super) const BOLD: Mark = Mark('\u{fdd1}');
-const YELLOW: Mark = Mark('\u{fdd2}');
-const RED: Mark = Mark('\u{fdd3}');
-
-impl fmt::Display for Mark {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Write::write_char(formatter, if formatter.alternate() { END } else { self.0 })
-    }
-}
+pub(super) use crate::overview::{BOLD, coordinates, count};
 
 /// A text as the terminal gets it: harmless, marks as styles.
 fn styled(text: &str) -> String {
     let mut styled = String::with_capacity(text.len());
     for c in harmless(text).chars() {
-        let style = match Mark(c) {
-            Mark(END) => Some(format!("{:#}", Style::new().bold())),
-            Mark(mark) if mark == BOLD.0 => Some(Style::new().bold().to_string()),
-            Mark(mark) if mark == YELLOW.0 => Some(AnsiColor::Yellow.on_default().bold().to_string()),
-            Mark(mark) if mark == RED.0 => Some(AnsiColor::Red.on_default().bold().to_string()),
-            Mark(_) => None,
-        };
-        match style {
-            Some(style) => styled += &style,
+        match Mark::of(c) {
             None => styled.push(c),
+            Some(YELLOW) => styled += &AnsiColor::Yellow.on_default().bold().to_string(),
+            Some(RED) => styled += &AnsiColor::Red.on_default().bold().to_string(),
+            Some(BOLD) => styled += &Style::new().bold().to_string(),
+            Some(_) => styled += &format!("{:#}", Style::new().bold()),
         }
     }
     styled
-}
-
-/// A text without its marks.
-#[cfg(test)]
-pub(super) fn plain(text: &str) -> String {
-    text.replace([END, BOLD.0, YELLOW.0, RED.0], "")
 }
 
 /// Standard output and standard error.
@@ -166,20 +140,6 @@ pub(super) fn file_names<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> St
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// `1 step`, `2 steps`, `no steps`.
-pub(super) fn count(n: usize, one: &str, many: &str) -> String {
-    match n {
-        0 => format!("no {many}"),
-        1 => format!("1 {one}"),
-        _ => format!("{n} {many}"),
-    }
-}
-
-/// `7 absolute coordinates`.
-pub(super) fn coordinates(n: usize, formulation: &str) -> String {
-    count(n, &format!("{formulation} coordinate"), &format!("{formulation} coordinates"))
-}
-
 /// Indented JSON with a line end; what a terminal could obey is escaped.
 pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);
@@ -198,6 +158,7 @@ pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::overview::plain;
 
     #[test]
     fn only_marks_become_styles() {

@@ -6,11 +6,11 @@ use super::args::CostArgs;
 use super::console::{BOLD, Console, count, file_names};
 use super::progress::Progress;
 use super::run::with_folder;
-use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
 use crate::export::write_cost;
 use crate::methods::BoundsRequest;
 use crate::model::{Description, Stepping};
+use crate::overview::{Align, Table};
 use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostError, CostOptions, RunError};
 
@@ -308,7 +308,7 @@ mod tests {
     }
 
     fn plain(text: &str) -> String {
-        crate::cli::console::plain(text)
+        crate::overview::plain(text)
     }
 
     #[test]

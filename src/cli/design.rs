@@ -4,11 +4,11 @@ use super::args::DesignArgs;
 use super::console::{BOLD, Console, count, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
-use super::table::{Align, Table};
-use super::verdicts::{requirements, short};
 use super::{Failure, Status, interrupt, load};
 use crate::export::{DESIGN_OVERLAY, rounded, shown_unit, write_design};
 use crate::grammar::display_unit::ShownUnit;
+use crate::overview::{Align, Table};
+use crate::overview::{requirements, short};
 use crate::results::{Allocation, Criterion, DesignPoint, DesignStudy, DesignTrade, ToleranceZone};
 use crate::study::{self, DesignError, DesignOptions, RunError};
 

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::Failure;
 use super::console::BOLD;
-use super::table::{Align, Table};
 use crate::elements::effects::EffectKind;
 use crate::grammar::{ElementDocs, KeyDocs};
+use crate::overview::{Align, Table};
 use crate::results::EffectCost;
 use crate::study::language_costs;
 
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn an_effect_reads_well() {
-        let plain = crate::cli::console::plain(&text().unwrap());
+        let plain = crate::overview::plain(&text().unwrap());
         let stop = plain.split("\n\n").find(|part| part.starts_with("stop ")).unwrap();
         insta::assert_snapshot!(stop, @r"
         stop  Stops at the ends of a joint's range.

@@ -3,9 +3,9 @@
 use super::args::{ExplainArgs, Format};
 use super::console::{BOLD, Console, count, to_json};
 use super::effects::adds;
-use super::table::{Align, Table};
 use super::{Failure, Status, effects, joints, load, methods};
 use crate::elements::JointKind;
+use crate::overview::{Align, Table};
 use crate::results::{Decision, Explanation};
 use crate::study;
 use crate::syntax::Code;
@@ -244,7 +244,7 @@ mod tests {
                 saves: Some(Saving { instructions: 120, each: Each::Step }),
             }],
         };
-        let plain = crate::cli::console::plain(&text(&explanation));
+        let plain = crate::overview::plain(&text(&explanation));
         insta::assert_snapshot!(plain, @r"
         slider_crank
         planar: nothing leaves the plane

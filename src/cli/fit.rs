@@ -4,12 +4,12 @@ use super::args::FitArgs;
 use super::console::{BOLD, Console, count, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
-use super::table::{Align, Table};
-use super::verdicts::short;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{FIT_OVERLAY, rounded, write_fit};
 use crate::grammar::display_unit::ShownUnit;
 use crate::model::{is_standard_input, shown};
+use crate::overview::short;
+use crate::overview::{Align, Table};
 use crate::results::{ConsistentSet, Fit, Unexplained};
 use crate::study::{self, FitError, Measurements, RunError};
 

@@ -4,10 +4,10 @@ use super::args::GradientArgs;
 use super::console::{BOLD, Console, file_names};
 use super::question::{answer, ask};
 use super::run::with_folder;
-use super::table::{Align, Table};
-use super::verdicts::short;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{by_influence, shown_derivative, write_gradients};
+use crate::overview::short;
+use crate::overview::{Align, Table};
 use crate::results::{DerivativesAt, Gradients, ReducedGradients};
 use crate::study::{self, GradientError, RunError};
 

@@ -5,15 +5,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::console::Console;
 use super::kept_run::{KeptRun, context, expected};
-use super::overview::{damped, excluded, too_deep, unreliable};
 use super::profile::Profile;
 use super::progress::Progress;
 use super::request::{Job, Request, Settings};
-use super::resolution::{self, resolution};
+use super::resolution::resolution;
 use super::verdicts;
 use super::{Failure, Status, interrupt, report as page};
 use crate::export::{holds_complete_results, remove_comparison, write_results};
 use crate::model::Description;
+use crate::overview::warnings;
 use crate::results::{Bounds, Provenance, Summary};
 use crate::simulate::SimulationError;
 use crate::store::PartStore;
@@ -170,24 +170,7 @@ pub(super) fn report(done: &Done, console: &Console) {
         }
         return;
     }
-    if let Some(message) = unreliable(&done.summary) {
-        console.warning(&format!("{name}: {message}"));
-    }
-    if let Some(message) = resolution::unreliable(&done.summary) {
-        console.warning(&format!("{name}: {message}"));
-    }
-    if let Some(ratio) = done.summary.beyond_tolerance {
-        console.warning(&format!(
-            "{name}: the local errors of a sample's steps add up to {ratio:.3e} times the tolerance: what needs that sample is unreliable"
-        ));
-    }
-    if let Some(found) = &done.summary.too_deep {
-        console.warning(&format!("{name}: {}", too_deep(found)));
-    }
-    if let Some(message) = damped(&done.summary) {
-        console.warning(&format!("{name}: {message}"));
-    }
-    if let Some(message) = excluded(&done.bounds, &done.summary) {
+    for message in warnings(&done.bounds, &done.summary) {
         console.warning(&format!("{name}: {message}"));
     }
 }

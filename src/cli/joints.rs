@@ -1,8 +1,8 @@
 //! `mbint explain --joints`: every joint of the language, from its own file.
 
 use super::effects::element;
-use super::table::{Align, Table};
 use crate::elements::JointKind;
+use crate::overview::{Align, Table};
 
 /// All joints, for people.
 pub(super) fn text() -> String {
@@ -26,7 +26,7 @@ mod tests {
 
     #[test]
     fn every_joint_says_all_that_there_is() {
-        let plain = crate::cli::console::plain(&text());
+        let plain = crate::overview::plain(&text());
         for joint in JointKind::docs() {
             let docs = &joint.element;
             assert!(plain.contains(docs.description), "{}", docs.keyword);
@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn a_joint_reads_well() {
-        let plain = crate::cli::console::plain(&text());
+        let plain = crate::overview::plain(&text());
         let gear = plain.split("\n\n").find(|part| part.starts_with("gear ")).unwrap();
         insta::assert_snapshot!(gear, @r"
         gear  Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.

@@ -4,10 +4,10 @@
 use super::Failure;
 use super::console::to_json;
 use super::status::{Status, StatusDocs};
-use super::table::{Align, Table};
 use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
+use crate::overview::{Align, Table};
 use crate::study::tuning;
 use crate::syntax::Code;
 use crate::syntax::tuning::Constant;

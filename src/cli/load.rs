@@ -3,8 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use sha2::{Digest, Sha256};
-
 use super::Failure;
 use super::console::Console;
 use crate::model::{self, Description, Override, Reading, Witness};
@@ -70,7 +68,7 @@ pub(super) fn load_all(
         }
     }
     let chosen = |(path, reading): (&PathBuf, Reading)| {
-        let (files, texts) = files(&reading);
+        let (files, texts) = study::sources(&reading);
         let all = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
         let name = reading.description.as_ref().map_or_else(String::new, |description| description.name.clone());
         let scenes = reading
@@ -110,28 +108,6 @@ pub(super) fn input_once(models: &[PathBuf]) -> Result<(), Failure> {
         0 | 1 => Ok(()),
         _ => Err(Failure::wrong("`-` is named twice, but standard input can be read once only")),
     }
-}
-
-/// The files that were read, the model first, with hashes of their bytes; and their texts.
-fn files(reading: &Reading) -> (Vec<ModelFile>, Vec<(String, String)>) {
-    let mut paths: Vec<&str> = Vec::new();
-    let mut files: Vec<ModelFile> = Vec::new();
-    let mut texts: Vec<(String, String)> = Vec::new();
-    for source in reading.diagnostics.sources.all().filter(|source| source.name != "--set") {
-        let name = Path::new(&source.name).file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
-        let sha256 = Sha256::digest(&source.text).iter().map(|byte| format!("{byte:02x}")).collect();
-        let file = ModelFile { name: name.clone(), sha256 };
-        // A robot alone stands behind the text of the model that is made of it. Files of two folders may have one name.
-        if let Some(index) = paths.iter().position(|path| *path == source.name) {
-            files[index] = file;
-            texts[index].1.clone_from(&source.text);
-        } else {
-            paths.push(&source.name);
-            files.push(file);
-            texts.push((name, source.text.clone()));
-        }
-    }
-    (files, texts)
 }
 
 /// Reads a file and reports its errors and warnings; `None` if it has errors.

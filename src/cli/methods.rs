@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::console::BOLD;
-use super::table::{Align, Table};
 use crate::methods::{About, Method};
+use crate::overview::{Align, Table};
 
 /// What people read of a method.
 #[derive(Debug, Serialize)]

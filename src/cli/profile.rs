@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 
 use super::Failure;
-use super::table::{Align, Table};
+use crate::overview::{Align, Table};
 
 /// A stage of a model's run, or of the command.
 struct Span {
@@ -151,7 +151,7 @@ fn table(spans: &[Span]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::console::plain;
+    use crate::overview::plain;
 
     fn span(model: &str, subsystem: Option<usize>, stage: &str, milliseconds: [u64; 2]) -> Span {
         let [begun, ended] = milliseconds.map(Duration::from_millis);

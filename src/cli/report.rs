@@ -10,9 +10,6 @@ use crate::results::FunctionWitness;
 use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions};
 
-/// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
-const SIZE: usize = 300_000;
-
 pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status, Failure> {
     interrupt::wait_for(&args.folder)?;
     let file = write_report(&args.folder).map_err(|error| Failure::wrong(&error).of(&error))?;
@@ -22,8 +19,11 @@ pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status,
 
 /// What a report shows of a job beside its results. The page says so where a motion cannot be simulated.
 pub(super) fn parts(job: &Job, worst: &[FunctionWitness], threads: Option<usize>) -> ReportParts {
-    let options =
-        MotionOptions { threads, size: SIZE / job.share.max(1), interruption: Interruption::new(&interrupt::asked) };
+    let options = MotionOptions {
+        threads,
+        size: study::REPORT_SIZE / job.share.max(1),
+        interruption: Interruption::new(&interrupt::asked),
+    };
     let motion = study::report_motion(&job.model, worst, options);
     let motion = motion.map(|mut found| {
         read_meshes(&mut found.drawing, &job.beside, MOST_TRIANGLES / job.share.max(1));

@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::console::Console;
+use super::console::{Console, file_names};
 use super::job::{Told, report, run_one};
-use super::overview::overview;
 use super::request::{Job, Request};
 use super::scenes::Scenes;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{POINTS, file_stem, prepare_folder};
 use crate::methods::Certified;
 use crate::model::{Description, shown};
+use crate::overview::overview;
 use crate::study;
 
 /// Work on a file.
@@ -94,7 +94,8 @@ fn run_and_report(
     told(path, job, done.as_ref());
     let done = done?;
     if !request.quiet {
-        console.print(&overview(&done.summary, &done.folder, &done.files))?;
+        let files = format!("  {}: {}\n", done.folder.display(), file_names(&done.files));
+        console.print(&(overview(&done.summary) + &files))?;
         if let Some(points) = done.files.iter().find(|file| file.ends_with(POINTS)) {
             let model = path.display();
             console.print(&format!("  ends again: mbint sample {model} --points {}\n", points.display()))?;

@@ -6,10 +6,10 @@ use std::time::Instant;
 use super::console::{BOLD, Console, count, file_names};
 use super::job::{Done, Told, report, run_one};
 use super::request::{Job, Request};
-use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
 use crate::export::{SceneBounds, write_scenes};
 use crate::grammar::display_unit::ShownUnit;
+use crate::overview::{Align, Table};
 use crate::results::foremost;
 use crate::results::{ErrorSummary, Summary};
 

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::args::{Format, ShowArgs};
 use super::console::{BOLD, Console, to_json};
 use super::run::results_of;
-use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
 use crate::export::{MOST_TRIANGLES, prepare_folder, read_meshes, write_drawing};
+use crate::overview::{Align, Table};
 use crate::results::{Drawing, DrawnBody};
 use crate::study;
 

@@ -8,10 +8,10 @@ use super::args::SnapshotArgs;
 use super::console::{BOLD, Console, count};
 use super::job;
 use super::request::Settings;
-use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
 use crate::export::{Moved, Snapshot, file_stem, moved, snapshot_file, snapshot_table, write_snapshot};
 use crate::model::{Description, shown};
+use crate::overview::{Align, Table};
 use crate::study;
 
 /// A model or a scene, and the file of its snapshot.

@@ -1,6 +1,6 @@
 //! What `mbint check` says of a mechanism as an engineer counts it.
 
-use super::console::count;
+use crate::overview::{count, digits, significant};
 use crate::results::{KindCount, MassRange, MobilityCount, Structure};
 
 /// Lines for people: mobility, size and mass, what acts.
@@ -80,21 +80,6 @@ fn gravity(acceleration: [f64; 3]) -> String {
         }
         _ => format!("gravity ({}) m/s²", acceleration.map(digits).join(", ")),
     }
-}
-
-/// Four significant digits, without zeros at the end.
-pub(super) fn digits(value: f64) -> String {
-    significant(value, 4)
-}
-
-fn significant(value: f64, digits: usize) -> String {
-    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
-    let text = match rounded.abs() {
-        0.0 => "0".to_owned(),
-        size if (1e-3..1e6).contains(&size) => rounded.to_string(),
-        _ => format!("{rounded:e}"),
-    };
-    text.replace('-', "−").replace("e−", "e-")
 }
 
 #[cfg(test)]

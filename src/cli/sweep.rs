@@ -6,13 +6,13 @@ use super::job;
 use super::load::Given;
 use super::request::Settings;
 use super::run::results_of;
-use super::table::{Align, Table};
-use super::verdicts::{band, short};
 use super::{Failure, Status, interrupt, load, verdicts};
 use crate::api::Axis;
 use crate::export::{Sweep, SweepAxis, SweepPoint, prepare_folder, write_sweep};
 use crate::grammar::display_unit::ShownUnit;
 use crate::model::Override;
+use crate::overview::{Align, Table};
+use crate::overview::{band, short};
 
 /// Most values of an axis, and most runs.
 const MOST_VALUES: usize = 10_000;

@@ -3,10 +3,10 @@
 use super::args::VerifyArgs;
 use super::console::{BOLD, Console, count};
 use super::question::{answer, ask};
-use super::table::{Align, Table};
-use super::verdicts::short;
 use super::{Failure, Status, load};
 use crate::export::{Suite, write_junit, write_verification};
+use crate::overview::short;
+use crate::overview::{Align, Table};
 use crate::results::{
     Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, PowerBalance, Verification,
 };

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Sources of the crates with their rooms. Each room stands on those before it, and knows none after it.
-const CRATES: [(&str, &[&str]); 12] = [
+const CRATES: [(&str, &[&str]); 13] = [
     ("crates/numerics/src", &["numerics"]),
     ("crates/certificate/src", &["certificate"]),
     ("crates/language/src", &["syntax", "grammar", "multibody"]),
@@ -15,9 +15,10 @@ const CRATES: [(&str, &[&str]); 12] = [
     ("crates/model/src", &["robots", "elements", "keys", "expand", "model"]),
     ("crates/engine/src", &["reduce", "assemble", "compile", "simulate", "c_code"]),
     ("crates/study/src", &["results", "store", "black_box", "study"]),
-    ("crates/export/src", &["export"]),
+    ("crates/export/src", &["export", "overview"]),
     ("crates/lsp/src", &["lsp"]),
     ("crates/studio/src", &["studio"]),
+    ("crates/playground/src", &["playground", "abi"]),
     ("src", &["api", "cli", "inner"]),
 ];
 

@@ -1,11 +1,12 @@
-//! From results to files: CSV, SVG, JSON summaries, snapshots, and the report that moves in a browser.
+//! From results to files and texts: CSV, SVG, JSON summaries, snapshots, the report that moves in a browser, and the
+//! overview of a run.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
 // Rooms of the crates below keep their names here.
 use mbint_certificate::certificate;
-use mbint_engine::compile;
+use mbint_engine::{compile, simulate};
 use mbint_language::{grammar, syntax};
 use mbint_methods::methods;
 use mbint_model::{elements, model};
@@ -13,3 +14,4 @@ use mbint_numerics::numerics;
 use mbint_study::{results, store};
 
 pub mod export;
+pub mod overview;

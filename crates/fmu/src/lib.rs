@@ -6,10 +6,14 @@
 
 #![deny(unsafe_code)]
 
+#[cfg(any(unix, windows))]
 mod native;
 mod run;
 mod unit;
 
+#[cfg(any(unix, windows))]
 pub use native::Fault;
-pub use run::{Access, STEP, Task, Unpacked, answer};
+#[cfg(any(unix, windows))]
+pub use run::answer;
+pub use run::{Access, STEP, Task, Unpacked};
 pub use unit::{BaseUnit, Interface, Kind, NotRead, Unit, Variable, Version, digest};

@@ -96,6 +96,25 @@ fn commands_print_what_pages_say() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
+/// Blocks with `model:` have a button that runs them (`docs/run.js`); they name files as the examples do.
+#[test]
+fn models_of_pages_with_a_button_can_be_read() {
+    let mut files = Vec::new();
+    pages(&docs(), &mut files);
+    let name = docs().join("examples/example.yaml");
+    let mut count = 0;
+    for file in files {
+        let page = std::fs::read_to_string(&file).unwrap();
+        for text in blocks(&page, "yaml").into_iter().filter(|text| text.lines().any(|line| line.starts_with("model:")))
+        {
+            let reading = model::read_str(name.to_str().unwrap(), text, &[]);
+            assert!(reading.description.is_some(), "{}: {}", file.display(), reading.diagnostics.render(false));
+            count += 1;
+        }
+    }
+    assert!(count > 15, "only {count} models");
+}
+
 #[test]
 fn the_page_of_methods_is_that_of_the_registry() {
     let methods = Command::new(BINARY).args(["explain", "--methods", "--format", "json"]).output().unwrap().stdout;

@@ -39,7 +39,57 @@ pub fn write_results(
     interrupted: bool,
     report: Option<&ReportParts>,
 ) -> Result<Vec<PathBuf>, ExportError> {
-    let mut files = AtomicFiles::in_folder(dir)?;
+    let mut written = AtomicFiles::in_folder(dir)?;
+    add_results(&mut |name, text| written.add(name, text), bounds, summary, provenance, interrupted, report)?;
+    written.replace_older(Vec::new())?;
+    written.put_in_place()
+}
+
+/// The same files in memory, each with its name.
+///
+/// # Errors
+/// As for [`write_results`], but for the folder.
+pub fn result_files(
+    bounds: &Bounds,
+    summary: &Summary,
+    provenance: &Provenance,
+    report: Option<&ReportParts>,
+) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+    let mut files = Vec::new();
+    let mut add = |name: &str, text: &[u8]| {
+        files.push((name.to_owned(), text.to_vec()));
+        Ok(())
+    };
+    add_results(&mut add, bounds, summary, provenance, false, report)?;
+    Ok(files)
+}
+
+/// Where a file goes, by its name.
+type Add<'a> = dyn FnMut(&str, &[u8]) -> Result<(), ExportError> + 'a;
+
+/// Files that are added somewhere, with their names.
+struct Added<'a> {
+    names: Vec<String>,
+    add: &'a mut Add<'a>,
+}
+
+impl Added<'_> {
+    fn add(&mut self, name: &str, text: &[u8]) -> Result<(), ExportError> {
+        self.names.push(name.to_owned());
+        (self.add)(name, text)
+    }
+}
+
+/// Adds all files of a run's results, `summary.json` last.
+fn add_results<'a>(
+    add: &'a mut Add<'a>,
+    bounds: &Bounds,
+    summary: &Summary,
+    provenance: &Provenance,
+    interrupted: bool,
+    report: Option<&ReportParts>,
+) -> Result<(), ExportError> {
+    let mut files = Added { names: Vec::new(), add };
     files.add("bounds.csv", &bounds_csv(bounds)?)?;
     files.add("columns.json", &columns_json(bounds)?)?;
     if !bounds.contributions.is_empty() {
@@ -128,7 +178,7 @@ pub fn write_results(
     motion.iter().try_for_each(|motion| files.add(MOTION, motion))?;
     let has_page = report.is_some_and(|report| report.page);
     let names =
-        files.names().into_iter().chain(has_page.then(|| PAGE.to_owned())).chain([SUMMARY.to_owned()]).collect();
+        files.names.iter().cloned().chain(has_page.then(|| PAGE.to_owned())).chain([SUMMARY.to_owned()]).collect();
     let named = |output: &'_ OutputBounds| Named {
         name: output.name.clone(),
         unit: output.unit.clone(),
@@ -146,9 +196,7 @@ pub fn write_results(
         let text = page(&name.clone(), &[PageScene { name, summary, motion, figures }]);
         files.add(PAGE, text.as_bytes())?;
     }
-    files.add(SUMMARY, &json)?;
-    files.replace_older(Vec::new())?;
-    files.put_in_place()
+    files.add(SUMMARY, &json)
 }
 
 /// File of a response's plot.

@@ -53,7 +53,7 @@ pub use drawing::write_drawing;
 pub use earlier::holds_complete_results;
 pub use error::ExportError;
 pub use figure::Caption;
-pub use files::write_results;
+pub use files::{result_files, write_results};
 pub use fit::{FIT_OVERLAY, write_fit};
 pub use folder::{prepare_folder, wait_for_folder, write_pages};
 pub use gradients::{by_influence, shown_derivative, write_gradients};

@@ -1,6 +1,5 @@
 //! What a process is asked of a unit.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -85,6 +84,3 @@ impl Task {
         Ok(serde_json::from_str(&fs::read_to_string(folder.join(FILE))?)?)
     }
 }
-
-/// Values of a point by names.
-pub type Values = BTreeMap<String, f64>;

@@ -6,10 +6,13 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::task::{STEP, Task, Values};
+use super::task::{STEP, Task};
 use super::{co_simulation, model_exchange};
 use crate::native::{Fault, Instance, Native};
 use crate::unit::{Interface, Unit};
+
+/// Values of a point by names.
+type Values = BTreeMap<String, f64>;
 
 /// A point.
 #[derive(Deserialize)]

@@ -68,7 +68,8 @@ pub fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> 
 
 fn cannot(error: io::Error) -> Box<Diagnostic> {
     let reason = match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        // A page has no files but its texts.
+        io::ErrorKind::NotFound | io::ErrorKind::Unsupported => "there is no such file".to_owned(),
         io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
         _ => error.to_string(),
     };

@@ -111,6 +111,14 @@ pub fn is_robot(path: &Path) -> bool {
     is_urdf(path) || is_mjcf(path)
 }
 
+/// The model of nothing but a robot, where the file is one: errors are in the robot's file.
+pub(super) fn robot_alone(path: &Path) -> Option<String> {
+    if is_urdf(path) {
+        return Some(urdf::model_of(path));
+    }
+    is_mjcf(path).then(|| mjcf::model_of(path))
+}
+
 /// Whether a path stands for standard input.
 pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
@@ -126,12 +134,8 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
 pub fn read_rooted(path: &Path, overrides: &[Override], root: Option<&Path>) -> Reading {
     let from_input = is_standard_input(path);
     let name = if from_input { "stdin".to_owned() } else { shown(path) };
-    if is_urdf(path) {
-        // A model of nothing but the robot; errors are in the robot's file.
-        return read_text_of(&name, &urdf::model_of(path), overrides, root);
-    }
-    if is_mjcf(path) {
-        return read_text_of(&name, &mjcf::model_of(path), overrides, root);
+    if let Some(model) = robot_alone(path) {
+        return read_text_of(&name, &model, overrides, root);
     }
     let text = if from_input {
         text_of(std::io::stdin().lock(), TUNING.file_bytes)

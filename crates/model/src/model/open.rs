@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::load::{Origin, Reading, is_robot, read_from, read_rooted, shown};
+use super::load::{Origin, Reading, read_from, read_rooted, robot_alone, shown};
 use crate::grammar::mentions::{Mentions, Notes};
 use crate::syntax::within::{OpenTexts, Within};
 
@@ -17,11 +17,15 @@ pub struct Opened {
 
 /// Reads a model, some of whose files are open in an editor. Other files are read as [`read_rooted`] reads them.
 pub fn read_open(path: &Path, open: &OpenTexts, root: Option<&Path>) -> Opened {
-    let Some(text) = open.get(path).filter(|_| !is_robot(path)) else {
+    let Some(text) = open.get(path) else {
         return Opened { reading: read_rooted(path, &[], root), mentions: Mentions::default() };
     };
     let (name, notes) = (shown(path), Notes::default());
     let files = Within::of(path, root).with_open(open);
-    let reading = read_from(Origin::of(&name, files, Some(&notes)), text, &[]);
+    // The text of the model of a robot is nobody's: names have no places in it.
+    let reading = match robot_alone(path) {
+        Some(model) => read_from(Origin::of(&name, files, None), &model, &[]),
+        None => read_from(Origin::of(&name, files, Some(&notes)), text, &[]),
+    };
     Opened { reading, mentions: notes.into_inner() }
 }

@@ -1,6 +1,6 @@
 //! What a search says of a function's range: its ends, where they are, and how far they may be missed.
 
-use super::range::Range;
+use super::range::{Range, least, most};
 
 /// First distance of neighbours in the search near a known extreme, at most.
 pub(super) const NEAR: f64 = 0.1;
@@ -41,8 +41,8 @@ impl Extent {
     pub fn improve(&mut self, further: Self) {
         let is_better = [further.range.lower < self.range.lower, further.range.upper > self.range.upper];
         self.range = Range {
-            lower: self.range.lower.min(further.range.lower),
-            upper: self.range.upper.max(further.range.upper),
+            lower: least(self.range.lower, further.range.lower),
+            upper: most(self.range.upper, further.range.upper),
         };
         for (end, (index, spacing)) in further.places.into_iter().zip(further.spacing).enumerate() {
             if is_better[end] {
@@ -57,7 +57,7 @@ impl Extent {
             let beyond = self.range.distance(value);
             if beyond > 0.0 {
                 let end = usize::from(value > self.range.upper);
-                self.range = Range { lower: self.range.lower.min(value), upper: self.range.upper.max(value) };
+                self.range = Range { lower: least(self.range.lower, value), upper: most(self.range.upper, value) };
                 self.places[end].clone_from(point);
                 self.gap += beyond;
             }

@@ -38,7 +38,7 @@ impl Range {
         if self.lower.is_nan() || others == EMPTY {
             return self;
         }
-        Self { lower: self.lower.min(others.lower), upper: self.upper.max(others.upper) }
+        Self { lower: least(self.lower, others.lower), upper: most(self.upper, others.upper) }
     }
 
     /// How far values from the least to the largest of others lie outside; zero where there are none, NaN of the
@@ -75,6 +75,17 @@ impl Enclosed {
     }
 }
 
+/// The smaller of two; NaN does not count. Of zeros with two signs it is the first: `f64::min` leaves that to the
+/// processor, and a sign is a bit of the results.
+pub fn least(a: f64, b: f64) -> f64 {
+    if b < a || a.is_nan() { b } else { a }
+}
+
+/// The larger of two, likewise.
+pub fn most(a: f64, b: f64) -> f64 {
+    if b > a || a.is_nan() { b } else { a }
+}
+
 /// The larger of two; NaN if either is.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
@@ -92,7 +103,7 @@ pub fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
     if a.lower.is_nan() {
         return (a, of_a);
     }
-    let range = Range { lower: a.lower.min(b.lower), upper: a.upper.max(b.upper) };
+    let range = Range { lower: least(a.lower, b.lower), upper: most(a.upper, b.upper) };
     let outer = |x: f64, y: f64, end: f64| (x.max(y) - end).abs();
     let above =
         outer(a.upper + of_a, b.upper + of_b, range.upper).max(outer(a.upper - of_a, b.upper - of_b, range.upper));
@@ -114,12 +125,21 @@ pub fn limits(values: &[f64]) -> (f64, f64) {
             *high = if value > *high { value } else { *high };
         }
     }
-    (low.into_iter().fold(f64::INFINITY, f64::min), high.into_iter().fold(f64::NEG_INFINITY, f64::max))
+    (low.into_iter().fold(f64::INFINITY, least), high.into_iter().fold(f64::NEG_INFINITY, most))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_two_zeros_the_first_is_taken() {
+        let zeros = [0.0, -0.0_f64];
+        for (a, b) in zeros.into_iter().flat_map(|a| zeros.map(|b| (a, b))) {
+            assert_eq!([least(a, b), most(a, b)].map(f64::to_bits), [a, a].map(f64::to_bits));
+        }
+        assert_eq!([least(f64::NAN, 1.0), most(1.0, f64::NAN), least(2.0, 1.0), most(1.0, 2.0)], [1.0, 1.0, 1.0, 2.0]);
+    }
 
     #[test]
     fn a_union_has_the_error_of_its_ends() {

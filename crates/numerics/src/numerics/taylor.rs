@@ -3,7 +3,7 @@
 use symdiff::jet::Monomials;
 
 use super::polynomial_range::{PolynomialRange, RangeKind};
-use super::range::{Enclosed, Range};
+use super::range::{Enclosed, Range, least, most};
 use super::tensor::{Matrix, Separable, Work};
 
 /// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term, and how
@@ -73,7 +73,7 @@ impl TaylorRange {
             tensor.range.enclose(tensor.conversion.apply(&tensor.powers, &mut tensor.work));
         let range = match self.kind {
             RangeKind::Tight if !terms.lower.is_nan() => {
-                Range { lower: outer.lower.max(terms.lower), upper: outer.upper.min(terms.upper) }
+                Range { lower: most(outer.lower, terms.lower), upper: least(outer.upper, terms.upper) }
             }
             _ => terms,
         };

@@ -6,6 +6,9 @@ use crate::export::{REPORT_STYLE, report_module};
 const PAGE: &str = include_str!("page/studio.html");
 const STYLE: &str = include_str!("page/studio.css");
 
+/// Style of the text that is edited, which the playground has too.
+const EDITOR_STYLE: &str = include_str!("page/editor.css");
+
 /// The page's modules, with their names.
 const MODULES: [(&str, &str); 9] = [
     ("studio.js", include_str!("page/studio.js")),
@@ -23,7 +26,7 @@ const MODULES: [(&str, &str); 9] = [
 pub fn file(name: &str) -> Option<Answer> {
     match name {
         "" => Some(Answer::part("text/html; charset=utf-8", PAGE)),
-        "style.css" => Some(Answer::part("text/css; charset=utf-8", [REPORT_STYLE, STYLE].concat())),
+        "style.css" => Some(Answer::part("text/css; charset=utf-8", [REPORT_STYLE, STYLE, EDITOR_STYLE].concat())),
         name => {
             let own = MODULES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text);
             let text = own.or_else(|| report_module(name))?;

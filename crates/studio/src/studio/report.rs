@@ -10,9 +10,6 @@ use crate::results::Provenance;
 use crate::simulate::Interruption;
 use crate::study::{self, MotionOptions};
 
-/// Numbers of two bytes that the motions of a report come to, about.
-const SIZE: usize = 300_000;
-
 /// The report, or that there is none yet.
 pub fn answer(desk: &Desk) -> Answer {
     let Some(finished) = desk.finished() else {
@@ -27,7 +24,7 @@ pub fn answer(desk: &Desk) -> Answer {
 fn page(desk: &Desk, finished: &Finished) -> Result<Vec<u8>, ExportError> {
     let Finished { current, bounds, summary } = finished;
     let is_ended = || desk.is_old(current.number) && desk.is_replaced(current.number);
-    let options = MotionOptions { threads: None, size: SIZE, interruption: Interruption::new(&is_ended) };
+    let options = MotionOptions { threads: None, size: study::REPORT_SIZE, interruption: Interruption::new(&is_ended) };
     let motion = study::report_motion(&current.description, &bounds.functions, options);
     let (beside, texts) = desk.texts(|texts| {
         let name = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());

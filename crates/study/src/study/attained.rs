@@ -13,8 +13,6 @@ mod ends;
 mod kept;
 mod surface;
 
-use std::time::Instant;
-
 use super::bounding::{Attained, Outcome, bound, simulation_error, timed};
 use super::ensemble::{Motions, Progress};
 use super::internal::InternalError;
@@ -23,6 +21,7 @@ use crate::methods::{
     BoundsRequest, Budget, Chebyshev, Degree, Ensemble, FollowedEnds, Method, MethodResult, Observed, Sampling,
     Simulated, Until, Validation,
 };
+use crate::numerics::clock::Instant;
 use crate::numerics::{Derivatives, Ledger, Range, SAFETY_OF_SURROGATE, Sample, spread};
 use crate::simulate::{NoGradient, Schedule, SimulationError, Steps, Wanted, gradients};
 use climb::{Climb, End, Known};

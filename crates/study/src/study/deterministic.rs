@@ -1,8 +1,6 @@
 //! A mechanism that depends on no uncertain parameter: simulated once, and once more with halved steps for its error,
 //! whatever is asked for.
 
-use std::time::Instant;
-
 use super::RunError;
 use super::answers::Results;
 use super::bounding::{Bounded, Doubts, Outcome, bound, note_nominal, simulation_error, timed, validation_summary};
@@ -15,6 +13,7 @@ use super::stepping::{
     StepPlan, StepSearch, damped_modes, divided, explicit_steps, may_be_explicit, may_extrapolate, refused,
 };
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
+use crate::numerics::clock::Instant;
 use crate::numerics::{Ledger, Range};
 use crate::simulate::{Divided, Schedule, SimulationError};
 

@@ -45,10 +45,12 @@ mod reduced;
 mod sample;
 mod shard;
 mod single;
+mod sources;
 mod statistics;
 mod stepping;
 mod structure;
 mod subsystems;
+mod threads;
 mod tuning;
 mod verify;
 mod zones;
@@ -76,13 +78,15 @@ pub use feasible::Survey;
 pub use fit::{DataError, FitError, Measurements, NoiseBound, fit};
 pub use gradient::{GradientError, gradient};
 pub use internal::{InternalError, caught, record_panics};
-pub use motion::{Grip, Hand, Held, MotionOptions, Movable, report_motion};
+pub use motion::{Grip, Hand, Held, MotionOptions, Movable, REPORT_SIZE, report_motion};
 pub use price::{Allowance, Memory, Price};
 pub use ready::{COMPILING, Ready, built, equations, ready};
 pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
+pub use sources::sources;
 pub use structure::structure;
 pub use subsystems::uncertain;
+pub use threads::{Threads, pool};
 pub use tuning::tuning;
 pub use verify::{VerifyError, verify};
 
@@ -208,14 +212,6 @@ pub fn run_keeping(description: &Description, options: Options) -> Result<(Bound
     let (mut bounds, mut summary) = reduced::shown(description, &model, bounds, summary);
     zones::joined(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))
-}
-
-/// The threads of a run: so many, or one per core.
-///
-/// # Errors
-/// Where they cannot be started.
-pub fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
-    rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()
 }
 
 /// A compiled model: of what `run` simulates, all in one.

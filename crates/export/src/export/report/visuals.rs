@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::packing::floats;
 use crate::elements::Form;
 use crate::export::solid::{Face, SolidFrame, faces, moved_out, polyline, reach, triangulated};
+use crate::numerics::{least, most};
 use crate::results::DrawnSolid;
 
 /// A solid in its body's frame.
@@ -99,9 +100,9 @@ fn flat_or_not(form: &Form<f64>) -> Vec<Face> {
 }
 
 fn bounds(points: impl Iterator<Item = [f64; 3]>) -> [[f64; 3]; 2] {
-    points.fold([[f64::MAX; 3], [f64::MIN; 3]], |[least, most], point| {
+    points.fold([[f64::MAX; 3], [f64::MIN; 3]], |[low, high], point| {
         let each = |of: fn(f64, f64) -> f64, bound: [f64; 3]| std::array::from_fn(|axis| of(bound[axis], point[axis]));
-        [each(f64::min, least), each(f64::max, most)]
+        [each(least, low), each(most, high)]
     })
 }
 

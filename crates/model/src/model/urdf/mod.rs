@@ -27,7 +27,6 @@ use crate::robots::urdf::{is_number, is_urdf, read};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
-use crate::syntax::text_file;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 const FORMAT: Format = Format {
@@ -80,7 +79,7 @@ impl Urdf {
         let file = reader.scalar(node, "the path of a URDF")?.text.clone();
         let found = reader.files.find(Path::new(""), &file).and_then(|path| {
             let path = reader.files.full(&path);
-            Ok((text_file::read_text(&path, TUNING.file_bytes)?, path))
+            Ok((reader.files.read(&path, TUNING.file_bytes)?, path))
         });
         let (text, path) = match found {
             Ok(found) => found,

@@ -11,7 +11,6 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file;
 use crate::syntax::within::Within;
 
 /// An element.
@@ -79,7 +78,7 @@ impl Reader<'_> {
     fn file(&mut self, path: &Path, at: Option<Span>, within: Option<&str>, found: &mut Vec<Item>) {
         self.files += 1;
         let full = self.within.full(path);
-        let text = match text_file::read_text(&full, TUNING.file_bytes) {
+        let text = match self.within.read(&full, TUNING.file_bytes) {
             Ok(text) => text,
             Err(error) => {
                 let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());

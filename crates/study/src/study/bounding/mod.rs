@@ -17,6 +17,7 @@ use crate::methods::{
     BandBuilder, BoundingMethod, Ensemble, EnsembleError, Interrupted, Method, MethodResult, Simulated, Stop, TooDeep,
     Validation,
 };
+use crate::numerics::clock::Instant;
 use crate::numerics::{EMPTY, Ledger, ParameterBox, Range, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{ExcitedMode, Schedule, SimulationError, SwitchSearch};
@@ -214,7 +215,7 @@ pub fn timed<T>(
     method: &str,
     bound: impl FnOnce() -> Result<(MethodResult, T), SimulationError>,
 ) -> Result<(Outcome, T), SimulationError> {
-    let begun = std::time::Instant::now();
+    let begun = Instant::now();
     let (result, other) = bound()?;
     let simulated = &result.simulated;
     let summary = MethodSummary {
@@ -236,7 +237,7 @@ pub fn validation_summary(
     schedule: &Schedule,
     validation: &Validation,
     stop: Option<&Stop>,
-    begun: std::time::Instant,
+    begun: Instant,
 ) -> MethodSummary {
     MethodSummary {
         method: "validation".to_owned(),

@@ -11,12 +11,11 @@ mod plan;
 mod reference;
 mod timing;
 
-use std::time::Instant;
-
 use super::RunError;
 use crate::compile::compile_switches;
 use crate::methods::{MOST_SIMULATIONS, Varied, can_compose};
 use crate::model::{Description, Stepping};
+use crate::numerics::clock::Instant;
 use crate::results::{CostMethod, CostPoint, CostReference, CostStudy, cost_curves, pareto};
 use crate::syntax::{Code, Coded};
 

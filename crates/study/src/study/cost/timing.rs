@@ -1,11 +1,10 @@
 //! Runs against the clock: short ones a few times, the best of them counting.
 
-use std::time::Instant;
-
 use super::CostOptions;
 use super::grid::Setting;
 use crate::methods::Method;
 use crate::model::Description;
+use crate::numerics::clock::Instant;
 use crate::results::Bounds;
 use crate::results::{MethodSummary, Summary};
 use crate::study::{Options, RunError, run};

@@ -33,6 +33,9 @@ const NEAR: f64 = 2e-4;
 const FEWEST: usize = 24;
 const MOST: usize = 600;
 
+/// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
+pub const REPORT_SIZE: usize = 300_000;
+
 /// How a motion is found.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionOptions<'a> {

@@ -2,12 +2,13 @@
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::{Price, in_words};
 use crate::study::price::tuning::TUNING;
 
 use crate::methods::Budget;
+use crate::numerics::clock::Instant;
 
 /// Seconds that nothing takes.
 const FOR_EVER: f64 = 1e9;

@@ -11,6 +11,7 @@ use crate::methods::{
     Until, Validation, ends_of_combinations,
 };
 use crate::model::ReducedOutput;
+use crate::numerics::clock::Instant;
 use crate::numerics::{Ledger, Range, Sample};
 use crate::results::{
     Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
@@ -68,7 +69,7 @@ pub fn plan_reduction(study: &Study, plan: &StepPlan) -> Result<(), SimulationEr
 /// Where a sample cannot be assembled.
 pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Found, SimulationError> {
     let Some(store) = study.store.get() else { return Ok(Found::default()) };
-    let begun = std::time::Instant::now();
+    let begun = Instant::now();
     (study.stage)("reduced outputs");
     let (plan, schedule) = (&rows.plan, &rows.plan.schedule);
     let finer = [plan.halved(), plan.at_odds()];

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::super::{Kept, Options, RunError, subsystems};
 use crate::methods::{Chebyshev, Degree};
 use crate::model::{Description, Stepping};
+use crate::numerics::clock::Instant;
 use crate::results::{Bounds, MethodSummary, RequirementSummary, Summary, Verdict};
 
 /// Most rounds after the first.
@@ -29,7 +30,7 @@ pub fn run(model: &Description, options: &Options, keep: bool) -> Result<(Bounds
     }
     let mut model = Cow::Borrowed(model);
     let budget = model.bounds.budget;
-    let begun = std::time::Instant::now();
+    let begun = Instant::now();
     let (mut before, mut spent, mut rounds) = (simulations(&found.1), 0, 0);
     while rounds < ROUNDS && !(options.interrupted)() {
         let undecided = found.1.requirements.iter().filter(|own| own.verdict == Verdict::Undecided);

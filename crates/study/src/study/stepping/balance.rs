@@ -5,6 +5,7 @@ use super::plan::StepPlan;
 use super::search::StepSearch;
 use super::validated::{divided, may_extrapolate, validation};
 use crate::methods::{BoundingMethod, Method, Observed, Validation};
+use crate::numerics::clock::Instant;
 use crate::results::MethodSummary;
 use crate::simulate::{Divided, SimulationError};
 use crate::study::bounding::validation_summary;
@@ -38,7 +39,7 @@ pub fn balance(study: &Study, plan: &StepPlan, progress: &Progress) -> Result<Ba
     }
     let mut steps = StepSearch::new(&plan.schedule, may_extrapolate(study));
     loop {
-        let begun = std::time::Instant::now();
+        let begun = Instant::now();
         let Divided { schedule, unresolved_from } = divided(study, steps.schedule());
         let controller = plan.controller.map(|controller| controller.for_parts(steps.parts()));
         let plan = StepPlan { schedule, controller };

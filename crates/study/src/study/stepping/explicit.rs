@@ -1,7 +1,5 @@
 //! Whether the explicit method is taken, and with which steps.
 
-use std::time::Instant;
-
 use super::controlled::{controlling_samples, steps_error};
 use super::validated::{may_extrapolate, validation};
 use crate::study::bounding::validation_summary;
@@ -12,6 +10,7 @@ use crate::study::stepping::tuning::TUNING;
 use super::plan::StepPlan;
 use crate::methods::{Observed, Validation};
 use crate::model::{Description, SchemeChoice, Stepping};
+use crate::numerics::clock::Instant;
 use crate::numerics::{Sample, spread};
 use crate::results::{Decision, MethodSummary};
 use crate::simulate::{ExplicitObstacle, Interruption, Schedule, SimulationError, Simulator, explicit_schedule};

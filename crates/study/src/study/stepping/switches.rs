@@ -1,13 +1,12 @@
 //! The search for contacts and kinks in the equations that no sample meets, as a part of a study.
 
-use std::time::Instant;
-
 use super::events::event_search;
 use crate::study::bounding::Switches;
 use crate::study::internal::{InternalError, caught};
 use crate::study::problem::Study;
 
 use crate::methods::Validation;
+use crate::numerics::clock::Instant;
 use crate::results::MethodSummary;
 use crate::simulate::{Integration, SimulationError, Steps, unmet_switch};
 

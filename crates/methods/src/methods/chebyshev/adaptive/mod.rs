@@ -12,7 +12,6 @@ mod assessment;
 mod challenge;
 
 use std::borrow::Cow;
-use std::time::Instant;
 
 use rustc_hash::FxHashMap;
 
@@ -26,6 +25,7 @@ use crate::methods::kept::KeptSurrogate;
 use crate::methods::request::Budget;
 use crate::methods::result::Estimate;
 use crate::methods::validation::{Validation, ValidationTable};
+use crate::numerics::clock::Instant;
 use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest, union};
 
 /// Indices are added whose expected surplus is at least this share of the largest.

@@ -1,25 +1,29 @@
 //! Aligned columns.
 
-use super::console::BOLD;
+use super::marks::BOLD;
 
 /// To which side a column's cells are set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Align {
+pub enum Align {
+    /// Texts.
     Left,
+    /// Numbers.
     Right,
 }
 
 /// Rows of `N` cells under headings.
-pub(super) struct Table<const N: usize> {
+pub struct Table<const N: usize> {
     headings: [(&'static str, Align); N],
     rows: Vec<[String; N]>,
 }
 
 impl<const N: usize> Table<N> {
+    /// Without rows yet.
     pub fn new(headings: [(&'static str, Align); N]) -> Self {
         Self { headings, rows: Vec::new() }
     }
 
+    /// Adds a row.
     pub fn row(&mut self, cells: [String; N]) {
         self.rows.push(cells);
     }

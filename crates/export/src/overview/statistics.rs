@@ -7,7 +7,7 @@ use crate::results::{StatisticsSummary, Summary, Uncertain};
 use crate::syntax::suggest;
 
 /// Laws, and for each output the worst case, the linearised stack and the distribution.
-pub(super) fn statistics(summary: &Summary) -> String {
+pub fn statistics(summary: &Summary) -> String {
     let Some(found) = summary.statistics.as_ref().map(|found| &found.summary) else { return String::new() };
     let note = found.failure.as_ref().map_or_else(String::new, |failure| format!("  statistics: {failure}\n\n"));
     if found.outputs.is_empty() {
@@ -118,7 +118,7 @@ fn reduced(found: &StatisticsSummary) -> String {
 }
 
 /// How many fulfil each requirement.
-pub(super) fn yields<'y>(found: impl IntoIterator<Item = &'y crate::results::YieldSummary>) -> String {
+pub fn yields<'y>(found: impl IntoIterator<Item = &'y crate::results::YieldSummary>) -> String {
     let line = |of: &crate::results::YieldSummary| {
         let [least, most] = of.ppm_interval;
         let cp = of.cp.map_or_else(String::new, |cp| format!("; Cp {cp:.2}"));

@@ -1,6 +1,6 @@
 //! What excitations do as constants, and as any functions, for people; random ones.
 
-use super::structure::digits;
+use super::words::digits;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{ExcitationSummary, Summary};
 use crate::syntax::suggest;
@@ -12,7 +12,7 @@ const MOST: usize = 12;
 const ENOUGH: f64 = 1.005;
 
 /// A line for each output that excitations move, and one of random ones.
-pub(super) fn lines(summary: &Summary) -> String {
+pub fn lines(summary: &Summary) -> String {
     limited(&summary.excitations) + &random(&summary.realisations)
 }
 

@@ -1,10 +1,10 @@
 //! Which tolerances of instances are one for all of them, for people.
 
-use super::console::count;
+use super::words::count;
 use crate::results::AssemblySummary;
 
 /// A line for each assembly.
-pub(super) fn lines(assemblies: &[AssemblySummary]) -> String {
+pub fn lines(assemblies: &[AssemblySummary]) -> String {
     assemblies.iter().map(line).collect()
 }
 

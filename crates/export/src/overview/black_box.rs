@@ -1,12 +1,12 @@
 //! A program that answered instead of a mechanism, for people.
 
-use super::console::count;
+use super::words::count;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{BlackBoxSummary, ErrorSummary, NoiseSummary};
 use crate::syntax::harmless;
 
 /// The program, at the head of an overview.
-pub(super) fn heading(own: &BlackBoxSummary) -> String {
+pub fn heading(own: &BlackBoxSummary) -> String {
     format!("a black box, `{}`", harmless(&own.command.join(" ")))
 }
 
@@ -14,7 +14,7 @@ pub(super) fn heading(own: &BlackBoxSummary) -> String {
 const ABRUPT: f64 = 0.1;
 
 /// How far a program's answers are to be trusted; `errors` are those of all bands.
-pub(super) fn lines(own: &BlackBoxSummary, errors: &[ErrorSummary]) -> String {
+pub fn lines(own: &BlackBoxSummary, errors: &[ErrorSummary]) -> String {
     let steps = match &own.refined_by {
         Some(parameter) => format!("the error of its own steps was found by finer `{parameter}`"),
         None => "the error of its own steps is not included (`refine` says how to find it)".to_owned(),

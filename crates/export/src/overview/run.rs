@@ -1,18 +1,11 @@
-//! The overview of a run for people: methods, errors, tolerances that matter, singular configurations, files.
+//! The overview of a run: methods, errors, tolerances that matter, singular configurations.
 
-use std::path::{Path, PathBuf};
-
-use super::black_box;
-use super::console::{BOLD, coordinates, count, file_names};
-use super::structure::digits;
+use super::marks::BOLD;
 use super::table::{Align, Table};
-use super::verdicts;
-use crate::export::rounded as rounded_number;
+use super::words::{coordinates, count, digits};
+use super::{assemblies, black_box, excitations, statistics, verdicts};
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{
-    AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, EventSummary, EventsFollowed, ParameterSummary,
-    Summary, TooDeep,
-};
+use crate::results::{AnalysisSummary, ContributionSummary, ErrorSummary, EventSummary, EventsFollowed, Summary};
 use crate::simulate::is_one_number;
 
 /// The largest width and error of each band.
@@ -111,67 +104,6 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
     if text.is_empty() { text } else { text + "\n" }
 }
 
-/// Which bounds are unreliable, and from when.
-pub(super) fn unreliable(summary: &Summary) -> Option<String> {
-    const MOST: usize = 4;
-    let mut bands: Vec<(f64, String)> = summary
-        .errors
-        .iter()
-        .filter_map(|error| Some((error.unresolved_from?, format!("{}.{}", error.output, error.method))))
-        .collect();
-    let total = bands.len();
-    bands.sort_by(|a, b| a.0.total_cmp(&b.0));
-    bands.truncate(MOST);
-    let (from, first) = bands.first()?;
-    let others: String =
-        bands[1..].iter().map(|(time, band)| format!(", of `{band}` from {} s", rounded(*time))).collect();
-    let more = if total > MOST { format!(", and {} more", total - MOST) } else { String::new() };
-    let is_cause = |time: f64| time <= *from;
-    let help = if summary.unmet_switch.is_some_and(is_cause) {
-        "some values meet a contact, a stop or a kink that no sample meets: narrow the intervals until all values meet it or none does, \
-         or divide them where that changes (`--set`)"
-    } else if summary.events_followed.as_ref().is_some_and(|events| events.until <= *from) {
-        "events are not followed further: narrow the intervals, or shorten the duration"
-    } else if summary.passed_force.is_some_and(is_cause) {
-        "fixed steps pass over what a force does in time or space: shorten the step, or let `simulation: { tolerance: … }` choose it"
-    } else {
-        "raise the order, shorten the step, or set `bounds: { tolerance: … }`"
-    };
-    Some(format!("bounds of `{first}` are unreliable from {} s{others}{more}: {help}", rounded(*from)))
-}
-
-/// A time without the rounding error of a multiple of the output step.
-fn rounded(time: f64) -> f64 {
-    (1e9 * time).round() / 1e9
-}
-
-/// Surfaces that a contact does not hold apart any more.
-pub(super) fn too_deep(found: &TooDeep) -> String {
-    let TooDeep { contact, time, depth, deepest } = found;
-    let (time, deepest) = (rounded(*time), digits(1e3 * deepest));
-    match depth {
-        Some(depth) => format!(
-            "the surfaces of `{contact}` overlap by {} mm at {time} s, where its `rounding` and radii allow {deepest} mm: rows from there on are \
-             unreliable; make the contact stiffer, or these larger",
-            digits(1e3 * depth)
-        ),
-        None => format!(
-            "the surfaces of `{contact}` pass through one another in the step to {time} s: rows from there on are unreliable; shorten the step, \
-             or let a `tolerance` choose it"
-        ),
-    }
-}
-
-/// The mode that the steps damp.
-pub(super) fn damped(summary: &Summary) -> Option<String> {
-    let mode = summary.damped_mode.as_ref()?;
-    Some(format!(
-        "the steps damp a mode near {:.0} Hz that the start excites: shorten them to {:.0e} s, or accept that its amplitude counts as \
-         error",
-        mode.frequency, mode.step
-    ))
-}
-
 /// A start that is a choice, singular configurations, and reactions that equilibrium does not determine.
 fn singular(summary: &Summary) -> String {
     const MOST: usize = 4;
@@ -223,35 +155,8 @@ fn named(names: &[String]) -> String {
     format!("{}{more}", names[..names.len().min(MOST)].join(", "))
 }
 
-/// The part of the box that the bounds cover, if it is not all of it.
-pub(super) fn excluded(bounds: &Bounds, summary: &Summary) -> Option<String> {
-    let least = bounds.covered.iter().copied().fold(1.0, f64::min);
-    if least == 1.0 {
-        return None;
-    }
-    let hull = |(index, parameter): (usize, &ParameterSummary)| {
-        let ends = summary.pieces.iter().map(|piece| (piece.lower[index], piece.upper[index]));
-        let (lower, upper) = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let narrower = lower > parameter.lower || upper < parameter.upper;
-        let unit = ShownUnit::of(&parameter.display, &parameter.unit);
-        let [lower, upper] = [lower, upper].map(|end| rounded_number(unit.of_si(end)));
-        let range = format!("{} from {lower} to {upper} {}", parameter.name, unit.text);
-        narrower.then(|| format!(", with {}", range.trim_end()))
-    };
-    let hulls: String = summary.parameters.iter().enumerate().filter_map(hull).collect();
-    let pieces = count(summary.pieces.len(), "piece", "pieces");
-    let times = bounds.times.iter().zip(&bounds.covered);
-    let ended: Vec<&f64> =
-        times.filter(|(_, share)| **share < bounds.covered[0]).map(|(time, _)| time).take(1).collect();
-    let first = 100.0 * bounds.covered[0];
-    let later = ended
-        .first()
-        .map_or(String::new(), |time| format!(", and less from {time} s on, {:.3} % at the end", 100.0 * least));
-    Some(format!("the bounds cover {first:.3} % of the box ({pieces}{hulls}){later}: see the column `covered`"))
-}
-
-/// Prints for people what ran, the reliability of the results, and their files.
-pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
+/// The methods that ran, the bounds, and their reliability.
+pub fn overview(summary: &Summary) -> String {
     let mut table = Table::new([
         ("method", Align::Left),
         ("simulations", Align::Right),
@@ -281,7 +186,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         ),
     };
     let mut text = format!("{BOLD}{}{BOLD:#}: {kind}\n\n{}\n", summary.model, table.render(2));
-    text += &super::assemblies::lines(&summary.assemblies);
+    text += &assemblies::lines(&summary.assemblies);
     text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
     match &summary.analysis {
         Some(found) if !found.values.is_empty() => text += &analysis(found),
@@ -291,10 +196,10 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         }
     }
     text += &summary.black_box.as_ref().map_or_else(String::new, |own| black_box::lines(own, &summary.errors));
-    text += &super::excitations::lines(summary);
+    text += &excitations::lines(summary);
     text += &contributions(&summary.contributions);
     text += &verdicts::tables(summary);
-    text += &super::statistics::statistics(summary);
+    text += &statistics::statistics(summary);
     for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
         let times = match method.rank_revealing_solves {
             1 => "once".to_owned(),
@@ -303,13 +208,13 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         text += &format!("  {}: passed a singular configuration {times}\n", method.method);
     }
     text += &singular(summary);
-    text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
     text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::overview::plain;
     use crate::results::MethodSummary;
 
     #[test]
@@ -377,21 +282,17 @@ mod tests {
             realisations: Vec::new(),
             is_cut: false,
         };
-        let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
-        let text = overview(&summary, Path::new("results/slider_crank"), &files);
-        let plain = crate::cli::console::plain(&text);
-        insta::assert_snapshot!(plain, @r"
-        slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom
+        let expected = "slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom
 
-          method   simulations    steps  Newton iterations  seconds
-          nominal            1     2000               4013    0.004
-          scan             900  1800000            3611700        –
+  method   simulations    steps  Newton iterations  seconds
+  nominal            1     2000               4013    0.004
+  scan             900  1800000            3611700        –
 
-          bounds   largest width    error  of the surrogate  of the steps  unit
-          x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3  m
+  bounds   largest width    error  of the surrogate  of the steps  unit
+  x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3  m
 
-          scan: passed a singular configuration 12 times
-          results/slider_crank: bounds.csv, x3.svg
-        ");
+  scan: passed a singular configuration 12 times
+";
+        assert_eq!(plain(&overview(&summary)), expected);
     }
 }

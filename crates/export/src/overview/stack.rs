@@ -1,7 +1,7 @@
 //! Sensitivities of stacks of dimensions, for people.
 
 use super::table::{Align, Table};
-use super::verdicts::short;
+use super::words::short;
 use crate::export::shown_sensitivity;
 use crate::grammar::display_unit::ShownUnit;
 use crate::results::{OutputStatisticsSummary, Sensitivity, Summary};
@@ -13,7 +13,7 @@ const MOST: usize = 30;
 const BAR: f64 = 24.0;
 
 /// A table for each output that is a stack: derivatives with their signs, deviations and shares as bars.
-pub(super) fn sensitivities(summary: &Summary) -> String {
+pub fn sensitivities(summary: &Summary) -> String {
     let outputs = summary.statistics.iter().flat_map(|found| &found.summary.outputs);
     outputs.filter(|output| !output.sensitivities.is_empty()).map(|output| of_output(summary, output)).collect()
 }
