@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::description::{Description, Space};
+use super::reading::{Reading, Scene};
 use super::urdf::{self, Urdf};
 use super::{
     analysis, black_box, bodies, bounds, definitions, design, effects, excitations, fmu, instances, joints,
@@ -23,65 +24,11 @@ use crate::robots::mjcf::is_mjcf;
 use crate::robots::urdf::is_urdf;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
-use crate::syntax::suggest::{self, clip};
 use crate::syntax::text_file::{read_given, text_of};
 use crate::syntax::tuning::TUNING;
 use crate::syntax::within::Within;
 use crate::syntax::yaml::{self, Entry, Node};
-use crate::syntax::{Code, Coded, harmless};
-
-/// What reading a model gave: both may be there when there are only warnings.
-#[derive(Clone, Debug)]
-pub struct Reading {
-    /// The model itself, unless it or a scene of it has errors.
-    pub description: Option<Description>,
-    /// Its scenes, each a model of its own; none where there are errors.
-    pub scenes: Vec<Scene>,
-    /// Errors and warnings.
-    pub diagnostics: Diagnostics,
-}
-
-/// A scene of a model.
-#[derive(Clone, Debug)]
-pub struct Scene {
-    /// Its name, which is also that of its folder.
-    pub name: String,
-    /// The model as it is in this scene; its name is `MODEL/SCENE`.
-    pub description: Description,
-}
-
-/// A scene that a model does not have.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no scene `{name}`: {help}")]
-pub struct UnknownScene {
-    /// As it was asked for.
-    name: String,
-    /// What would be right.
-    help: String,
-}
-
-impl Reading {
-    /// Scenes by their names, in the file's order, each with its name; all where none is named. A model without scenes
-    /// is chosen itself, under no name.
-    ///
-    /// # Errors
-    /// For a name that no scene has.
-    pub fn chosen(self, names: &[String]) -> Result<Vec<(Option<String>, Description)>, UnknownScene> {
-        let known = || self.scenes.iter().map(|scene| scene.name.as_str());
-        if let Some(name) = names.iter().find(|name| !known().any(|known| known == **name)) {
-            let help = match self.scenes.len() {
-                0 => "the model has no `scenes`".to_owned(),
-                _ => suggest::help(name, "scenes", known()).unwrap_or_else(|| "`mbint check` lists them".to_owned()),
-            };
-            return Err(UnknownScene { name: clip(name), help });
-        }
-        if self.scenes.is_empty() {
-            return Ok(self.description.map(|description| (None, description)).into_iter().collect());
-        }
-        let chosen = self.scenes.into_iter().filter(|scene| names.is_empty() || names.contains(&scene.name));
-        Ok(chosen.map(|scene| (Some(scene.name), scene.description)).collect())
-    }
-}
+use crate::syntax::{Code, harmless};
 
 /// Reads a model file, parameters replaced as the command line says.
 ///
@@ -395,10 +342,4 @@ fn describe(
 
 fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [Entry] {
     node.map_or(&[], |node| reader.named_entries(node, what))
-}
-
-impl Coded for UnknownScene {
-    fn code(&self) -> Option<Code> {
-        Some(Code::UnknownName)
-    }
 }

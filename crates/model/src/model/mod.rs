@@ -27,6 +27,7 @@ mod open;
 mod overlay;
 mod parameters;
 mod random;
+mod reading;
 mod reduced;
 mod requests;
 mod requirements;
@@ -54,11 +55,10 @@ pub use crate::expand::overrides::Override;
 pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotation, Symbol, TimeOrder};
 pub use crate::keys::{SCHEMA_VERSION, schema};
 pub use description::*;
-pub use load::{
-    Reading, Scene, UnknownScene, is_robot, is_standard_input, load, load_str, read, read_rooted, read_str, shown,
-};
+pub use load::{is_robot, is_standard_input, load, load_str, read, read_rooted, read_str, shown};
 pub use open::{Opened, read_open};
 pub use overlay::read_overlay;
 pub use parameters::{deviation_of, seed_of};
+pub use reading::{Reading, Scene, UnknownScene};
 pub use tuning::tuning;
 pub use witness::{Witness, WitnessError};

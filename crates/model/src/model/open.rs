@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::load::{Origin, Reading, read_from, read_rooted, robot_alone, shown};
+use super::load::{Origin, read_from, read_rooted, robot_alone, shown};
+use super::reading::Reading;
 use crate::grammar::mentions::{Mentions, Notes};
 use crate::syntax::within::{OpenTexts, Within};
 

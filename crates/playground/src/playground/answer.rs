@@ -8,7 +8,7 @@ use super::question::{Question, Task};
 use super::running::{Host, Run, Unrun, run};
 use crate::syntax::diagnostic::Record;
 
-/// The answer. What is not known of a model is absent.
+/// The answer; unknown parts are absent.
 #[derive(Debug, Default, Serialize)]
 struct Answer {
     /// The model's name, if it has no errors.
