@@ -2,6 +2,7 @@
 //!
 //! A question and its answer are JSON ([`answer`]); `abi` has the functions by which a page's worker asks.
 
+#![deny(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
 // Rooms of the crates below keep their names here.
@@ -12,6 +13,7 @@ use mbint_model::model;
 use mbint_study::{results, study};
 
 #[cfg(target_family = "wasm")]
+#[allow(unsafe_code, reason = "linear memory is shared with the page")]
 mod abi;
 mod playground;
 
