@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use rustc_hash::{FxHashMap, FxHashSet};
-use symdiff::{Binary, Expr, Graph, Lowered, Node, Tape, Unary, lower};
+use symdiff::{Binary, Expr, Graph, Lowered, Node, Tape, Tile, Unary, lower};
 
 use super::equations::time_derivative;
 use super::layout::Layout;
@@ -46,6 +46,22 @@ impl SwitchProgram {
     /// Values and rates at a state.
     pub fn evaluate(&self) -> &Tape {
         &self.lowered.kernels[0]
+    }
+
+    /// A memory with the parameters of a tile of samples.
+    pub fn memory_for(&self, samples: &Tile) -> Tile {
+        let mut memory = Tile::new(samples.width(), self.registers(), self.constants());
+        let parameters = self.layout.parameters.clone();
+        memory.block_mut(parameters.clone()).copy_from_slice(samples.block(parameters));
+        memory.run(self.sample());
+        memory
+    }
+
+    /// Evaluates values and rates at the states and the times of a tile of samples.
+    pub fn evaluate_at(&self, states: &Tile, memory: &mut Tile) {
+        memory.block_mut(self.layout.state()).copy_from_slice(states.block(self.layout.state()));
+        memory.lane_mut(self.layout.time).copy_from_slice(states.lane(self.layout.time));
+        memory.run(self.evaluate());
     }
 }
 

@@ -28,21 +28,22 @@ impl Interpolation {
         if let Some(row) = exact {
             return Some(Self { fine: vec![(row, 1.0)], coarse: Vec::new() });
         }
-        (next < times.len())
-            .then(|| Self { fine: weights(times, time, next, ROWS), coarse: weights(times, time, next, COARSE) })
+        (next < times.len()).then(|| Self {
+            fine: row_weights(times, time, next, ROWS).collect(),
+            coarse: row_weights(times, time, next, COARSE).collect(),
+        })
     }
 }
 
-/// Lagrange's polynomials at a time through `count` rows, half of them before row `next`.
-fn weights(times: &[f64], time: f64, next: usize, count: usize) -> Vec<(usize, f64)> {
+/// Lagrange's polynomials at a time through `count` rows, half of them before row `next`: rows with their weights.
+pub fn row_weights(times: &[f64], time: f64, next: usize, count: usize) -> impl Iterator<Item = (usize, f64)> {
     let count = count.min(times.len());
     let first = next.saturating_sub(count / 2).min(times.len() - count);
     let rows = first..first + count;
-    let weight = |row: usize| {
+    rows.clone().map(move |row| {
         let others = rows.clone().filter(|other| *other != row);
-        others.map(|other| (time - times[other]) / (times[row] - times[other])).product()
-    };
-    rows.clone().map(|row| (row, weight(row))).collect()
+        (row, others.map(|other| (time - times[other]) / (times[row] - times[other])).product())
+    })
 }
 
 #[cfg(test)]

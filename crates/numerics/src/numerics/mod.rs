@@ -80,7 +80,7 @@ pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
 pub use functions_of_time::{Cell, FunctionClass, Worst, value};
 pub use gradient_fit::{Derivatives, GradientFit};
-pub use interpolation::Interpolation;
+pub use interpolation::{Interpolation, row_weights};
 pub use least_squares::LeastSquares;
 pub use ledger::Ledger;
 pub use linear_program::best_step;

@@ -13,7 +13,7 @@ use crate::syntax::Code;
 
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Summary {
     /// Name of the model, and of the scene after a slash.
     pub model: String,

@@ -2,7 +2,7 @@
 
 use symdiff::Tile;
 
-use crate::compile::{Switch, SwitchProgram, Tapes};
+use crate::compile::{Switch, SwitchProgram};
 use crate::simulate::events::locate::{Crossing, crossing};
 
 /// Compares the switches at both ends of a step.
@@ -17,13 +17,7 @@ pub struct SwitchWatch<'s> {
 impl<'s> SwitchWatch<'s> {
     /// For the samples of a tile.
     pub fn new(program: &'s SwitchProgram, samples: &Tile) -> Self {
-        let width = samples.width();
-        let mut tile = Tile::new(width, program.registers(), program.constants());
-        let parameters = program.layout.parameters.clone();
-        let shared = parameters.start * width..parameters.end * width;
-        tile.values_mut()[shared.clone()].copy_from_slice(&samples.values()[shared]);
-        tile.run(program.sample());
-        Self { program, tile, before: Vec::new(), after: Vec::new() }
+        Self { program, tile: program.memory_for(samples), before: Vec::new(), after: Vec::new() }
     }
 
     /// Before a step.
@@ -73,13 +67,8 @@ impl<'s> SwitchWatch<'s> {
 
     /// (value, rate) of each switch, switch by switch, lane by lane; a rate is NaN where it is not known.
     fn evaluate(&mut self, states: &Tile, into: &mut Vec<[f64; 2]>) {
-        let layout = &self.program.layout;
+        self.program.evaluate_at(states, &mut self.tile);
         let width = self.tile.width();
-        let state = layout.state();
-        let state = state.start * width..state.end * width;
-        self.tile.values_mut()[state.clone()].copy_from_slice(&states.values()[state]);
-        self.tile.lane_mut(layout.time).copy_from_slice(states.lane(layout.time));
-        self.tile.run(self.program.evaluate());
         into.clear();
         for Switch { value, rate, .. } in &self.program.switches {
             for lane in 0..width {

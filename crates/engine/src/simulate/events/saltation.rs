@@ -77,10 +77,7 @@ impl<'s> EventAdjoints<'s> {
         duration: f64,
     ) -> Result<Option<Self>, SimulationError> {
         let Some(program) = simulator.switches().filter(|_| !events.is_empty()) else { return Ok(None) };
-        let mut tile = Tile::new(start.width(), program.registers(), program.constants());
-        let parameters = program.layout.parameters.clone();
-        tile.block_mut(parameters.clone()).copy_from_slice(start.block(parameters));
-        tile.run(program.sample());
+        let tile = program.memory_for(start);
         let adjoints = Adjoints::new(&tile);
         let memory = StartAdjoints::new(simulator, simulator.free_closure()?, start);
         let back = [2.0 * BEYOND, ROUNDED].map(|share| share * duration);
@@ -99,7 +96,7 @@ impl<'s> EventAdjoints<'s> {
         for (line, (behind, before)) in behind.iter().zip(&before).enumerate() {
             products[line % width] += (behind - before) * adjoints[half + line];
         }
-        let [_, rates] = self.switch(time, event.switch);
+        let [_, rates] = self.switch(event.switch);
         let switch = self.adjoints.lane_mut(self.program.switches[event.switch].value);
         for ((seed, product), rate) in switch.iter_mut().zip(products).zip(rates).filter(|((_, own), _)| *own != 0.0) {
             *seed = product / rate;
@@ -126,7 +123,7 @@ impl<'s> EventAdjoints<'s> {
         let [mut more, most] = self.back;
         while more <= most {
             let accelerations = self.accelerations(*time, state);
-            let [value, rate] = self.switch(*time, event.switch).map(|lanes| lanes[0]);
+            let [value, rate] = self.switch(event.switch).map(|lanes| lanes[0]);
             let back = value / rate + more;
             if (value > 0.0) != event.rises || !back.is_finite() {
                 break;
@@ -149,11 +146,8 @@ impl<'s> EventAdjoints<'s> {
             taken
         };
         let of_motion = take(layout.q.start..layout.v.end);
-        let algorithmic = take(layout.a.clone());
         let unknowns = take(layout.w.start..layout.lambda.end);
         self.memory.add(layout.q.start, &of_motion);
-        // The explicit method has no other accelerations than the true ones.
-        self.memory.add(layout.w.start, &algorithmic);
         self.memory.add(layout.w.start, &unknowns);
         self.memory.pull_acceleration();
         let total = self.memory.take(layout.q.start..layout.v.end);
@@ -168,14 +162,9 @@ impl<'s> EventAdjoints<'s> {
         self.memory.values(layout.w.clone()).to_vec()
     }
 
-    /// Values and rates of a switch, by lane, at the state and the time that accelerations were asked for last.
-    fn switch(&mut self, time: f64, number: usize) -> [Vec<f64>; 2] {
-        let layout = &self.program.layout;
-        self.tile.block_mut(layout.state()).copy_from_slice(self.memory.values(layout.state()));
-        let true_accelerations = self.memory.values(layout.w.clone());
-        self.tile.block_mut(layout.a.clone()).copy_from_slice(true_accelerations);
-        self.tile.lane_mut(layout.time).fill(time);
-        self.tile.run(self.program.evaluate());
+    /// Values and rates of a switch, by lane, at the state that accelerations were asked for last.
+    fn switch(&mut self, number: usize) -> [Vec<f64>; 2] {
+        self.program.evaluate_at(self.memory.assembly().tile(), &mut self.tile);
         let switch = &self.program.switches[number];
         let rate = switch.rate.map_or_else(|| vec![f64::NAN; self.tile.width()], |rate| self.tile.lane(rate).to_vec());
         [self.tile.lane(switch.value).to_vec(), rate]

@@ -29,6 +29,7 @@ use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SAFETY_OF_SURROGATE, Sample, Surrogate, largest};
 use crate::syntax::codes::Code;
 use adaptive::{Goal, OutputGoal};
+pub use along_gradients::MOST_ON_GRIDS;
 pub use combined::ends_of_combinations;
 pub use composition::can_compose;
 use composition::{BLOCK, Composer, NodeMotions, Row};

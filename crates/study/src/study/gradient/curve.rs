@@ -1,6 +1,6 @@
 //! An output over the time, as its rows have it: between them it is the cubic through the four nearest.
 
-use crate::numerics::bisected;
+use crate::numerics::{bisected, row_weights};
 use crate::simulate::Term;
 
 /// Halvings of an interval in which a zero is looked for, and golden sections of one with an extreme.
@@ -47,15 +47,8 @@ impl Curve<'_> {
 
     /// Rows and their weights at an instant (Lagrange).
     fn weights(&self, time: f64) -> impl Iterator<Item = (usize, f64)> + use<'_> {
-        let count = self.times.len();
-        let before = self.times.partition_point(|&row| row <= time).max(1) - 1;
-        let first = before.saturating_sub(1).min(count.saturating_sub(4));
-        let rows = first..(first + 4).min(count);
-        rows.clone().map(move |row| {
-            let others = rows.clone().filter(|&other| other != row);
-            let factor = |other: usize| (time - self.times[other]) / (self.times[row] - self.times[other]);
-            (row, others.map(factor).product())
-        })
+        let next = self.times.partition_point(|&row| row <= time).max(1);
+        row_weights(self.times, time, next, 4)
     }
 
     /// The ends of a span, and the rows between them.

@@ -6,14 +6,12 @@
 //! lies between those of the surrogate whose shares are δ less and δ more, and ε beyond them.
 
 use super::laws::Laws;
+use crate::methods::MOST_ON_GRIDS;
 use crate::model::Description;
 use crate::numerics::Sample;
 use crate::numerics::statistics::{Estimate, REPLICATES, beta_quantile};
 use crate::study::sample::{Chosen, sample};
 use crate::study::{Options, RunError};
-
-/// Of fewer parameters a surrogate's largest difference is told by its validation.
-pub(super) const MANY: usize = 12;
 
 /// Simulations, a power of two.
 const SIMULATIONS: usize = 1 << 10;
@@ -32,6 +30,8 @@ pub(super) struct Residuals {
     values: Vec<f64>,
     rows: usize,
     outputs: usize,
+    /// Limits of the shares of products that differ by more than each ε.
+    beyond: [f64; BEYOND.len()],
 }
 
 /// Differences of simulations from a surrogate.
@@ -42,7 +42,7 @@ pub(super) struct Residual {
     pub sampling: f64,
     /// Their standard deviation, at the upper end of its 95 % confidence interval.
     pub deviation: f64,
-    /// The largest but so many as [`shares_around`] has shares beyond.
+    /// The largest but so many as [`Residuals::shares_around`] has shares beyond.
     pub largest: [f64; BEYOND.len()],
 }
 
@@ -57,7 +57,7 @@ impl Residuals {
         laws: &Laws,
         outputs: usize,
     ) -> Result<Option<Self>, RunError> {
-        if laws.dimension() <= MANY {
+        if laws.dimension() <= MOST_ON_GRIDS {
             return Ok(None);
         }
         (options.stage)("samples of the laws");
@@ -76,7 +76,15 @@ impl Residuals {
             })?;
             Ok::<_, RunError>(done.map(|_| (values, rows)))
         })?;
-        Ok(found.map(|(values, rows)| Self { samples, values, rows, outputs }))
+        let limit = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (SIMULATIONS - count) as f64);
+        let beyond = BEYOND.map(limit);
+        Ok(found.map(|(values, rows)| Self { samples, values, rows, outputs, beyond }))
+    }
+
+    /// The share of a quantile, and pairs of those between which it lies but for what differs by more.
+    pub fn shares_around(&self, share: f64) -> impl Iterator<Item = f64> {
+        let pairs = self.beyond.into_iter().flat_map(move |own| [(share - own).max(0.0), (share + own).min(1.0)]);
+        std::iter::once(share).chain(pairs)
     }
 
     /// Differences of an output in a row from these values of its surrogate at the samples; `None` where it was not
@@ -103,12 +111,8 @@ impl Residuals {
     }
 }
 
-/// The share of a quantile, and pairs of those between which it lies but for what differs by more.
-pub(super) fn shares_around(share: f64) -> Vec<f64> {
-    let beyond = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (SIMULATIONS - count) as f64);
-    let pairs = BEYOND.map(beyond).into_iter().flat_map(|own| [(share - own).max(0.0), (share + own).min(1.0)]);
-    std::iter::once(share).chain(pairs).collect()
-}
+/// Shares around a quantile, itself included.
+pub(super) const AROUND: usize = 1 + 2 * BEYOND.len();
 
 impl Residual {
     /// How far a quantile may be off, given those of the surrogate at the shares around it.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::INTERRUPTED;
 use super::causes::{Cause, causes};
 use super::laws::Laws;
-use super::residuals::{Residual, Residuals, shares_around};
+use super::residuals::{AROUND, Residual, Residuals};
 use crate::model::Description;
 use crate::numerics::largest;
 use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
@@ -184,10 +184,11 @@ impl<'a> Rows<'a> {
         let own_error = self.own_error(row, output, stated.total[row]);
         let residual = self.residual(row, output);
         let asked = &self.description.statistics.quantiles;
-        let around = if residual.is_some() { shares_around(0.5).len() } else { 1 };
-        let shares: Vec<f64> = match residual {
-            Some(_) => asked.iter().flat_map(|&share| shares_around(share)).collect(),
-            None => asked.clone(),
+        let (around, shares) = match &self.residuals {
+            Some(residuals) if residual.is_some() => {
+                (AROUND, asked.iter().flat_map(|&share| residuals.shares_around(share)).collect())
+            }
+            _ => (1, asked.clone()),
         };
         let mut replicates = Replicates::new(shares.len());
         for replicate in 0..REPLICATES {
