@@ -11,7 +11,7 @@ target=wasm32-unknown-unknown
 
 has_target() { [ -d "$(rustc --print target-libdir --target $target)" ]; }
 wanted=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
-is_enough() { [ -n "$1" ] && [ "$(printf '%s\n' "$wanted" "$1" | sort -V | head -1)" = "$wanted" ]; }
+is_enough() { [ -n "$1" ] && [ "$(printf '%s\n' "$wanted" "$1" | sort -V | sed -n 1p)" = "$wanted" ]; }
 is_debian() {
     [ -d /usr/lib/rustlib/src/rust/library/std ] && is_enough "$(/usr/bin/rustc --version | cut -d ' ' -f 2)"
 }
@@ -38,7 +38,7 @@ if has_target; then
     "${build[@]}"
 else
     # Options that are not stable are allowed for this command alone. The linker is that of rustup's toolchain.
-    linker=$(find "$(rustc --print sysroot)/lib/rustlib" -name rust-lld | head -1)
+    linker=$(find "$(rustc --print sysroot)/lib/rustlib" -name rust-lld -print -quit)
     env RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER="$linker" \
         "${build[@]}" -Zbuild-std=std,panic_abort
 fi
