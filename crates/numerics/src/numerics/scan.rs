@@ -16,6 +16,9 @@ use serde::{Deserialize, Serialize};
 use super::along::Along;
 use super::range::Range;
 
+/// Values that are compared at a time.
+const LANES: usize = 8;
+
 /// Running bounds of every output at every time. Parts of a scan can be taken apart and merged in any order, with
 /// the same result to the bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,10 +83,13 @@ impl ScanBounds {
         let lines = rows.start * self.outputs..rows.end * self.outputs;
         let points = &self.points;
         let extremes = self.extremes[lines.clone()].par_iter_mut().zip(&mut self.gaps[lines]);
-        extremes.zip(values.par_chunks_exact(count)).for_each(|((extremes, gap), values)| {
-            *gap |= values.iter().any(|value| value.is_nan());
-            Line { points, first, values }.include_in(extremes);
-        });
+        extremes.zip(values.par_chunks_exact(count)).for_each_init(
+            Reach::default,
+            |reach, ((extremes, gap), values)| {
+                *gap |= values.iter().any(|value| value.is_nan());
+                Line { points, first, values }.include_in(extremes, reach);
+            },
+        );
     }
 
     /// Bounds of an output at a time, over the samples that are numbers; unknown where none is.
@@ -102,6 +108,74 @@ impl ScanBounds {
     }
 }
 
+/// The least and the largest of those values that are numbers; an infinite range where none is.
+fn ends(values: &[f64]) -> [f64; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    // Written so that what is not a number changes nothing.
+    let mut widen = |lane: usize, value: f64| {
+        low[lane] = if value < low[lane] { value } else { low[lane] };
+        high[lane] = if value > high[lane] { value } else { high[lane] };
+    };
+    chunks.iter().for_each(|chunk| (0..LANES).for_each(|lane| widen(lane, chunk[lane])));
+    rest.iter().for_each(|&value| widen(0, value));
+    [low.into_iter().fold(f64::INFINITY, f64::min), high.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// More than the response can go beyond each of a line's samples.
+#[derive(Default)]
+struct Reach {
+    /// Largest second differences along an axis, beside each sample.
+    along: Vec<f64>,
+    /// Their sum over the axes, and the largest of them.
+    sum: Vec<f64>,
+    largest: Vec<f64>,
+}
+
+impl Reach {
+    /// Of samples of a grid: along each axis that is at most the largest of the second differences at a sample and at
+    /// the two beside it.
+    fn of(&mut self, points: &[usize], values: &[f64]) {
+        let Self { along, sum, largest } = self;
+        for of_all in [&mut *sum, largest] {
+            of_all.clear();
+            of_all.resize(values.len(), 0.0);
+        }
+        let mut stride = 1;
+        for &count in points.iter().rev() {
+            if count > 2 && values.len() > 2 * stride {
+                along.clear();
+                along.resize(values.len(), 0.0);
+                // Some of these go around an axis' end, and only make the result larger.
+                let ends = values.iter().zip(&values[stride..]).zip(&values[2 * stride..]);
+                let bends = ends.map(|((a, b), c)| (a - 2.0 * b + c).abs());
+                along[stride..].iter_mut().zip(bends).for_each(|(along, bend)| *along = bend);
+                let last = values.len() - stride;
+                let widen = |sum: &mut f64, largest: &mut f64, most: f64| {
+                    *sum += most;
+                    *largest = largest.max(most);
+                };
+                for index in (0..stride).chain(last..values.len()) {
+                    let beside = if index < stride { along[index + stride] } else { along[index - stride] };
+                    let other =
+                        if index >= stride && index + stride < values.len() { along[index + stride] } else { 0.0 };
+                    widen(&mut sum[index], &mut largest[index], along[index].max(beside).max(other));
+                }
+                let inner = stride..last.max(stride);
+                let beside = along.iter().zip(&along[stride..]).zip(&along[2 * stride..]);
+                let of_inner = sum[inner.clone()].iter_mut().zip(&mut largest[inner]);
+                of_inner.zip(beside).for_each(|((sum, largest), ((a, b), c))| widen(sum, largest, a.max(*b).max(*c)));
+            }
+            stride *= count;
+        }
+    }
+
+    /// At a sample; rounding of the sums apart.
+    fn at(&self, index: usize, axes: usize) -> f64 {
+        1.001 * (self.sum[index] + axes as f64 * self.largest[index])
+    }
+}
+
 /// An output's values at some of the grid's samples.
 #[derive(Clone, Copy)]
 struct Line<'a> {
@@ -114,37 +188,25 @@ struct Line<'a> {
 
 impl Line<'_> {
     /// Widens extremes by these samples, and by how far the response may go beyond them.
-    fn include_in(&self, extremes: &mut [Extreme; 2]) {
-        for &value in self.values.iter().filter(|value| !value.is_nan()) {
-            include(extremes, [Extreme { value, reach: value }; 2]);
+    fn include_in(&self, extremes: &mut [Extreme; 2], reach: &mut Reach) {
+        let mut widen = |value: f64| include(extremes, [Extreme { value, reach: value }; 2]);
+        let [least, largest] = ends(self.values);
+        if least == 0.0 || largest == 0.0 {
+            // One of several zeros may be negative: the first counts.
+            self.values.iter().copied().filter(|value| !value.is_nan()).for_each(widen);
+        } else if least <= largest {
+            widen(least);
+            widen(largest);
         }
         // Few samples are so near to an end that it matters how far the response goes beyond them.
-        let most = self.most_beyond();
+        reach.of(self.points, self.values);
         for (index, &value) in self.values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+            let most = reach.at(index, self.points.len());
             if value - most <= extremes[0].reach || value + most >= extremes[1].reach {
                 let [below, above] = self.beyond(index);
                 include(extremes, [Extreme { value, reach: value - below }, Extreme { value, reach: value + above }]);
             }
         }
-    }
-
-    /// More than [`beyond`](Self::beyond) can be anywhere: along each axis that is at most the largest second
-    /// difference.
-    fn most_beyond(&self) -> f64 {
-        let (mut sum, mut largest, mut stride) = (0.0, 0.0_f64, 1);
-        for &count in self.points.iter().rev() {
-            if count > 2 {
-                let values = self.values;
-                let ends = values.get(2 * stride..).unwrap_or_default();
-                // Some of these go around an axis' end, and only make the result larger.
-                let bends = values.iter().zip(&values[stride.min(values.len())..]).zip(ends);
-                let most = bends.map(|((a, b), c)| (a - 2.0 * b + c).abs()).fold(0.0, f64::max);
-                (sum, largest) = (sum + most, largest.max(most));
-            }
-            stride *= count;
-        }
-        // Rounding of the sums apart.
-        1.001 * (sum + self.points.len() as f64 * largest)
     }
 
     /// How far the response may go below and above the sample at `index`, between it and its neighbours along each
@@ -273,13 +335,28 @@ mod tests {
             let mut scan = ScanBounds::new(1, 1, &[9, 11]);
             scan.observe(0..1, 0, 99, &values);
             let line = Line { points: &[9, 11], first: 0, values: &values };
-            let mut all = EMPTY;
+            let (mut all, mut reach) = (EMPTY, Reach::default());
+            reach.of(line.points, line.values);
             for (place, &value) in values.iter().enumerate() {
                 let [below, above] = line.beyond(place);
-                assert!(below.max(above) <= line.most_beyond());
+                assert!(below.max(above) <= reach.at(place, 2));
                 include(&mut all, [Extreme { value, reach: value - below }, Extreme { value, reach: value + above }]);
             }
             assert_eq!(scan.extremes[0], all);
+        }
+    }
+
+    proptest! {
+        /// However rough the values are, and wherever a part of the grid begins.
+        #[test]
+        fn a_reach_is_not_exceeded(values in prop::collection::vec(-1e3..1e3_f64, 1..90), first in 0..60_usize) {
+            let line = Line { points: &[5, 3, 10], first, values: &values };
+            let mut reach = Reach::default();
+            reach.of(line.points, line.values);
+            for place in 0..values.len() {
+                let [below, above] = line.beyond(place);
+                prop_assert!(below.max(above) <= reach.at(place, 3), "{}: {} {}", place, below, above);
+            }
         }
     }
 
