@@ -70,6 +70,7 @@ pub(super) fn bounds(
         threads: settings.threads,
         certify_time: settings.certify_time,
         skip_infeasible: settings.skip_infeasible,
+        derivatives: settings.derivatives,
         costly: settings.yes,
         store: store.map(|(_, store)| store),
         disk: &|bytes| {

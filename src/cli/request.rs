@@ -51,6 +51,8 @@ pub(super) struct Settings {
     pub yes: bool,
     pub certify_time: bool,
     pub skip_infeasible: bool,
+    /// Whether derivatives at the nominal parameters are found, for a report.
+    pub derivatives: bool,
     /// Whether no progress is shown.
     pub quiet: bool,
     /// Where the stages' times are noted, if they are.
@@ -104,6 +106,7 @@ impl Request {
                 yes: args.yes,
                 certify_time,
                 skip_infeasible,
+                derivatives: !args.no_report,
                 quiet: args.quiet,
                 profile: args.profile.map(Profile::new).transpose()?,
             },

@@ -1,6 +1,7 @@
 // Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door, shapes.yaml and hostile.yaml, and `all` of every other
 // model and example.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -141,6 +142,33 @@ test('scrubbing moves the cursor of every plot', async () => {
     const px = x.from_px + ((1.5 - x.min) / (x.max - x.min)) * (x.to_px - x.from_px);
     assert.ok(Math.abs(px - last[number]) < 0.6, `${px} ${last[number]}`);
   });
+  await context.close();
+});
+
+test('derivatives at the cursor are those that mbint gradient writes', async () => {
+  const folder = join(reports, 'gradient');
+  execFileSync(process.env.MBINT, ['gradient', 'models/four_bar.yaml', '--quiet', '--output', folder]);
+  const table = columns(join(folder, 'gradients.csv'));
+  const { page, context } = await open(browser, report('four_bar'));
+  const shown = () => page.evaluate(() => {
+    const { plots } = mbint.current();
+    const holder = document.querySelector('.slopes');
+    const plot = plots.find(({ readout }) => readout.nextElementSibling === holder);
+    const entries = [...holder.querySelectorAll('.slope')];
+    return { output: plot.data.output, slopes: entries.map((entry) => [entry.querySelector('.name').textContent, entry.querySelector('.value').textContent]) };
+  });
+  for (const row of [20, 63, 150]) {
+    await seek(page, table.t[row]);
+    const { output, slopes } = await shown();
+    assert.ok(slopes.length > 1, String(slopes));
+    for (const [name, text] of slopes) {
+      const [, unit] = text.split(' ');
+      // The table is in SI.
+      const exact = table[`${output}.${name}`][row] * (unit.endsWith('/mm') ? 1e-3 : 1);
+      const found = Number(text.split(' ')[0].replace('·10', 'e').replace(/[⁰¹²³⁴⁵⁶⁷⁸⁹]/g, (digit) => String('⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(digit))).replace('⁻', '-'));
+      assert.ok(Math.abs(found - exact) <= 6e-3 * Math.abs(exact), `${output} by ${name}, row ${row}: ${text}, not ${exact}`);
+    }
+  }
   await context.close();
 });
 

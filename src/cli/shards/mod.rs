@@ -182,6 +182,7 @@ fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Fa
             yes: true,
             certify_time: asked.certify_time,
             skip_infeasible: asked.skip_infeasible,
+            derivatives: true,
             quiet: true,
             profile: None,
         },

@@ -174,7 +174,7 @@ fn add_results<'a>(
             None => figures.push(PageFigure { output: output.name.clone(), plots }),
         }
     }
-    let motion = report.map(motion_json).transpose()?;
+    let motion = report.map(|report| motion_json(report, Some((bounds, summary)))).transpose()?;
     motion.iter().try_for_each(|motion| files.add(MOTION, motion))?;
     let has_page = report.is_some_and(|report| report.page);
     let names =

@@ -49,7 +49,7 @@ pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dy
         tell(0.0);
     };
     begin(study::COMPILING);
-    let options = Options { costly, progress: &tell, stage: &begin, ..Options::default() };
+    let options = Options { costly, derivatives: true, progress: &tell, stage: &begin, ..Options::default() };
     let (bounds, summary) = study::run(&model, options)
         .map_err(|error| Unrun { waits: matches!(error, RunError::Costly(_)), why: error.to_string() })?;
     begin("motion for the report");

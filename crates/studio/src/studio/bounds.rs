@@ -175,7 +175,12 @@ fn run(desk: &Desk, model: &Description, reading: &Reading, stage: Stage) -> Res
     let begun = Instant::now();
     let is_late = || stage == Stage::Coarse && begun.elapsed() > COARSE;
     let interrupted = || desk.is_old(reading.change) || is_late();
-    let options =
-        Options { costly: reading.is_allowed, progress: &tell, interrupted: &interrupted, ..Options::default() };
+    let options = Options {
+        costly: reading.is_allowed,
+        derivatives: stage != Stage::Coarse,
+        progress: &tell,
+        interrupted: &interrupted,
+        ..Options::default()
+    };
     study::run(model, options)
 }

@@ -63,7 +63,7 @@ fn motion(movable: &Movable, sample: &Sample, beside: &Path) -> Result<Value, St
     let mut found: Motion = movable.motion(sample, SIZE).map_err(|error| error.to_string())?;
     read_meshes(&mut found.drawing, beside, MOST_TRIANGLES);
     let parts = ReportParts { description: None, texts: Vec::new(), motion: Ok(found), page: false };
-    let json = motion_json(&parts).map_err(|error| error.to_string())?;
+    let json = motion_json(&parts, None).map_err(|error| error.to_string())?;
     let mut json: Value = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
     // The scripts draw it.
     json["motion"].as_object_mut().map(|motion| motion.remove("picture"));

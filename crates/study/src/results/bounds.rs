@@ -26,6 +26,8 @@ pub struct Bounds {
     pub responses: Vec<ResponsePoint>,
     /// Samples at which outputs are least and largest, where they were searched for.
     pub witnesses: Vec<Witness>,
+    /// Derivatives at the nominal parameters, where they were asked for.
+    pub derivatives: Vec<OutputDerivatives>,
     /// Functions of excitations under which outputs go the furthest, where something is excited.
     pub functions: Vec<FunctionWitness>,
     /// Proofs of subsystems, for a certificate.
@@ -53,6 +55,15 @@ impl Bounds {
     pub fn is_of_one_configuration(&self) -> bool {
         self.analysis.visits() && self.times.len() == 1
     }
+}
+
+/// An output's derivatives by the uncertain parameters, at their nominal values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputDerivatives {
+    /// Number of the output.
+    pub output: usize,
+    /// (row, parameter), SI; NaN from the row on in which they cannot be trusted.
+    pub by_parameters: Vec<f64>,
 }
 
 /// A parameter's part in the spread of an output over the times; NaN where it is not known.

@@ -110,6 +110,7 @@ pub fn bounds_of_pieces(pieces: &[Piece]) -> Bounds {
         responses: Vec::new(),
         // Those of a piece are ends of the piece.
         witnesses: Vec::new(),
+        derivatives: longest.bounds.derivatives.clone(),
         functions: Vec::new(),
         // Proofs of a piece are of the piece.
         certified: Vec::new(),

@@ -30,7 +30,7 @@ pub use crate::methods::{Method, TooDeep};
 pub use allocation::{AllocatedTolerance, Allocation, Criterion, NotMet, ToleranceZone, TradePoint};
 pub use analysis::{AnalysisSummary, ValueSummary};
 pub use black_box::{BlackBoxSummary, NoiseSummary};
-pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, Witness, foremost};
+pub use bounds::{Band, Bounds, Contribution, OutputBounds, OutputDerivatives, ResponsePoint, Witness, foremost};
 #[doc(hidden)]
 pub use chains::{ChainSummary, LinkSummary};
 pub use cost::example as cost_example;

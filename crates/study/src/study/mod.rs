@@ -98,6 +98,8 @@ pub struct Options<'a> {
     pub threads: Option<usize>,
     /// Whether the time steps' error is found by simulating every sample with halved steps too, instead of a few.
     pub certify_time: bool,
+    /// Whether derivatives of the outputs at the nominal parameters are found too.
+    pub derivatives: bool,
     /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
     pub skip_infeasible: bool,
     /// Whether to run what takes long without being allowed by the model; where not, a run ends that takes much longer
@@ -126,6 +128,7 @@ impl Default for Options<'_> {
             methods: None,
             threads: None,
             certify_time: false,
+            derivatives: false,
             skip_infeasible: false,
             costly: true,
             allowance: None,

@@ -21,6 +21,8 @@ pub(super) struct Study<'a> {
     pub(super) time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
     pub(super) certify_time: bool,
+    /// Whether derivatives at the nominal parameters are wanted.
+    pub(super) derivatives: bool,
     /// Reductions of outputs to one number, and their values in samples, if any.
     pub(super) store: OnceLock<Store>,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
@@ -74,7 +76,7 @@ impl<'a> Study<'a> {
                 "`certified` bounds are of constants, and the model has excitations that are functions of the time";
             return Err(Refusal(why.to_owned()).into());
         }
-        let Options { certify_time, progress, stage, interrupted, .. } = *options;
+        let Options { certify_time, derivatives, progress, stage, interrupted, .. } = *options;
         let has_steps = !simulator.system.analysis.is_without_steps();
         let time_functions =
             if has_steps { TimeFunctions::of(&simulator, description.simulation.duration) } else { None };
@@ -86,6 +88,7 @@ impl<'a> Study<'a> {
             request,
             time_functions,
             certify_time,
+            derivatives,
             store,
             progress,
             stage,
@@ -101,7 +104,17 @@ impl<'a> Study<'a> {
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
         let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
         let (store, source) = (OnceLock::new(), self.source.clone());
-        Study { domain: part.clone(), request, progress, simulator, time_functions, store, source, ..*self }
+        Study {
+            domain: part.clone(),
+            derivatives: false,
+            request,
+            progress,
+            simulator,
+            time_functions,
+            store,
+            source,
+            ..*self
+        }
     }
 
     /// Rows of output that are asked for.

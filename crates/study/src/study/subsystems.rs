@@ -15,8 +15,8 @@ use crate::model::{Analysis, Description, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::Subsystem;
 use crate::results::{
-    Bounds, Contribution, ContributionSummary, ErrorSummary, FunctionWitness, OutputBounds, ParameterSummary,
-    SubsystemSummary, Summary, Witness, summary_of_subsystems,
+    Bounds, Contribution, ContributionSummary, ErrorSummary, FunctionWitness, OutputBounds, OutputDerivatives,
+    ParameterSummary, SubsystemSummary, Summary, Witness, summary_of_subsystems,
 };
 use crate::simulate::SimulationError;
 
@@ -168,6 +168,7 @@ impl<'a> Whole<'a> {
             analysis: self.description.analysis,
             responses: Vec::new(),
             witnesses: ran.iter().flat_map(|done| self.witnesses(done)).collect(),
+            derivatives: ran.iter().flat_map(|done| self.derivatives(done)).collect(),
             functions: ran.iter().flat_map(|done| self.functions(done)).collect(),
             certified: ran.iter().flat_map(|done| done.bounds.certified.clone()).collect(),
         };
@@ -183,6 +184,18 @@ impl<'a> Whole<'a> {
             Some(Witness { output, parameters, ..own.clone() })
         };
         done.bounds.witnesses.iter().filter_map(of_whole).collect()
+    }
+
+    /// The same of derivatives, which are zero by those parameters.
+    fn derivatives(&self, done: &Done) -> Vec<OutputDerivatives> {
+        let none = vec![0.0; self.parameters.len()];
+        let of_whole = |own: &OutputDerivatives| {
+            let output = *done.subsystem.outputs.get(own.output)?;
+            let rows = own.by_parameters.chunks_exact(done.subsystem.parameters.len());
+            let by_parameters = rows.flat_map(|row| self.spread(done.subsystem, row, &none)).collect();
+            Some(OutputDerivatives { output, by_parameters })
+        };
+        done.bounds.derivatives.iter().filter_map(of_whole).collect()
     }
 
     /// The same of functions of excitations.

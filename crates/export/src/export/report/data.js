@@ -14,7 +14,9 @@
  * @typedef {{degrees: number[], bodies: Packed, points: string, error: number}} PackedPolynomials
  * @typedef {{name: string, time?: number, bodies: Packed, points: string}} PackedWorst
  * @typedef {{drawing: Drawing, visuals: Visual[], times: string, rows: number, between: number, per_body: number, parameters: Parameter[], nominal: {bodies: string, points: string}, forces: PackedForce[], samples: PackedSample[], worst?: PackedWorst[], stopped: number, polynomials?: PackedPolynomials}} PackedMotion
- * @typedef {{name: string, duration: number, outputs: string[], motion: PackedMotion | null}} Scene
+ * @typedef {{name: string, unit: string, half_width: number, values: string}} PackedSlope
+ * @typedef {{times: string, outputs: {name: string, unit: string, parameters: PackedSlope[]}[]}} PackedDerivatives
+ * @typedef {{name: string, duration: number, outputs: string[], motion: PackedMotion | null, derivatives?: PackedDerivatives | null}} Scene
  */
 
 /** @param {string} text @returns {ArrayBuffer} */

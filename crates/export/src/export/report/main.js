@@ -4,6 +4,7 @@ import { length, options, player } from './controls.js';
 import { element, readData } from './data.js';
 import { Movie } from './motion.js';
 import { Window, bringToLife } from './plots.js';
+import { addSlopes } from './slopes.js';
 import { View } from './view.js';
 // The page: one scene at a time, its mechanism and its plots under one clock.
 
@@ -65,6 +66,7 @@ function start(number) {
   const { view, stage } = movie ? stageOf(article, movie, clock) : { view: null, stage: null };
   outputSwitch(article, scene.outputs);
   const plots = bringToLife(article, clock, new Window(0, scene.duration));
+  addSlopes(plots, scene.derivatives);
   return { clock, view, movie, plots, stage };
 }
 

@@ -1,6 +1,7 @@
 //! `report.html`: a run's results to be looked at. The page is made of the other files of the results alone, so that it
 //! can be made again from them; `motion.json` has the rest.
 
+mod derivatives;
 mod folder;
 mod html;
 mod motion;

@@ -2,10 +2,13 @@
 
 use serde::Serialize;
 
+use super::derivatives::{PackedDerivatives, packed_derivatives};
 use super::packing::{Packed, floats};
 use super::visuals::{Visual, visuals};
 use crate::export::drawing::drawing_svg;
-use crate::results::{Drawing, Motion, MotionPolynomials, MovingForce, ParameterSummary, Poses, WorstMotion};
+use crate::results::{
+    Bounds, Drawing, Motion, MotionPolynomials, MovingForce, ParameterSummary, Poses, Summary, WorstMotion,
+};
 
 /// Its name.
 pub(in crate::export) const MOTION: &str = "motion.json";
@@ -33,6 +36,8 @@ struct Written<'m> {
     /// Why there is no motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     absent: Option<&'m str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    derivatives: Option<PackedDerivatives<'m>>,
 }
 
 #[derive(Serialize)]
@@ -100,16 +105,17 @@ struct PackedPolynomials<'m> {
     error: f64,
 }
 
-/// The file.
+/// The file; with the results, their derivatives are in it too.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
-pub fn motion_json(parts: &ReportParts) -> serde_json::Result<Vec<u8>> {
+pub fn motion_json(parts: &ReportParts, results: Option<(&Bounds, &Summary)>) -> serde_json::Result<Vec<u8>> {
     let written = Written {
         description: parts.description.as_deref(),
         model: parts.texts.iter().map(|(name, text)| Text { name, text }).collect(),
         motion: parts.motion.as_ref().ok().map(|motion| packed(motion)),
         absent: parts.motion.as_ref().err().map(String::as_str),
+        derivatives: results.and_then(|(bounds, summary)| packed_derivatives(bounds, summary)),
     };
     let mut json = serde_json::to_vec(&written)?;
     json.push(b'\n');

@@ -79,6 +79,7 @@ fn data(scene: &PageScene) -> Value {
         "outputs": scene.figures.iter().map(|figure| &figure.output).collect::<Vec<_>>(),
         "requirements": scene.summary.get("requirements").unwrap_or(&Value::Null),
         "motion": motion,
+        "derivatives": scene.motion["derivatives"],
     })
 }
 

@@ -47,6 +47,13 @@ function ticks(from, to) {
   return made;
 }
 
+/** The row nearest to a time. @param {number[]} times @param {number} time */
+export function nearestRow(times, time) {
+  let row = times.findIndex((at) => at >= time);
+  if (row < 0) row = times.length - 1;
+  return row > 0 && time - times[row - 1] < times[row] - time ? row - 1 : row;
+}
+
 export class Plot {
   /** @param {SVGSVGElement} svg @param {FigureData} data @param {Clock} clock @param {Window} shown */
   constructor(svg, data, clock, shown) {
@@ -57,6 +64,8 @@ export class Plot {
     this.shown = shown;
     /** @type {number | null} */
     this.hovered = null;
+    /** Told the time that the plot tells. @type {((time: number) => void)[]} */
+    this.followers = [];
     /** @type {number | null} */
     this.begun = null;
     this.overlay = drawn('g', { class: 'overlay' });
@@ -73,6 +82,12 @@ export class Plot {
     svg.addEventListener('dblclick', () => shown.show(shown.first, shown.last));
     clock.listen(() => this.update());
     shown.listeners.push(() => this.zoom());
+    this.update();
+  }
+
+  /** @param {(time: number) => void} follower */
+  follow(follower) {
+    this.followers.push(follower);
     this.update();
   }
 
@@ -171,15 +186,14 @@ export class Plot {
     const { name, unit } = this.data.across || { name: 't', unit: 's' };
     if (this.time) this.time.textContent = `${name} = ${digits(told)} ${unit}`;
     this.entries?.forEach(({ series, value }) => (value.textContent = this.valueOf(series, told)));
+    this.followers.forEach((follower) => follower(told));
   }
 
   /** The extremes of a series in the row nearest to a time. @param {Series | undefined} series @param {number} time */
   extremes(series, time) {
     const times = series?.time || this.data.time;
-    let place = times.findIndex((at) => at >= time);
-    if (place < 0) place = times.length - 1;
-    if (place > 0 && time - times[place - 1] < times[place] - time) place--;
-    const [lower, upper] = [series?.lower[place], series?.upper[place]];
+    const row = nearestRow(times, time);
+    const [lower, upper] = [series?.lower[row], series?.upper[row]];
     return typeof lower === 'number' && typeof upper === 'number' ? [lower, upper] : null;
   }
 

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 pub const REPORT_STYLE: &str = include_str!("style.css");
 
 /// The modules with their names, each behind those that it imports.
-const MODULES: [(&str, &str); 13] = [
+const MODULES: [(&str, &str); 14] = [
     ("data.js", include_str!("data.js")),
     ("vectors.js", include_str!("vectors.js")),
     ("motion.js", include_str!("motion.js")),
@@ -18,6 +18,7 @@ const MODULES: [(&str, &str); 13] = [
     ("clock.js", include_str!("clock.js")),
     ("regions.js", include_str!("regions.js")),
     ("plots.js", include_str!("plots.js")),
+    ("slopes.js", include_str!("slopes.js")),
     ("controls.js", include_str!("controls.js")),
     ("view.js", include_str!("view.js")),
     ("main.js", include_str!("main.js")),

@@ -6,9 +6,10 @@ use super::keeping::kept;
 use super::results::{Ran, Results};
 use crate::study::black_box::no_answer;
 use crate::study::bounding::{bands, contributions};
+use crate::study::gradient::along_nominal;
 use crate::study::internal::caught;
 use crate::study::problem::Study;
-use crate::study::stepping::{events_followed, events_of_parts};
+use crate::study::stepping::{StepPlan, events_followed, events_of_parts};
 use symdiff::math;
 
 use crate::assemble::ConstraintId;
@@ -16,8 +17,8 @@ use crate::methods::{Stop, StopCause};
 use crate::model::Stepping;
 use crate::numerics::Sample;
 use crate::results::{
-    Bounds, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
-    SingularSummary, Summary, Witness,
+    Bounds, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, OutputDerivatives,
+    ParameterSummary, SingularSummary, Summary, Witness,
 };
 use crate::simulate::{
     EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps,
@@ -72,6 +73,7 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<Note>) -> Ran 
         analysis: study.simulator.system.analysis,
         responses: Vec::new(),
         witnesses: witnesses(&results, rows),
+        derivatives: derivatives(study, &results.bounded.plan, rows),
         functions: function_witnesses(study, &results.bounded),
         certified: results.bounded.outcomes().filter_map(|outcome| outcome.result.certified.clone()).collect(),
     };
@@ -88,6 +90,27 @@ pub fn conclude(study: &Study, mut results: Results, note: Option<Note>) -> Ran 
     let kept = kept(study, &mut results, whole);
     let summary = summary(study, results, &bounds, &failures);
     Ran { bounds, summary, whole, kept }
+}
+
+/// Derivatives of all outputs at the nominal parameters, where they are wanted and there are any.
+fn derivatives(study: &Study, plan: &StepPlan, rows: usize) -> Vec<OutputDerivatives> {
+    let outputs: Vec<usize> = (0..study.simulator.system.outputs.len()).collect();
+    let has_them = study.source.is_none() && study.domain.dimension() > 0 && !outputs.is_empty();
+    if !study.derivatives || !has_them || study.interruption.is_asked() {
+        return Vec::new();
+    }
+    (study.stage)("derivatives");
+    let Ok(found) = along_nominal(study, plan, &outputs) else { return Vec::new() };
+    let is_trusted = |row: usize| found.unreliable_from.is_none_or(|from| plan.schedule.time(row) < from);
+    let of_output = |output: usize| {
+        let of_rows = found.rows.iter().skip(output).step_by(outputs.len()).take(rows).enumerate();
+        let by_parameters = of_rows.flat_map(|(row, own)| {
+            let trusted = is_trusted(row);
+            own.by_parameters.iter().map(move |&by| if trusted { by } else { f64::NAN })
+        });
+        OutputDerivatives { output, by_parameters: by_parameters.collect() }
+    };
+    outputs.iter().map(|&output| of_output(output)).collect()
 }
 
 /// The samples at which outputs are least and largest, row by row, of those that were searched for.

@@ -2,23 +2,19 @@
 //! at their nominal values.
 
 mod curve;
+mod nominal;
 mod reduced;
 
+pub(super) use self::nominal::along_nominal;
 pub(super) use self::reduced::{InRows, in_rows};
 use crate::model::{Description, Parameter, ParameterValue};
-use crate::numerics::Sample;
 use crate::results::{GradientParameter, Gradients, OutputGradients};
-use crate::simulate::{Gradient, NoGradient, Schedule, SimulationError, Steps, Wanted, gradients, switched_from};
+use crate::simulate::{NoGradient, SimulationError};
 use crate::study::black_box::needs_equations;
-use crate::study::problem::Study;
 use crate::study::reduced::expanded;
 use crate::study::sample::{Chosen, Trajectories, sample};
-use crate::study::stepping::{StepPlan, segmented_nominal};
 use crate::study::{Options, RunError};
 use crate::syntax::{Code, Coded};
-
-/// Gradients with two kinds of steps agree to this share of the largest influence.
-const AGREEMENT: f64 = 0.01;
 
 /// Why a model has no gradients.
 #[derive(Debug, thiserror::Error)]
@@ -92,29 +88,21 @@ fn of_trajectories(trajectories: &Trajectories, description: &Description) -> Re
     let mut outputs: Vec<OutputGradients> = trajectories.outputs.iter().map(empty).collect();
     let mut unreliable_from = None;
     for (number, (study, subsystem)) in trajectories.studies.iter().zip(trajectories.subsystems).enumerate() {
-        let plan = &trajectories.steps[number];
-        let between_events = segmented_nominal(study).map_err(RunError::from)?;
-        let schedule = between_events.as_ref().unwrap_or(&plan.schedule);
         let columns = trajectories.columns[number].iter().enumerate();
-        let shown: Vec<(usize, usize)> = columns.filter_map(|(line, column)| Some((line, (*column)?))).collect();
-        let wanted: Vec<Wanted> = (0..plan.schedule.rows)
-            .flat_map(|row| shown.iter().map(move |&(output, _)| Wanted { sample: 0, row, output }))
-            .collect();
-        let found = followed(study, schedule, &wanted)?;
-        if between_events.is_none()
-            && let Some(row) = switched_within_steps(study, plan)?
-        {
-            let refined = followed(study, &schedule.refined(2), &wanted)?;
-            let differs =
-                differs_from(study, &wanted, [&found, &refined]).map(|differs| schedule.time(row.max(differs)));
-            unreliable_from = [unreliable_from, differs].into_iter().flatten().reduce(f64::min);
+        let (lines, columns): (Vec<usize>, Vec<usize>) =
+            columns.filter_map(|(line, column)| Some((line, (*column)?))).unzip();
+        if lines.is_empty() {
+            continue;
         }
-        let columns = shown.iter().map(|&(_, column)| column).cycle();
-        for ((wanted, found), column) in wanted.iter().zip(found).zip(columns) {
-            outputs[column].values[wanted.row] = found.value;
-            let by_parameters = &mut outputs[column].by_parameters[wanted.row];
-            for (&parameter, by) in subsystem.parameters.iter().zip(found.by_parameters) {
-                by_parameters[parameter] = by;
+        let found = along_nominal(study, &trajectories.steps[number], &lines)?;
+        unreliable_from = [unreliable_from, found.unreliable_from].into_iter().flatten().reduce(f64::min);
+        for (row, of_row) in found.rows.chunks_exact(lines.len()).enumerate() {
+            for (&column, own) in columns.iter().zip(of_row) {
+                outputs[column].values[row] = own.value;
+                let by_parameters = &mut outputs[column].by_parameters[row];
+                for (&parameter, &by) in subsystem.parameters.iter().zip(&own.by_parameters) {
+                    by_parameters[parameter] = by;
+                }
             }
         }
     }
@@ -122,44 +110,10 @@ fn of_trajectories(trajectories: &Trajectories, description: &Description) -> Re
     Ok(Gradients { model, times, parameters, outputs, reduced: Vec::new(), unreliable_from })
 }
 
-/// Gradients at the nominal values.
-fn followed(study: &Study, schedule: &Schedule, wanted: &[Wanted]) -> Result<Vec<Gradient>, GradientError> {
-    let center: Sample = study.simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
-    let found = gradients(&study.simulator, schedule, &[center], wanted, study.interruption)?;
-    match found.iter().filter_map(|gradient| gradient.lost).reduce(f64::min) {
-        Some(time) => Err(GradientError::Lost { time }),
-        None => Ok(found),
+impl From<SimulationError> for GradientError {
+    fn from(error: SimulationError) -> Self {
+        Self::Run(error.into())
     }
-}
-
-/// The first row before which equations switch within a step of the nominal motion.
-fn switched_within_steps(study: &Study, plan: &StepPlan) -> Result<Option<usize>, GradientError> {
-    let at_rows = plan.schedule.ending_at_rows();
-    let steps = Steps { schedule: &at_rows, ..plan.steps() };
-    let row = switched_from(&study.simulator, &study.domain, steps, study.interruption);
-    Ok(row.map_err(RunError::from)?)
-}
-
-/// The first row in which gradients with other steps are others: by more than a share of the largest influence that a
-/// parameter has on the output. Where a step contains a contact that closes, its derivatives depend on when it does
-/// within the step; where equations only bend, they agree.
-fn differs_from(study: &Study, wanted: &[Wanted], [found, others]: [&[Gradient]; 2]) -> Option<usize> {
-    let influences = |gradient: &Gradient| -> Vec<f64> {
-        let by = gradient.by_parameters.iter().enumerate();
-        by.map(|(axis, by)| by * study.domain.half_width(axis)).collect()
-    };
-    let mut largest = vec![0.0; study.simulator.system.outputs.len()];
-    for (wanted, gradient) in wanted.iter().zip(found) {
-        let own = influences(gradient).into_iter().map(f64::abs);
-        largest[wanted.output] = own.fold(largest[wanted.output], f64::max);
-    }
-    let differs = |(wanted, (own, other)): &(&Wanted, (&Gradient, &Gradient))| {
-        let pairs = influences(own).into_iter().zip(influences(other));
-        // Written so that NaN differs.
-        !pairs.map(|(own, other)| (own - other).abs()).all(|change| change <= AGREEMENT * largest[wanted.output])
-    };
-    let pairs = wanted.iter().zip(found.iter().zip(others));
-    pairs.filter(differs).map(|(wanted, _)| wanted.row).min()
 }
 
 impl GradientError {

@@ -53,6 +53,7 @@ pub fn shown(
     if !hidden.is_empty() {
         bounds.outputs.drain(hidden.clone());
         bounds.witnesses.retain(|own| own.output < hidden.start);
+        bounds.derivatives.retain(|own| own.output < hidden.start);
         bounds.functions.retain(|own| own.output.is_none_or(|output| output < hidden.start));
         let shown: Vec<&str> = bounds.outputs.iter().map(|output| output.name.as_str()).collect();
         summary.excitations.retain(|own| shown.contains(&own.output.as_str()));

@@ -1,0 +1,148 @@
+//! Derivatives along the nominal motion, of all outputs in all rows: forwards by jets or backwards by adjoints, whichever
+//! costs less.
+
+use symdiff::jet::JetSpace;
+
+use super::GradientError;
+use crate::numerics::Sample;
+use crate::simulate::{
+    Integration, JetBox, Schedule, SimulationError, Steps, Wanted, gradients, jet_integrator, switched_from,
+};
+use crate::study::problem::Study;
+use crate::study::stepping::{StepPlan, segmented_nominal};
+
+/// Rows of a block of jets.
+const BLOCK: usize = 64;
+
+/// Cost of a simulation that is followed backwards, and that of one forwards with a derivative by one parameter, both in
+/// simulations. Backwards each row has one of its own, half as long as the motion on average.
+const BACKWARDS: f64 = 0.5;
+/// See above.
+const FORWARDS: f64 = 1.0;
+
+/// Gradients with two kinds of steps agree to this share of the largest influence.
+const AGREEMENT: f64 = 0.01;
+
+/// An output's value in a row of the nominal motion, and its derivatives.
+#[derive(Clone, Debug)]
+pub struct AtRow {
+    /// SI.
+    pub value: f64,
+    /// By the parameters of the subsystem, SI.
+    pub by_parameters: Vec<f64>,
+}
+
+/// Derivatives along the nominal motion.
+pub struct AlongNominal {
+    /// Row by row, of each output that is wanted.
+    pub rows: Vec<AtRow>,
+    /// From when on they cannot be trusted, s.
+    pub unreliable_from: Option<f64>,
+}
+
+/// Derivatives of some outputs in all rows of a plan. Between events where the nominal motion has some; where it cannot be
+/// followed through them, the derivatives are compared with those of halved steps.
+///
+/// # Errors
+/// Where there are no derivatives, and at an interruption.
+pub fn along_nominal(study: &Study, plan: &StepPlan, outputs: &[usize]) -> Result<AlongNominal, GradientError> {
+    let between_events = segmented_nominal(study)?;
+    let schedule = between_events.as_ref().unwrap_or(&plan.schedule);
+    let rows = followed(study, schedule, outputs)?;
+    let mut unreliable_from = None;
+    if between_events.is_none()
+        && let Some(row) = switched_within_steps(study, plan)?
+    {
+        let refined = followed(study, &schedule.refined(2), outputs)?;
+        let differs = differs_from(study, outputs.len(), [&rows, &refined]);
+        unreliable_from = differs.map(|differs| schedule.time(row.max(differs)));
+    }
+    Ok(AlongNominal { rows, unreliable_from })
+}
+
+/// Derivatives under a schedule.
+fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec<AtRow>, GradientError> {
+    let parameters = study.domain.dimension() as f64;
+    let backwards = BACKWARDS * (schedule.rows * outputs.len()) as f64;
+    let is_jet = schedule.integration != Integration::Segments && !study.simulator.system.analysis.visits();
+    if is_jet && FORWARDS * parameters < backwards {
+        // Where jets stop or are no numbers, adjoints may go on.
+        if let Some(found) = forwards(study, schedule, outputs)? {
+            return Ok(found);
+        }
+    }
+    self::backwards(study, schedule, outputs)
+}
+
+/// By a jet of the first order; `None` where it stops, or is not finite.
+fn forwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Option<Vec<AtRow>>, SimulationError> {
+    let simulator = &study.simulator;
+    let space = JetSpace::new(study.domain.dimension(), 1);
+    let half_width = vec![1.0; study.domain.dimension()];
+    let about = JetBox { center: &study.domain.nominal, half_width: &half_width };
+    let mut jet = jet_integrator(simulator, &space, about, schedule, false)?;
+    jet.heed(study.interruption);
+    let (lines, mut values) = (simulator.system.outputs.len() * space.len(), Vec::new());
+    let mut found = Vec::with_capacity(schedule.rows * outputs.len());
+    for first in (0..schedule.rows).step_by(BLOCK) {
+        let stop = jet.advance(schedule, first..(first + BLOCK).min(schedule.rows), &mut values);
+        if jet.is_cut() {
+            return Err(SimulationError::Interrupted);
+        }
+        if stop.is_some() {
+            return Ok(None);
+        }
+        for row in values.chunks_exact(lines) {
+            for &output in outputs {
+                let of_output = &row[output * space.len()..][..space.len()];
+                if of_output.iter().any(|value| !value.is_finite()) {
+                    return Ok(None);
+                }
+                found.push(AtRow { value: of_output[0], by_parameters: of_output[1..].to_vec() });
+            }
+        }
+    }
+    Ok(Some(found))
+}
+
+/// By adjoints.
+fn backwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec<AtRow>, GradientError> {
+    let wanted: Vec<Wanted> = (0..schedule.rows)
+        .flat_map(|row| outputs.iter().map(move |&output| Wanted { sample: 0, row, output }))
+        .collect();
+    let center: Sample = study.domain.nominal.clone();
+    let found = gradients(&study.simulator, schedule, &[center], &wanted, study.interruption)?;
+    match found.iter().filter_map(|gradient| gradient.lost).reduce(f64::min) {
+        Some(time) => Err(GradientError::Lost { time }),
+        None => Ok(found.into_iter().map(|own| AtRow { value: own.value, by_parameters: own.by_parameters }).collect()),
+    }
+}
+
+/// The first row before which equations switch within a step of the nominal motion.
+fn switched_within_steps(study: &Study, plan: &StepPlan) -> Result<Option<usize>, SimulationError> {
+    let at_rows = plan.schedule.ending_at_rows();
+    let steps = Steps { schedule: &at_rows, ..plan.steps() };
+    switched_from(&study.simulator, &study.domain, steps, study.interruption)
+}
+
+/// The first row in which gradients with other steps are others: by more than a share of the largest influence that a
+/// parameter has on the output. Where a step contains a contact that closes, its derivatives depend on when it does
+/// within the step; where equations only bend, they agree.
+fn differs_from(study: &Study, outputs: usize, [found, others]: [&[AtRow]; 2]) -> Option<usize> {
+    let influences = |own: &AtRow| -> Vec<f64> {
+        let by = own.by_parameters.iter().enumerate();
+        by.map(|(axis, by)| by * study.domain.half_width(axis)).collect()
+    };
+    let mut largest = vec![0.0; outputs];
+    for (number, own) in found.iter().enumerate() {
+        let own = influences(own).into_iter().map(f64::abs);
+        largest[number % outputs] = own.fold(largest[number % outputs], f64::max);
+    }
+    let differs = |(number, (own, other)): &(usize, (&AtRow, &AtRow))| {
+        let pairs = influences(own).into_iter().zip(influences(other));
+        // Written so that NaN differs.
+        !pairs.map(|(own, other)| (own - other).abs()).all(|change| change <= AGREEMENT * largest[number % outputs])
+    };
+    let mut pairs = found.iter().zip(others).enumerate();
+    pairs.find(differs).map(|(number, _)| number / outputs)
+}
