@@ -112,7 +112,7 @@ impl ScanBounds {
 fn ends(values: &[f64]) -> [f64; 2] {
     let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
     let (chunks, rest) = values.as_chunks::<LANES>();
-    // Written so that what is not a number changes nothing.
+    // Written so that NaN changes nothing.
     let mut widen = |lane: usize, value: f64| {
         low[lane] = if value < low[lane] { value } else { low[lane] };
         high[lane] = if value > high[lane] { value } else { high[lane] };
