@@ -31,7 +31,7 @@ struct OfParameter<'r> {
     name: &'r str,
     /// Of the derivative.
     unit: String,
-    /// Half of the parameter's interval: times the derivative it is the influence of the tolerance, in the output's unit.
+    /// Half of the parameter's interval; times the derivative it is the influence of the tolerance.
     half_width: f64,
     /// By row, in the units in which people see both.
     values: String,
@@ -49,7 +49,7 @@ fn of_output<'r>(own: &OutputDerivatives, bounds: &'r Bounds, summary: &'r Summa
     let count = summary.parameters.len();
     let by = |axis: usize| own.by_parameters.iter().skip(axis).step_by(count).copied();
     let half = |axis: usize| 0.5 * (summary.parameters[axis].upper - summary.parameters[axis].lower);
-    // What is not a number tells nothing of the rows before it.
+    // NaN tells nothing of the rows before it.
     let influence = |axis: usize| half(axis) * by(axis).map(f64::abs).fold(0.0, f64::max);
     let mut axes: Vec<(usize, f64)> = (0..count).map(|axis| (axis, influence(axis))).collect();
     axes.retain(|(_, influence)| *influence > 0.0);

@@ -1,5 +1,5 @@
-//! Derivatives along the nominal motion, of all outputs in all rows: forwards by jets or backwards by adjoints, whichever
-//! costs less.
+//! Derivatives along the nominal motion, of all outputs in all rows: forwards by jets or backwards by adjoints,
+//! whichever costs less.
 
 use symdiff::jet::JetSpace;
 
@@ -14,10 +14,10 @@ use crate::study::stepping::{StepPlan, segmented_nominal};
 /// Rows of a block of jets.
 const BLOCK: usize = 64;
 
-/// Cost of a simulation that is followed backwards, and that of one forwards with a derivative by one parameter, both in
-/// simulations. Backwards each row has one of its own, half as long as the motion on average.
+/// Simulations that a gradient of one output in one row costs in lanes.
 const BACKWARDS: f64 = 0.5;
-/// See above.
+
+/// Simulations that the derivatives by one parameter cost, of all outputs in all rows.
 const FORWARDS: f64 = 1.0;
 
 /// Gradients with two kinds of steps agree to this share of the largest influence.
@@ -40,8 +40,8 @@ pub struct AlongNominal {
     pub unreliable_from: Option<f64>,
 }
 
-/// Derivatives of some outputs in all rows of a plan. Between events where the nominal motion has some; where it cannot be
-/// followed through them, the derivatives are compared with those of halved steps.
+/// Derivatives of some outputs in all rows of a plan. Between events where the nominal motion has some; where it cannot
+/// be followed through them, the derivatives are compared with those of halved steps.
 ///
 /// # Errors
 /// Where there are no derivatives, and at an interruption.
