@@ -74,6 +74,7 @@ mod random;
 mod random_excitations;
 mod reduced;
 mod reduced_gradients;
+mod reduced_of_many;
 mod reductions;
 mod reproducibility;
 mod robot_inertia;

@@ -11,10 +11,11 @@
 mod climb;
 mod ends;
 mod kept;
+mod slopes;
 mod surface;
 
 use super::bounding::{Attained, Outcome, bound, simulation_error, timed};
-use super::ensemble::{Motions, Progress};
+use super::ensemble::Progress;
 use super::internal::InternalError;
 use super::problem::Study;
 use crate::methods::{
@@ -23,8 +24,10 @@ use crate::methods::{
 };
 use crate::numerics::clock::Instant;
 use crate::numerics::{Derivatives, Ledger, Range, SAFETY_OF_SURROGATE, Sample, spread};
-use crate::simulate::{NoGradient, Schedule, SimulationError, Steps, Wanted, gradients};
+use crate::simulate::{Schedule, SimulationError, Steps, Wanted};
 use climb::{Climb, End, Known};
+use slopes::OfRows;
+pub(super) use slopes::Slopes;
 use surface::{Surface, Surfaces};
 
 /// Fewer parameters are searched by the surrogate alone, whose samples are dense enough.
@@ -79,20 +82,22 @@ pub(super) fn bound_along(
     wanted: impl Fn(Method) -> bool,
 ) -> Result<BoundsAlong, SimulationError> {
     let motions = study.motions(steps, progress).noting(seen);
-    let found = attained(study, &motions, steps.schedule, validation)?;
+    let slopes = OfRows { study, schedule: steps.schedule };
+    let found = attained(study, &motions, &slopes, steps.schedule, validation)?;
     let motions = motions.following(found.as_ref().map(|(_, _, followed)| followed));
     let methods = bound(study, &motions, steps.schedule, validation, internal, wanted)?;
     Ok((methods, found.map(|(outcome, attained, _)| (outcome, attained))))
 }
 
-/// Searches the ends of all outputs over time; `None` where surrogates need no help, or motions have no gradients.
-/// The simulations are noted by `motions`.
+/// Searches the ends of all outputs of an ensemble; `None` where surrogates need no help, or motions have no gradients.
+/// The simulations are noted by the ensemble.
 ///
 /// # Errors
 /// Where a sample cannot be simulated.
-fn attained(
+pub(super) fn attained(
     study: &Study,
-    motions: &Motions,
+    motions: &dyn Ensemble,
+    slopes: &dyn Slopes,
     schedule: &Schedule,
     validation: &Validation,
 ) -> Result<Option<AttainedEnds>, SimulationError> {
@@ -107,7 +112,7 @@ fn attained(
     }
     (study.stage)("attained ends");
     let found = timed(schedule, "attained", || {
-        let mut search = AttainedSearch::new(study, motions, schedule, validation);
+        let mut search = AttainedSearch::new(study, motions, slopes, validation);
         let ends = search.run()?;
         let result = MethodResult { simulations: search.work, ..MethodResult::default() };
         Ok((MethodResult { simulated: search.simulated, ..result }, (search.attained, ends)))
@@ -133,7 +138,7 @@ type Followable = (Option<Surfaces>, Vec<FollowedRow>);
 struct AttainedSearch<'s, 'm> {
     study: &'s Study<'m>,
     motions: &'s dyn Ensemble,
-    schedule: &'s Schedule,
+    slopes: &'s dyn Slopes,
     attained: Attained,
     /// Error allowed of each output.
     allowed: Vec<f64>,
@@ -147,7 +152,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     fn new(
         study: &'s Study<'m>,
         motions: &'s dyn Ensemble,
-        schedule: &'s Schedule,
+        slopes: &'s dyn Slopes,
         validation: &'s Validation,
     ) -> Self {
         let mut attained = Attained::new(motions.rows(), motions.outputs());
@@ -157,7 +162,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         let tolerance = study.request.tolerance.unwrap_or(BoundsRequest::TOLERANCE);
         let allowed = validation.spans.iter().map(|span| tolerance * span).collect();
         let (work, begun, simulated) = (0, Instant::now(), Simulated::default());
-        Self { study, motions, schedule, attained, allowed, work, begun, simulated }
+        Self { study, motions, slopes, attained, allowed, work, begun, simulated }
     }
 
     /// Ends of all rows and outputs; `None` where gradients do not reach them.
@@ -348,16 +353,11 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         let samples = study.domain.samples(points);
         let rows: usize = wanted.iter().map(|wanted| wanted.row + 1).sum();
         self.work += (COST * rows).div_ceil(self.motions.rows().max(1));
-        let found = match gradients(&study.simulator, self.schedule, &samples, wanted, study.interruption) {
-            Err(NoGradient::Simulation(SimulationError::Interrupted)) => return Err(SimulationError::Interrupted),
-            // Some corner cannot be assembled: the ends so far are kept.
-            Err(_) => return Ok(None),
-            Ok(found) => found,
-        };
+        let Some(found) = self.slopes.slopes(&samples, wanted)? else { return Ok(None) };
         let scaled = |by_parameters: Vec<f64>| {
             by_parameters.into_iter().enumerate().map(|(axis, by)| by * study.domain.half_width(axis)).collect()
         };
-        Ok(Some(found.into_iter().map(|found| (found.value, scaled(found.by_parameters))).collect()))
+        Ok(Some(found.into_iter().map(|(value, by_parameters)| (value, scaled(by_parameters))).collect()))
     }
 }
 

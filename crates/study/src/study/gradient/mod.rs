@@ -6,7 +6,7 @@ mod nominal;
 mod reduced;
 
 pub(super) use self::nominal::along_nominal;
-pub(super) use self::reduced::{InRows, in_rows};
+pub(super) use self::reduced::{InRows, accumulated_in_rows, in_rows};
 use crate::model::{Description, Parameter, ParameterValue};
 use crate::results::{GradientParameter, Gradients, OutputGradients};
 use crate::simulate::{NoGradient, SimulationError};

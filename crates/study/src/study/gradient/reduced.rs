@@ -10,7 +10,7 @@ use crate::assemble::NumberFormulas;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::model::{Description, ReducedKind, ReducedOutput, Requirement};
 use crate::results::{Gradients, OutputGradients, ReducedGradients};
-use crate::simulate::Term;
+use crate::simulate::{Accumulation, Channel, Term};
 
 /// A number a motion: its value, the instant that decides it, and its derivatives by outputs in rows.
 pub struct InRows {
@@ -112,63 +112,105 @@ pub fn in_rows<'s>(
     of_reduced(own, duration, &|output, sign| Curve { times, values: series(output), output, sign })
 }
 
-/// `None` where a reduced output has no derivatives here: a path's straightness, and an instant that is not there.
-fn of_reduced<'a>(own: &ReducedOutput, end: f64, curve: &impl Fn(usize, f64) -> Curve<'a>) -> Option<InRows> {
-    let (from, to) = (own.from, own.to.min(end));
-    let source = *own.outputs.first()?;
-    let plain = curve(source, 1.0);
+/// The same of something that is accumulated of an output.
+pub fn accumulated_in_rows<'s>(
+    Channel { output, accumulation, from, to }: Channel,
+    times: &'s [f64],
+    series: &'s [f64],
+) -> Option<InRows> {
+    let last = times.last().copied().unwrap_or(to);
+    accumulated(accumulation, (from, to.min(last)), &|sign| Curve { times, values: series, output, sign })
+}
+
+/// Something that is accumulated from one time to another; `None` where it has no derivatives: of a path, and of an
+/// instant that is not there.
+fn accumulated<'a>(
+    accumulation: Accumulation,
+    (from, to): (f64, f64),
+    curve: &impl Fn(f64) -> Curve<'a>,
+) -> Option<InRows> {
     let extreme = |sign: f64| {
-        let curve = curve(source, sign);
+        let curve = curve(sign);
         InRows::at(&curve, curve.highest(from, to)).times(sign)
     };
     let integral = |of: fn(f64) -> [f64; 2]| {
-        let (value, terms) = plain.integral(from, to, of);
+        let (value, terms) = curve(1.0).integral(from, to, of);
         InRows { value, time: None, terms }
     };
+    let when = |sign: f64| {
+        let curve = curve(sign);
+        let time = curve.highest(from, to);
+        if time == from || time == to {
+            return InRows::fixed(time);
+        }
+        let step = 1e-3 * (to - from) / curve.times.len() as f64;
+        let before = InRows::at(&curve, time - step);
+        let of_rate = InRows::at(&curve, time + step).less(before).times(0.5 / step).terms;
+        InRows::instant(time, of_rate.into_iter(), curve.rates(time)[1])
+    };
+    let change = |is_first: bool| {
+        let plain = curve(1.0);
+        let ([first, last], [met_at_start, met_at_end]) = plain.changes(from, to);
+        let time = match is_first {
+            true if met_at_start => return Some(InRows::fixed(from)),
+            false if met_at_end => return Some(InRows::fixed(to)),
+            true => first?,
+            false => last?,
+        };
+        Some(InRows::instant(time, plain.terms(time), plain.rates(time)[0]))
+    };
+    Some(match accumulation {
+        Accumulation::Greatest => extreme(1.0),
+        Accumulation::Least => extreme(-1.0),
+        Accumulation::WhenGreatest => when(1.0),
+        Accumulation::WhenLeast => when(-1.0),
+        Accumulation::First => change(true)?,
+        Accumulation::Last => change(false)?,
+        Accumulation::Integral => integral(|value| [value, 1.0]),
+        Accumulation::IntegralOfSquare => integral(|value| [value * value, 2.0 * value]),
+        Accumulation::AtEnd => InRows::at(&curve(1.0), to),
+        Accumulation::Zone { .. } => return None,
+    })
+}
+
+/// `None` where a reduced output has no derivatives here.
+fn of_reduced<'a>(own: &ReducedOutput, end: f64, curve: &impl Fn(usize, f64) -> Curve<'a>) -> Option<InRows> {
+    let (from, to) = (own.from, own.to.min(end));
+    let source = *own.outputs.first()?;
+    let of = |accumulation| accumulated(accumulation, (from, to), &|sign| curve(source, sign));
+    let [greatest, least] = [Accumulation::Greatest, Accumulation::Least].map(|extreme| move || of(extreme));
     Some(match own.kind {
-        ReducedKind::Max => extreme(1.0),
-        ReducedKind::Min => extreme(-1.0),
-        ReducedKind::Range => extreme(1.0).less(extreme(-1.0)),
+        ReducedKind::Max => greatest()?,
+        ReducedKind::Min => least()?,
+        ReducedKind::Range => greatest()?.less(least()?),
         ReducedKind::MaxAbs => {
-            let (above, below) = (extreme(1.0), extreme(-1.0).times(-1.0));
+            let (above, below) = (greatest()?, least()?.times(-1.0));
             if above.value >= below.value { above } else { below }
         }
-        ReducedKind::Value => InRows::at(&plain, to),
-        ReducedKind::Mean => integral(|value| [value, 1.0]).times(1.0 / (to - from)),
-        ReducedKind::Integral => integral(|value| [value, 1.0]),
+        ReducedKind::Value => of(Accumulation::AtEnd)?,
+        ReducedKind::Mean => of(Accumulation::Integral)?.times(1.0 / (to - from)),
+        ReducedKind::Integral => of(Accumulation::Integral)?,
         ReducedKind::Rms => {
-            let squares = integral(|value| [value * value, value]);
+            let squares = of(Accumulation::IntegralOfSquare)?;
             let value = (squares.value / (to - from)).sqrt();
-            InRows { value, ..squares.times(1.0 / ((to - from) * value)) }
+            InRows { value, ..squares.times(0.5 / ((to - from) * value)) }
         }
-        ReducedKind::TimeOfMax | ReducedKind::TimeOfMin => {
-            let curve = curve(source, if own.kind == ReducedKind::TimeOfMax { 1.0 } else { -1.0 });
-            let time = curve.highest(from, to);
-            if time == from || time == to {
-                return Some(InRows::fixed(time));
+        ReducedKind::TimeOfMax => of(Accumulation::WhenGreatest)?,
+        ReducedKind::TimeOfMin => of(Accumulation::WhenLeast)?,
+        ReducedKind::When => of(Accumulation::First)?,
+        ReducedKind::LastWhen => of(Accumulation::Last)?,
+        ReducedKind::Settling => {
+            let ([_, last], [_, met_at_end]) = curve(source, 1.0).changes(from, to);
+            match last {
+                _ if met_at_end => return None,
+                None => InRows::fixed(from),
+                Some(_) => of(Accumulation::Last)?,
             }
-            let step = 1e-3 * (to - from) / curve.times.len() as f64;
-            let before = InRows::at(&curve, time - step);
-            let of_rate = InRows::at(&curve, time + step).less(before).times(0.5 / step).terms;
-            InRows::instant(time, of_rate.into_iter(), curve.rates(time)[1])
-        }
-        ReducedKind::When | ReducedKind::LastWhen | ReducedKind::Settling => {
-            let ([first, last], [met_at_start, met_at_end]) = plain.changes(from, to);
-            let is_first = own.kind == ReducedKind::When;
-            let time = match own.kind {
-                ReducedKind::When if met_at_start => return Some(InRows::fixed(from)),
-                ReducedKind::LastWhen if met_at_end => return Some(InRows::fixed(to)),
-                ReducedKind::Settling if met_at_end => return None,
-                ReducedKind::Settling if last.is_none() => return Some(InRows::fixed(from)),
-                _ if is_first => first?,
-                _ => last?,
-            };
-            InRows::instant(time, plain.terms(time), plain.rates(time)[0])
         }
         ReducedKind::Overshoot => {
             let target = InRows::at(&curve(own.outputs.get(1).copied().unwrap_or(source), 1.0), to);
-            let rises = plain.value(from) <= target.value;
-            let beyond = if rises { extreme(1.0).less(target) } else { target.less(extreme(-1.0)) };
+            let rises = curve(source, 1.0).value(from) <= target.value;
+            let beyond = if rises { greatest()?.less(target) } else { target.less(least()?) };
             if beyond.value > 0.0 { beyond } else { beyond.times(0.0) }
         }
         ReducedKind::Straightness => return None,

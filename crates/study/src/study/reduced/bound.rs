@@ -5,10 +5,11 @@ use super::ensemble::{ReducedEnsemble, Store};
 use super::evaluated::Evaluated;
 use super::keeping::kept_reduced;
 use super::plan::Plan;
+use super::slopes::OfValues;
 use super::verdicts::verdicts;
 use crate::methods::{
-    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated,
-    Until, Validation, ends_of_combinations,
+    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, MOST_ON_GRIDS, Method, MethodResult, Observed, Sampling,
+    Simulated, Until, Validation, ends_of_combinations,
 };
 use crate::model::ReducedOutput;
 use crate::numerics::clock::Instant;
@@ -17,6 +18,7 @@ use crate::results::{
     Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
 };
 use crate::simulate::{Schedule, SimulationError};
+use crate::study::attained::attained;
 use crate::study::bounding::{Bounded, Doubts, FunctionEnds, Outcome, bands, contributions, simulation_error, timed};
 use crate::study::ensemble::Progress;
 use crate::study::problem::{Study, problem};
@@ -80,7 +82,8 @@ pub fn reduced(study: &Study, rows: &Bounded, progress: &Progress) -> Result<Fou
     let with_halved = ReducedEnsemble::new(&motions_halved, store, halved);
     let with_odd = ReducedEnsemble::new(&motions_odd, store, odd);
     let ensembles = Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(odd) };
-    let mut results = bounds_of(study, ensembles, plan, halved)?;
+    let slopes = OfValues { study, motions: &motions, values: &direct, schedule };
+    let mut results = bounds_of(study, ensembles, &slopes, plan, halved)?;
     let unreliable = rows.unreliable_from().is_some();
     // Evaluations after the run are of constants, and say nothing of excitations that are functions.
     let kept = kept_reduced(study, &mut results, &store.plan.values, unreliable || rows.functions.is_some());
@@ -129,6 +132,7 @@ fn bound_by_functions(results: &mut Bounded, functions: &FunctionEnds) {
 fn bounds_of(
     study: &Study,
     ensembles: Ensembles,
+    slopes: &OfValues,
     plan: &StepPlan,
     halved: &Schedule,
 ) -> Result<Bounded, SimulationError> {
@@ -169,6 +173,13 @@ fn bounds_of(
     let ends = ends_of_combinations(ensembles.direct);
     let validation =
         Validation::run(ensembles, Observed::Motion, study.request.degree(), ends).map_err(simulation_error)?;
+    // Of few parameters grids are dense enough.
+    if study.domain.dimension() > MOST_ON_GRIDS
+        && !slopes.jump()
+        && let Some((_, _, ends)) = attained(study, slopes.values, slopes, schedule, &validation)?
+    {
+        slopes.values.follow(ends);
+    }
     let bound = |ensemble: &dyn Ensemble, schedule: &Schedule| {
         let of_method = |&(method, own): &(Method, &dyn BoundingMethod)| {
             let bound = || Ok((own.bound(ensemble, &validation, &request).map_err(simulation_error)?, ()));

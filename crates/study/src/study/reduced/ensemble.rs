@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range as Rows;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
@@ -13,7 +13,7 @@ use symdiff::taylor_model::ModelSpace;
 use super::plan::Plan;
 use super::values::Values;
 use crate::methods::{
-    self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, Observed, Proof, Sampling, Simulated, Until,
+    self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, FollowedEnds, Observed, Proof, Sampling, Simulated, Until,
 };
 use crate::numerics::{Ledger, ParameterBox, Range, Sample};
 use crate::simulate::Schedule;
@@ -85,15 +85,29 @@ pub struct ReducedEnsemble<'a> {
     scales: Vec<f64>,
     /// Values of all samples of the box that reached the end.
     seen: Ledger,
+    /// Ends of the values that were followed along gradients, once they are.
+    followed: OnceLock<FollowedEnds>,
 }
 
 impl<'a> ReducedEnsemble<'a> {
     /// For motions whose reductions are in the store.
     pub fn new(motions: &'a dyn Ensemble, store: &'a Store, schedule: &Schedule) -> Self {
         let (steps, scales) = (steps_of(schedule), vec![1.0; store.plan.expanded]);
-        let ensemble = Self { motions, store, steps, scales, seen: Ledger::new(1, store.plan.values.count()) };
+        let ensemble = Self {
+            motions,
+            store,
+            steps,
+            scales,
+            seen: Ledger::new(1, store.plan.values.count()),
+            followed: OnceLock::new(),
+        };
         store.samples(steps).iter().for_each(|(sample, channels)| ensemble.note(sample, channels));
         ensemble
+    }
+
+    /// With ends that were followed along gradients.
+    pub fn follow(&self, ends: FollowedEnds) {
+        self.followed.get_or_init(|| ends);
     }
 
     /// Notes a sample's values.
@@ -168,6 +182,10 @@ impl Ensemble for ReducedEnsemble<'_> {
 
     fn seen(&self, row: usize, output: usize) -> Range {
         self.seen.range(row, output)
+    }
+
+    fn followed(&self) -> Option<&FollowedEnds> {
+        self.followed.get()
     }
 
     fn is_interrupted(&self) -> bool {

@@ -20,6 +20,7 @@ mod part;
 mod plan;
 mod refine;
 mod simulated;
+mod slopes;
 mod values;
 mod verdicts;
 

@@ -66,6 +66,14 @@ impl Plan {
         Self { channels: planner.channels, expanded, values, whens }
     }
 
+    /// Outputs that the values follow from, ascending.
+    pub fn sources(&self) -> Vec<usize> {
+        let mut sources: Vec<usize> = self.channels[..self.expanded].iter().map(|channel| channel.output).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        sources
+    }
+
     /// When a requirement is nearest to failing in a motion; `None` without a time.
     pub fn when(&self, number: usize, own: &Requirement, channels: &[f64]) -> Option<f64> {
         let (from, to) = own.times?;

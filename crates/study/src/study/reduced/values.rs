@@ -24,6 +24,14 @@ pub struct Selection {
     pub channels: Vec<usize>,
 }
 
+/// Derivatives of a value.
+pub struct Slope {
+    /// By channels, those that count.
+    pub by_channels: Vec<(usize, f64)>,
+    /// By all parameters; none where they count through channels alone.
+    pub by_parameters: Vec<f64>,
+}
+
 /// The extremes of an output in each window: value and time.
 #[derive(Clone, Debug)]
 pub(super) struct Humps {
@@ -99,6 +107,25 @@ impl Values {
         }
     }
 
+    /// Derivatives of a value of a motion with these channels, parameters and values.
+    pub fn slope(&self, value: usize, channels: &[f64], parameters: &[f64], values: &[f64]) -> Slope {
+        let Value::Formulas { formulas, reduced } = &self.all[value] else {
+            return Slope { by_channels: self.all[value].slope(channels, values[value]), by_parameters: Vec::new() };
+        };
+        let numbers: Vec<f64> = reduced.iter().map(|&own| values[own]).collect();
+        let of_formulas = formulas.values(parameters, &numbers);
+        let least = (0..of_formulas.len()).min_by(|&a, &b| of_formulas[a].total_cmp(&of_formulas[b]));
+        let derivatives = least.map(|least| formulas.derivatives(parameters, &numbers).swap_remove(least));
+        let derivatives = derivatives.unwrap_or_default();
+        let (by_numbers, by_parameters) = derivatives.split_at(numbers.len().min(derivatives.len()));
+        let of_number = |(&own, &factor): (&usize, &f64)| {
+            let inner = self.all[own].slope(channels, values[own]).into_iter();
+            inner.map(move |(channel, by)| (channel, factor * by))
+        };
+        let by_channels = reduced.iter().zip(by_numbers).flat_map(of_number).collect();
+        Slope { by_channels, by_parameters: by_parameters.to_vec() }
+    }
+
     /// The margins of some requirements alone.
     pub fn only(&self, requirements: &[usize]) -> Selection {
         let parts = requirements.iter().flat_map(|&requirement| self.parts(requirement));
@@ -170,14 +197,10 @@ impl Value {
             Self::Mean(index, length) => channels[*index] / length,
             // A polynomial may be below zero where a square is not.
             Self::Rms(index, length) => (channels[*index] / length).max(0.0).sqrt(),
-            Self::TimeOf(humps, sign) => {
-                let height = |window: usize| sign * channels[humps.heights[window]];
-                let best = (0..humps.heights.len()).fold(0, |a, b| if height(b) > height(a) { b } else { a });
-                channels[humps.times[best]]
-            }
-            Self::First(humps) => humps.occurring(channels).next().unwrap_or(f64::NAN),
-            Self::Last(humps) => humps.occurring(channels).last().unwrap_or(f64::NAN),
-            Self::Settling(humps, from, end) => match humps.occurring(channels).last() {
+            Self::TimeOf(humps, sign) => channels[humps.highest(channels, *sign)],
+            Self::First(humps) => humps.occurring(channels).next().map_or(f64::NAN, |time| channels[time]),
+            Self::Last(humps) => humps.occurring(channels).last().map_or(f64::NAN, |time| channels[time]),
+            Self::Settling(humps, from, end) => match humps.occurring(channels).last().map(|time| channels[time]) {
                 None => *from,
                 Some(last) if last >= *end => f64::NAN,
                 Some(last) => last,
@@ -195,16 +218,57 @@ impl Value {
     }
 }
 
+impl Value {
+    /// Derivatives by channels, given the value itself; of formulas there are none.
+    fn slope(&self, channels: &[f64], value: f64) -> Vec<(usize, f64)> {
+        let most = |places: &[usize], sign: f64| {
+            let size = |index: &&usize| sign * channels[**index];
+            places.iter().max_by(|a, b| size(a).total_cmp(&size(b))).map(|&index| (index, 1.0))
+        };
+        let less = |one: Option<(usize, f64)>| one.map(|(index, by)| (index, -by));
+        let both = |a: Option<(usize, f64)>, b| a.into_iter().chain(b).collect();
+        match self {
+            Self::Greatest(places) => both(most(places, 1.0), None),
+            Self::Least(places) => both(most(places, -1.0), None),
+            Self::Range(above, below) => both(most(above, 1.0), less(most(below, -1.0))),
+            Self::Magnitude(above, below) => {
+                let above = most(above, 1.0).filter(|(index, _)| channels[*index] >= value);
+                both(above.or_else(|| less(most(below, -1.0))), None)
+            }
+            Self::Mean(index, length) => vec![(*index, 1.0 / length)],
+            Self::Rms(index, length) => vec![(*index, 0.5 / (length * value))],
+            Self::TimeOf(humps, sign) => vec![(humps.highest(channels, *sign), 1.0)],
+            Self::First(humps) => both(humps.occurring(channels).next().map(|time| (time, 1.0)), None),
+            Self::Last(humps) | Self::Settling(humps, ..) => {
+                both(humps.occurring(channels).last().map(|time| (time, 1.0)), None)
+            }
+            Self::Overshoot { greatest, least, start, target } => match value > 0.0 {
+                true if channels[*start] <= channels[*target] => both(most(greatest, 1.0), Some((*target, -1.0))),
+                true => both(less(most(least, -1.0)), Some((*target, 1.0))),
+                false => Vec::new(),
+            },
+            Self::Formulas { .. } => Vec::new(),
+        }
+    }
+}
+
 impl Humps {
+    /// The channel with the time of the largest height times the sign.
+    fn highest(&self, channels: &[f64], sign: f64) -> usize {
+        let height = |window: usize| sign * channels[self.heights[window]];
+        let best = (0..self.heights.len()).fold(0, |a, b| if height(b) > height(a) { b } else { a });
+        self.times[best]
+    }
+
     fn channels(&mut self) -> impl Iterator<Item = &mut usize> {
         self.heights.iter_mut().chain(&mut self.times)
     }
 
-    /// Times of the windows in which the event occurs.
-    fn occurring(&self, channels: &[f64]) -> impl Iterator<Item = f64> {
+    /// The channels with the times of the windows in which the event occurs.
+    fn occurring(&self, channels: &[f64]) -> impl Iterator<Item = usize> {
         // NaN occurs, and is passed on.
         let occurs = |&(height, _): &(&usize, &usize)| channels[*height] >= 0.0 || channels[*height].is_nan();
-        self.heights.iter().zip(&self.times).filter(occurs).map(|(_, &time)| channels[time])
+        self.heights.iter().zip(&self.times).filter(occurs).map(|(_, &time)| time)
     }
 }
 
@@ -220,6 +284,55 @@ mod tests {
         assert!(Value::First(humps()).of(&[-0.1, -0.2, 1.0, 2.0], &[], &[]).is_nan());
         assert_eq!(Value::Settling(humps(), 0.5, 9.0).of(&[-0.1, -0.2, 1.0, 2.0], &[], &[]), 0.5);
         assert_eq!(Value::TimeOf(humps(), 1.0).of(&[0.3, 0.2, 1.0, 2.0], &[], &[]), 1.0);
+    }
+
+    /// Central differences of the values themselves.
+    #[test]
+    fn slopes_are_differences() {
+        let humps = Humps { heights: vec![0, 1], times: vec![6, 5] };
+        let all = vec![
+            Value::Greatest(vec![0, 3]),
+            Value::Least(vec![4, 2]),
+            Value::Range(vec![1, 4], vec![2]),
+            Value::Magnitude(vec![0], vec![4]),
+            Value::Magnitude(vec![3], vec![4]),
+            Value::Mean(2, 1.6),
+            Value::Rms(3, 0.4),
+            Value::TimeOf(humps.clone(), 1.0),
+            Value::First(humps.clone()),
+            Value::Last(humps.clone()),
+            Value::Settling(humps, 0.0, 9.0),
+            Value::Overshoot { greatest: vec![5], least: vec![1], start: 0, target: 3 },
+            Value::Overshoot { greatest: vec![5], least: vec![4], start: 3, target: 0 },
+            Value::Overshoot { greatest: vec![0], least: vec![1], start: 0, target: 3 },
+        ];
+        let count = all.len();
+        let values = Values { all, margins: Vec::new() };
+        let channels = [0.3, -0.2, 0.1, 0.7, -0.6, 0.9, 0.4];
+        let of = |channels: &[f64]| {
+            let mut found = Vec::new();
+            values.evaluate(channels, &[], &mut found);
+            found
+        };
+        let found = of(&channels);
+        let mut by_channels = vec![[0.0; 7]; count];
+        for (value, sums) in by_channels.iter_mut().enumerate() {
+            let slope = values.slope(value, &channels, &[], &found);
+            slope.by_channels.into_iter().for_each(|(channel, by)| sums[channel] += by);
+        }
+        for channel in 0..channels.len() {
+            let moved = |by: f64| {
+                let mut moved = channels;
+                moved[channel] += by;
+                of(&moved)
+            };
+            let [above, below] = [moved(1e-6), moved(-1e-6)];
+            for value in 0..count {
+                let difference = (above[value] - below[value]) / 2e-6;
+                let by = by_channels[value][channel];
+                assert!((difference - by).abs() < 1e-6, "value {value} by channel {channel}: {by}, not {difference}");
+            }
+        }
     }
 
     #[test]
