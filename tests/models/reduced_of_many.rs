@@ -2,8 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use mbint::inner::results::{Summary, Verdict};
+use mbint::inner::results::{Summary, Uncertain, Verdict};
 
+use crate::common::random::Random;
 use crate::common::{read, run_methods};
 
 /// Springs side by side.
@@ -17,7 +18,7 @@ fn spring(number: usize) -> (f64, f64) {
 }
 
 /// A mass on springs side by side, pushed off at 1 m/s: x = sin(ω t)/ω with ω² = Σ k/m.
-fn summary() -> Summary {
+fn summary(further: &str) -> Summary {
     let stiffness = |number: usize| {
         let (value, tolerance) = spring(number);
         format!("  k{number}: {{ value: {value}, unit: N/m, tolerance: {}% }}\n", 100.0 * tolerance)
@@ -41,11 +42,11 @@ outputs:
   when_greatest: {{ time_of_max: mass.x }}
   first: {{ when: mass.x >= 0.1 }}
 requirements:
-  short: mass.x <= 0.22
-  light: {{ that: greatest*2 + m*(0.01 m/kg) <= 0.5 m }}
+  short: mass.x <= 0.2
+  light: {{ that: greatest*2 + m*(0.01 m/kg) <= 0.42 m }}
   quick: {{ that: first <= 0.105 }}
 simulation: {{ duration: 1, output_step: 0.01 }}
-bounds: {{ tolerance: 1e-3 }}
+{further}
 "
     );
     run_methods(&read(&text), None).1
@@ -61,7 +62,7 @@ fn ends(of: impl Fn(f64, f64) -> f64) -> [f64; 2] {
 
 #[test]
 fn ends_of_fifteen_parameters_are_those_of_closed_forms() {
-    let summary = summary();
+    let summary = summary("bounds: { tolerance: 1e-3 }");
     let check = |name: &str, of: &dyn Fn(f64, f64) -> f64| {
         let band = &summary.reduced.iter().find(|own| own.name == name).unwrap().bands[0];
         let [lower, upper] = ends(of);
@@ -82,14 +83,70 @@ fn ends_of_fifteen_parameters_are_those_of_closed_forms() {
 
 #[test]
 fn margins_of_fifteen_parameters_are_those_of_closed_forms() {
-    let summary = summary();
+    let summary = summary("bounds: { tolerance: 1e-3 }");
     let check = |name: &str, verdict: Verdict, of: &dyn Fn(f64, f64) -> f64| {
         let own = summary.requirements.iter().find(|own| own.name == name).unwrap();
         let [least, _] = ends(of);
         assert_eq!(own.verdict, verdict, "{name}: {own:?}");
         assert!((own.margin - least).abs() <= own.error && own.error < 5e-5, "{name}: {own:?}, not {least}");
     };
-    check("short", Verdict::Holds, &|w, _| 0.22 - 1.0 / w);
-    check("light", Verdict::Holds, &|w, mass| 0.5 - 2.0 / w - 0.01 * mass);
+    check("short", Verdict::Violated, &|w, _| 0.2 - 1.0 / w);
+    check("light", Verdict::Violated, &|w, mass| 0.42 - 2.0 / w - 0.01 * mass);
     check("quick", Verdict::Violated, &|w, _| 0.105 - (0.1 * w).asin() / w);
+}
+
+/// Against 200 000 products by the closed forms.
+#[test]
+fn statistics_of_fifteen_parameters_are_those_of_products() {
+    const PRODUCTS: usize = 200_000;
+    let summary = summary("bounds: { tolerance: 1e-2 }\nstatistics: { quantiles: [5%, 95%] }");
+    let statistics = &summary.statistics.as_ref().unwrap().summary;
+    assert_eq!(statistics.failure, None);
+    let mut random = Random(7);
+    let product = |random: &mut Random| {
+        let mut within = |value: f64, share: f64| value * (1.0 + share * (2.0 * random.uniform() - 1.0));
+        let stiffness: f64 = (0..SPRINGS).map(spring).map(|(value, share)| within(value, share)).sum();
+        let mass = within(2.0, 0.05);
+        ((stiffness / mass).sqrt(), mass)
+    };
+    let products: Vec<(f64, f64)> = (0..PRODUCTS).map(|_| product(&mut random)).collect();
+    let is = |found: &Uncertain, value: f64, sampling: f64, what: &str| {
+        let allowed = found.error + found.sampling + sampling;
+        assert!((found.value - value).abs() <= allowed, "{what}: {found:?}, not {value} ± {sampling}");
+    };
+    let check = |name: &str, of: &dyn Fn(f64, f64) -> f64| {
+        let found = statistics.reduced.iter().find(|own| own.name == name).unwrap();
+        let mut values: Vec<f64> = products.iter().map(|&(w, mass)| of(w, mass)).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        let count = PRODUCTS as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
+        // Three standard errors of the products.
+        let standard = deviation / count.sqrt();
+        is(&found.mean, mean, 3.0 * standard, name);
+        is(&found.deviation, deviation, 3.0 * standard, name);
+        for (quantile, share) in found.quantiles.iter().zip([0.05, 0.95]) {
+            is(quantile, values[(share * count) as usize], 10.0 * standard, name);
+        }
+        let errors = [&found.mean, &found.deviation].map(|own| own.error + own.sampling);
+        println!("{name}: {errors:?} of {deviation}");
+        assert!(errors.iter().all(|error| *error < 0.1 * deviation), "{name}: {found:?} of {deviation}");
+    };
+    check("greatest", &|w, _| 1.0 / w);
+    check("last", &|w, _| w.sin() / w);
+    check("mean", &|w, _| (1.0 - w.cos()) / (w * w));
+    check("first", &|w, _| (0.1 * w).asin() / w);
+    let share = |holds: &dyn Fn(f64, f64) -> bool| {
+        products.iter().filter(|(w, mass)| holds(*w, *mass)).count() as f64 / PRODUCTS as f64
+    };
+    for (name, expected) in [
+        ("short", share(&|w, _| 1.0 / w <= 0.2)),
+        ("light", share(&|w, mass| 2.0 / w + 0.01 * mass <= 0.42)),
+        ("quick", share(&|w, _| (0.1 * w).asin() / w <= 0.105)),
+    ] {
+        let found = statistics.requirements.iter().find(|own| own.requirement == name).unwrap();
+        let [least, most] = found.interval;
+        println!("{name}: {expected} in [{least}, {most}]");
+        assert!((least..=most).contains(&expected) && most - least < 0.1, "{name}: {found:?}, not {expected}");
+    }
 }

@@ -9,6 +9,7 @@ use super::stepping::{StepPlan, balance, controlling_samples, divided, planned};
 
 use super::ensemble::{Motions, Progress, Stored, samples_of_part};
 use super::prepared::{Prepared, choices, prepare};
+use super::reduced::{plan_reduction, values_of_samples};
 use super::{Options, RunError, pool, reduced};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::model::Description;
@@ -176,6 +177,32 @@ impl Trajectories<'_> {
             keep(&values)?;
         }
         Ok(Some(Sampled { closed: closed.into_iter().filter(|closed| *closed).count(), stopped }))
+    }
+
+    /// Also reduces all samples that are simulated from now on.
+    ///
+    /// # Errors
+    /// Where the nominal motion cannot be assembled.
+    pub(super) fn plan_reductions(&self) -> Result<(), SimulationError> {
+        self.studies.iter().zip(self.steps).try_for_each(|(study, plan)| plan_reduction(study, plan))
+    }
+
+    /// What all samples were reduced to: of so many reduced outputs and requirements the values, sample by sample, the
+    /// reduced outputs first; NaN where one is unknown.
+    pub(super) fn numbers(&self, reduced: usize, requirements: usize) -> Vec<f64> {
+        let width = reduced + requirements;
+        let mut all = vec![f64::NAN; self.chosen.count * width];
+        let samples = (self.chosen.at)(0..self.chosen.count);
+        for ((study, plan), subsystem) in self.studies.iter().zip(self.steps).zip(self.subsystems) {
+            let own: Vec<Sample> = samples.iter().map(|sample| of_subsystem(subsystem, sample)).collect();
+            let numbers = subsystem.reduced.iter().copied();
+            let numbers: Vec<usize> = numbers.chain(subsystem.requirements.iter().map(|own| reduced + own)).collect();
+            let found = values_of_samples(study, &plan.schedule, &own);
+            for (of_sample, found) in all.chunks_exact_mut(width.max(1)).zip(found) {
+                numbers.iter().zip(found).for_each(|(&number, value)| of_sample[number] = value);
+            }
+        }
+        all
     }
 
     /// Whether each sample cannot be assembled; of fewer samples after an interruption.

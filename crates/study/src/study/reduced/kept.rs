@@ -1,5 +1,6 @@
 //! Reduced outputs and margins as functions of the parameters, kept after the run.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -45,6 +46,11 @@ impl KeptReduced {
     /// The part of it that a better surrogate would not have.
     pub fn surrogate_error(&self, requirement: usize) -> f64 {
         largest(self.values.parts(requirement).map(|part| self.errors[part].surrogate))
+    }
+
+    /// What the steps leave of the errors of some values, at most.
+    pub(super) fn time_error(&self, values: Range<usize>) -> f64 {
+        largest(values.map(|value| self.errors[value].time))
     }
 
     /// The margins of some requirements alone; they are numbered in this order.

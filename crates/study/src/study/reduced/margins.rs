@@ -45,6 +45,12 @@ impl<'k> ReducedValues<'k> {
         self.parts[part].kept.value_error(own)
     }
 
+    /// The part of it that the steps leave.
+    pub fn time_error(&self, number: usize) -> f64 {
+        let (part, own) = self.indices[number];
+        self.parts[part].kept.time_error(own..own + 1)
+    }
+
     /// Values at samples of the model's box, one after the other; NaN where one is unknown.
     pub fn values<P: AsRef<[f64]> + Sync>(&self, samples: &[P]) -> Vec<Vec<f64>> {
         let found: Vec<Vec<f64>> =
@@ -105,6 +111,13 @@ impl<'k> Margins<'k> {
     pub fn surrogate_error(&self, requirement: usize) -> f64 {
         let (part, own) = self.indices[requirement];
         self.parts[part].kept.surrogate_error(own)
+    }
+
+    /// The part of it that the steps leave.
+    pub fn time_error(&self, requirement: usize) -> f64 {
+        let (part, own) = self.indices[requirement];
+        let kept = &self.parts[part].kept;
+        kept.time_error(kept.values.parts(own))
     }
 
     /// Margins at samples of the model's box, requirement by requirement, sample by sample; NaN where one is unknown.

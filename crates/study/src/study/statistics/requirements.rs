@@ -39,6 +39,8 @@ const SIGNS: [f64; 3] = [1.0, 0.0, -1.0];
 struct Together<'a> {
     rows: &'a Rows<'a>,
     name: &'a str,
+    /// Share of the products whose margins may differ by more than the errors.
+    doubt: f64,
     /// Of each requirement.
     errors: Vec<f64>,
     scales: Vec<f64>,
@@ -62,13 +64,23 @@ pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary
     let mut together = Together::new(rows, TOGETHER, &samples);
     let mut each = Vec::with_capacity(requirements.len());
     for group in numbers.chunks(AT_ONCE) {
-        let values = sampled(rows, &kept.only(group), &samples)?;
-        for (&number, values) in group.iter().zip(values) {
+        let own = kept.only(group);
+        let values = sampled(rows, &own, &samples)?;
+        let at_products = rows.residuals.as_ref().map(|residuals| (residuals, own.values(&residuals.samples)));
+        for ((index, &number), values) in group.iter().enumerate().zip(values) {
             rows.progress(number, requirements.len());
-            let (requirement, error) = (&requirements[number], kept.error(number));
+            let requirement = &requirements[number];
+            let (error, doubt) = match &at_products {
+                Some((residuals, found)) => {
+                    let count = residuals.samples.len();
+                    let (error, doubt) = residuals.of_margin(number, &found[index * count..][..count], &values);
+                    (error + kept.time_error(number), doubt)
+                }
+                None => (kept.error(number), 0.0),
+            };
             let mut alone = Together::new(rows, &requirement.name, &samples);
-            alone.add(&values, error);
-            together.add(&values, error);
+            alone.add(&values, error, doubt);
+            together.add(&values, error, doubt);
             if let Some(mut summary) = alone.summary(&kept.only(&[number])) {
                 capability(rows, requirement, &values, &mut summary)?;
                 each.push(summary);
@@ -97,11 +109,12 @@ impl<'a> Together<'a> {
     fn new(rows: &'a Rows, name: &'a str, samples: &[Vec<&[f64]>]) -> Self {
         let count = samples.iter().map(Vec::len).sum();
         let (errors, scales, least) = (Vec::new(), Vec::new(), Vec::new());
-        Self { rows, name, errors, scales, fulfilled: vec![[true; 3]; count], least }
+        Self { rows, name, doubt: 0.0, errors, scales, fulfilled: vec![[true; 3]; count], least }
     }
 
-    /// Adds a requirement with the margins of all samples and their error.
-    fn add(&mut self, values: &[f64], error: f64) {
+    /// Adds a requirement with the margins of all samples, their error, and the share of products with a larger one.
+    fn add(&mut self, values: &[f64], error: f64, doubt: f64) {
+        self.doubt += doubt;
         // NaN has no value, and fails.
         let add = |(fulfilled, value): (&mut [bool; 3], &f64)| {
             fulfilled.iter_mut().zip(SIGNS).for_each(|(own, sign)| *own &= *value >= sign * error);
@@ -147,6 +160,7 @@ impl<'a> Together<'a> {
                 (samples, method) = (rare.samples, Some(rare.method.name().to_owned()));
             }
         }
+        interval = [(interval[0] - self.doubt).max(0.0), (interval[1] + self.doubt).min(1.0)];
         // What lies outside of the surrogate counts against it.
         interval[0] *= 1.0 - self.rows.laws.left_out();
         let ppm = |share: f64| 1e6 * (1.0 - share);

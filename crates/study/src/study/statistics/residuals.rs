@@ -24,12 +24,15 @@ const CONFIDENCE: f64 = 1.96;
 const BEYOND: [usize; 5] = [0, 4, 16, 64, 128];
 const DOUBT: f64 = 0.05 / BEYOND.len() as f64;
 
-/// Simulations of the first outputs, by sample, row and output.
+/// Simulations of the first outputs, by sample, row and output, and of reduced outputs and margins.
 pub(super) struct Residuals {
     pub samples: Vec<Sample>,
     values: Vec<f64>,
     rows: usize,
     outputs: usize,
+    /// By sample, the reduced outputs first.
+    numbers: Vec<f64>,
+    reduced: usize,
     /// Limits of the shares of products that differ by more than each ε.
     beyond: [f64; BEYOND.len()],
 }
@@ -70,15 +73,18 @@ impl Residuals {
         let found = sample(description, &options, chosen, |trajectories| {
             let (rows, columns) = (trajectories.times.len(), trajectories.outputs.len());
             let mut values = Vec::with_capacity(SIMULATIONS * rows * outputs);
+            trajectories.plan_reductions().map_err(RunError::from)?;
             let done = trajectories.each::<RunError>(|chunk| {
                 chunk.chunks_exact(columns.max(1)).for_each(|row| values.extend_from_slice(&row[..outputs]));
                 Ok(())
             })?;
-            Ok::<_, RunError>(done.map(|_| (values, rows)))
+            let numbers = trajectories.numbers(description.reduced.len(), description.requirements.len());
+            Ok::<_, RunError>(done.map(|_| (values, rows, numbers)))
         })?;
         let limit = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (SIMULATIONS - count) as f64);
         let beyond = BEYOND.map(limit);
-        Ok(found.map(|(values, rows)| Self { samples, values, rows, outputs, beyond }))
+        let reduced = description.reduced.len();
+        Ok(found.map(|(values, rows, numbers)| Self { samples, values, rows, outputs, numbers, reduced, beyond }))
     }
 
     /// The share of a quantile, and pairs of those between which it lies but for what differs by more.
@@ -93,8 +99,37 @@ impl Residuals {
         if row >= self.rows || output >= self.outputs {
             return None;
         }
-        let value = |sample: usize| self.values[(sample * self.rows + row) * self.outputs + output];
-        let differences: Vec<f64> = surrogate.iter().enumerate().map(|(sample, own)| value(sample) - own).collect();
+        let values = self.values.iter().skip(row * self.outputs + output).step_by(self.rows * self.outputs);
+        Some(Residual::of(values, surrogate))
+    }
+
+    /// The same of a reduced output.
+    pub fn of_reduced(&self, number: usize, surrogate: &[f64]) -> Residual {
+        Residual::of(self.of_number(number), surrogate)
+    }
+
+    /// How far the margins of a requirement differ from these values of its surrogate at the samples, and the share of
+    /// products whose margins differ by more: where `margins`, samples of the surrogate, say the most.
+    pub fn of_margin(&self, requirement: usize, surrogate: &[f64], margins: &[f64]) -> (f64, f64) {
+        let residual = Residual::of(self.of_number(self.reduced + requirement), surrogate);
+        let pairs = residual.largest.into_iter().zip(self.beyond);
+        let open = |(largest, beyond): &(f64, f64)| {
+            let near = margins.iter().filter(|margin| margin.abs() <= *largest).count();
+            near as f64 / margins.len() as f64 + 2.0 * beyond
+        };
+        pairs.min_by(|a, b| open(a).total_cmp(&open(b))).unwrap_or((f64::NAN, 0.0))
+    }
+
+    /// A reduced output or a margin of all samples.
+    fn of_number(&self, number: usize) -> impl Iterator<Item = &f64> {
+        self.numbers.iter().skip(number).step_by(self.numbers.len() / self.samples.len())
+    }
+}
+
+impl Residual {
+    /// Simulated values less those of the surrogate.
+    fn of<'v>(values: impl Iterator<Item = &'v f64>, surrogate: &[f64]) -> Self {
+        let differences: Vec<f64> = values.zip(surrogate).map(|(value, own)| value - own).collect();
         let count = differences.len() as f64;
         let mean = differences.iter().sum::<f64>() / count;
         let squares: f64 = differences.iter().map(|own| (own - mean) * (own - mean)).sum();
@@ -102,12 +137,12 @@ impl Residuals {
         let mut sizes: Vec<f64> = differences.iter().map(|own| own.abs()).collect();
         // NaN is the largest.
         sizes.sort_unstable_by(f64::total_cmp);
-        Some(Residual {
+        Self {
             mean,
             sampling: CONFIDENCE * deviation / count.sqrt(),
             deviation: deviation * (1.0 + CONFIDENCE / (2.0 * count).sqrt()),
             largest: BEYOND.map(|beyond| if mean.is_nan() { f64::NAN } else { sizes[sizes.len() - 1 - beyond] }),
-        })
+        }
     }
 }
 
@@ -115,8 +150,19 @@ impl Residuals {
 pub(super) const AROUND: usize = 1 + 2 * BEYOND.len();
 
 impl Residual {
+    /// The mean of the surrogate as that of the products.
+    pub fn corrected(&self, Estimate { value, sampling }: Estimate) -> Estimate {
+        Estimate { value: value + self.mean, sampling: sampling + self.sampling }
+    }
+
+    /// Errors of the mean, of the deviation and of quantiles, each with those around it; `time`: that of the steps.
+    pub fn errors(&self, quantiles: &[Estimate], time: f64) -> Vec<f64> {
+        let of_quantiles = quantiles.chunks_exact(AROUND).map(|around| self.of_quantile(around) + time);
+        [time, self.deviation + time].into_iter().chain(of_quantiles).collect()
+    }
+
     /// How far a quantile may be off, given those of the surrogate at the shares around it.
-    pub fn of_quantile(&self, around: &[Estimate]) -> f64 {
+    fn of_quantile(&self, around: &[Estimate]) -> f64 {
         let value = around[0].value;
         let pairs = around[1..].chunks_exact(2).zip(self.largest);
         let errors = pairs.map(|(pair, largest)| (value - pair[0].value).max(pair[1].value - value) + largest);

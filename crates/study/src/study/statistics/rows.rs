@@ -59,7 +59,7 @@ pub(super) struct Rows<'a> {
     /// By replicate.
     samples: Vec<Vec<f64>>,
     /// Of many parameters.
-    residuals: Option<Residuals>,
+    pub residuals: Option<Residuals>,
 }
 
 /// What one row says of one output.
@@ -184,12 +184,7 @@ impl<'a> Rows<'a> {
         let own_error = self.own_error(row, output, stated.total[row]);
         let residual = self.residual(row, output);
         let asked = &self.description.statistics.quantiles;
-        let (around, shares) = match &self.residuals {
-            Some(residuals) if residual.is_some() => {
-                (AROUND, asked.iter().flat_map(|&share| residuals.shares_around(share)).collect())
-            }
-            _ => (1, asked.clone()),
-        };
+        let (around, shares) = self.shares(residual.is_some());
         let mut replicates = Replicates::new(shares.len());
         for replicate in 0..REPLICATES {
             self.go_on()?;
@@ -201,12 +196,8 @@ impl<'a> Rows<'a> {
         let mut errors = vec![error; 2 + asked.len()];
         let mut resolved = !stated.unresolved[row] && error.is_finite();
         if let Some(residual) = residual {
-            mean.value += residual.mean;
-            mean.sampling += residual.sampling;
-            (errors[0], errors[1]) = (stated.time, residual.deviation + stated.time);
-            for (error, around) in errors[2..].iter_mut().zip(quantiles.chunks_exact(around)) {
-                *error = residual.of_quantile(around) + stated.time;
-            }
+            mean = residual.corrected(mean);
+            errors = residual.errors(&quantiles, stated.time);
             let follows =
                 residual.deviation <= FOLLOWS * deviation.value || residual.largest[0] <= ROUNDING * mean.value.abs();
             resolved = follows && errors.iter().all(|error| error.is_finite());
@@ -222,6 +213,15 @@ impl<'a> Rows<'a> {
             rss,
             resolved,
         })
+    }
+
+    /// The shares of the quantiles that are asked for, each with so many around it where errors are those of products.
+    pub fn shares(&self, of_products: bool) -> (usize, Vec<f64>) {
+        let asked = &self.description.statistics.quantiles;
+        match self.residuals.as_ref().filter(|_| of_products) {
+            Some(residuals) => (AROUND, asked.iter().flat_map(|&share| residuals.shares_around(share)).collect()),
+            None => (1, asked.clone()),
+        }
     }
 
     /// Differences of simulations from the surrogate, where the parameters are many.
