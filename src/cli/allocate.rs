@@ -81,13 +81,15 @@ fn overview(found: &Allocation) -> String {
         Criterion::WorstCase => "every case".to_owned(),
         Criterion::Share(share) => format!("a yield of {} %", rounded(100.0 * share)),
     };
+    let off = found.surrogate_error;
+    let off = off.map(|error| format!("; the surrogate's margins are off by {error:.1e} of the nominal ones at most"));
     let mut text = format!(
-        "{BOLD}{}{BOLD:#}: {}, for {criterion}\n  {} for the surrogate, {} to confirm; the surrogate's margins are off by {:.1e} of the nominal ones at most\n\n",
+        "{BOLD}{}{BOLD:#}: {}, for {criterion}\n  {} for the surrogate, {} to confirm{}\n\n",
         found.model,
         count(found.tolerances.len(), "tolerance", "tolerances"),
         count(found.simulations, "simulation", "simulations"),
         found.confirming,
-        found.surrogate_error,
+        off.unwrap_or_default(),
     );
     text += &tolerances(found);
     if !found.is_exhaustive {

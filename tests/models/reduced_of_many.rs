@@ -2,7 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use mbint::inner::model::Description;
 use mbint::inner::results::{Summary, Uncertain, Verdict};
+use mbint::inner::study::{AllocateOptions, Options, allocate};
 
 use crate::common::random::Random;
 use crate::common::{read, run_methods};
@@ -12,6 +14,11 @@ const SPRINGS: usize = 14;
 /// kg
 const MASS: [f64; 2] = [1.9, 2.1];
 
+const REQUIREMENTS: &str = "
+  short: mass.x <= 0.2
+  light: { that: greatest*2 + m*(0.01 m/kg) <= 0.42 m }
+  quick: { that: first <= 0.105 }";
+
 /// Nominal stiffness of a spring, N/m, and its tolerance.
 fn spring(number: usize) -> (f64, f64) {
     (3.0 + 0.1 * number as f64, 0.05 + 0.01 * (number % 3) as f64)
@@ -19,6 +26,10 @@ fn spring(number: usize) -> (f64, f64) {
 
 /// A mass on springs side by side, pushed off at 1 m/s: x = sin(ω t)/ω with ω² = Σ k/m.
 fn summary(further: &str) -> Summary {
+    run_methods(&model(REQUIREMENTS, further), None).1
+}
+
+fn model(requirements: &str, further: &str) -> Description {
     let stiffness = |number: usize| {
         let (value, tolerance) = spring(number);
         format!("  k{number}: {{ value: {value}, unit: N/m, tolerance: {}% }}\n", 100.0 * tolerance)
@@ -42,14 +53,12 @@ outputs:
   when_greatest: {{ time_of_max: mass.x }}
   first: {{ when: mass.x >= 0.1 }}
 requirements:
-  short: mass.x <= 0.2
-  light: {{ that: greatest*2 + m*(0.01 m/kg) <= 0.42 m }}
-  quick: {{ that: first <= 0.105 }}
+{requirements}
 simulation: {{ duration: 1, output_step: 0.01 }}
 {further}
 "
     );
-    run_methods(&read(&text), None).1
+    read(&text)
 }
 
 /// Ends over the box: all functions below are monotonous in the mass and in the stiffness there.
@@ -148,5 +157,25 @@ fn statistics_of_fifteen_parameters_are_those_of_products() {
         let [least, most] = found.interval;
         println!("{name}: {expected} in [{least}, {most}]");
         assert!((least..=most).contains(&expected) && most - least < 0.1, "{name}: {found:?}, not {expected}");
+    }
+}
+
+/// One factor for all tolerances, so that m/Σ k is 0.215² in the worst case: a study of the result holds, and little of the
+/// margin is left.
+#[test]
+fn tolerances_of_fifteen_parameters_are_as_loose_as_may_be() {
+    let model = model("  short: mass.x <= 0.215", "bounds: { tolerance: 1e-2 }");
+    let asked = AllocateOptions { share: None, widest: 3.0 };
+    let found = allocate(&model, asked, &Options::default()).unwrap();
+    let (nominal, spread) = (0..SPRINGS)
+        .map(spring)
+        .fold((0.0, 0.0), |(sum, spread), (value, share)| (sum + value, spread + value * share));
+    let ratio: f64 = 0.215 * 0.215;
+    let factor = (ratio * nominal - 2.0) / (0.1 + ratio * spread);
+    assert!(found.is_confirmed && found.tightest == "short", "{found:?}");
+    for own in &found.tolerances {
+        let of = own.after.above / own.before.above / factor;
+        // The rest is the study's own error, and digits of the tolerances.
+        assert!((0.93..=1.0).contains(&of), "{}: {of} of {factor}", own.parameter);
     }
 }

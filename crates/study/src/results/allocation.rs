@@ -114,8 +114,9 @@ pub struct Allocation {
     pub simulations: usize,
     /// Simulations of the studies that confirm.
     pub confirming: usize,
-    /// How far the surrogate's margins may be off, as the largest share of a nominal margin.
-    pub surrogate_error: f64,
+    /// How far the surrogate's margins may be off, as the largest share of a nominal margin; `None` of many
+    /// parameters, where that says nothing of the boxes that are chosen.
+    pub surrogate_error: Option<f64>,
     /// How many times the model's tolerances the surrogate reaches, at most.
     pub widest: f64,
 }

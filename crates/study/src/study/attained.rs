@@ -27,7 +27,7 @@ use crate::numerics::{Derivatives, Ledger, Range, SAFETY_OF_SURROGATE, Sample, s
 use crate::simulate::{Schedule, SimulationError, Steps, Wanted};
 use climb::{Climb, End, Known};
 use slopes::OfRows;
-pub(super) use slopes::Slopes;
+pub(super) use slopes::{Slope, Slopes};
 use surface::{Surface, Surfaces};
 
 /// Fewer parameters are searched by the surrogate alone, whose samples are dense enough.
@@ -58,9 +58,6 @@ const MOST_POINTS: usize = 32;
 /// Points of polynomials that are the surrogate of a run: with so many, what 100 parameters of a chain leave to
 /// statistics is a tenth of their spread.
 const KEPT_POINTS: usize = 64;
-
-/// Value of an output and its gradient (in ξ).
-type Slope = (f64, Vec<f64>);
 
 /// What the search found: its cost, the samples, and bounds.
 type AttainedEnds = (Outcome, Attained, FollowedEnds);

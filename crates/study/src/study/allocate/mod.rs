@@ -180,7 +180,7 @@ impl Allocator<'_> {
             trade_after: None,
             simulations: self.wide.simulations,
             confirming: 0,
-            surrogate_error: surface.as_ref().map_or(f64::NAN, largest_error),
+            surrogate_error: surface.as_ref().filter(|own| own.has_errors()).map(largest_error),
             widest: self.wide.items.iter().map(|item| item.widest).fold(0.0, f64::max),
         }
     }
@@ -204,8 +204,10 @@ impl Allocator<'_> {
         (self.options.stage)("confirming");
         let mut model = with_tolerances(self.model, &self.wide.items, multiples);
         let options = of(self.options);
-        let (_, summary) = if self.asked.share.is_some() {
+        let (_, summary) = if let Some(share) = self.asked.share {
             model.statistics.asked = true;
+            // That much is to be told.
+            model.statistics.quantiles = vec![share];
             // Of requirements only: quantiles of outputs over time cost more than all else, and nothing here reads
             // them.
             statistics::run(&model, 0, &options)?

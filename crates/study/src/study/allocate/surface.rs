@@ -1,5 +1,6 @@
 //! Margins of requirements over the widest box, each in multiples of its nominal one.
 
+use crate::methods::MOST_ON_GRIDS;
 use crate::study::reduced::Margins;
 
 use super::items::Item;
@@ -20,14 +21,22 @@ pub struct Surface<'k> {
 }
 
 impl<'k> Surface<'k> {
-    /// Of all requirements, with the surrogate's errors in reserve.
+    /// Of all requirements, with the surrogate's errors in reserve. Of many parameters these are of corners that no
+    /// box comes near which meets the requirements: there the studies that confirm a choice correct them.
     pub fn new(kept: Margins<'k>, items: &'k [Item]) -> Self {
         let count = kept.count();
         let mut surface = Self { kept, items, count, nominal: vec![1.0; count], reserves: vec![0.0; count] };
         let nominal: Vec<f64> = items.iter().map(|item| item.nominal).collect();
         surface.nominal = surface.raw(&[nominal]);
-        surface.reserves = (0..count).map(|index| surface.error(index)).collect();
+        if surface.has_errors() {
+            surface.reserves = (0..count).map(|index| surface.error(index)).collect();
+        }
         surface
+    }
+
+    /// Whether errors of margins are of boxes that may be chosen.
+    pub fn has_errors(&self) -> bool {
+        self.items.len() <= MOST_ON_GRIDS
     }
 
     /// How far a margin may be off; unknown where it cannot be relied on.

@@ -4,14 +4,17 @@ use crate::numerics::Sample;
 use crate::simulate::{NoGradient, Schedule, SimulationError, Wanted, gradients};
 use crate::study::problem::Study;
 
+/// Value of an output and its derivatives by the parameters.
+pub type Slope = (f64, Vec<f64>);
+
 /// Gradients of the outputs of an ensemble.
 pub trait Slopes {
-    /// Values and derivatives by the parameters, one for each output in a row of a sample that is wanted; `None` where
+    /// One for each output in a row of a sample that is wanted; `None` where
     /// there are none.
     ///
     /// # Errors
     /// At an interruption.
-    fn slopes(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Option<Vec<(f64, Vec<f64>)>>, SimulationError>;
+    fn slopes(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Option<Vec<Slope>>, SimulationError>;
 }
 
 /// Of outputs over time.
@@ -21,7 +24,7 @@ pub(super) struct OfRows<'s, 'm> {
 }
 
 impl Slopes for OfRows<'_, '_> {
-    fn slopes(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Option<Vec<(f64, Vec<f64>)>>, SimulationError> {
+    fn slopes(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Option<Vec<Slope>>, SimulationError> {
         let Self { study, schedule } = self;
         match gradients(&study.simulator, schedule, samples, wanted, study.interruption) {
             Err(NoGradient::Simulation(SimulationError::Interrupted)) => Err(SimulationError::Interrupted),

@@ -113,22 +113,16 @@ pub fn in_rows<'s>(
 }
 
 /// The same of something that is accumulated of an output.
-pub fn accumulated_in_rows<'s>(
-    Channel { output, accumulation, from, to }: Channel,
-    times: &'s [f64],
-    series: &'s [f64],
-) -> Option<InRows> {
-    let last = times.last().copied().unwrap_or(to);
-    accumulated(accumulation, (from, to.min(last)), &|sign| Curve { times, values: series, output, sign })
+pub fn accumulated_in_rows<'s>(channel: Channel, times: &'s [f64], series: &'s [f64]) -> Option<InRows> {
+    let last = times.last().copied().unwrap_or(channel.to);
+    let within = Channel { to: channel.to.min(last), ..channel };
+    accumulated(within, &|sign| Curve { times, values: series, output: channel.output, sign })
 }
 
 /// Something that is accumulated from one time to another; `None` where it has no derivatives: of a path, and of an
 /// instant that is not there.
-fn accumulated<'a>(
-    accumulation: Accumulation,
-    (from, to): (f64, f64),
-    curve: &impl Fn(f64) -> Curve<'a>,
-) -> Option<InRows> {
+fn accumulated<'a>(channel: Channel, curve: &impl Fn(f64) -> Curve<'a>) -> Option<InRows> {
+    let Channel { accumulation, from, to, .. } = channel;
     let extreme = |sign: f64| {
         let curve = curve(sign);
         InRows::at(&curve, curve.highest(from, to)).times(sign)
@@ -177,7 +171,8 @@ fn accumulated<'a>(
 fn of_reduced<'a>(own: &ReducedOutput, end: f64, curve: &impl Fn(usize, f64) -> Curve<'a>) -> Option<InRows> {
     let (from, to) = (own.from, own.to.min(end));
     let source = *own.outputs.first()?;
-    let of = |accumulation| accumulated(accumulation, (from, to), &|sign| curve(source, sign));
+    let of =
+        |accumulation| accumulated(Channel { output: source, accumulation, from, to }, &|sign| curve(source, sign));
     let [greatest, least] = [Accumulation::Greatest, Accumulation::Least].map(|extreme| move || of(extreme));
     Some(match own.kind {
         ReducedKind::Max => greatest()?,

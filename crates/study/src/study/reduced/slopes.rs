@@ -1,13 +1,13 @@
 //! Gradients of reduced outputs and of margins' parts, which the search for their ends follows.
 //!
-//! A value follows from channels and parameters, a channel from the rows of an output: the gradient of a weighted sum of
-//! these is that of the value.
+//! A value follows from channels and parameters, a channel from the rows of an output: the gradient of a weighted sum
+//! of these is that of the value.
 
 use super::ensemble::ReducedEnsemble;
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::numerics::Sample;
 use crate::simulate::{Functional, NoGradient, Schedule, SimulationError, Term, Under, Wanted, gradients_under};
-use crate::study::attained::Slopes;
+use crate::study::attained::{Slope, Slopes};
 use crate::study::bounding::simulation_error;
 use crate::study::ensemble::Motions;
 use crate::study::gradient::accumulated_in_rows;
@@ -29,7 +29,7 @@ struct Linear {
 }
 
 impl Slopes for OfValues<'_, '_> {
-    fn slopes(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Option<Vec<(f64, Vec<f64>)>>, SimulationError> {
+    fn slopes(&self, samples: &[Sample], wanted: &[Wanted]) -> Result<Option<Vec<Slope>>, SimulationError> {
         let linear = self.linear(samples, wanted)?;
         // A value that nothing over the time moves needs no gradient.
         let moving = || linear.iter().enumerate().filter(|(_, own)| !own.terms.is_empty());
@@ -45,7 +45,7 @@ impl Slopes for OfValues<'_, '_> {
             Err(_) => return Ok(None),
             Ok(found) => found,
         };
-        let mut all: Vec<(f64, Vec<f64>)> = linear.into_iter().map(|own| (own.value, own.by_parameters)).collect();
+        let mut all: Vec<Slope> = linear.into_iter().map(|own| (own.value, own.by_parameters)).collect();
         for (number, gradient) in numbers.into_iter().zip(found) {
             all[number].1.iter_mut().zip(gradient.by_parameters).for_each(|(sum, by)| *sum += by);
         }

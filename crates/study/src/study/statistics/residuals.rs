@@ -5,6 +5,8 @@
 //! standard deviation (|σ(f) − σ(s)| ≤ σ(f − s)). Where a share δ of the products differs by more than ε, a quantile
 //! lies between those of the surrogate whose shares are δ less and δ more, and ε beyond them.
 
+use symdiff::math;
+
 use super::laws::Laws;
 use crate::methods::MOST_ON_GRIDS;
 use crate::model::Description;
@@ -13,8 +15,13 @@ use crate::numerics::statistics::{Estimate, REPLICATES, beta_quantile};
 use crate::study::sample::{Chosen, sample};
 use crate::study::{Options, RunError};
 
-/// Simulations, a power of two.
-const SIMULATIONS: usize = 1 << 10;
+/// Fewest and most simulations, powers of two.
+const FEWEST: usize = 1 << 10;
+const MOST: usize = 1 << 16;
+
+/// Shares of the products that may differ are told to this part of the smallest share beyond a quantile that is asked
+/// for.
+const FINE: f64 = 0.25;
 
 /// Half width of a 95 % confidence interval over the standard error.
 const CONFIDENCE: f64 = 1.96;
@@ -64,7 +71,8 @@ impl Residuals {
             return Ok(None);
         }
         (options.stage)("samples of the laws");
-        let own = laws.samples(REPLICATES, SIMULATIONS);
+        let simulations = simulations(&description.statistics.quantiles);
+        let own = laws.samples(REPLICATES, simulations);
         let samples: Vec<Sample> =
             own.chunks_exact(laws.dimension()).map(|own| own.iter().copied().collect()).collect();
         let at = |indices: std::ops::Range<usize>| samples[indices].to_vec();
@@ -72,7 +80,7 @@ impl Residuals {
         let options = Options { threads: options.threads, interrupted: options.interrupted, ..Options::default() };
         let found = sample(description, &options, chosen, |trajectories| {
             let (rows, columns) = (trajectories.times.len(), trajectories.outputs.len());
-            let mut values = Vec::with_capacity(SIMULATIONS * rows * outputs);
+            let mut values = Vec::with_capacity(simulations * rows * outputs);
             trajectories.plan_reductions().map_err(RunError::from)?;
             let done = trajectories.each::<RunError>(|chunk| {
                 chunk.chunks_exact(columns.max(1)).for_each(|row| values.extend_from_slice(&row[..outputs]));
@@ -81,7 +89,7 @@ impl Residuals {
             let numbers = trajectories.numbers(description.reduced.len(), description.requirements.len());
             Ok::<_, RunError>(done.map(|_| (values, rows, numbers)))
         })?;
-        let limit = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (SIMULATIONS - count) as f64);
+        let limit = |count: usize| beta_quantile(1.0 - DOUBT, (count + 1) as f64, (simulations - count) as f64);
         let beyond = BEYOND.map(limit);
         let reduced = description.reduced.len();
         Ok(found.map(|(values, rows, numbers)| Self { samples, values, rows, outputs, numbers, reduced, beyond }))
@@ -144,6 +152,14 @@ impl Residual {
             largest: BEYOND.map(|beyond| if mean.is_nan() { f64::NAN } else { sizes[sizes.len() - 1 - beyond] }),
         }
     }
+}
+
+/// Simulations of which none differing by more than ε tells the share that does to a part of the smallest share beyond
+/// these quantiles.
+fn simulations(quantiles: &[f64]) -> usize {
+    let tail = quantiles.iter().map(|share| share.min(1.0 - share)).fold(0.5, f64::min);
+    let needed = -math::ln(DOUBT) / (FINE * tail);
+    (needed.ceil() as usize).clamp(FEWEST, MOST).next_power_of_two()
 }
 
 /// Shares around a quantile, itself included.
