@@ -160,8 +160,8 @@ fn statistics_of_fifteen_parameters_are_those_of_products() {
     }
 }
 
-/// One factor for all tolerances, so that m/Σ k is 0.215² in the worst case: a study of the result holds, and little of the
-/// margin is left.
+/// One factor for all tolerances, so that m/Σ k is 0.215² in the worst case: a study of the result holds, and little of
+/// the margin is left.
 #[test]
 fn tolerances_of_fifteen_parameters_are_as_loose_as_may_be() {
     let model = model("  short: mass.x <= 0.215", "bounds: { tolerance: 1e-2 }");
