@@ -16,4 +16,4 @@ pub use native::Fault;
 #[cfg(any(unix, windows))]
 pub use run::answer;
 pub use run::{Access, STEP, Task, Unpacked};
-pub use unit::{BaseUnit, Interface, Kind, NotRead, Unit, Variable, Version, digest};
+pub use unit::{BaseUnit, Interface, NotRead, NumberType, Unit, Variable, Version, digest};

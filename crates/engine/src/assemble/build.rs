@@ -15,7 +15,7 @@ use super::mechanism::Mechanism;
 use super::powers::PowerBalance;
 use super::questions::Questions;
 use super::recursion;
-use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Link, Nearest, Overlap, System};
+use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, Link, Nearest, Omission, Overlap, System};
 use super::tree::Tree;
 use crate::assemble::tuning::TUNING;
 use crate::grammar::Sensor;
@@ -211,7 +211,7 @@ fn equations(mut m: Mechanism) -> Result<impl FnOnce(Graph) -> System + use<>, B
 fn apply_effects<'g>(
     m: &mut Mechanism<'g, '_>,
     description: &Description,
-    left_out: &mut Vec<LeftOut>,
+    left_out: &mut Vec<Omission>,
 ) -> Result<(AppliedForces<'g>, Vec<EffectInfo>), BuildError> {
     let g = m.g;
     let mut applied = AppliedForces::new(g, m.bodies.len());
@@ -226,7 +226,7 @@ fn apply_effects<'g>(
         let forces = applied.coordinates_touched(m);
         if forces == 0 && effect.kind.states().is_empty() {
             let why = "it moves nothing: it is zero, or acts on what is held".to_owned();
-            left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
+            left_out.push(Omission { what: format!("effect {}", effect.name), why });
         }
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
         let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);

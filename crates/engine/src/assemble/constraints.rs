@@ -4,7 +4,7 @@ use symdiff::Scalar;
 
 use super::mechanism::Mechanism;
 use super::reaction::Reaction;
-use super::system::{ConstraintInfo, LeftOut, ResidualUnit};
+use super::system::{ConstraintInfo, Omission, ResidualUnit};
 use super::teeth::reactions_are_asked;
 use crate::assemble::tuning::TUNING;
 use crate::elements::joints::Row;
@@ -41,7 +41,7 @@ impl<'g> Constraints<'g> {
         m: &mut Mechanism<'g, '_>,
         description: &Description,
         length: f64,
-        left_out: &mut Vec<LeftOut>,
+        left_out: &mut Vec<Omission>,
     ) -> Result<Self, BuildError> {
         let mut constraints = Self::default();
         for (body, built) in description.bodies.iter().zip(&m.bodies) {
@@ -104,7 +104,7 @@ impl<'g> Rows<'g> {
         index: usize,
         rows: Vec<Row<'g>>,
         length: f64,
-        left_out: &mut Vec<LeftOut>,
+        left_out: &mut Vec<Omission>,
     ) -> Result<Vec<(Row<'g>, Scalar<'g>)>, BuildError> {
         let joint = &m.joints[index];
         let mut kept = Vec::with_capacity(rows.len());
@@ -115,7 +115,7 @@ impl<'g> Rows<'g> {
                 kept.push((row, self.add(info, row.value)));
             } else {
                 let why = "nothing that it constrains can move".to_owned();
-                left_out.push(LeftOut { what: format!("constraint {}", info.name), why });
+                left_out.push(Omission { what: format!("constraint {}", info.name), why });
             }
         }
         Ok(kept)

@@ -81,7 +81,7 @@ pub struct System {
     /// Energies and powers, where they are asked for.
     pub powers: Option<PowerBalance>,
     /// What the model says and no equation holds.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<Omission>,
     /// In how many dimensions the bodies move, and why.
     pub space: Space,
     /// By which coordinates, and why.
@@ -136,7 +136,7 @@ pub struct Overlap {
 
 /// Something that the model says and no equation holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct Omission {
     /// The part of the model, as it is called in messages.
     pub what: String,
     /// The reason.
@@ -394,7 +394,7 @@ impl System {
     pub(super) fn note_unused_parameters(&mut self) {
         for number in self.unused_parameters() {
             let why = "nothing depends on it".to_owned();
-            self.left_out.push(LeftOut { what: format!("parameter {}", self.parameters[number].name), why });
+            self.left_out.push(Omission { what: format!("parameter {}", self.parameters[number].name), why });
         }
     }
 }

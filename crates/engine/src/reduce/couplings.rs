@@ -12,7 +12,7 @@ use crate::model::{Description, Effect, Joint, Reference, Scope, Symbol};
 
 /// A part of a mechanism, by its index in the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Part {
+pub enum Member {
     /// A body, by index.
     Body(usize),
     /// A joint, by index.
@@ -25,7 +25,7 @@ pub enum Part {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dependencies {
     /// Parts whose motion, reaction or sensor they refer to.
-    pub parts: Vec<Part>,
+    pub parts: Vec<Member>,
     /// Named points of bodies: body and point.
     pub points: Vec<(usize, usize)>,
     /// Parameters, by index.
@@ -45,19 +45,19 @@ impl Dependencies {
                     Symbol::Coordinate { body, .. }
                     | Symbol::AngularMotion { body, .. }
                     | Symbol::RollPitchYaw { body, .. },
-                ) => self.parts.push(Part::Body(body)),
+                ) => self.parts.push(Member::Body(body)),
                 Some(Symbol::Point { body, point, .. }) => {
-                    self.parts.push(Part::Body(body));
+                    self.parts.push(Member::Body(body));
                     self.points.push((body, point));
                 }
                 Some(Symbol::JointCoordinate { joint, .. } | Symbol::Reaction { joint, .. }) => {
-                    self.parts.push(Part::Joint(joint));
+                    self.parts.push(Member::Joint(joint));
                     if let Some(Symbol::Reaction { component: ReactionComponent::TorqueAt(place, _), .. }) = symbol {
-                        self.parts.push(Part::Body(place.body));
+                        self.parts.push(Member::Body(place.body));
                         self.points.extend(place.point.map(|point| (place.body, point)));
                     }
                 }
-                Some(Symbol::Sensor { effect, .. }) => self.parts.push(Part::Effect(effect)),
+                Some(Symbol::Sensor { effect, .. }) => self.parts.push(Member::Effect(effect)),
                 Some(Symbol::Trajectory { trajectory, .. }) => {
                     let formulas = description.trajectories[trajectory].formulas();
                     formulas.for_each(|formula| self.add(description, formula));
@@ -84,12 +84,12 @@ impl Dependencies {
         let mut named = Self::by(description, formulas);
         for reference in references {
             match reference {
-                Reference::Body(body) => named.parts.push(Part::Body(*body)),
+                Reference::Body(body) => named.parts.push(Member::Body(*body)),
                 Reference::Point(place) => {
-                    named.parts.push(Part::Body(place.body));
+                    named.parts.push(Member::Body(place.body));
                     named.points.extend(place.point.map(|point| (place.body, point)));
                 }
-                Reference::Joint(joint) => named.parts.push(Part::Joint(*joint)),
+                Reference::Joint(joint) => named.parts.push(Member::Joint(*joint)),
             }
         }
         named
@@ -143,50 +143,50 @@ impl Couplings {
         let mut couplings = Self { sets: Sets::new(parts), joints, effects, outputs, fields, grounded, joins_ground };
         for joint in 0..description.joints.len() {
             let parts = couplings.joints[joint].parts.clone();
-            couplings.join(Part::Joint(joint), &parts);
+            couplings.join(Member::Joint(joint), &parts);
         }
         for effect in (0..description.effects.len()).filter(|&effect| !couplings.fields[effect]).collect::<Vec<_>>() {
             let mut parts = couplings.effects[effect].parts.clone();
             if on_every_body(effect) {
-                parts.extend((1..description.bodies.len()).map(Part::Body));
+                parts.extend((1..description.bodies.len()).map(Member::Body));
             }
-            couplings.join(Part::Effect(effect), &parts);
+            couplings.join(Member::Effect(effect), &parts);
         }
         couplings
     }
 
     /// Parts that may move, and the joints and effects that act on them.
-    pub fn movable(&self) -> Vec<Part> {
-        let bodies = (0..self.grounded.len()).map(Part::Body);
-        let joints = (0..self.joints.len()).map(Part::Joint);
-        let effects = (0..self.effects.len()).filter(|&effect| !self.fields[effect]).map(Part::Effect);
+    pub fn movable(&self) -> Vec<Member> {
+        let bodies = (0..self.grounded.len()).map(Member::Body);
+        let joints = (0..self.joints.len()).map(Member::Joint);
+        let effects = (0..self.effects.len()).filter(|&effect| !self.fields[effect]).map(Member::Effect);
         bodies.chain(joints).chain(effects).filter(|&part| !self.is_grounded(part)).collect()
     }
 
     /// Whether a part couples nothing: the ground, and bodies merged with it.
-    pub fn is_grounded(&self, part: Part) -> bool {
+    pub fn is_grounded(&self, part: Member) -> bool {
         match part {
-            Part::Body(body) => body == 0 || self.grounded[body].is_some(),
-            Part::Joint(joint) => self.joins_ground[joint],
-            Part::Effect(_) => false,
+            Member::Body(body) => body == 0 || self.grounded[body].is_some(),
+            Member::Joint(joint) => self.joins_ground[joint],
+            Member::Effect(_) => false,
         }
     }
 
-    fn place(&self, part: Part) -> usize {
+    fn place(&self, part: Member) -> usize {
         match part {
-            Part::Body(body) => body,
-            Part::Joint(joint) => self.grounded.len() + joint,
-            Part::Effect(effect) => self.grounded.len() + self.joints.len() + effect,
+            Member::Body(body) => body,
+            Member::Joint(joint) => self.grounded.len() + joint,
+            Member::Effect(effect) => self.grounded.len() + self.joints.len() + effect,
         }
     }
 
     /// The set that a part is in.
-    pub fn set(&mut self, part: Part) -> usize {
+    pub fn set(&mut self, part: Member) -> usize {
         let place = self.place(part);
         self.sets.of(place)
     }
 
-    fn join(&mut self, part: Part, with: &[Part]) {
+    fn join(&mut self, part: Member, with: &[Member]) {
         if !self.is_grounded(part) {
             for &other in with {
                 if !self.is_grounded(other) {
@@ -198,7 +198,7 @@ impl Couplings {
     }
 
     /// Unites the sets of these parts and returns the united set; `None` where all are grounded.
-    pub fn unite(&mut self, parts: &[Part]) -> Option<usize> {
+    pub fn unite(&mut self, parts: &[Member]) -> Option<usize> {
         let first = parts.iter().copied().find(|&part| !self.is_grounded(part))?;
         self.join(first, parts);
         Some(self.set(first))

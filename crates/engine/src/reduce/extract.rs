@@ -1,7 +1,7 @@
 //! Extraction of a subsystem as a model of its own.
 
 use super::Subsystem;
-use super::couplings::{Couplings, Dependencies, Part};
+use super::couplings::{Couplings, Dependencies, Member};
 use crate::grammar::TimeOrder;
 use crate::model::{Description, ParameterValue, PointRef, Reference, Standing, StartValue};
 
@@ -159,10 +159,10 @@ fn with_earlier(description: &Description, parameters: &mut [bool]) {
 
 impl Kept {
     fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, asked: &Asked, required: &[bool]) -> Self {
-        let mut has = |part: Part| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
-        let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Part::Body(body))).collect();
-        let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Part::Joint(joint))).collect();
-        let effects: Vec<bool> = (0..d.effects.len()).map(|effect| has(Part::Effect(effect))).collect();
+        let mut has = |part: Member| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
+        let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Member::Body(body))).collect();
+        let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Member::Joint(joint))).collect();
+        let effects: Vec<bool> = (0..d.effects.len()).map(|effect| has(Member::Effect(effect))).collect();
         let effects: Vec<bool> = effects.iter().zip(&couplings.fields).map(|(has, field)| *has || *field).collect();
         bodies[0] = true;
 
@@ -174,15 +174,15 @@ impl Kept {
         // An instance's ground is where a body begins whose place or orientation is not given.
         let placed = placed(d);
         let standing = chosen(&bodies).into_iter().filter(|&body| !placed[body]);
-        named.parts.extend(standing.filter_map(|body| Some(Part::Body(d.bodies[body].standing?.ground))));
+        named.parts.extend(standing.filter_map(|body| Some(Member::Body(d.bodies[body].standing?.ground))));
         // Bodies that are merged with the ground and have something attached, with the joints towards the ground.
         while let Some(part) = named.parts.pop() {
             let joint = match part {
-                Part::Body(body) if !bodies[body] => {
+                Member::Body(body) if !bodies[body] => {
                     bodies[body] = true;
                     couplings.grounded[body]
                 }
-                Part::Joint(joint) => Some(joint),
+                Member::Joint(joint) => Some(joint),
                 _ => None,
             };
             if let Some(joint) = joint.filter(|&joint| !joints[joint]) {
@@ -210,7 +210,7 @@ impl Kept {
     /// Points: all points of bodies that move. Of grounded bodies, which other subsystems may use too, the points that
     /// are used here, and those that are used nowhere.
     fn points(&self, d: &Description, couplings: &Couplings, used: &[(usize, usize)]) -> Vec<Vec<bool>> {
-        let grounded = |body: usize| couplings.is_grounded(Part::Body(body));
+        let grounded = |body: usize| couplings.is_grounded(Member::Body(body));
         let mut points: Vec<Vec<bool>> = d.bodies.iter().map(|body| vec![true; body.points.len()]).collect();
         let joints = couplings.joints.iter().zip(&self.joints).filter(|(_, kept)| !**kept).map(|(named, _)| named);
         let effects = couplings.effects.iter().zip(&self.effects).filter(|(_, kept)| !**kept).map(|(named, _)| named);

@@ -18,7 +18,7 @@ use std::collections::HashSet;
 
 use crate::model::Description;
 
-use couplings::{Couplings, Part};
+use couplings::{Couplings, Member};
 use extract::Asked;
 use questions::{Question, questions, tie};
 
@@ -108,19 +108,19 @@ impl Reduction {
             }
         }
         let kept: HashSet<usize> = subsystems.iter().filter_map(|(set, _)| *set).collect();
-        let left_out: Vec<Part> = movable.into_iter().filter(|&part| !kept.contains(&couplings.set(part))).collect();
+        let left_out: Vec<Member> = movable.into_iter().filter(|&part| !kept.contains(&couplings.set(part))).collect();
         let subsystems = subsystems
             .into_iter()
             .map(|(set, asked)| extract::extract(description, &merged, &mut couplings, set, asked));
         let subsystems = subsystems.collect();
-        let name = |part: &Part| match *part {
-            Part::Body(body) => format!("body {}", description.bodies[body].name),
-            Part::Joint(joint) => format!("joint {}", description.joints[joint].name),
-            Part::Effect(effect) => format!("effect {}", description.effects[effect].name),
+        let name = |part: &Member| match *part {
+            Member::Body(body) => format!("body {}", description.bodies[body].name),
+            Member::Joint(joint) => format!("joint {}", description.joints[joint].name),
+            Member::Effect(effect) => format!("effect {}", description.effects[effect].name),
         };
         let moves =
-            |part: &&Part| !matches!(part, Part::Body(body) if description.bodies[*body].is_ground_of_instance());
-        let simulated = |joint: &Weld| !left_out.contains(&Part::Joint(joint.joint));
+            |part: &&Member| !matches!(part, Member::Body(body) if description.bodies[*body].is_ground_of_instance());
+        let simulated = |joint: &Weld| !left_out.contains(&Member::Joint(joint.joint));
         let welds = welds.into_iter().filter(simulated);
         Self {
             left_out: left_out.iter().filter(moves).map(name).collect(),
@@ -149,20 +149,20 @@ impl Reduction {
     }
 }
 
-fn is_body(part: &Part) -> bool {
-    matches!(part, Part::Body(_))
+fn is_body(part: &Member) -> bool {
+    matches!(part, Member::Body(_))
 }
 
 /// The set of parts that each output needs; all parts that an output refers to, or a question, are in one set.
 fn sets_of_outputs(
     couplings: &mut Couplings,
-    movable: &[Part],
+    movable: &[Member],
     questions: &[(Question, Vec<usize>)],
     choices: Choices,
 ) -> Vec<Option<usize>> {
-    let mut named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
+    let mut named: Vec<Vec<Member>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
     tie(questions, &mut named);
-    let mut needed: Vec<Part> = Vec::new();
+    let mut needed: Vec<Member> = Vec::new();
     for parts in &named {
         couplings.unite(parts);
         needed.extend(parts.iter().filter(|&&part| !couplings.is_grounded(part)));
@@ -176,9 +176,9 @@ fn sets_of_outputs(
         couplings.unite(&needed);
     }
     // A part that acts on nothing movable joins a part that does move.
-    let bodies: Vec<Part> = movable.iter().copied().filter(is_body).collect();
+    let bodies: Vec<Member> = movable.iter().copied().filter(is_body).collect();
     let moving: HashSet<usize> = bodies.iter().map(|&body| couplings.set(body)).collect();
-    let (moves, alone): (Vec<Part>, Vec<Part>) =
+    let (moves, alone): (Vec<Member>, Vec<Member>) =
         needed.into_iter().partition(|&part| moving.contains(&couplings.set(part)));
     let partner = moves.first().or(bodies.first()).copied();
     for part in alone {

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::couplings::Part;
+use super::couplings::Member;
 use crate::model::Description;
 
 /// A question.
@@ -30,9 +30,9 @@ pub fn questions(description: &Description) -> Vec<(Question, Vec<usize>)> {
 }
 
 /// Has every output of a question refer to all parts that the question needs: these are simulated as one mechanism.
-pub fn tie(questions: &[(Question, Vec<usize>)], outputs: &mut [Vec<Part>]) {
+pub fn tie(questions: &[(Question, Vec<usize>)], outputs: &mut [Vec<Member>]) {
     for (_, places) in questions.iter().filter(|(_, places)| places.len() > 1) {
-        let parts: Vec<Part> = places.iter().flat_map(|&index| outputs[index].clone()).collect();
+        let parts: Vec<Member> = places.iter().flat_map(|&index| outputs[index].clone()).collect();
         places.iter().for_each(|&index| outputs[index].clone_from(&parts));
     }
 }

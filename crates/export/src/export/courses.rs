@@ -32,7 +32,7 @@ const RIGHT: f64 = 20.0;
 const ROUNDING: f64 = 1e-12;
 
 /// A nominal course with its bands.
-pub(super) struct Course<'a> {
+pub(super) struct BandedCourse<'a> {
     /// Key of its group: begins with a letter, and has letters, digits and `-`.
     pub group: String,
     /// Label of the course; empty where the labels of its bands suffice.
@@ -73,7 +73,7 @@ pub(super) struct Shown<'a> {
     pub across: Across<'a>,
     /// What moves by less is a constant.
     pub noise: f64,
-    pub courses: &'a [Course<'a>],
+    pub courses: &'a [BandedCourse<'a>],
     /// What requirements say of the output.
     pub limits: &'a [Limit],
 }
@@ -101,7 +101,7 @@ struct Figure<'a> {
 
 impl<'a> Figure<'a> {
     fn new(caption: Caption<'a>, shown: &'a Shown) -> Self {
-        let of_course = |course: &Course| -> Vec<Band> {
+        let of_course = |course: &BandedCourse| -> Vec<Band> {
             course.bands.iter().map(|of| deviation(of.band, course.nominal)).collect()
         };
         let deviations: Vec<Vec<Band>> = shown.courses.iter().map(of_course).collect();
@@ -178,7 +178,7 @@ impl<'a> Figure<'a> {
         &self,
         panel: &Panel,
         bands: impl Iterator<Item = Vec<&'b Band>>,
-        nominal: impl Fn(&Course) -> Vec<f64>,
+        nominal: impl Fn(&BandedCourse) -> Vec<f64>,
     ) -> Vec<svg::node::element::Group> {
         let mut drawn = Vec::new();
         for (course, bands) in self.shown.courses.iter().zip(bands) {
@@ -263,7 +263,7 @@ fn error_id(panel: &Panel, of: &CourseBand) -> String {
 }
 
 /// For people: what a course's line is.
-fn nominal_title(course: &Course) -> String {
+fn nominal_title(course: &BandedCourse) -> String {
     match (course.label, course.bands.first()) {
         ("", Some(of)) => format!("{}, nominal", of.style.label),
         (label, _) => label.to_owned(),
@@ -271,7 +271,7 @@ fn nominal_title(course: &Course) -> String {
 }
 
 /// The nominal course, less itself: a line at zero with the same gaps.
-fn zero(course: &Course) -> Vec<f64> {
+fn zero(course: &BandedCourse) -> Vec<f64> {
     course.nominal.iter().map(|x| if x.is_finite() { 0.0 } else { f64::NAN }).collect()
 }
 

@@ -1,6 +1,6 @@
 //! `x3.svg` beside the scenes' folders: an output's bounds in every scene that has it.
 
-use super::courses::{Across, Course, CourseBand, Shown, TIME, courses_svg};
+use super::courses::{Across, BandedCourse, CourseBand, Shown, TIME, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
 use super::figure::style::{Color, Hue, PALETTE};
@@ -37,7 +37,7 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
     let mut methods = found.iter().map(|(.., band)| band.map(|band| band.method));
     let first = methods.next();
     let same = methods.all(|method| Some(method) == first);
-    let courses: Vec<Course> = found
+    let courses: Vec<BandedCourse> = found
         .iter()
         .map(|(index, scene, output, band)| {
             let bands = band.map(|band| {
@@ -49,7 +49,7 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
             let (label, width) = if bands.is_some() { ("", 0.5) } else { (scene.name, 1.4) };
             let (group, hue) = (format!("scene-{index}-nominal"), Hue::Color(Color::of(*index)));
             let bands = bands.into_iter().collect();
-            Course { group, label, hue, width, times: &scene.bounds.times, nominal: &output.nominal, bands }
+            BandedCourse { group, label, hue, width, times: &scene.bounds.times, nominal: &output.nominal, bands }
         })
         .collect();
     let unit =

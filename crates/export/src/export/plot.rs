@@ -1,6 +1,6 @@
 //! `x3.svg`: an output's bounds over time, and their distance from the nominal course.
 
-use super::courses::{Across, Course, CourseBand, Shown, TIME, courses_svg};
+use super::courses::{Across, BandedCourse, CourseBand, Shown, TIME, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
 use super::figure::style::{Color, Hue};
@@ -83,15 +83,15 @@ fn quantiles(statistics: &StatisticsResult, name: &str, rows: usize) -> Option<(
 }
 
 /// An output with all its bands.
-pub(super) fn course<'a>(times: &'a [f64], output: &'a OutputBounds) -> Course<'a> {
+pub(super) fn course<'a>(times: &'a [f64], output: &'a OutputBounds) -> BandedCourse<'a> {
     let bands = output.bands.iter();
     let bands = bands.map(|band| CourseBand { group: band.method.name().to_owned(), band, style: style(band.method) });
     let (group, nominal) = ("nominal".to_owned(), &output.nominal[..]);
-    Course { group, label: "Nominal", hue: Hue::Ink, width: 1.2, times, nominal, bands: bands.collect() }
+    BandedCourse { group, label: "Nominal", hue: Hue::Ink, width: 1.2, times, nominal, bands: bands.collect() }
 }
 
 /// Courses of an output over time.
-pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [Course<'a>]) -> Shown<'a> {
+pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [BandedCourse<'a>]) -> Shown<'a> {
     let across = Across { name: TIME, unit: ShownUnit::from("s") };
     Shown {
         name: &output.name,

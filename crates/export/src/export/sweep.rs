@@ -2,7 +2,7 @@
 
 use svg::node::element::{Circle, Group, Title};
 
-use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
+use super::courses::{Across, BandedCourse, CourseBand, Shown, courses_svg};
 use super::figure::Caption;
 use super::figure::axis::Axis;
 use super::figure::document::{Anchor, document, finished, group, heading, shortened, text};
@@ -47,7 +47,7 @@ pub fn sweep_svg(
     rows: &[SweptBounds],
     requirements: &[RequirementSummary],
 ) -> Result<String, serde_json::Error> {
-    let courses: Vec<Course> = match rows {
+    let courses: Vec<BandedCourse> = match rows {
         [row] => vec![plot::course(row.values, row.output)],
         rows => rows.iter().enumerate().map(|(index, row)| edges(index, row)).collect(),
     };
@@ -60,11 +60,11 @@ pub fn sweep_svg(
 }
 
 /// One of several rows: the edges of its first method that is reliable throughout.
-fn edges<'a>(index: usize, row: &SweptBounds<'a>) -> Course<'a> {
+fn edges<'a>(index: usize, row: &SweptBounds<'a>) -> BandedCourse<'a> {
     let band = foremost(&row.output.bands, |band| band.error.unresolved_from().is_none());
     let of = |band| CourseBand { group: format!("row-{index}"), band, style: style(index, row.label.to_owned()) };
     let (label, width) = if band.is_some() { ("", 0.5) } else { (row.label, 1.4) };
-    Course {
+    BandedCourse {
         group: format!("row-{index}-nominal"),
         label,
         hue: Hue::Color(Color::of(index)),

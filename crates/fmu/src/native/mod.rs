@@ -7,7 +7,7 @@ mod two;
 
 use std::path::Path;
 
-use crate::unit::{Interface, Kind, Unit, Version};
+use crate::unit::{Interface, NumberType, Unit, Version};
 
 /// Why an instance does not go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -56,9 +56,9 @@ pub struct Discrete {
 /// An instance of a unit. Calls have the order of the standard.
 pub trait Instance {
     /// Sets a variable.
-    fn set(&mut self, kind: Kind, reference: u32, value: f64) -> Result<(), Fault>;
+    fn set(&mut self, kind: NumberType, reference: u32, value: f64) -> Result<(), Fault>;
     /// A variable's value.
-    fn get(&mut self, kind: Kind, reference: u32) -> Result<f64, Fault>;
+    fn get(&mut self, kind: NumberType, reference: u32) -> Result<f64, Fault>;
     /// Finds the start of a motion from 0 to `end`, s.
     fn initialise(&mut self, end: f64) -> Result<(), Fault>;
     /// Moves on by a step, s, in co-simulation; whether the unit ends its motion with that step.

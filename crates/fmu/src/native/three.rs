@@ -9,7 +9,7 @@ use std::ptr;
 use super::callbacks::log_three;
 use super::library::{call, call_own, functions};
 use super::{Discrete, Fault, Instance, is_before, truth, whole};
-use crate::unit::{Interface, Kind};
+use crate::unit::{Interface, NumberType};
 
 type Own = *mut c_void;
 type Log = extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
@@ -126,47 +126,47 @@ impl Drop for Three<'_> {
 }
 
 impl Instance for Three<'_> {
-    fn set(&mut self, kind: Kind, reference: u32, value: f64) -> Result<(), Fault> {
+    fn set(&mut self, kind: NumberType, reference: u32, value: f64) -> Result<(), Fault> {
         let of = &raw const reference;
         match kind {
-            Kind::Float64 => call!(self, set_float64, "fmi3SetFloat64", of, 1, &raw const value, 1),
-            Kind::Float32 => {
+            NumberType::Float64 => call!(self, set_float64, "fmi3SetFloat64", of, 1, &raw const value, 1),
+            NumberType::Float32 => {
                 let value = value as f32;
                 call!(self, set_float32, "fmi3SetFloat32", of, 1, &raw const value, 1)
             }
-            Kind::Int8 => set_whole!(self, set_int8: i8, "fmi3SetInt8", of, value),
-            Kind::UInt8 => set_whole!(self, set_uint8: u8, "fmi3SetUInt8", of, value),
-            Kind::Int16 => set_whole!(self, set_int16: i16, "fmi3SetInt16", of, value),
-            Kind::UInt16 => set_whole!(self, set_uint16: u16, "fmi3SetUInt16", of, value),
-            Kind::Int32 => set_whole!(self, set_int32: i32, "fmi3SetInt32", of, value),
-            Kind::UInt32 => set_whole!(self, set_uint32: u32, "fmi3SetUInt32", of, value),
-            Kind::Int64 => set_whole!(self, set_int64: i64, "fmi3SetInt64", of, value),
-            Kind::UInt64 => set_whole!(self, set_uint64: u64, "fmi3SetUInt64", of, value),
-            Kind::Boolean => {
+            NumberType::Int8 => set_whole!(self, set_int8: i8, "fmi3SetInt8", of, value),
+            NumberType::UInt8 => set_whole!(self, set_uint8: u8, "fmi3SetUInt8", of, value),
+            NumberType::Int16 => set_whole!(self, set_int16: i16, "fmi3SetInt16", of, value),
+            NumberType::UInt16 => set_whole!(self, set_uint16: u16, "fmi3SetUInt16", of, value),
+            NumberType::Int32 => set_whole!(self, set_int32: i32, "fmi3SetInt32", of, value),
+            NumberType::UInt32 => set_whole!(self, set_uint32: u32, "fmi3SetUInt32", of, value),
+            NumberType::Int64 => set_whole!(self, set_int64: i64, "fmi3SetInt64", of, value),
+            NumberType::UInt64 => set_whole!(self, set_uint64: u64, "fmi3SetUInt64", of, value),
+            NumberType::Boolean => {
                 let value = u8::from(truth(value)?);
                 call!(self, set_boolean, "fmi3SetBoolean", of, 1, &raw const value, 1)
             }
         }
     }
 
-    fn get(&mut self, kind: Kind, reference: u32) -> Result<f64, Fault> {
+    fn get(&mut self, kind: NumberType, reference: u32) -> Result<f64, Fault> {
         let of = &raw const reference;
         let (mut double, mut single, mut truth) = (0.0, 0.0_f32, 0);
         match kind {
-            Kind::Float64 => call!(self, get_float64, "fmi3GetFloat64", of, 1, &raw mut double, 1)?,
-            Kind::Float32 => {
+            NumberType::Float64 => call!(self, get_float64, "fmi3GetFloat64", of, 1, &raw mut double, 1)?,
+            NumberType::Float32 => {
                 call!(self, get_float32, "fmi3GetFloat32", of, 1, &raw mut single, 1)?;
                 double = f64::from(single);
             }
-            Kind::Int8 => double = get_whole!(self, get_int8: i8, "fmi3GetInt8", of),
-            Kind::UInt8 => double = get_whole!(self, get_uint8: u8, "fmi3GetUInt8", of),
-            Kind::Int16 => double = get_whole!(self, get_int16: i16, "fmi3GetInt16", of),
-            Kind::UInt16 => double = get_whole!(self, get_uint16: u16, "fmi3GetUInt16", of),
-            Kind::Int32 => double = get_whole!(self, get_int32: i32, "fmi3GetInt32", of),
-            Kind::UInt32 => double = get_whole!(self, get_uint32: u32, "fmi3GetUInt32", of),
-            Kind::Int64 => double = get_whole!(self, get_int64: i64, "fmi3GetInt64", of),
-            Kind::UInt64 => double = get_whole!(self, get_uint64: u64, "fmi3GetUInt64", of),
-            Kind::Boolean => {
+            NumberType::Int8 => double = get_whole!(self, get_int8: i8, "fmi3GetInt8", of),
+            NumberType::UInt8 => double = get_whole!(self, get_uint8: u8, "fmi3GetUInt8", of),
+            NumberType::Int16 => double = get_whole!(self, get_int16: i16, "fmi3GetInt16", of),
+            NumberType::UInt16 => double = get_whole!(self, get_uint16: u16, "fmi3GetUInt16", of),
+            NumberType::Int32 => double = get_whole!(self, get_int32: i32, "fmi3GetInt32", of),
+            NumberType::UInt32 => double = get_whole!(self, get_uint32: u32, "fmi3GetUInt32", of),
+            NumberType::Int64 => double = get_whole!(self, get_int64: i64, "fmi3GetInt64", of),
+            NumberType::UInt64 => double = get_whole!(self, get_uint64: u64, "fmi3GetUInt64", of),
+            NumberType::Boolean => {
                 call!(self, get_boolean, "fmi3GetBoolean", of, 1, &raw mut truth, 1)?;
                 double = f64::from(truth);
             }

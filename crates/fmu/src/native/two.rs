@@ -8,7 +8,7 @@ use std::path::Path;
 use super::callbacks::Callbacks;
 use super::library::{call, call_own, functions};
 use super::{Discrete, Fault, Instance, is_before, truth, whole};
-use crate::unit::{Interface, Kind};
+use crate::unit::{Interface, NumberType};
 
 type Own = *mut c_void;
 
@@ -119,11 +119,11 @@ impl Drop for Two<'_> {
 }
 
 impl Instance for Two<'_> {
-    fn set(&mut self, kind: Kind, reference: u32, value: f64) -> Result<(), Fault> {
+    fn set(&mut self, kind: NumberType, reference: u32, value: f64) -> Result<(), Fault> {
         let of = &raw const reference;
         match kind {
-            Kind::Float64 | Kind::Float32 => call!(self, set_real, "fmi2SetReal", of, 1, &raw const value),
-            Kind::Boolean => {
+            NumberType::Float64 | NumberType::Float32 => call!(self, set_real, "fmi2SetReal", of, 1, &raw const value),
+            NumberType::Boolean => {
                 let value = c_int::from(truth(value)?);
                 call!(self, set_boolean, "fmi2SetBoolean", of, 1, &raw const value)
             }
@@ -134,15 +134,15 @@ impl Instance for Two<'_> {
         }
     }
 
-    fn get(&mut self, kind: Kind, reference: u32) -> Result<f64, Fault> {
+    fn get(&mut self, kind: NumberType, reference: u32) -> Result<f64, Fault> {
         let of = &raw const reference;
         let (mut real, mut integer) = (0.0, 0);
         match kind {
-            Kind::Float64 | Kind::Float32 => {
+            NumberType::Float64 | NumberType::Float32 => {
                 call!(self, get_real, "fmi2GetReal", of, 1, &raw mut real)?;
                 return Ok(real);
             }
-            Kind::Boolean => call!(self, get_boolean, "fmi2GetBoolean", of, 1, &raw mut integer)?,
+            NumberType::Boolean => call!(self, get_boolean, "fmi2GetBoolean", of, 1, &raw mut integer)?,
             // All others are integers of one width.
             _ => call!(self, get_integer, "fmi2GetInteger", of, 1, &raw mut integer)?,
         }

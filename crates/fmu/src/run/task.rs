@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
-use crate::unit::{Interface, Kind, NotRead, unpack};
+use crate::unit::{Interface, NotRead, NumberType, unpack};
 
 /// The name among parameters under which the length of steps comes, s; no parameter can have it.
 pub const STEP: &str = "length of a step";
@@ -20,7 +20,7 @@ pub struct Access {
     /// Its name in points and answers.
     pub name: String,
     /// Its type.
-    pub kind: Kind,
+    pub kind: NumberType,
     /// Its number in the unit.
     pub reference: u32,
     /// What one of its unit is in SI.

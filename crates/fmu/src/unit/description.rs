@@ -6,7 +6,7 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 use serde::{Deserialize, Serialize};
 
-use super::variable::{BASES, BaseUnit, Kind, Variable};
+use super::variable::{BASES, BaseUnit, NumberType, Variable};
 use super::{NotRead, archive};
 
 /// Version of the standard.
@@ -165,9 +165,9 @@ fn base_unit(node: Node) -> Option<BaseUnit> {
 fn of_two(node: Node, types: &HashMap<String, String>) -> Result<Variable, NotRead> {
     let own = node.children().find(Node::is_element).ok_or_else(|| wrong("a variable has no type".to_owned()))?;
     let kind = match own.tag_name().name() {
-        "Real" => Ok(Kind::Float64),
-        "Integer" | "Enumeration" => Ok(Kind::Int32),
-        "Boolean" => Ok(Kind::Boolean),
+        "Real" => Ok(NumberType::Float64),
+        "Integer" | "Enumeration" => Ok(NumberType::Int32),
+        "Boolean" => Ok(NumberType::Boolean),
         other => Err(other.to_owned()),
     };
     variable(node, own, kind, types)
@@ -178,17 +178,17 @@ fn of_three(node: Node, types: &HashMap<String, String>) -> Result<Vec<Variable>
     let is_array = children(node, "Dimension").next().is_some();
     let kind = match node.tag_name().name() {
         word if is_array => Err(format!("array of {word}")),
-        "Float64" => Ok(Kind::Float64),
-        "Float32" => Ok(Kind::Float32),
-        "Int8" => Ok(Kind::Int8),
-        "UInt8" => Ok(Kind::UInt8),
-        "Int16" => Ok(Kind::Int16),
-        "UInt16" => Ok(Kind::UInt16),
-        "Int32" => Ok(Kind::Int32),
-        "UInt32" => Ok(Kind::UInt32),
-        "Int64" | "Enumeration" => Ok(Kind::Int64),
-        "UInt64" => Ok(Kind::UInt64),
-        "Boolean" => Ok(Kind::Boolean),
+        "Float64" => Ok(NumberType::Float64),
+        "Float32" => Ok(NumberType::Float32),
+        "Int8" => Ok(NumberType::Int8),
+        "UInt8" => Ok(NumberType::UInt8),
+        "Int16" => Ok(NumberType::Int16),
+        "UInt16" => Ok(NumberType::UInt16),
+        "Int32" => Ok(NumberType::Int32),
+        "UInt32" => Ok(NumberType::UInt32),
+        "Int64" | "Enumeration" => Ok(NumberType::Int64),
+        "UInt64" => Ok(NumberType::UInt64),
+        "Boolean" => Ok(NumberType::Boolean),
         other => Err(other.to_owned()),
     };
     let own = variable(node, node, kind, types)?;
@@ -201,7 +201,7 @@ fn of_three(node: Node, types: &HashMap<String, String>) -> Result<Vec<Variable>
 fn variable(
     node: Node,
     own: Node,
-    kind: Result<Kind, String>,
+    kind: Result<NumberType, String>,
     types: &HashMap<String, String>,
 ) -> Result<Variable, NotRead> {
     let name = node.attribute("name").ok_or_else(|| wrong("a variable has no `name`".to_owned()))?.to_owned();

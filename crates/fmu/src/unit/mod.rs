@@ -6,7 +6,7 @@ mod variable;
 
 pub use archive::{digest, unpack};
 pub use description::{Interface, Unit, Version};
-pub use variable::{BaseUnit, Kind, Variable};
+pub use variable::{BaseUnit, NumberType, Variable};
 
 /// Why a file is not read as a unit.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Type of a variable that is one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Kind {
+pub enum NumberType {
     /// `Real`, `Float64`.
     Float64,
     /// `Float32`.
@@ -37,7 +37,7 @@ pub struct Variable {
     /// Its number.
     pub reference: u32,
     /// Its type; the word of the description where it is not one number of a type that is known here.
-    pub kind: Result<Kind, String>,
+    pub kind: Result<NumberType, String>,
     /// `parameter`, `input`, `output`, `local`, …
     pub causality: String,
     /// Value at the start, where it may be set before.

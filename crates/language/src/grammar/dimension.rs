@@ -12,7 +12,7 @@ use crate::syntax::source::Span;
 
 /// Known dimension of a part of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum KnownDimension {
     /// Made of bare numbers; its value where that is plain.
     Number(Option<f64>),
     /// Nothing is known.
@@ -26,7 +26,7 @@ pub enum Kind {
     },
 }
 
-impl Kind {
+impl KnownDimension {
     /// A parameter of this dimension.
     pub fn parameter(dimension: Dimension) -> Self {
         Self::Known { dimension, motion: false }
@@ -59,27 +59,27 @@ pub struct Mismatch {
 /// mismatch within it goes to `mismatches`.
 pub fn analyse(
     formula: &Formula,
-    name: impl FnMut(&str) -> Kind,
+    name: impl FnMut(&str) -> KnownDimension,
     table: impl Fn(Spline) -> [Option<Dimension>; 2],
     mismatches: &mut Vec<Mismatch>,
-) -> Kind {
-    of_terms(formula, name, table, mismatches).pop().unwrap_or(Kind::Any)
+) -> KnownDimension {
+    of_terms(formula, name, table, mismatches).pop().unwrap_or(KnownDimension::Any)
 }
 
 /// The same of every term of the formula, that of the formula last.
 pub fn of_terms(
     formula: &Formula,
-    mut name: impl FnMut(&str) -> Kind,
+    mut name: impl FnMut(&str) -> KnownDimension,
     table: impl Fn(Spline) -> [Option<Dimension>; 2],
     mismatches: &mut Vec<Mismatch>,
-) -> Vec<Kind> {
-    let mut kinds: Vec<Kind> = Vec::with_capacity(formula.terms().len());
+) -> Vec<KnownDimension> {
+    let mut kinds: Vec<KnownDimension> = Vec::with_capacity(formula.terms().len());
     let is_half =
         |term: usize| matches!(formula.terms()[term].0, Term::Binary(Binary::Select | Binary::SelectElse, ..));
     for (term, span) in formula.terms() {
         let kind = match term {
-            Term::Number(value) => Ok(Kind::Number(Some(*value))),
-            Term::Quantity(_, mark) => Ok(Kind::parameter(Dimension::of_mark(*mark))),
+            Term::Number(value) => Ok(KnownDimension::Number(Some(*value))),
+            Term::Quantity(_, mark) => Ok(KnownDimension::parameter(Dimension::of_mark(*mark))),
             Term::Compared(a, b) => {
                 // In the order in which they stand there.
                 let [first, second] =
@@ -102,115 +102,120 @@ pub fn of_terms(
         };
         kinds.push(kind.unwrap_or_else(|message| {
             mismatches.push(Mismatch { message, span: span.clone() });
-            Kind::Any
+            KnownDimension::Any
         }));
     }
     kinds
 }
 
 /// A table's value.
-fn looked_up([argument, value]: [Option<Dimension>; 2], a: Kind) -> Result<Kind, String> {
-    if let (Some(wanted), Kind::Known { dimension, .. }) = (argument, a)
+fn looked_up([argument, value]: [Option<Dimension>; 2], a: KnownDimension) -> Result<KnownDimension, String> {
+    if let (Some(wanted), KnownDimension::Known { dimension, .. }) = (argument, a)
         && !dimension.fits(wanted)
     {
         return Err(format!("{dimension} stands where {wanted} belongs"));
     }
-    Ok(value.map_or(Kind::Any, Kind::parameter))
+    Ok(value.map_or(KnownDimension::Any, KnownDimension::parameter))
 }
 
-fn unary(function: Unary, a: Kind) -> Result<Kind, String> {
+fn unary(function: Unary, a: KnownDimension) -> Result<KnownDimension, String> {
     match function {
         Unary::Neg => Ok(match a {
-            Kind::Number(value) => Kind::Number(value.map(|value| -value)),
+            KnownDimension::Number(value) => KnownDimension::Number(value.map(|value| -value)),
             other => other,
         }),
         Unary::Abs => Ok(match a {
-            Kind::Number(value) => Kind::Number(value.map(f64::abs)),
+            KnownDimension::Number(value) => KnownDimension::Number(value.map(f64::abs)),
             other => other,
         }),
         Unary::Sqrt => power(a, Some(0.5)),
-        Unary::Sign => Ok(Kind::Number(None)),
+        Unary::Sign => Ok(KnownDimension::Number(None)),
         _ => match a {
-            Kind::Known { dimension, .. } if !dimension.fits(Dimension::NUMBER) => {
+            KnownDimension::Known { dimension, .. } if !dimension.fits(Dimension::NUMBER) => {
                 let wanted = match function {
                     Unary::Sin | Unary::Cos | Unary::Tan => "an angle (rad)",
                     _ => "a pure number",
                 };
                 Err(format!("{dimension} stands where {wanted} belongs"))
             }
-            _ => Ok(Kind::Number(None)),
+            _ => Ok(KnownDimension::Number(None)),
         },
     }
 }
 
-fn binary(function: Binary, a: Kind, b: Kind) -> Result<Kind, String> {
+fn binary(function: Binary, a: KnownDimension, b: KnownDimension) -> Result<KnownDimension, String> {
     match function {
         Binary::Add | Binary::Sub => sum(a, b, if function == Binary::Add { "added" } else { "subtracted" }),
         Binary::Min | Binary::Max => sum(a, b, "compared"),
         Binary::Select | Binary::SelectElse => Ok(match b {
-            Kind::Number(_) => Kind::Number(None),
+            KnownDimension::Number(_) => KnownDimension::Number(None),
             other => other,
         }),
-        Binary::Atan2 => sum(a, b, "compared").map(|_| Kind::Number(None)),
+        Binary::Atan2 => sum(a, b, "compared").map(|_| KnownDimension::Number(None)),
         Binary::Mul => Ok(product(a, b, Dimension::times, |x, y| x * y)),
         Binary::Div => Ok(product(a, b, Dimension::per, |x, y| x / y)),
         Binary::Pow => match b {
-            Kind::Number(exponent) => power(a, exponent),
-            Kind::Any => power(a, None),
-            Kind::Known { dimension, .. } if dimension.fits(Dimension::NUMBER) => power(a, None),
-            Kind::Known { dimension, .. } => Err(format!("{dimension} cannot be an exponent")),
+            KnownDimension::Number(exponent) => power(a, exponent),
+            KnownDimension::Any => power(a, None),
+            KnownDimension::Known { dimension, .. } if dimension.fits(Dimension::NUMBER) => power(a, None),
+            KnownDimension::Known { dimension, .. } => Err(format!("{dimension} cannot be an exponent")),
         },
     }
 }
 
-fn sum(a: Kind, b: Kind, verb: &str) -> Result<Kind, String> {
+fn sum(a: KnownDimension, b: KnownDimension, verb: &str) -> Result<KnownDimension, String> {
     match (a, b) {
-        (Kind::Number(_), Kind::Number(_)) => Ok(Kind::Number(None)),
-        (Kind::Known { dimension: x, motion: m }, Kind::Known { dimension: y, motion: n }) => {
+        (KnownDimension::Number(_), KnownDimension::Number(_)) => Ok(KnownDimension::Number(None)),
+        (KnownDimension::Known { dimension: x, motion: m }, KnownDimension::Known { dimension: y, motion: n }) => {
             if x.fits(y) {
-                Ok(Kind::Known { dimension: x.of_sum(y), motion: m && n })
+                Ok(KnownDimension::Known { dimension: x.of_sum(y), motion: m && n })
             } else {
                 Err(format!("{x} and {y} cannot be {verb}"))
             }
         }
-        (known @ Kind::Known { .. }, _) | (_, known @ Kind::Known { .. }) => Ok(known),
-        _ => Ok(Kind::Any),
+        (known @ KnownDimension::Known { .. }, _) | (_, known @ KnownDimension::Known { .. }) => Ok(known),
+        _ => Ok(KnownDimension::Any),
     }
 }
 
 fn product(
-    a: Kind,
-    b: Kind,
+    a: KnownDimension,
+    b: KnownDimension,
     dimensions: impl Fn(Dimension, Dimension) -> Dimension,
     numbers: impl Fn(f64, f64) -> f64,
-) -> Kind {
+) -> KnownDimension {
     match (a, b) {
-        (Kind::Number(x), Kind::Number(y)) => Kind::Number(x.zip(y).map(|(x, y)| numbers(x, y))),
-        (Kind::Any, _) | (_, Kind::Any) => Kind::Any,
-        (Kind::Number(_), Kind::Known { motion: true, .. }) | (Kind::Known { motion: true, .. }, Kind::Number(_)) => {
-            Kind::Any
+        (KnownDimension::Number(x), KnownDimension::Number(y)) => {
+            KnownDimension::Number(x.zip(y).map(|(x, y)| numbers(x, y)))
         }
-        (Kind::Number(_), Kind::Known { dimension, .. }) => Kind::parameter(dimensions(Dimension::NUMBER, dimension)),
-        (known @ Kind::Known { .. }, Kind::Number(_)) => known,
-        (Kind::Known { dimension: x, motion: m }, Kind::Known { dimension: y, motion: n }) => {
-            Kind::Known { dimension: dimensions(x, y), motion: m && n }
+        (KnownDimension::Any, _) | (_, KnownDimension::Any) => KnownDimension::Any,
+        (KnownDimension::Number(_), KnownDimension::Known { motion: true, .. })
+        | (KnownDimension::Known { motion: true, .. }, KnownDimension::Number(_)) => KnownDimension::Any,
+        (KnownDimension::Number(_), KnownDimension::Known { dimension, .. }) => {
+            KnownDimension::parameter(dimensions(Dimension::NUMBER, dimension))
+        }
+        (known @ KnownDimension::Known { .. }, KnownDimension::Number(_)) => known,
+        (KnownDimension::Known { dimension: x, motion: m }, KnownDimension::Known { dimension: y, motion: n }) => {
+            KnownDimension::Known { dimension: dimensions(x, y), motion: m && n }
         }
     }
 }
 
-fn power(base: Kind, exponent: Option<f64>) -> Result<Kind, String> {
+fn power(base: KnownDimension, exponent: Option<f64>) -> Result<KnownDimension, String> {
     match base {
-        Kind::Number(value) => {
-            Ok(Kind::Number(value.zip(exponent).map(|(value, exponent)| symdiff::math::pow(value, exponent))))
+        KnownDimension::Number(value) => {
+            Ok(KnownDimension::Number(value.zip(exponent).map(|(value, exponent)| symdiff::math::pow(value, exponent))))
         }
-        Kind::Any => Ok(Kind::Any),
-        Kind::Known { dimension, .. } if dimension.fits(Dimension::NUMBER) => Ok(Kind::Number(None)),
-        Kind::Known { dimension, motion } => {
+        KnownDimension::Any => Ok(KnownDimension::Any),
+        KnownDimension::Known { dimension, .. } if dimension.fits(Dimension::NUMBER) => {
+            Ok(KnownDimension::Number(None))
+        }
+        KnownDimension::Known { dimension, motion } => {
             let Some(exponent) = exponent else {
                 return Err(format!("{dimension} needs a number as its exponent"));
             };
             match dimension.to_the(exponent) {
-                Some(dimension) => Ok(Kind::Known { dimension, motion }),
+                Some(dimension) => Ok(KnownDimension::Known { dimension, motion }),
                 None => Err(format!("{dimension} to the power {exponent} has no unit")),
             }
         }
@@ -224,16 +229,16 @@ mod tests {
     use super::*;
     use crate::grammar::unit::Unit;
 
-    fn name(name: &str) -> Kind {
+    fn name(name: &str) -> KnownDimension {
         match name {
-            "l" => Kind::parameter(Dimension::LENGTH),
-            "m" => Kind::parameter(Dimension::MASS),
-            "omega" => Kind::parameter(Dimension::ANGULAR_VELOCITY),
-            "F" => Kind::parameter(Dimension::FORCE),
-            "t" => Kind::motion(Dimension::TIME),
-            "v" => Kind::motion(Dimension::VELOCITY),
-            "angle" => Kind::motion(Dimension::ANGLE),
-            _ => Kind::Any,
+            "l" => KnownDimension::parameter(Dimension::LENGTH),
+            "m" => KnownDimension::parameter(Dimension::MASS),
+            "omega" => KnownDimension::parameter(Dimension::ANGULAR_VELOCITY),
+            "F" => KnownDimension::parameter(Dimension::FORCE),
+            "t" => KnownDimension::motion(Dimension::TIME),
+            "v" => KnownDimension::motion(Dimension::VELOCITY),
+            "angle" => KnownDimension::motion(Dimension::ANGLE),
+            _ => KnownDimension::Any,
         }
     }
 
@@ -246,9 +251,9 @@ mod tests {
         match mismatches.into_iter().next() {
             Some(mismatch) => Err(format!("{:?} {}", mismatch.span, mismatch.message)),
             None => Ok(match kind {
-                Kind::Number(_) => "number".to_owned(),
-                Kind::Any => "any".to_owned(),
-                Kind::Known { dimension, .. } => dimension.unit(),
+                KnownDimension::Number(_) => "number".to_owned(),
+                KnownDimension::Any => "any".to_owned(),
+                KnownDimension::Known { dimension, .. } => dimension.unit(),
             }),
         }
     }

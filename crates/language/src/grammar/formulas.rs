@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use symdiff::formula::{Names, Vocabulary};
 use symdiff::{Builder, Formula, Spline, Unary};
 
-use super::dimension::{self, Kind};
+use super::dimension::{self, KnownDimension};
 use super::names::{self, Context, NameError};
 use super::own_names::OwnNames;
 use super::quantity::Dimension;
@@ -214,11 +214,11 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// The formula's dimension; inconsistent dimensions are reported.
-    pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
+    pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> KnownDimension {
         let mut mismatches = Vec::new();
         let name = |name: &str| match self.variable {
-            Some((own, dimension)) if own == name => Kind::motion(dimension),
-            _ => self.symbol(name).map_or(Kind::Any, |symbol| self.kind_of(symbol)),
+            Some((own, dimension)) if own == name => KnownDimension::motion(dimension),
+            _ => self.symbol(name).map_or(KnownDimension::Any, |symbol| self.kind_of(symbol)),
         };
         let kinds = dimension::of_terms(formula, name, |spline| self.table(spline), &mut mismatches);
         self.mentions_formula(node, offset, formula, &kinds);
@@ -227,7 +227,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             let index = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
             self.error(Code::WrongDimension, index, mismatch.message, None);
         }
-        kinds.last().copied().unwrap_or(Kind::Any)
+        kinds.last().copied().unwrap_or(KnownDimension::Any)
     }
 
     /// Dimensions of a table's argument and value.
@@ -237,13 +237,14 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// Dimension of a name's value. An equation's multiplier is the force conjugate to the equated quantity.
-    pub(super) fn kind_of(&self, symbol: Symbol) -> Kind {
+    pub(super) fn kind_of(&self, symbol: Symbol) -> KnownDimension {
         if let Symbol::Reaction { joint, component: ReactionComponent::Force } = symbol
             && let Some(left) = self.model.equated(joint)
         {
-            let name = |name: &str| self.symbol(name).map_or(Kind::Any, |symbol| names::kind(symbol, &self.kinds));
+            let name =
+                |name: &str| self.symbol(name).map_or(KnownDimension::Any, |symbol| names::kind(symbol, &self.kinds));
             let equated = dimension::analyse(left, name, |spline| self.table(spline), &mut Vec::new()).dimension();
-            return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
+            return equated.map_or(KnownDimension::Any, |dimension| KnownDimension::motion(dimension.conjugate()));
         }
         if let Symbol::Sensor { effect, measure } = symbol {
             let measures = match effect.checked_sub(self.model.effects()) {
@@ -255,15 +256,17 @@ impl<S: SymbolTable> Reader<'_, S> {
             };
             let found = measures.into_iter().find(|(known, _)| *known == measure && measure.has_unit());
             let dimension = found.map(|(_, dimension)| dimension);
-            return dimension.map_or(Kind::Any, Kind::motion);
+            return dimension.map_or(KnownDimension::Any, KnownDimension::motion);
         }
         if let Symbol::Trajectory { trajectory, order } = symbol {
             let dimension = self.model.trajectory_dimension(trajectory);
             let per_time = |dimension: Dimension, _| dimension.per(Dimension::TIME);
-            return dimension.map_or(Kind::Any, |value| Kind::motion((0..order as usize).fold(value, per_time)));
+            return dimension.map_or(KnownDimension::Any, |value| {
+                KnownDimension::motion((0..order as usize).fold(value, per_time))
+            });
         }
         if let Symbol::BlackBox { output } = symbol {
-            return Kind::motion(self.model.black_box_dimension(output));
+            return KnownDimension::motion(self.model.black_box_dimension(output));
         }
         names::kind(symbol, &self.kinds)
     }
@@ -281,7 +284,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 self.refuse_ambiguous(node);
                 self.suspect_quantity(unit.to_si(value), wanted);
                 let formula = Formula::number(unit.to_si(value));
-                self.mentions_formula(node, 0, &formula, &[Kind::parameter(wanted)]);
+                self.mentions_formula(node, 0, &formula, &[KnownDimension::parameter(wanted)]);
                 formula
             }
             Written::Formula(formula) => {

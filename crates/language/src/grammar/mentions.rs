@@ -6,7 +6,7 @@ use std::cell::RefCell;
 
 use symdiff::Formula;
 
-use super::dimension::Kind;
+use super::dimension::KnownDimension;
 use crate::syntax::source::Span;
 
 /// Kind of a named thing.
@@ -78,7 +78,7 @@ pub struct ReadFormula {
     /// The formula, with full names.
     pub formula: Formula,
     /// The dimension of each term.
-    pub kinds: Vec<Kind>,
+    pub kinds: Vec<KnownDimension>,
 }
 
 /// All names and formulas that were read, in the order of reading; those of scenes again.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::dimension::Kind;
+use super::dimension::KnownDimension;
 use super::motions::{
     ANGULAR_MOTIONS, ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, joint_dimension, motion_dimension,
 };
@@ -380,9 +380,9 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
 
 /// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations,
 /// trajectories, black boxes and of what effects measure are the reader's.
-pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
-    Kind::motion(match symbol {
-        Symbol::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
+pub fn kind(symbol: Symbol, parameters: &[KnownDimension]) -> KnownDimension {
+    KnownDimension::motion(match symbol {
+        Symbol::Parameter(index) => return parameters.get(index).copied().unwrap_or(KnownDimension::Any),
         Symbol::Time => Dimension::TIME,
         Symbol::Coordinate { coordinate, order, .. } | Symbol::Point { coordinate, order, .. } => {
             motion_dimension(coordinate, order)
@@ -393,6 +393,6 @@ pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
         Symbol::Reaction { component, .. } if component.is_torque() => Dimension::TORQUE,
         Symbol::Energy(_) => Dimension::TORQUE,
         Symbol::Reaction { .. } => Dimension::FORCE,
-        Symbol::Sensor { .. } | Symbol::Trajectory { .. } | Symbol::BlackBox { .. } => return Kind::Any,
+        Symbol::Sensor { .. } | Symbol::Trajectory { .. } | Symbol::BlackBox { .. } => return KnownDimension::Any,
     })
 }

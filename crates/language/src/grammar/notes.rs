@@ -3,7 +3,7 @@
 use symdiff::formula::Term;
 use symdiff::{Formula, Unary};
 
-use super::dimension::Kind;
+use super::dimension::KnownDimension;
 use super::mentions::{Definition, Mention, Mentions, NameKind, ReadFormula};
 use super::reader::Reader;
 use super::report::Report;
@@ -54,7 +54,7 @@ impl Report<'_> {
     }
 
     /// Notes a formula that begins at a byte of a node, with the dimensions of its terms.
-    pub fn mentions_formula(&self, node: &Node, offset: usize, formula: &Formula, kinds: &[Kind]) {
+    pub fn mentions_formula(&self, node: &Node, offset: usize, formula: &Formula, kinds: &[KnownDimension]) {
         self.note(|all| {
             let start = node.scalar().and_then(|scalar| scalar.start).map(|start| start + offset);
             let (formula, kinds) = (formula.clone(), kinds.to_vec());

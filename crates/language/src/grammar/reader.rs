@@ -8,7 +8,7 @@ use std::ops::{Deref, DerefMut};
 use symdiff::Spline;
 
 use super::declared::DeclaredStates;
-use super::dimension::Kind;
+use super::dimension::KnownDimension;
 use super::own_names::LikeName;
 use super::quantity::Dimension;
 use super::report::Report;
@@ -34,7 +34,7 @@ pub struct Reader<'d, S> {
     /// A name of its own that the formula being read may use, and its dimension.
     pub variable: Option<(&'static str, Dimension)>,
     /// Dimension of each parameter.
-    pub kinds: Vec<Kind>,
+    pub kinds: Vec<KnownDimension>,
     /// Parameter values at which requirements are checked.
     pub corners: Vec<Corner>,
     /// For each parameter the corners at which its value is not the nominal one, ascending.

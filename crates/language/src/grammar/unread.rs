@@ -3,7 +3,7 @@
 use symdiff::Formula;
 use symdiff::formula::{Names, Vocabulary};
 
-use super::dimension::{self, Kind};
+use super::dimension::{self, KnownDimension};
 use super::names::NameError;
 use super::own_names::OwnNames;
 use super::quantity::Dimension;
@@ -64,7 +64,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let names = own_names.as_ref().map(|names| names as &dyn Names);
         let formula =
             Formula::parse_with(&scalar.text, &Vocabulary { tables: &tables, unit: Some(&unit), names }).ok()?;
-        let name = |name: &str| self.symbol(name).map_or(Kind::Any, |symbol| self.kind_of(symbol));
+        let name = |name: &str| self.symbol(name).map_or(KnownDimension::Any, |symbol| self.kind_of(symbol));
         dimension::analyse(&formula, name, |spline| self.table(spline), &mut Vec::new()).dimension()
     }
 }

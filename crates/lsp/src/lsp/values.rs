@@ -2,7 +2,7 @@
 
 use symdiff::{Builder, Expr, Formula, Interval, Ranges, Scalar};
 
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::grammar::formulas::evaluate;
 use crate::grammar::names;
 use crate::grammar::{Symbol, SymbolTable};
@@ -110,8 +110,8 @@ pub fn unit_of(model: &Description, name: &str) -> Option<String> {
         }
         Symbol::BlackBox { output } => model.black_box_dimension(output),
         symbol => match names::kind(symbol, &[]) {
-            Kind::Known { dimension, .. } => dimension,
-            Kind::Number(_) | Kind::Any => return None,
+            KnownDimension::Known { dimension, .. } => dimension,
+            KnownDimension::Number(_) | KnownDimension::Any => return None,
         },
     };
     Some(dimension.unit())

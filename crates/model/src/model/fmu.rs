@@ -1,6 +1,6 @@
 //! `black_box: { fmu: FILE }`: the variables of a unit that a model sets and wants.
 
-use mbint_fmu::{Access, Interface, Kind, Task, Unit, Variable, digest};
+use mbint_fmu::{Access, Interface, NumberType, Task, Unit, Variable, digest};
 
 use super::description::{BoxOutput, FmuProgram};
 use super::parameters::unit;
@@ -233,7 +233,7 @@ fn output(reader: &mut Reader, unit_file: &Unit, variable: &str, own: &Wanted) -
 
 /// How a variable is set or read, under a name of the model.
 fn access(reader: &mut Reader, unit: &Unit, variable: &Variable, name: &str, span: &Span) -> Option<Access> {
-    let kind: Kind = match &variable.kind {
+    let kind: NumberType = match &variable.kind {
         Ok(kind) => *kind,
         Err(word) => {
             let message = format!("`{}` is no number: its type is `{}`", clip(&variable.name), clip(word));

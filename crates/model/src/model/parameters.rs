@@ -19,7 +19,7 @@ use super::description::{Parameter, ParameterValue};
 use crate::expand::notation;
 use crate::expand::overrides::Override;
 use crate::grammar::Symbol;
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
@@ -85,7 +85,7 @@ pub(super) fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Overrid
         reader.model.parameters.push(Parameter { name: entry.key.clone(), unit: String::new(), value });
     }
     reader.used = vec![false; entries.len()];
-    reader.kinds = vec![Kind::Any; entries.len()];
+    reader.kinds = vec![KnownDimension::Any; entries.len()];
     let mut drafts: Vec<Draft> =
         entries.iter().enumerate().map(|(index, entry)| draft(reader, entry, replaced.get(&index).copied())).collect();
     dependent::add_deviations(reader, &mut drafts, overrides);
@@ -187,7 +187,7 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
             Some((formula, kind)) => (Some(formula), kind),
             None => return,
         },
-        _ => (None, draft.unit.map_or(Kind::Any, |unit| Kind::parameter(unit.dimension))),
+        _ => (None, draft.unit.map_or(KnownDimension::Any, |unit| KnownDimension::parameter(unit.dimension))),
     };
     let at = |name: &str| match reader.model.symbol(name) {
         Some(Symbol::Parameter(used)) => Some(values[used]),
@@ -205,7 +205,7 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
         values[index] = nominal;
         reader.model.parameters[index].value = if lower < upper {
             let written = written(reader, draft, &mut kind);
-            says_more(reader, draft, index, law::Place { nominal, lower, upper, written }, &mut kind);
+            says_more(reader, draft, index, law::LawInterval { nominal, lower, upper, written }, &mut kind);
             ParameterValue::Interval { nominal, lower, upper }
         } else {
             reader.certain.insert(reader.model.parameters[index].name.clone());
@@ -230,7 +230,7 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
 }
 
 /// Nominal value and limits as the file has them, where they are numbers that were replaced and a law of them stays.
-fn written(reader: &mut Reader, draft: &Draft, kind: &mut Kind) -> Option<[f64; 3]> {
+fn written(reader: &mut Reader, draft: &Draft, kind: &mut KnownDimension) -> Option<[f64; 3]> {
     let before = draft.spec.before.as_ref()?;
     let value = before.value.as_ref().and_then(|node| reader.written(node));
     let nominal = match (&value, &before.value) {
@@ -245,7 +245,7 @@ fn written(reader: &mut Reader, draft: &Draft, kind: &mut Kind) -> Option<[f64; 
 }
 
 /// Reads the law of an uncertain parameter, and what its tolerance costs.
-fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::Place, kind: &mut Kind) {
+fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::LawInterval, kind: &mut KnownDimension) {
     let name = reader.model.parameters[index].name.clone();
     if let Some(node) = &draft.spec.distribution {
         let law = law::read(reader, draft, node, place, kind);
@@ -259,7 +259,7 @@ fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::Place
 }
 
 /// Notes a parameter's dimension and unit.
-fn settle(reader: &mut Reader, draft: &Draft, index: usize, kind: Kind) {
+fn settle(reader: &mut Reader, draft: &Draft, index: usize, kind: KnownDimension) {
     reader.kinds[index] = kind;
     if let Some(unit) = written_unit(draft) {
         reader.model.parameter_units.insert(reader.model.parameters[index].name.clone(), unit);
@@ -267,7 +267,7 @@ fn settle(reader: &mut Reader, draft: &Draft, index: usize, kind: Kind) {
     let declared = draft.unit.filter(|unit| unit.is_si()).and(draft.spec.unit.as_ref()).and_then(Node::scalar);
     reader.model.parameters[index].unit = match (declared, kind) {
         (Some(unit), _) => unit.text.trim().to_owned(),
-        (None, Kind::Known { dimension, .. }) => dimension.unit(),
+        (None, KnownDimension::Known { dimension, .. }) => dimension.unit(),
         _ => String::new(),
     };
 }
@@ -286,7 +286,7 @@ fn written_unit(draft: &Draft) -> Option<DisplayUnit> {
 }
 
 /// The value in SI and its dimension.
-fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -> Option<(Formula, Kind)> {
+fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -> Option<(Formula, KnownDimension)> {
     match (written, draft.unit) {
         (Written::Quantity { value, unit }, declared) => {
             if let Some(declared) = declared {
@@ -294,11 +294,11 @@ fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -
             }
             // The declared one is what users of the parameter count on.
             let dimension = declared.map_or(unit.dimension, |declared| declared.dimension);
-            Some((Formula::number(unit.to_si(*value)), Kind::parameter(dimension)))
+            Some((Formula::number(unit.to_si(*value)), KnownDimension::parameter(dimension)))
         }
         (Written::Formula(formula), Some(unit)) => {
             if let Some(number) = formula.as_number() {
-                return Some((Formula::number(unit.to_si(number)), Kind::parameter(unit.dimension)));
+                return Some((Formula::number(unit.to_si(number)), KnownDimension::parameter(unit.dimension)));
             }
             if let Some(found) = reader.kind(node, formula, 0).dimension() {
                 reader.check_fits(&node.span, found, unit.dimension);
@@ -314,10 +314,10 @@ fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -
                 );
                 return None;
             }
-            Some((formula.clone(), Kind::parameter(unit.dimension)))
+            Some((formula.clone(), KnownDimension::parameter(unit.dimension)))
         }
         (Written::Formula(formula), None) => {
-            let kind = reader.kind(node, formula, 0).dimension().map_or(Kind::Any, Kind::parameter);
+            let kind = reader.kind(node, formula, 0).dimension().map_or(KnownDimension::Any, KnownDimension::parameter);
             Some((formula.clone(), kind))
         }
     }

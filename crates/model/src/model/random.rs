@@ -4,7 +4,7 @@ use symdiff::Formula;
 
 use super::names::Reader;
 use crate::elements::{RandomFunction, Timing, Trajectory};
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::grammar::{Context, Symbol};
@@ -164,7 +164,7 @@ fn add_seed(reader: &mut Reader, name: &str, seed: usize) {
     let parameter =
         Parameter { name: seed_of(name), unit: String::new(), value: ParameterValue::Formula(Formula::number(number)) };
     reader.model.parameters.push(parameter);
-    reader.kinds.push(Kind::parameter(Dimension::NUMBER));
+    reader.kinds.push(KnownDimension::parameter(Dimension::NUMBER));
     reader.varies.push(false);
     reader.used.push(true);
     reader.used_by_parameters.push(false);

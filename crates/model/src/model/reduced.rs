@@ -5,7 +5,7 @@ use symdiff::{Binary, Formula, Unary};
 use super::description::{ReducedKind, ReducedOutput};
 use super::display;
 use super::results_by_name::{self, RESULTS, Source};
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
@@ -266,8 +266,8 @@ fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Opti
         .with_names(|name| outputs.iter().find(|output| output.name == name).map(|output| output.formula.clone()));
     reader.check_names(node, &formula, range.start, Context::Output).then_some(())?;
     let dimension = match reader.kind(node, &formula, range.start) {
-        Kind::Known { dimension, .. } => Some(dimension),
-        Kind::Number(_) | Kind::Any => None,
+        KnownDimension::Known { dimension, .. } => Some(dimension),
+        KnownDimension::Number(_) | KnownDimension::Any => None,
     };
     Some(Source { formula, dimension })
 }

@@ -3,7 +3,7 @@
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::named_outputs::with_outputs;
 use super::{display, reduced};
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::grammar::formulas::Written;
 use crate::grammar::motions::{
     ANGULAR_MOTIONS, ATTITUDE, AXES, ORIENTATION, joint_dimension, motion_dimension, motion_name,
@@ -218,8 +218,8 @@ fn output(reader: &mut Reader, entry: &Entry, all: &[Entry]) -> Option<Output> {
             let formula = with_outputs(reader, entry, all, formula)?;
             reader.check_names(node, &formula, 0, Context::Output).then_some(())?;
             let dimension = match reader.kind(node, &formula, 0) {
-                Kind::Known { dimension, .. } => Some(dimension),
-                Kind::Number(_) | Kind::Any => None,
+                KnownDimension::Known { dimension, .. } => Some(dimension),
+                KnownDimension::Number(_) | KnownDimension::Any => None,
             };
             let natural = natural_unit(reader, &formula);
             let unit = natural.unwrap_or_else(|| dimension.map_or_else(String::new, Dimension::unit));

@@ -7,7 +7,7 @@ use symdiff::Formula;
 
 use super::description::{Analysis, Description};
 use crate::grammar::Symbol;
-use crate::grammar::dimension::{self, Kind};
+use crate::grammar::dimension::{self, KnownDimension};
 use crate::grammar::quantity::Dimension;
 use crate::model::names::Reader;
 use crate::syntax::codes::Code;
@@ -153,10 +153,10 @@ pub(super) fn part(reader: &mut Reader, node: &Node, range: Range<usize>, number
     }
     let mut mismatches = Vec::new();
     let kind = |name: &str| match (numbers.dimension)(&reader.model, name) {
-        Some(dimension) => dimension.map_or(Kind::Any, Kind::motion),
+        Some(dimension) => dimension.map_or(KnownDimension::Any, KnownDimension::motion),
         None => match reader.symbol(name) {
-            Some(Symbol::Parameter(index)) => reader.kinds.get(index).copied().unwrap_or(Kind::Any),
-            _ => Kind::Any,
+            Some(Symbol::Parameter(index)) => reader.kinds.get(index).copied().unwrap_or(KnownDimension::Any),
+            _ => KnownDimension::Any,
         },
     };
     let dimension = dimension::analyse(&formula, kind, |_| [None; 2], &mut mismatches).dimension();

@@ -1,7 +1,7 @@
 //! `statistics:`, and the laws of parameters that have none of their own.
 
 use super::description::{Analysis, Correlation, ParameterValue};
-use super::parameters::law::{Place, named};
+use super::parameters::law::{LawInterval, named};
 use crate::grammar::mentions::NameKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
@@ -105,12 +105,12 @@ fn quantiles(reader: &mut Reader, node: &Node) {
 fn default_law(reader: &mut Reader, node: &Node) {
     let Some(scalar) = reader.scalar(node, "the name of a distribution") else { return };
     let known = reader.model.statistics.laws.clone();
-    let uncertain: Vec<(String, Place)> = reader
+    let uncertain: Vec<(String, LawInterval)> = reader
         .model
         .uncertain()
         .filter_map(|(_, parameter)| match parameter.value {
             ParameterValue::Interval { nominal, lower, upper } => {
-                Some((parameter.name.clone(), Place { nominal, lower, upper, written: None }))
+                Some((parameter.name.clone(), LawInterval { nominal, lower, upper, written: None }))
             }
             ParameterValue::Formula(_) => None,
         })
@@ -118,7 +118,7 @@ fn default_law(reader: &mut Reader, node: &Node) {
         // A zone has a joint law of its own.
         .filter(|(name, _)| !reader.model.zones.iter().any(|zone| zone.members.contains(name)))
         .collect();
-    let anywhere = Place { nominal: 0.0, lower: -1.0, upper: 1.0, written: None };
+    let anywhere = LawInterval { nominal: 0.0, lower: -1.0, upper: 1.0, written: None };
     if named(&scalar.text, anywhere).is_none() {
         let names = ["uniform", "normal", "truncated_normal", "triangular"];
         let message = format!("`{}` is no distribution that needs no numbers", clip(&scalar.text));

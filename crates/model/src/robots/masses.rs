@@ -7,14 +7,14 @@
 use super::algebra::{self, Value, Vector};
 
 /// Mass, centre of mass and inertia about it of a part, in the frame of its body.
-pub struct Part {
+pub struct MassPart {
     pub mass: Value,
     pub center: Vector,
     pub inertia: [Vector; 3],
 }
 
 /// The centre of mass of all parts, whose masses add up to `mass`; without mass it is nowhere, and at 0.
-pub fn center(parts: &[Part], mass: &Value) -> Vector {
+pub fn center(parts: &[MassPart], mass: &Value) -> Vector {
     match parts {
         _ if mass.is_zero() => algebra::vector([0.0; 3]),
         [part] => part.center.clone(),
@@ -26,8 +26,8 @@ pub fn center(parts: &[Part], mass: &Value) -> Vector {
 }
 
 /// Of all parts about their centre of mass.
-pub fn inertia(parts: &[Part], center: &Vector) -> [Vector; 3] {
-    let steiner = |part: &Part| {
+pub fn inertia(parts: &[MassPart], center: &Vector) -> [Vector; 3] {
+    let steiner = |part: &MassPart| {
         let d: Vector = std::array::from_fn(|i| algebra::sub(&part.center[i], &center[i]));
         algebra::steiner(&part.mass, &d)
     };

@@ -21,7 +21,7 @@ use crate::eval::functions;
 use crate::eval::tile::{Record, Tile};
 use crate::eval::vectorised::{Vectorise, vectorised};
 use crate::expr::{Binary, Unary};
-use crate::lower::tape::{Op, Operands, Part, Tape};
+use crate::lower::tape::{Op, Operands, Tape, TapePart};
 
 /// Adjoints of the registers of a [`Tile`]: for each register and lane the derivative of the lane's number by it.
 #[derive(Clone, Debug)]
@@ -146,7 +146,7 @@ impl<const W: usize, const C: usize> Vectorise for Reverse<'_, W, C> {
     #[inline(always)]
     fn run(mut self) {
         for &index in self.parts.iter().rev() {
-            let Some(Part::Run(op, operands)) = self.tape.part(&mut { index }) else { continue };
+            let Some(TapePart::Run(op, operands)) = self.tape.part(&mut { index }) else { continue };
             match op {
                 Op::Copy => self.each::<2>(operands, |_, _, by| [by, 0.0, 0.0]),
                 Op::MulAdd => self.each::<4>(operands, |[a, b, _], _, by| [times(by, b), times(by, a), by]),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::tape::{Op, Operands, Part, Tape};
+use super::tape::{Op, Operands, Tape, TapePart};
 use crate::expr::{Binary, Spline, Unary};
 
 /// Statements of a function, at most, but for those of a region: compilers take more than proportionally long for more.
@@ -46,13 +46,13 @@ impl CWriter {
                 return pieces;
             };
             match part {
-                Part::Region(region) => {
+                TapePart::Region(region) => {
                     let (not, end) = (if region.is_elsewhere() { "" } else { "!" }, region.end());
                     // A condition that is no number is positive, as everywhere.
                     let _ = writeln!(text, "    if ({not}(r[{}] <= 0.0)) {{", region.condition);
                     ends.push(end);
                 }
-                Part::Run(op, operands) => {
+                TapePart::Run(op, operands) => {
                     for registers in operands.chunks_exact(op.arity()) {
                         if statements >= PIECE && ends.is_empty() {
                             pieces.push(std::mem::take(&mut text));

@@ -119,7 +119,7 @@ enum Piece {
 }
 
 /// What an evaluator meets: instructions of one operation, [`Op::arity`] registers each, or the beginning of a region.
-pub(crate) enum Part<'t> {
+pub(crate) enum TapePart<'t> {
     Run(Op, &'t [u32]),
     Region(&'t Region),
 }
@@ -197,8 +197,10 @@ impl Tape {
         let (mut index, mut count) = (0, 0);
         while let Some(part) = self.part(&mut index) {
             match part {
-                Part::Run(op, operands) => count += operands.len() / op.arity(),
-                Part::Region(region) => region.skip_unless(region.wants(if positive { 1.0 } else { 0.0 }), &mut index),
+                TapePart::Run(op, operands) => count += operands.len() / op.arity(),
+                TapePart::Region(region) => {
+                    region.skip_unless(region.wants(if positive { 1.0 } else { 0.0 }), &mut index)
+                }
             }
         }
         count
@@ -230,12 +232,12 @@ impl Tape {
 
     /// What stands at a place, which moves on to the next.
     #[inline(always)]
-    pub(crate) fn part(&self, index: &mut usize) -> Option<Part<'_>> {
+    pub(crate) fn part(&self, index: &mut usize) -> Option<TapePart<'_>> {
         let piece = self.pieces.get(*index)?;
         *index += 1;
         Some(match piece {
-            Piece::Run { op, start, end } => Part::Run(*op, &self.operands[*start..*end]),
-            Piece::Region(region) => Part::Region(region),
+            Piece::Run { op, start, end } => TapePart::Run(*op, &self.operands[*start..*end]),
+            Piece::Region(region) => TapePart::Region(region),
         })
     }
 }

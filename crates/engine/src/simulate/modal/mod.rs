@@ -18,4 +18,4 @@ mod vibrations;
 
 pub use first_order::{Eigenvalue, eigenvalues};
 pub use outputs::{further_outputs, is_one_number};
-pub use vibrations::{ALIKE, Place, Vibrations};
+pub use vibrations::{ALIKE, ModesThere, Vibrations};

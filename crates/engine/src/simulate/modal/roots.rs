@@ -14,7 +14,7 @@ use crate::simulate::statics::{Linearised, times};
 
 /// What a mode is with the nominal parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ModeKind {
     /// A pair of eigenvalues.
     Vibration,
     /// A real eigenvalue.
@@ -24,7 +24,7 @@ pub enum Kind {
 /// A mode with its eigenvalues: one pair, one that is real, or two; none where it was not found again.
 #[derive(Clone, Debug)]
 pub struct Root {
-    pub kind: Kind,
+    pub kind: ModeKind,
     pub of: Vec<Eigenvalue>,
 }
 
@@ -44,7 +44,7 @@ struct Match {
     found: Vec<usize>,
 }
 
-impl Kind {
+impl ModeKind {
     /// Names and units of a mode's results.
     pub fn quantities(self) -> &'static [(&'static str, &'static str)] {
         match self {
@@ -57,7 +57,7 @@ impl Kind {
 impl Root {
     /// A mode of an eigenvalue.
     pub fn of(eigenvalue: Eigenvalue) -> Self {
-        let kind = if eigenvalue.is_pair() { Kind::Vibration } else { Kind::Lag };
+        let kind = if eigenvalue.is_pair() { ModeKind::Vibration } else { ModeKind::Lag };
         Self { kind, of: vec![eigenvalue] }
     }
 
@@ -65,18 +65,18 @@ impl Root {
     pub fn told(&self) -> Vec<f64> {
         let growth = self.growth();
         match (self.kind, self.of.as_slice()) {
-            (Kind::Vibration, [pair]) => {
+            (ModeKind::Vibration, [pair]) => {
                 let frequency = size(pair.value);
                 vec![frequency / TAU, -growth / frequency, growth]
             }
-            (Kind::Vibration, [a, b]) => {
+            (ModeKind::Vibration, [a, b]) => {
                 let (sum, product) = (a.value.re + b.value.re, a.value.re * b.value.re);
                 let frequency = product.abs().sqrt();
                 let damping = if product > 0.0 { -sum / (2.0 * frequency) } else { f64::NAN };
                 vec![if product < 0.0 { -frequency } else { frequency } / TAU, damping, growth]
             }
-            (Kind::Lag, [_]) if growth != 0.0 => vec![-1.0 / growth, growth],
-            (Kind::Lag, [_]) => vec![f64::NAN, growth],
+            (ModeKind::Lag, [_]) if growth != 0.0 => vec![-1.0 / growth, growth],
+            (ModeKind::Lag, [_]) => vec![f64::NAN, growth],
             (kind, _) => vec![f64::NAN; kind.quantities().len()],
         }
     }
@@ -98,10 +98,10 @@ impl Root {
 
     /// How many eigenvalues it has in common with another configuration's.
     fn shared(&self, found: &Eigenvalue) -> f64 {
-        if self.kind == Kind::Lag && found.value == Complex::new(0.0, 0.0) && self.growth() == 0.0 {
+        if self.kind == ModeKind::Lag && found.value == Complex::new(0.0, 0.0) && self.growth() == 0.0 {
             return 1.0;
         }
-        let part = |own: &Eigenvalue| if self.kind == Kind::Lag && own.is_pair() { 0.5 } else { 1.0 };
+        let part = |own: &Eigenvalue| if self.kind == ModeKind::Lag && own.is_pair() { 0.5 } else { 1.0 };
         self.of.iter().map(|own| part(own) * own.shared(found)).sum()
     }
 }
@@ -162,7 +162,7 @@ fn matches(known: &[Root], found: &[Eigenvalue]) -> Vec<Match> {
     let two = |places: &[usize]| -> Vec<[usize; 2]> {
         (0..places.len()).flat_map(|b| (0..b).map(move |a| [a, b])).map(|two| two.map(|index| places[index])).collect()
     };
-    let of_kind = |kind: Kind| (0..known.len()).filter(move |&mode| known[mode].kind == kind);
+    let of_kind = |kind: ModeKind| (0..known.len()).filter(move |&mode| known[mode].kind == kind);
     let mut matches = Vec::new();
     let mut add = |known: &[usize], found: &[usize], eigenvalues: usize| {
         let all: f64 = known
@@ -175,11 +175,11 @@ fn matches(known: &[Root], found: &[Eigenvalue]) -> Vec<Match> {
         let likeness = if share > 1.0 { share.recip() } else { share.max(0.0) };
         matches.push(Match { likeness, known: known.to_vec(), found: found.to_vec() });
     };
-    for mode in of_kind(Kind::Vibration) {
+    for mode in of_kind(ModeKind::Vibration) {
         pairs.iter().for_each(|&pair| add(&[mode], &[pair], 2));
         two(&real).iter().for_each(|both| add(&[mode], both, 2));
     }
-    let lags: Vec<usize> = of_kind(Kind::Lag).collect();
+    let lags: Vec<usize> = of_kind(ModeKind::Lag).collect();
     for &mode in &lags {
         real.iter().for_each(|&own| add(&[mode], &[own], 1));
     }

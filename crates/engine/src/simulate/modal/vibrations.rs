@@ -12,7 +12,7 @@ use super::follow::followed;
 use super::gradients::Gradients;
 use super::random::RandomLoads;
 use super::response::Response;
-use super::roots::{self, Kind, OutputChanges, Root};
+use super::roots::{self, ModeKind, OutputChanges, Root};
 use crate::assemble::{ConstraintId, System};
 use crate::compile::{EquationsProgram, compile_equations};
 use crate::model::ModesRequest;
@@ -42,14 +42,14 @@ pub struct Vibrations {
     /// Load and output of each response, by number, and its frequencies, Hz.
     responses: Vec<(usize, usize, Vec<f64>)>,
     /// With states, those of the nominal start: what each mode is, there and elsewhere.
-    first: Option<Place>,
+    first: Option<ModesThere>,
     /// The nominal sample's, which others are compared with, row by row.
-    pub nominal: OnceLock<Vec<Place>>,
+    pub nominal: OnceLock<Vec<ModesThere>>,
 }
 
 /// A configuration's modes, those that are followed, and the outputs.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct ModesThere {
     /// In the order of the outputs.
     pub modes: Modes,
     /// The output by which each mode's shape is measured: there it is one.
@@ -109,7 +109,7 @@ impl Vibrations {
     }
 
     /// With states, what each mode is.
-    fn kinds(&self) -> Vec<Kind> {
+    fn kinds(&self) -> Vec<ModeKind> {
         match self.first.as_ref().map(|first| &first.modes) {
             Some(Modes::OfStates { modes, .. }) => modes.iter().map(|mode| mode.kind).collect(),
             _ => Vec::new(),
@@ -157,7 +157,7 @@ impl Vibrations {
 
     /// The modes of a state that are most like those of a known place, and how much alike the least are; without one,
     /// the slowest.
-    pub fn place(&self, state: &[f64], known: Option<&Place>) -> Option<(Place, f64)> {
+    pub fn place(&self, state: &[f64], known: Option<&ModesThere>) -> Option<(ModesThere, f64)> {
         let (linear, _) = self.linearised(state);
         let reference = known.or(self.first.as_ref());
         let (modes, least) = self.modes(&linear, reference)?;
@@ -172,14 +172,14 @@ impl Vibrations {
                 (self.changes(&linear, &gradients, &modes).iter().map(largest).collect(), Vec::new())
             }
         };
-        let mut place = Place { modes, measured_by, phases };
+        let mut place = ModesThere { modes, measured_by, phases };
         if known.is_none() {
             place.phases = self.responses_of(state, &linear, None).chunks(2).map(|pair| pair[1]).collect();
         }
         Some((place, least))
     }
 
-    fn modes(&self, linear: &Linearised, known: Option<&Place>) -> Option<(Modes, f64)> {
+    fn modes(&self, linear: &Linearised, known: Option<&ModesThere>) -> Option<(Modes, f64)> {
         if !self.states.is_empty() {
             let found = eigenvalues(linear, &self.states)?;
             let growth = roots::growth(&found);
@@ -212,7 +212,7 @@ impl Vibrations {
     }
 
     /// All outputs at a state whose modes are known, with phases near those of `nominal`.
-    pub fn tell(&self, state: &[f64], place: &Place, nominal: &Place) -> Vec<f64> {
+    pub fn tell(&self, state: &[f64], place: &ModesThere, nominal: &ModesThere) -> Vec<f64> {
         let (linear, outputs) = self.linearised(state);
         let gradients = self.gradients.at(state, &self.scale, self.outputs);
         let mut told = outputs[..self.outputs].to_vec();

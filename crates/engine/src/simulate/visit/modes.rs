@@ -8,7 +8,7 @@ use crate::simulate::ensemble::{Channel, EnsembleRun, Observed, Reduction, Stop}
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::integrator::Integrator;
 use crate::simulate::interruption::Interruption;
-use crate::simulate::modal::{ALIKE, Place, Vibrations};
+use crate::simulate::modal::{ALIKE, ModesThere, Vibrations};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
 
@@ -63,10 +63,10 @@ impl Simulator {
         vibrations: &Vibrations,
         steps: Steps<'_>,
         interruption: Interruption<'_>,
-    ) -> Result<Vec<Place>, SimulationError> {
+    ) -> Result<Vec<ModesThere>, SimulationError> {
         let nominal: Sample = self.system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let (states, _) = self.states(&nominal, steps, interruption)?;
-        let mut places: Vec<Place> = Vec::with_capacity(states.len());
+        let mut places: Vec<ModesThere> = Vec::with_capacity(states.len());
         for state in &states {
             if interruption.is_asked() {
                 return Err(SimulationError::Interrupted);
@@ -88,10 +88,10 @@ impl Simulator {
         &self,
         vibrations: &Vibrations,
         state: &[f64],
-        nominal: &Place,
+        nominal: &ModesThere,
         sample: &Sample,
         is_alone: bool,
-    ) -> Option<Place> {
+    ) -> Option<ModesThere> {
         let (direct, least) = vibrations.place(state, Some(nominal))?;
         if least >= ALIKE || !is_alone {
             return Some(direct);

@@ -1,7 +1,7 @@
 //! The objective along a parameter through the best point, without deviations and in the worst case.
 
 use super::{DesignStudy, criterion};
-use crate::export::courses::{Across, Course, Shown, courses_svg};
+use crate::export::courses::{Across, BandedCourse, Shown, courses_svg};
 use crate::export::figure::Caption;
 use crate::export::figure::style::{Color, Hue};
 use crate::grammar::display_unit::ShownUnit;
@@ -10,7 +10,7 @@ use crate::results::DesignProfile;
 pub(super) fn drawn(design: &DesignStudy, profile: &DesignProfile) -> Result<String, serde_json::Error> {
     let own = &design.parameters[profile.parameter];
     let worst = criterion(design);
-    let course = |index: usize, label, values| Course {
+    let course = |index: usize, label, values| BandedCourse {
         group: format!("course-{index}"),
         label,
         hue: Hue::Color(Color::of(index)),

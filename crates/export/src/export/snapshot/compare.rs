@@ -1,6 +1,6 @@
 //! Differences from a recorded snapshot.
 
-use super::read::{Curve, Kind, Output, Snapshot};
+use super::read::{ColumnKind, Curve, Output, Snapshot};
 
 /// A stated error that grew by more than this counts as moved: it would hide all else.
 const GROWN: f64 = 2.0;
@@ -66,7 +66,7 @@ fn of_output(then: &Output, now: &Output, found: &mut Vec<Moved>) {
         .collect();
     for curve in &now.curves {
         let what = || match curve.kind {
-            Kind::Nominal => format!("{name}.nominal"),
+            ColumnKind::Nominal => format!("{name}.nominal"),
             kind => format!("{name}.{}.{}", curve.method, kind.name()),
         };
         match curve_of(then, &curve.method, curve.kind) {
@@ -99,7 +99,7 @@ fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)
     for &(row_then, row_now) in shared {
         let (before, after) = (&earlier.cells[row_then], &curve.cells[row_now]);
         let allowed = match curve.kind {
-            Kind::Error => GROWN * value(before) + finest(then, row_then),
+            ColumnKind::Error => GROWN * value(before) + finest(then, row_then),
             _ => {
                 stated_error(then, curve, row_then)
                     + stated_error(now, curve, row_now)
@@ -108,7 +108,7 @@ fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)
             }
         };
         let distance = match curve.kind {
-            Kind::Error => value(after),
+            ColumnKind::Error => value(after),
             _ => (value(after) - value(before)).abs(),
         };
         let is_same = before == after || value(before) == value(after);
@@ -131,15 +131,15 @@ fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)
 }
 
 /// The curve of a method and kind.
-fn curve_of<'o>(output: &'o Output, method: &str, kind: Kind) -> Option<&'o Curve> {
+fn curve_of<'o>(output: &'o Output, method: &str, kind: ColumnKind) -> Option<&'o Curve> {
     output.curves.iter().find(|curve| curve.method == method && curve.kind == kind)
 }
 
 /// The stated error of a bound in a row; of the nominal course, which has none, the smallest of a method. Where it
 /// is not known, 0.
 fn stated_error(output: &Output, curve: &Curve, row: usize) -> f64 {
-    let errors = output.curves.iter().filter(|other| other.kind == Kind::Error);
-    let errors = errors.filter(|other| curve.kind == Kind::Nominal || other.method == curve.method);
+    let errors = output.curves.iter().filter(|other| other.kind == ColumnKind::Error);
+    let errors = errors.filter(|other| curve.kind == ColumnKind::Nominal || other.method == curve.method);
     // Proven bounds have no error, which is nothing that the nominal course could keep.
     let known = errors.map(|error| value(&error.cells[row])).filter(|error| *error > 0.0 && error.is_finite());
     known.reduce(f64::min).unwrap_or(0.0)
@@ -147,7 +147,8 @@ fn stated_error(output: &Output, curve: &Curve, row: usize) -> f64 {
 
 /// The last digit that is shown of an output's bounds in a row.
 fn finest(output: &Output, row: usize) -> f64 {
-    let known = output.curves.iter().filter(|curve| curve.kind != Kind::Error).map(|curve| rounding(&curve.cells[row]));
+    let known =
+        output.curves.iter().filter(|curve| curve.kind != ColumnKind::Error).map(|curve| rounding(&curve.cells[row]));
     2.0 * known.fold(0.0, f64::max)
 }
 

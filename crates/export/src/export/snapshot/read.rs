@@ -22,21 +22,21 @@ pub(super) struct Output {
 pub(super) struct Curve {
     /// Empty for the nominal course.
     pub method: String,
-    pub kind: Kind,
+    pub kind: ColumnKind,
     /// At each time.
     pub cells: Vec<String>,
 }
 
 /// What a column of a snapshot has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ColumnKind {
     Nominal,
     Lower,
     Upper,
     Error,
 }
 
-impl Kind {
+impl ColumnKind {
     /// By the end of a heading.
     pub fn of(name: &str) -> Option<Self> {
         [Self::Lower, Self::Upper, Self::Error].into_iter().find(|kind| kind.name() == name)
@@ -98,7 +98,7 @@ impl Snapshot {
     /// The number of curves: the nominal course and two bounds of each method of each output.
     pub fn curves(&self) -> usize {
         let curves = self.outputs.iter().flat_map(|output| &output.curves);
-        curves.filter(|curve| curve.kind != Kind::Error).count()
+        curves.filter(|curve| curve.kind != ColumnKind::Error).count()
     }
 }
 
@@ -127,10 +127,10 @@ fn curves(headings: &str) -> Option<Vec<Curve>> {
         return None;
     }
     let curve = |method: &str, kind| Curve { method: method.to_owned(), kind, cells: Vec::new() };
-    let mut curves = vec![curve("", Kind::Nominal)];
+    let mut curves = vec![curve("", ColumnKind::Nominal)];
     for heading in headings {
         let (method, kind) = heading.rsplit_once('.')?;
-        curves.push(curve(method, Kind::of(kind)?));
+        curves.push(curve(method, ColumnKind::of(kind)?));
     }
     Some(curves)
 }

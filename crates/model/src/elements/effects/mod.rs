@@ -10,7 +10,7 @@ mod registry;
 use schemars::JsonSchema;
 use symdiff::Formula;
 
-pub(super) use self::contact::course::{Course, Points};
+pub(super) use self::contact::course::{ContactLine, Points};
 pub use self::contact::hull::faces_of_hull;
 pub(super) use self::contact::solid::{check_ends, check_lengths};
 pub use self::forces::Forces;

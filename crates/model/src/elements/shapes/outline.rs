@@ -4,7 +4,7 @@ use mbint_derive::Element;
 use symdiff::Formula;
 
 use super::{Place, ShapeElement};
-use crate::elements::effects::Course;
+use crate::elements::effects::ContactLine;
 use crate::elements::form::Form;
 use crate::grammar::{Checked, Fields, Reader, SymbolTable};
 
@@ -22,7 +22,7 @@ use crate::grammar::{Checked, Fields, Reader, SymbolTable};
 pub struct Outline {
     /// Corners in the x and y of its frame, in their order. `{ to: [x, y], radius: R }` is an arc to a point.
     #[quantity(unit = "m", constant)]
-    points: Course,
+    points: ContactLine,
     /// Along z, half of it on each side.
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     thickness: Formula,

@@ -8,8 +8,8 @@ use std::collections::HashSet;
 use super::tree::{Sections, in_unit, keys, lengths, list, map, text, values};
 use crate::grammar::motions::is_motion;
 use crate::robots::algebra::{self, Pose, Value, Vector};
-use crate::robots::masses::{self, Part};
-use crate::robots::mjcf::robot::{Body, Joint, Kind, Robot};
+use crate::robots::masses::{self, MassPart};
+use crate::robots::mjcf::robot::{Body, Joint, MjcfType, Robot};
 use crate::robots::names;
 use crate::robots::number::Number;
 use crate::syntax::source::Span;
@@ -158,7 +158,7 @@ fn ground(sections: &mut Sections, span: &Span, points: Vec<(String, Node)>) {
 fn rigid(source: &Source, index: usize, points: Vec<(String, Node)>) -> Node {
     let body = &source.robot.bodies[index];
     let span = &body.span;
-    let parts: Vec<Part> = (0..source.robot.bodies.len()).filter_map(|part| part_of(source, part, index)).collect();
+    let parts: Vec<MassPart> = (0..source.robot.bodies.len()).filter_map(|part| part_of(source, part, index)).collect();
     let masses: Vec<Value> = parts.iter().map(|part| part.mass.clone()).collect();
     let mass = algebra::sum(&masses);
     let center = masses::center(&parts, &mass);
@@ -179,7 +179,7 @@ fn rigid(source: &Source, index: usize, points: Vec<(String, Node)>) -> Node {
 }
 
 /// The mass of a body, where it is part of another.
-fn part_of(source: &Source, index: usize, holder: usize) -> Option<Part> {
+fn part_of(source: &Source, index: usize, holder: usize) -> Option<MassPart> {
     let (held_by, pose) = &source.holders[index];
     let mass = source.robot.bodies[index].mass.as_ref().filter(|_| *held_by == holder)?;
     let pose = pose.then(&source.vector(&mass.center), &mass.rotation);
@@ -190,7 +190,7 @@ fn part_of(source: &Source, index: usize, holder: usize) -> Option<Part> {
         _ => source.plain(number),
     });
     let tensor = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
-    Some(Part { mass: total, center: pose.position, inertia: algebra::rotate_tensor(&pose.rotation, &tensor) })
+    Some(MassPart { mass: total, center: pose.position, inertia: algebra::rotate_tensor(&pose.rotation, &tensor) })
 }
 
 /// The fixed joint of a body that has no other.
@@ -210,7 +210,7 @@ fn joints(source: &Source, body: &Body, points: &mut [Vec<(String, Node)>], betw
     let mut previous: Option<String> = None;
     for (place, &joint) in body.joints.iter().enumerate() {
         let joint = &source.robot.joints[joint];
-        if joint.kind == Kind::Free {
+        if joint.kind == MjcfType::Free {
             return;
         }
         let (span, here) = (&joint.span, algebra::vector(joint.position));
@@ -253,8 +253,8 @@ fn node_of(joint: &Joint, first: &str, second: &str) -> Node {
     let between = list(span, [text(span, first), text(span, second)]);
     let axis = values(span, &algebra::vector(joint.axis));
     match joint.kind {
-        Kind::Hinge => keys(span, [("revolute", keys(span, [("between", between), ("axis", axis)]))]),
-        Kind::Slide => keys(span, [("prismatic", keys(span, [("between", between), ("axis", axis)]))]),
+        MjcfType::Hinge => keys(span, [("revolute", keys(span, [("between", between), ("axis", axis)]))]),
+        MjcfType::Slide => keys(span, [("prismatic", keys(span, [("between", between), ("axis", axis)]))]),
         _ => keys(span, [("spherical", between)]),
     }
 }

@@ -6,7 +6,7 @@ use super::build::Source;
 use super::drives::{self, sum};
 use super::tree::{Sections, keys, list, map, text, value, values};
 use crate::robots::algebra::{self, Pose, Value};
-use crate::robots::mjcf::robot::{At, Coupling, Equality, Joint, Kind, Tendon};
+use crate::robots::mjcf::robot::{At, Coupling, Equality, Joint, MjcfType, Tendon};
 use crate::robots::tuning::TUNING;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
@@ -29,8 +29,8 @@ pub fn add(
     }
     for joint in &robot.joints {
         match joint.kind {
-            Kind::Hinge | Kind::Slide => single(sections, source, joint),
-            Kind::Ball | Kind::Free => several(sections, source, joint, diagnostics),
+            MjcfType::Hinge | MjcfType::Slide => single(sections, source, joint),
+            MjcfType::Ball | MjcfType::Free => several(sections, source, joint, diagnostics),
         }
     }
     if let Some(limits) = limits {
@@ -55,7 +55,7 @@ pub fn add(
 
 fn friction(joint: &Joint, key: &str, number: &Value) -> Node {
     let span = &joint.span;
-    let slow = if joint.kind == Kind::Slide { TUNING.slow_slide } else { TUNING.slow_turn };
+    let slow = if joint.kind == MjcfType::Slide { TUNING.slow_slide } else { TUNING.slow_turn };
     let entries = [
         ("on", text(span, &joint.name)),
         (key, value(span, number)),
@@ -78,7 +78,7 @@ fn single(sections: &mut Sections, source: &Source, joint: &Joint) {
     if source.acts(&joint.stiffness) {
         let (on, rate) = (text(span, name), value(span, &source.value(&joint.stiffness)));
         let rest = value(span, &source.value(&joint.spring_at));
-        let node = if joint.kind == Kind::Hinge {
+        let node = if joint.kind == MjcfType::Hinge {
             keys(
                 span,
                 [("torsional_spring_damper", keys(span, [("on", on), ("stiffness", rate), ("free_angle", rest)]))],
@@ -92,14 +92,15 @@ fn single(sections: &mut Sections, source: &Source, joint: &Joint) {
         // A rotor by itself that turns as the joint moves: 1 rad for 1 m where it slides.
         let rotor = format!("{name}_rotor");
         let inertia = match joint.kind {
-            Kind::Slide if source.named.contains(&joint.armature.name) => {
+            MjcfType::Slide if source.named.contains(&joint.armature.name) => {
                 format!("{} * 1 m^2", source.value(&joint.armature).text())
             }
             _ => source.value(&joint.armature).text(),
         };
         let coordinates = list(span, [text(span, "angle")]);
         sections.add("bodies", &rotor, keys(span, [("inertia", text(span, inertia)), ("coordinates", coordinates)]));
-        let turned = if joint.kind == Kind::Slide { format!("{rotor}.angle * 1 m") } else { format!("{rotor}.angle") };
+        let turned =
+            if joint.kind == MjcfType::Slide { format!("{rotor}.angle * 1 m") } else { format!("{rotor}.angle") };
         let equation = text(span, format!("{turned} = {}", joint.coordinate(false)));
         sections.add("joints", &rotor, keys(span, [("equation", equation)]));
     }
@@ -125,7 +126,7 @@ fn several(sections: &mut Sections, source: &Source, joint: &Joint, diagnostics:
     let damping = || value(span, &source.value(&joint.damping));
     let body = &source.robot.bodies[joint.body];
     let ends = |first: &str| list(span, [text(span, first), text(span, &body.name)]);
-    let node = if joint.kind == Kind::Free {
+    let node = if joint.kind == MjcfType::Free {
         keys(span, [("between", ends("ground")), ("damping", damping()), ("torsional_damping", damping())])
     } else {
         let parent = &source.robot.bodies[source.holders[body.parent].0].name;
@@ -180,7 +181,7 @@ fn act(sections: &mut Sections, source: &Source, tendon: &Tendon) {
         terms.push(format!("- {}*{rate}", source.value(&tendon.damping).text()));
     }
     if source.acts(&tendon.friction) {
-        let slides = |&(joint, _): &(usize, f64)| source.robot.joints[joint].kind == Kind::Slide;
+        let slides = |&(joint, _): &(usize, f64)| source.robot.joints[joint].kind == MjcfType::Slide;
         let slow = if tendon.length.terms.iter().any(slides) { TUNING.slow_slide } else { TUNING.slow_turn };
         terms.push(format!("- {}*{rate}/sqrt({rate}^2 + {slow}^2)", source.value(&tendon.friction).text()));
     }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::build::Source;
 use super::tree::{Sections, keys, text, value, values};
 use crate::robots::algebra::{Pose, Value};
-use crate::robots::mjcf::robot::{Coupling, Kind};
+use crate::robots::mjcf::robot::{Coupling, MjcfType};
 use crate::syntax::yaml::Value as Tree;
 
 /// Start values, or where to look for them: joints that equalities hold are found.
@@ -30,8 +30,8 @@ pub fn start(sections: &mut Sections, source: &Source) {
         let position = body.position.each_ref().map(|number| Value::Number(number.value));
         let pose = poses[body.parent].then(&position, &body.rotation);
         let kind = |kind| body.joints.iter().any(|&joint| robot.joints[joint].kind == kind);
-        if (kind(Kind::Free) || kind(Kind::Ball)) && !said.contains(&body.name) {
-            let section = if kind(Kind::Free) && !is_closed && !is_found { "initial" } else { "guess" };
+        if (kind(MjcfType::Free) || kind(MjcfType::Ball)) && !said.contains(&body.name) {
+            let section = if kind(MjcfType::Free) && !is_closed && !is_found { "initial" } else { "guess" };
             for (axis, position) in ["x", "y", "z"].into_iter().zip(&pose.position) {
                 sections.add(section, &format!("{}.{axis}", body.name), value(&body.span, position));
             }
@@ -98,7 +98,7 @@ pub fn outputs(sections: &mut Sections, source: &Source) {
             continue;
         }
         let body = &source.robot.bodies[joint.body];
-        let members = if joint.kind == Kind::Free { ["x", "y", "z"] } else { ["roll", "pitch", "yaw"] };
+        let members = if joint.kind == MjcfType::Free { ["x", "y", "z"] } else { ["roll", "pitch", "yaw"] };
         for member in members {
             let name = format!("{}_{member}", body.name);
             sections.add("outputs", &name, text(&joint.span, format!("{}.{member}", body.name)));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use super::{LeftOut, unknown};
+use super::{OmittedEffects, unknown};
 use crate::expand::notation::{self, field};
 use crate::expand::parts::patterns;
 use crate::grammar::mentions::NameKind;
@@ -43,7 +43,7 @@ pub struct Draft {
     pub entries: Vec<Entry>,
     /// Section and name.
     pub out: HashSet<(&'static str, String)>,
-    pub robot: LeftOut,
+    pub robot: OmittedEffects,
 }
 
 impl Draft {
@@ -120,7 +120,7 @@ impl Draft {
             let effects: Vec<_> =
                 self.entries_of("effects").iter().map(|entry| ("effects", entry.key.clone())).collect();
             self.out.extend(effects);
-            self.robot = LeftOut { all: true, ..LeftOut::default() };
+            self.robot = OmittedEffects { all: true, ..OmittedEffects::default() };
             return;
         }
         for (name, span) in

@@ -25,14 +25,14 @@ pub struct Variant {
     /// Names of effects, joints and outputs that are not in it.
     pub left_out: Vec<String>,
     /// Omitted parts of a robot: their names are known only when its file is read.
-    pub robot: LeftOut,
+    pub robot: OmittedEffects,
     /// Whether parameters may be unused because something else is left out.
     pub partial: bool,
 }
 
 /// Effects of a robot that are left out.
 #[derive(Clone, Default)]
-pub struct LeftOut {
+pub struct OmittedEffects {
     all: bool,
     /// Left out by name.
     names: Vec<(String, Span)>,
@@ -40,7 +40,7 @@ pub struct LeftOut {
     kept: Vec<(String, Span)>,
 }
 
-impl LeftOut {
+impl OmittedEffects {
     /// Whether an effect is not in.
     pub fn leaves_out(&self, name: &str) -> bool {
         let among = |names: &[(String, Span)]| names.iter().any(|(known, _)| known == name);

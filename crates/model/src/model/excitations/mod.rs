@@ -12,7 +12,7 @@ use super::names::Reader;
 use super::random;
 use crate::elements::{Excitation, Timing, Trajectory};
 use crate::grammar::Symbol;
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::report::Fields;
 use crate::keys;
@@ -55,7 +55,7 @@ fn add_deviation(reader: &mut Reader, name: &str) {
     let value = ParameterValue::Interval { nominal: 0.0, lower: -1.0, upper: 1.0 };
     let parameter = Parameter { name: deviation_of(name), unit: String::new(), value };
     reader.model.parameters.push(parameter);
-    reader.kinds.push(Kind::parameter(Dimension::NUMBER));
+    reader.kinds.push(KnownDimension::parameter(Dimension::NUMBER));
     reader.varies.push(true);
     reader.used.push(true);
     reader.used_by_parameters.push(false);

@@ -6,7 +6,7 @@ use symdiff::{Binary, Formula};
 use super::spec::Spec;
 use super::{Draft, interval, law, says_more, settle, unit};
 use crate::expand::overrides::Override;
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
 use crate::syntax::codes::Code;
@@ -56,7 +56,7 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
         let value = ParameterValue::Formula(Formula::number(f64::NAN));
         reader.model.parameters.push(Parameter { name, unit: String::new(), value });
         reader.used.push(false);
-        reader.kinds.push(Kind::Any);
+        reader.kinds.push(KnownDimension::Any);
         drafts[index].deviation = Some(deviation);
         drafts[index].uses.push(deviation);
     }
@@ -106,7 +106,7 @@ pub fn finish(
     reader: &mut Reader,
     draft: &Draft,
     Deviating { index, deviation, formula, nominal }: Deviating<'_>,
-    kind: &mut Kind,
+    kind: &mut KnownDimension,
     values: &mut [f64],
 ) {
     if let Some(node) = &draft.spec.interval {
@@ -121,7 +121,7 @@ pub fn finish(
         values[deviation] = 0.0;
         let (lower, upper) = (-below, above);
         reader.model.parameters[deviation].value = if lower < upper {
-            says_more(reader, draft, deviation, law::Place { nominal: 0.0, lower, upper, written: None }, kind);
+            says_more(reader, draft, deviation, law::LawInterval { nominal: 0.0, lower, upper, written: None }, kind);
             ParameterValue::Interval { nominal: 0.0, lower, upper }
         } else {
             reader.certain.insert(reader.model.parameters[deviation].name.clone());

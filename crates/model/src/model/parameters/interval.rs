@@ -3,7 +3,7 @@
 use symdiff::formula::Term;
 
 use super::{Draft, Spec};
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::grammar::fits::ToleranceClass;
 use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
@@ -16,7 +16,7 @@ use crate::syntax::suggest;
 use crate::syntax::yaml::Node;
 
 /// Nominal, lower and upper value.
-pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<[f64; 3]> {
+pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut KnownDimension) -> Option<[f64; 3]> {
     let Spec { value, tolerance, interval, plus, minus, class, .. } = &draft.spec;
     if draft.spec.contradictory {
         return None;
@@ -61,7 +61,7 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
 }
 
 /// The middle of the limits that a tolerance class gives a size, and the limits.
-fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &Kind) -> Option<[f64; 3]> {
+fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &KnownDimension) -> Option<[f64; 3]> {
     let size = size?;
     if kind.dimension() != Some(Dimension::LENGTH) {
         let help = "e.g. `12 mm H7`".to_owned();
@@ -89,7 +89,12 @@ fn by_class(reader: &mut Reader, node: &Node, size: Option<f64>, kind: &Kind) ->
 }
 
 /// How far the value may deviate upwards and downwards.
-pub fn deviations(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<(f64, f64)> {
+pub fn deviations(
+    reader: &mut Reader,
+    draft: &Draft,
+    nominal: Option<f64>,
+    kind: &mut KnownDimension,
+) -> Option<(f64, f64)> {
     let Spec { tolerance, plus, minus, class, .. } = &draft.spec;
     if let Some(node) = class {
         let help = "give the deviations themselves, e.g. `tolerance: 0.01 mm`".to_owned();
@@ -120,7 +125,7 @@ fn deviation(
     draft: &Draft,
     node: Option<&Node>,
     nominal: Option<f64>,
-    kind: &mut Kind,
+    kind: &mut KnownDimension,
 ) -> Option<f64> {
     let Some(node) = node else { return Some(0.0) };
     let percent = node.scalar().and_then(|scalar| number_and_unit(&scalar.text)).filter(|(_, unit, _)| *unit == "%");
@@ -140,14 +145,14 @@ fn deviation(
 }
 
 /// A number in the parameter's unit, or with its own.
-pub fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut Kind) -> Option<f64> {
+pub fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut KnownDimension) -> Option<f64> {
     match reader.written(node)? {
         Written::Quantity { value, unit } => {
             match kind.dimension() {
                 Some(dimension) => {
                     reader.check_fits(&node.span, unit.dimension, dimension).then_some(())?;
                 }
-                None => *kind = Kind::parameter(unit.dimension),
+                None => *kind = KnownDimension::parameter(unit.dimension),
             }
             Some(unit.to_si(value))
         }

@@ -2,7 +2,7 @@
 
 use super::Draft;
 use super::interval;
-use crate::grammar::dimension::Kind;
+use crate::grammar::dimension::KnownDimension;
 use crate::keys;
 use crate::model::description::Law;
 use crate::model::names::Reader;
@@ -16,7 +16,7 @@ const NAMES: [&str; 7] = ["uniform", "normal", "truncated_normal", "lognormal", 
 
 /// Where a law is to lie: nominal value and interval.
 #[derive(Clone, Copy)]
-pub struct Place {
+pub struct LawInterval {
     pub nominal: f64,
     pub lower: f64,
     pub upper: f64,
@@ -24,7 +24,7 @@ pub struct Place {
     pub written: Option<[f64; 3]>,
 }
 
-impl Place {
+impl LawInterval {
     /// Where a value of the file's law comes to lie; its distance from the nominal value goes with the tolerance where
     /// that is a `scaled` one.
     fn moved(self, value: f64, scaled: bool) -> f64 {
@@ -44,7 +44,7 @@ impl Place {
 }
 
 /// A law by its name, over an interval.
-pub fn named(name: &str, Place { nominal, lower, upper, .. }: Place) -> Option<Law> {
+pub fn named(name: &str, LawInterval { nominal, lower, upper, .. }: LawInterval) -> Option<Law> {
     let (mean, sigma) = (0.5 * lower + 0.5 * upper, (upper - lower) / (2.0 * TUNING.sigmas));
     let (distribution, by_tolerance) = match name {
         "uniform" => (Distribution::Uniform { lower, upper }, false),
@@ -57,7 +57,13 @@ pub fn named(name: &str, Place { nominal, lower, upper, .. }: Place) -> Option<L
 }
 
 /// Reads a law over an interval; `kind` is the parameter's dimension.
-pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind: &mut Kind) -> Option<Law> {
+pub fn read(
+    reader: &mut Reader,
+    draft: &Draft,
+    node: &Node,
+    place: LawInterval,
+    kind: &mut KnownDimension,
+) -> Option<Law> {
     if let Some(scalar) = node.scalar() {
         let law = named(&scalar.text, place);
         if law.is_none() {
@@ -74,7 +80,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind:
         return law;
     }
     let entry = reader.only::<keys::LawKinds>(node, node.span.clone())?;
-    let Place { nominal, lower, upper, .. } = place;
+    let LawInterval { nominal, lower, upper, .. } = place;
     let by_name = named(&entry.key, place);
     let distribution = match (entry.key.as_str(), by_name.as_ref().map(|law| &law.distribution)) {
         ("normal" | "truncated_normal", Some(default)) => {
@@ -172,7 +178,13 @@ pub fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
 }
 
 /// Points of a density, ascending, within the interval.
-fn table(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind: &mut Kind) -> Option<Vec<(f64, f64)>> {
+fn table(
+    reader: &mut Reader,
+    draft: &Draft,
+    node: &Node,
+    place: LawInterval,
+    kind: &mut KnownDimension,
+) -> Option<Vec<(f64, f64)>> {
     let Value::Sequence(items) = &node.value else {
         let help = "e.g. `[[0.1, 0], [0.2, 1], [0.3, 0]]`".to_owned();
         reader.error(Code::BadDistribution, node.span.clone(), "a table is a list of pairs of value and density", help);

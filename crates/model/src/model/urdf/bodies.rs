@@ -12,9 +12,9 @@ use crate::model::description::{Body, Inertia};
 use crate::model::names::Reader;
 use crate::model::tuning::TUNING;
 use crate::robots::algebra::{self, Pose, Value, Vector};
-use crate::robots::masses::{Part, center, inertia};
+use crate::robots::masses::{MassPart, center, inertia};
 use crate::robots::number::Number;
-use crate::robots::urdf::robot::{Joint, Kind};
+use crate::robots::urdf::robot::{Joint, UrdfJointType};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -89,11 +89,11 @@ fn is_determined(inertia: &[Vector; 3], joint: Option<&Joint>) -> bool {
     });
     let moment = algebra::sum(&moment.collect::<Vec<Value>>());
     let is_positive = !matches!(moment, Value::Number(moment) if moment <= 0.0);
-    joint.kind == Kind::Fixed || joint.kind.turns() && is_positive
+    joint.kind == UrdfJointType::Fixed || joint.kind.turns() && is_positive
 }
 
 /// The links that have mass or inertia, or of which either is a parameter.
-fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<Part> {
+fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<MassPart> {
     let massive = group.links.iter().filter_map(|&link| {
         let inertial = source.robot.links[link].inertial.as_ref()?;
         let acts = |number: &Number| number.value != 0.0 || source.named.contains(&number.name);
@@ -104,7 +104,7 @@ fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<Part>
         let pose = of_link[link].1.then(&source.vector(&inertial.origin.xyz), &rotation);
         let [xx, yy, zz, xy, xz, yz] = inertial.inertia.each_ref().map(|number| source.value(number));
         let tensor = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
-        Part {
+        MassPart {
             mass: source.value(&inertial.mass),
             center: pose.position,
             inertia: algebra::rotate_tensor(&pose.rotation, &tensor),

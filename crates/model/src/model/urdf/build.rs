@@ -10,7 +10,7 @@ use crate::model::description::{RobotTree, TreeJoint, TreeLink};
 use crate::model::names::Reader;
 use crate::robots::algebra::{self, Pose};
 use crate::robots::number::Number;
-use crate::robots::urdf::robot::{Joint as UrdfJoint, Kind};
+use crate::robots::urdf::robot::{Joint as UrdfJoint, UrdfJointType};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -104,7 +104,7 @@ fn tree(source: &Source, built: &Built) -> RobotTree {
     let links = links.map(|link| {
         let joint = above.get(&link).map(|joint| {
             depth[link] = depth[joint.parent] + 1;
-            let limits = joint.limits.as_ref().filter(|_| joint.kind != Kind::Continuous);
+            let limits = joint.limits.as_ref().filter(|_| joint.kind != UrdfJointType::Continuous);
             let end = |number: &Option<Number>| number.as_ref().map(|number| number.value);
             TreeJoint {
                 name: joint.name.clone(),

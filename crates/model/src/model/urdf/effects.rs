@@ -10,13 +10,13 @@ use symdiff::Formula;
 use super::source::{Built, Source, coordinate, formula};
 use crate::elements::effects::joint_friction::FrictionJoint;
 use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
-use crate::expand::scenes::{self, LeftOut};
+use crate::expand::scenes::{self, OmittedEffects};
 use crate::keys;
 use crate::model::description::Effect;
 use crate::model::names::Reader;
 use crate::robots::number::Number;
 use crate::robots::tuning::TUNING;
-use crate::robots::urdf::robot::{Joint, Kind, Limits};
+use crate::robots::urdf::robot::{Joint, Limits, UrdfJointType};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -40,8 +40,9 @@ pub fn read<'r>(
     if let Some((_, at)) = limits.as_ref().filter(|_| !source.robot.joints.iter().any(is_limited)) {
         reader.error(Code::BadLimits, at.clone(), "no joint of the robot has limits", None);
     }
-    let impacts =
-        limits.map(|(node, at)| [Kind::Revolute, Kind::Prismatic].map(|kind| impact(reader, source, node, &at, kind)));
+    let impacts = limits.map(|(node, at)| {
+        [UrdfJointType::Revolute, UrdfJointType::Prismatic].map(|kind| impact(reader, source, node, &at, kind))
+    });
     for &index in &source.robot.order {
         let joint = &source.robot.joints[index];
         let (Some(number), Some((coordinate, ..))) = (built.joints[index], coordinate(joint.kind)) else { continue };
@@ -53,7 +54,7 @@ pub fn read<'r>(
         if let Some(impact) = impact {
             if let (Some(limits), true) = (&joint.limits, is_limited(joint)) {
                 found.push(stop(reader, source, joint, limits, on, impact));
-            } else if joint.kind != Kind::Continuous {
+            } else if joint.kind != UrdfJointType::Continuous {
                 let message = format!("joint `{}` has no limits: no stop acts in it", joint.name);
                 reader.diagnostics.push(Diagnostic::warning(Code::NoLimits, joint.span.clone(), message));
             }
@@ -64,7 +65,7 @@ pub fn read<'r>(
 
 /// Whether the joint's position has a smallest or a largest value.
 fn is_limited(joint: &Joint) -> bool {
-    matches!(joint.kind, Kind::Revolute | Kind::Prismatic)
+    matches!(joint.kind, UrdfJointType::Revolute | UrdfJointType::Prismatic)
         && joint.limits.as_ref().is_some_and(|limits| limits.lower.is_some() || limits.upper.is_some())
 }
 
@@ -98,7 +99,7 @@ fn friction<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, foun
 }
 
 /// How stops of joints of a kind push back; nothing where there are none.
-fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: Kind) -> Option<Impact> {
+fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: UrdfJointType) -> Option<Impact> {
     let coordinate = if kind.turns() { JointCoordinate::Angle } else { JointCoordinate::Displacement };
     if !source.robot.joints.iter().any(|joint| joint.kind == kind && is_limited(joint)) {
         return None;
@@ -124,7 +125,7 @@ fn stop<'r>(
 }
 
 /// Adds the effects that are not omitted.
-pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left_out: &LeftOut) {
+pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left_out: &OmittedEffects) {
     for (name, span) in left_out.given() {
         if !effects.iter().any(|known| known.effect.name == *name) {
             let robot = effects.iter().map(|known| known.effect.name.clone());

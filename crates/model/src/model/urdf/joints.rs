@@ -8,14 +8,14 @@ use crate::grammar::{Axis, Direction, PointRef, Rotating};
 use crate::model::description::Joint;
 use crate::model::names::Reader;
 use crate::robots::algebra::{self, Value};
-use crate::robots::urdf::robot::Kind;
+use crate::robots::urdf::robot::UrdfJointType;
 
 /// Adds a joint that moves, or holds what the model asks for, with the frame it is at on its parent.
 pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> Option<usize> {
     let joint = &source.robot.joints[index];
     let (parent, pose) = &built.places[joint.parent];
     let (parent, child) = ((*parent)?, built.places[joint.child].0?);
-    if joint.kind == Kind::Floating || source.welds(joint) {
+    if joint.kind == UrdfJointType::Floating || source.welds(joint) {
         return None;
     }
     let rotation = algebra::roll_pitch_yaw(&source.vector(&joint.origin.rpy));
@@ -30,9 +30,9 @@ pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
     let between = [PointRef { body: parent, point: Some(points.len() - 1) }, PointRef { body: child, point: None }];
     let axis = unit(joint.axis).map(Formula::number);
     let kind: JointKind = match joint.kind {
-        Kind::Prismatic => Prismatic { between, axis: Direction(axis), angle: Formula::number(0.0) }.into(),
-        Kind::Fixed => Fixed { between, angle: Formula::number(0.0) }.into(),
-        Kind::Planar => Planar { between, normal: Direction(axis) }.into(),
+        UrdfJointType::Prismatic => Prismatic { between, axis: Direction(axis), angle: Formula::number(0.0) }.into(),
+        UrdfJointType::Fixed => Fixed { between, angle: Formula::number(0.0) }.into(),
+        UrdfJointType::Planar => Planar { between, normal: Direction(axis) }.into(),
         _ => Revolute { between, axis: Axis(axis) }.into(),
     };
     reader.model.joints.push(Joint::new(joint.name.clone(), kind));

@@ -18,7 +18,7 @@ use std::path::Path;
 use self::source::{Built, Source};
 use crate::expand::numbers::{self, Format};
 use crate::expand::overrides::Override;
-use crate::expand::scenes::LeftOut;
+use crate::expand::scenes::OmittedEffects;
 use crate::grammar::report::Fields;
 use crate::model::names::Reader;
 use crate::robots::tuning::TUNING;
@@ -140,7 +140,7 @@ impl Urdf {
 impl Declared {
     /// Effects that are not left out, start values and, where the model has none, outputs; and whether masses stay
     /// positive. `limits` is the section of that name.
-    pub fn finish(&self, reader: &mut Reader, left_out: &LeftOut, limits: Option<(&Node, Span)>, observe: bool) {
+    pub fn finish(&self, reader: &mut Reader, left_out: &OmittedEffects, limits: Option<(&Node, Span)>, observe: bool) {
         let Urdf { robot, floating, words, .. } = &self.urdf;
         let source = Source { robot, floating: *floating, words, named: &self.named };
         let effects = effects::read(reader, &source, &self.built, limits);

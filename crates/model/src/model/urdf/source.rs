@@ -11,7 +11,7 @@ use crate::model::names::Reader;
 use crate::robots::algebra::{Pose, Value, Vector};
 use crate::robots::names;
 use crate::robots::number::Number;
-use crate::robots::urdf::robot::{Joint, Kind, Robot};
+use crate::robots::urdf::robot::{Joint, Robot, UrdfJointType};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -42,7 +42,7 @@ impl Source<'_> {
 
     /// Whether a joint makes its links one body: a fixed one whose reaction the model does not speak of.
     pub fn welds(&self, joint: &Joint) -> bool {
-        joint.kind == Kind::Fixed && !names::is_reaction_asked(self.words, &joint.name)
+        joint.kind == UrdfJointType::Fixed && !names::is_reaction_asked(self.words, &joint.name)
     }
 }
 
@@ -77,10 +77,12 @@ pub fn point(reader: &mut Reader, name: String, pose: &Pose) -> Point {
 }
 
 /// The coordinate of a joint that has one, and the names of it and its rate.
-pub fn coordinate(kind: Kind) -> Option<(JointCoordinate, &'static str, &'static str)> {
+pub fn coordinate(kind: UrdfJointType) -> Option<(JointCoordinate, &'static str, &'static str)> {
     match kind {
-        Kind::Revolute | Kind::Continuous => Some((JointCoordinate::Angle, "angle", "angular_velocity")),
-        Kind::Prismatic => Some((JointCoordinate::Displacement, "displacement", "velocity")),
+        UrdfJointType::Revolute | UrdfJointType::Continuous => {
+            Some((JointCoordinate::Angle, "angle", "angular_velocity"))
+        }
+        UrdfJointType::Prismatic => Some((JointCoordinate::Displacement, "displacement", "velocity")),
         _ => None,
     }
 }

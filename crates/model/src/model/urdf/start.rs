@@ -11,7 +11,7 @@ use crate::model::description::{Output, StartValue};
 use crate::model::names::Reader;
 use crate::robots::algebra::{self, Pose, Value};
 use crate::robots::number::Number;
-use crate::robots::urdf::robot::Kind;
+use crate::robots::urdf::robot::UrdfJointType;
 
 /// The zero configuration, for what the model says nothing of.
 pub fn start(reader: &mut Reader, source: &Source, built: &Built) {
@@ -42,8 +42,8 @@ pub fn start(reader: &mut Reader, source: &Source, built: &Built) {
         poses[joint.child] = poses[joint.parent].then(&nominal(&joint.origin.xyz), &rotation);
         let body = built.places[joint.child].0;
         match (joint.kind, built.joints[index], coordinate(joint.kind), body) {
-            (Kind::Floating, _, _, Some(body)) => place(reader, body, &poses[joint.child], true),
-            (Kind::Planar, Some(_), _, Some(body)) => place(reader, body, &poses[joint.child], false),
+            (UrdfJointType::Floating, _, _, Some(body)) => place(reader, body, &poses[joint.child], true),
+            (UrdfJointType::Planar, Some(_), _, Some(body)) => place(reader, body, &poses[joint.child], false),
             (_, Some(found), Some((coordinate, ..)), _) if joint.mimic.is_none() && !said.contains(&found) => {
                 let value = Formula::number(0.0);
                 let order = TimeOrder::Position;
@@ -96,7 +96,7 @@ pub fn outputs(reader: &mut Reader, source: &Source, built: &Built) {
                 let dimension = if joint.kind.turns() { Dimension::ANGLE } else { Dimension::LENGTH };
                 push(joint.name.clone(), format!("{}.{position}", joint.name), dimension);
             }
-            (None, _) if joint.kind != Kind::Fixed && built.places[joint.child].0.is_some() => {
+            (None, _) if joint.kind != UrdfJointType::Fixed && built.places[joint.child].0.is_some() => {
                 let mut part =
                     |axis: &str| push(format!("{}_{axis}", joint.name), format!("{child}.{axis}"), Dimension::LENGTH);
                 ["x", "y", "z"].into_iter().for_each(&mut part);

@@ -4,7 +4,7 @@ use super::document::Item;
 use super::meshes;
 use super::values::{Values, along_z};
 use crate::robots::algebra::{self, Pose, Value};
-use crate::robots::masses::{self, Part};
+use crate::robots::masses::{self, MassPart};
 use crate::robots::meshes::Measured;
 use crate::robots::tuning::TUNING;
 use crate::syntax::codes::Code;
@@ -42,7 +42,7 @@ const SHAPES: [(&str, Shape); 9] = [
 ];
 
 /// A geom's mass and inertia in the frame around it; nothing where it has none, or none that is known.
-pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize>, around: &Pose) -> Option<Part> {
+pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize>, around: &Pose) -> Option<MassPart> {
     let get = |values: &Values<'i, '_>, name: &'static str| values.get(item, class, &["geom"], name);
     let shape = match get(values, "type") {
         Some(found) => values.word(found, &SHAPES)?,
@@ -100,7 +100,7 @@ pub fn part<'i>(values: &mut Values<'i, '_>, item: &'i Item, class: Option<usize
     let mass = mass.unwrap_or(density * volume);
     let tensor = inertia.map(|row| row.map(|moment| Value::Number(mass * moment)));
     let pose = around.then(&pose.position, &pose.rotation);
-    Some(Part {
+    Some(MassPart {
         mass: Value::Number(mass),
         center: pose.position,
         inertia: algebra::rotate_tensor(&pose.rotation, &tensor),
@@ -183,7 +183,7 @@ fn of_unit_mass(shape: Shape, [a, b, c]: [f64; 3]) -> (f64, [f64; 3]) {
 }
 
 /// All parts as one; nothing where there are none.
-pub fn solid(parts: &[Part]) -> Option<Solid> {
+pub fn solid(parts: &[MassPart]) -> Option<Solid> {
     if parts.is_empty() {
         return None;
     }

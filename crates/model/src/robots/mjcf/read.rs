@@ -5,11 +5,11 @@ use super::document::{Attribute, Item};
 use super::flags::on;
 use super::geoms::{self, Solid};
 use super::meshes;
-use super::robot::{Body, Joint, Kind, Mass, Names, Robot, Site};
+use super::robot::{Body, Joint, Mass, MjcfType, Names, Robot, Site};
 use super::springs;
 use super::values::Values;
 use crate::robots::algebra::{self, Pose, Quaternion};
-use crate::robots::masses::Part;
+use crate::robots::masses::MassPart;
 use crate::robots::names;
 use crate::robots::number::Number;
 use crate::syntax::codes::Code;
@@ -17,8 +17,8 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 
-const KINDS: [(&str, Kind); 4] =
-    [("hinge", Kind::Hinge), ("slide", Kind::Slide), ("ball", Kind::Ball), ("free", Kind::Free)];
+const KINDS: [(&str, MjcfType); 4] =
+    [("hinge", MjcfType::Hinge), ("slide", MjcfType::Slide), ("ball", MjcfType::Ball), ("free", MjcfType::Free)];
 
 /// Reads everything; reports all that is wrong.
 pub fn robot<'i>(root: &'i Item, values: &mut Values<'i, '_>) -> Option<Robot> {
@@ -88,7 +88,7 @@ pub struct Around {
 #[derive(Default)]
 pub struct Contents<'i> {
     inertial: Option<&'i Item>,
-    parts: Vec<Part>,
+    parts: Vec<MassPart>,
 }
 
 /// Destination of the data read.
@@ -188,7 +188,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let mut contents = Contents::default();
         self.inside(item, index, &Around { pose: Pose::identity(), class }, &mut contents);
         self.whole.robot.bodies[index].mass = self.mass(item, &contents, index);
-        let free = |&joint: &usize| self.whole.robot.joints[joint].kind == Kind::Free;
+        let free = |&joint: &usize| self.whole.robot.joints[joint].kind == MjcfType::Free;
         let joints = &self.whole.robot.bodies[index].joints;
         if joints.iter().any(free) && (joints.len() > 1 || parent != 0) {
             let help = "a free joint is the only one of a body in the world".to_owned();
@@ -220,9 +220,9 @@ impl<'i> Reader<'_, 'i, '_> {
             if item.tag == "joint" { values.get(item, class, &["joint"], name) } else { None }
         };
         let kind = match get(self.values, "type") {
-            _ if item.tag == "freejoint" => Kind::Free,
-            Some(found) => self.values.word(found, &KINDS).unwrap_or(Kind::Hinge),
-            None => Kind::Hinge,
+            _ if item.tag == "freejoint" => MjcfType::Free,
+            Some(found) => self.values.word(found, &KINDS).unwrap_or(MjcfType::Hinge),
+            None => MjcfType::Hinge,
         };
         let index = self.whole.robot.joints.len();
         let written = self.written(item);
@@ -250,14 +250,14 @@ impl<'i> Reader<'_, 'i, '_> {
         let (axis, at) = (axis.map(|part| part / length), algebra::vector(position));
         let turned = algebra::rotate(&around.pose.rotation, &algebra::vector(axis));
         let position = algebra::add(&around.pose.position, &algebra::rotate(&around.pose.rotation, &at));
-        let angle = if kind == Kind::Slide { 1.0 } else { self.values.settings.angle };
+        let angle = if kind == MjcfType::Slide { 1.0 } else { self.values.settings.angle };
         let scalar = |values: &mut Values<'i, '_>, name: &'static str| {
             let found = get(values, name);
             let value = found.and_then(|found| values.exact::<1>(found)).map_or(0.0, |[value]| value);
             (found, value)
         };
         let units = match kind {
-            Kind::Slide => ["N*s/m", "N", "kg", "N/m", "m"],
+            MjcfType::Slide => ["N*s/m", "N", "kg", "N/m", "m"],
             _ => ["N*m*s/rad", "N*m", "kg*m^2", "N*m/rad", "rad"],
         };
         let number = |values: &mut Values<'i, '_>, key: &'static str, scale: f64, less: f64, unit| {
@@ -278,7 +278,7 @@ impl<'i> Reader<'_, 'i, '_> {
         let stiffness = number(self.values, "stiffness", on(flags.springs), 0.0, units[3]);
         let spring_at = number(self.values, "springref", angle, reference, units[4]);
         let range = self.range(item, get(self.values, "range"), get(self.values, "limited"));
-        let range = range.filter(|_| flags.limits && matches!(kind, Kind::Hinge | Kind::Slide)).map(|ends| {
+        let range = range.filter(|_| flags.limits && matches!(kind, MjcfType::Hinge | MjcfType::Slide)).map(|ends| {
             let end = |i: usize| {
                 let name = format!("joint.{name}.range.{}", ["lower", "upper"][i]);
                 self.values.number(item, get(self.values, "range"), name, ends[i] * angle - reference, units[4])

@@ -51,7 +51,7 @@ pub struct Mass {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum MjcfType {
     Hinge,
     Slide,
     Ball,
@@ -61,7 +61,7 @@ pub enum Kind {
 pub struct Joint {
     pub name: String,
     pub span: Span,
-    pub kind: Kind,
+    pub kind: MjcfType,
     pub body: usize,
     /// In the body's frame.
     pub position: [f64; 3],
@@ -86,14 +86,14 @@ pub struct Joint {
 impl Joint {
     /// Whether it has one coordinate.
     pub fn is_single(&self) -> bool {
-        matches!(self.kind, Kind::Hinge | Kind::Slide)
+        matches!(self.kind, MjcfType::Hinge | MjcfType::Slide)
     }
 
     /// The name of its coordinate, or of its rate.
     pub fn coordinate(&self, rate: bool) -> String {
         let member = match (self.kind, rate) {
-            (Kind::Slide, false) => "displacement",
-            (Kind::Slide, true) => "velocity",
+            (MjcfType::Slide, false) => "displacement",
+            (MjcfType::Slide, true) => "velocity",
             (_, false) => "angle",
             (_, true) => "angular_velocity",
         };

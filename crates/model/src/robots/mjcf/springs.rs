@@ -16,7 +16,7 @@
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::flags::{Flags, on};
-use super::robot::{Joint, Kind, Law, Robot};
+use super::robot::{Joint, Law, MjcfType, Robot};
 use crate::robots::algebra::{self, Pose, Value, Vector};
 
 /// A velocity of one joint, in the world.
@@ -95,10 +95,10 @@ fn degrees(robot: &Robot, poses: &[Pose]) -> Vec<Degree> {
         let mut add = |axis, about| degrees.push(Degree { joint: index, axis, about });
         let all = [Vector3::x(), Vector3::y(), Vector3::z()];
         match kind {
-            Kind::Hinge => add(axis, Some(at)),
-            Kind::Slide => add(axis, None),
-            Kind::Ball => all.into_iter().for_each(|axis| add(axis, Some(at))),
-            Kind::Free => {
+            MjcfType::Hinge => add(axis, Some(at)),
+            MjcfType::Slide => add(axis, None),
+            MjcfType::Ball => all.into_iter().for_each(|axis| add(axis, Some(at))),
+            MjcfType::Free => {
                 all.into_iter().for_each(|axis| add(axis, None));
                 all.into_iter().for_each(|axis| add(axis, Some(at)));
             }

@@ -3,7 +3,7 @@
 //!
 //! From <http://wiki.ros.org/urdf/XML>, with URDF 1.1 (`quat_xyzw`) and 1.2 (`acceleration`, `deceleration`, `jerk`).
 
-use super::robot::Kind;
+use super::robot::UrdfJointType;
 
 /// An element of the format.
 pub struct Rule {
@@ -121,7 +121,7 @@ const INERTIA: Rule = Rule {
 };
 
 const TYPE: Attribute =
-    Attribute { name: "type", shape: Shape::Word(&Kind::WORDS), instead: "fixed", absent: Absent::Instead };
+    Attribute { name: "type", shape: Shape::Word(&UrdfJointType::WORDS), instead: "fixed", absent: Absent::Instead };
 
 const JOINT: Rule = Rule {
     tag: "joint",

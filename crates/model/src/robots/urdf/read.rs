@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 
 use urdf_rs::JointType;
 
-use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Origin, Robot};
+use super::robot::{Inertial, Joint, Limits, Link, Mimic, Origin, Robot, UrdfJointType};
 use super::visual::Visuals;
 use super::{check, tree};
 use crate::robots::names;
@@ -211,22 +211,22 @@ impl Reader<'_> {
         links: &HashMap<&str, usize>,
     ) -> Option<Joint> {
         if plain(element, "type").is_none() {
-            let help = format!("the types are {}", suggest::list(&Kind::WORDS));
+            let help = format!("the types are {}", suggest::list(&UrdfJointType::WORDS));
             self.error(Code::MissingXml, self.places.tag(element), format!("joint `{name}` needs a `type`"), help);
         }
         let kind = match values.joint_type {
-            JointType::Revolute => Kind::Revolute,
-            JointType::Continuous => Kind::Continuous,
-            JointType::Prismatic => Kind::Prismatic,
-            JointType::Floating => Kind::Floating,
-            JointType::Planar => Kind::Planar,
+            JointType::Revolute => UrdfJointType::Revolute,
+            JointType::Continuous => UrdfJointType::Continuous,
+            JointType::Prismatic => UrdfJointType::Prismatic,
+            JointType::Floating => UrdfJointType::Floating,
+            JointType::Planar => UrdfJointType::Planar,
             // The check before lets no other type pass.
-            JointType::Fixed | JointType::Spherical => Kind::Fixed,
+            JointType::Fixed | JointType::Spherical => UrdfJointType::Fixed,
         };
         let parent = self.link(element, "parent", &values.parent.link, &name, links);
         let linked = self.link(element, "child", &values.child.link, &name, links);
         let axis = *values.axis.xyz;
-        if axis == [0.0; 3] && !matches!(kind, Kind::Fixed | Kind::Floating) {
+        if axis == [0.0; 3] && !matches!(kind, UrdfJointType::Fixed | UrdfJointType::Floating) {
             let found = child(element, "axis").unwrap_or(element);
             let span = self.places.value_or_tag(found, "xyz");
             self.error(Code::ZeroDirection, span, format!("the axis of joint `{name}` has no direction"), None);

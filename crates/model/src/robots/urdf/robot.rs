@@ -65,7 +65,7 @@ pub enum Shape {
 
 /// In the order of [`WORDS`](Kind::WORDS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum UrdfJointType {
     Revolute,
     Continuous,
     Prismatic,
@@ -74,7 +74,7 @@ pub enum Kind {
     Floating,
 }
 
-impl Kind {
+impl UrdfJointType {
     pub const WORDS: [&str; 6] = ["revolute", "continuous", "prismatic", "fixed", "planar", "floating"];
 
     /// The format's word for it.
@@ -108,7 +108,7 @@ pub struct Mimic {
 pub struct Joint {
     pub name: String,
     pub span: Span,
-    pub kind: Kind,
+    pub kind: UrdfJointType,
     pub parent: usize,
     pub child: usize,
     pub origin: Origin,
@@ -133,7 +133,7 @@ pub struct Robot {
 impl Robot {
     /// Whether it has no joints that move.
     pub fn is_rigid(&self) -> bool {
-        self.joints.iter().all(|joint| joint.kind == Kind::Fixed)
+        self.joints.iter().all(|joint| joint.kind == UrdfJointType::Fixed)
     }
 
     /// Whether a link has mass.

@@ -1,7 +1,7 @@
 //! A box of which one quantity decides, cut by planes: at least and at most this part of it belongs to the set.
 
 use super::Tubes;
-use super::parts::{Part, Shape};
+use super::parts::{PavingBox, Shape};
 
 /// Slopes below this share of the largest count as errors of the plane.
 const FLAT: f64 = 0.02;
@@ -22,7 +22,7 @@ impl Cut {
     }
 
     /// Of a box with quantities that are not decided: of one with one such end of one interval.
-    pub fn of(part: &Part, shape: &Shape, tubes: &Tubes) -> Self {
+    pub fn of(part: &PavingBox, shape: &Shape, tubes: &Tubes) -> Self {
         let k = shape.dimension();
         let &[row] = part.rows.as_slice() else { return Self::none(k) };
         let (outer, inner) = (tubes.outer[row as usize], tubes.inner[row as usize]);

@@ -3,7 +3,7 @@
 use std::collections::BinaryHeap;
 
 use super::Tubes;
-use super::parts::{Part, Shape};
+use super::parts::{PavingBox, Shape};
 use crate::numerics::range::Range;
 use crate::numerics::ranked::Ranked;
 
@@ -19,7 +19,7 @@ pub struct LeastExcess {
 }
 
 /// A box by the least excess that is possible on it, with its sign changed: the heap has the least on top.
-type Candidate = Ranked<Part>;
+type Candidate = Ranked<PavingBox>;
 
 /// Minimises, over the box, the largest excess of a quantity beyond its outer interval, in units of its scale: by
 /// branch and bound to a tolerance, or over so many boxes.
@@ -32,7 +32,7 @@ pub fn least_excess(
     let shape = Shape::new(&tubes.orders);
     let mut best = LeastExcess { lower: f64::NEG_INFINITY, upper: f64::INFINITY, at: vec![0.0; shape.dimension()] };
     let mut heap = BinaryHeap::new();
-    let whole = Part::whole(&shape, tubes);
+    let whole = PavingBox::whole(&shape, tubes);
     heap.extend(examined(whole, &shape, tubes, &mut best));
     for _ in 0..boxes {
         let Some(Candidate { rank, item: part }) = heap.pop() else { break };
@@ -50,7 +50,7 @@ pub fn least_excess(
 }
 
 /// A box that may have less than the best so far, with the quantities that decide on it.
-fn examined(part: Part, shape: &Shape, tubes: &Tubes, best: &mut LeastExcess) -> Option<Candidate> {
+fn examined(part: PavingBox, shape: &Shape, tubes: &Tubes, best: &mut LeastExcess) -> Option<Candidate> {
     let least = |row: usize, range: Range| {
         let [lower, upper] = tubes.outer[row];
         (lower - range.upper).max(range.lower - upper) / tubes.scales[row]

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use cuts::Cut;
 pub use least_excess::{LeastExcess, least_excess};
-use parts::{Part, Shape};
+use parts::{PavingBox, Shape};
 
 /// Polynomials of one shape, and the intervals for their values.
 #[derive(Clone, Debug)]
@@ -134,9 +134,9 @@ pub fn pave(tubes: &Tubes, limits: PavingLimits, interrupted: &(dyn Fn() -> bool
     let k = shape.dimension();
     let mut paving = Paving { inside: Boxes::new(k), undecided: Boxes::new(k), cuts: Vec::new() };
     let mut layer = Vec::new();
-    paving.sort(Part::whole(&shape, tubes).classified(&shape, tubes), &mut layer);
+    paving.sort(PavingBox::whole(&shape, tubes).classified(&shape, tubes), &mut layer);
     loop {
-        let numbers: usize = layer.iter().map(Part::numbers).sum();
+        let numbers: usize = layer.iter().map(PavingBox::numbers).sum();
         let cuts: Vec<Cut> = layer.par_iter().map(|part| Cut::of(part, &shape, tubes)).collect();
         let [mut inner, mut outer] = [paving.inside.volume(); 2];
         for (part, cut) in layer.iter().zip(&cuts) {
@@ -149,15 +149,15 @@ pub fn pave(tubes: &Tubes, limits: PavingLimits, interrupted: &(dyn Fn() -> bool
             layer.iter().for_each(|part| paving.undecided.add(&part.ends));
             return Paving { cuts, ..paving };
         }
-        let halves = |part: Part| part.halves(&shape, tubes).map(|half| half.classified(&shape, tubes));
-        let parts: Vec<[Option<Part>; 2]> = std::mem::take(&mut layer).into_par_iter().map(halves).collect();
+        let halves = |part: PavingBox| part.halves(&shape, tubes).map(|half| half.classified(&shape, tubes));
+        let parts: Vec<[Option<PavingBox>; 2]> = std::mem::take(&mut layer).into_par_iter().map(halves).collect();
         parts.into_iter().flatten().for_each(|part| paving.sort(part, &mut layer));
     }
 }
 
 impl Paving {
     /// A box to where it belongs; `None` does not belong to the set.
-    fn sort(&mut self, part: Option<Part>, layer: &mut Vec<Part>) {
+    fn sort(&mut self, part: Option<PavingBox>, layer: &mut Vec<PavingBox>) {
         match part {
             Some(part) if part.rows.is_empty() => self.inside.add(&part.ends),
             Some(part) => layer.push(part),

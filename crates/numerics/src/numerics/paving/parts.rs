@@ -15,7 +15,7 @@ pub(super) struct Shape {
 
 /// A box.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct PavingBox {
     /// Lower ends (k), then upper ends (k).
     pub ends: Vec<f64>,
     /// Quantities that are not decided.
@@ -47,7 +47,7 @@ impl Shape {
     }
 }
 
-impl Part {
+impl PavingBox {
     /// The box [−1, 1]^k with all quantities.
     pub fn whole(shape: &Shape, tubes: &Tubes) -> Self {
         let mut work = Work::default();

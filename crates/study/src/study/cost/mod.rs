@@ -20,7 +20,7 @@ use crate::results::{CostMethod, CostPoint, CostReference, CostStudy, cost_curve
 use crate::syntax::{Code, Coded};
 
 use grid::{Setting, settings, smoothest, uncertain};
-use plan::Plan;
+use plan::ReferencePlan;
 use reference::Reference;
 use timing::{method, timed};
 
@@ -88,7 +88,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     let progress = |done| (options.progress)(REFERENCE_DONE * done);
     let is_fixed = matches!(model.simulation.stepping, Stepping::Fixed(_));
     let has_expansion = is_fixed && compile_switches(&system).is_none() && !system.analysis.is_without_steps();
-    let planned = Plan::within_budget(model, composable, has_expansion, &within)
+    let planned = ReferencePlan::within_budget(model, composable, has_expansion, &within)
         .and_then(|plan| Ok((Reference::compute(model, &plan, &within, &progress)?, plan)));
     let (reference, plan) = match planned {
         Ok(found) => found,

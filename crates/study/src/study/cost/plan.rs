@@ -38,7 +38,7 @@ const SHARE: f64 = 0.35;
 const SCAN_SHARE: f64 = 0.25;
 
 /// Runs for the reference: with three step sizes, each twice the one before.
-pub(super) struct Plan {
+pub(super) struct ReferencePlan {
     pub(super) method: CostMethod,
     pub(super) order: usize,
     /// How much finer the finest steps are than the model's.
@@ -49,7 +49,7 @@ pub(super) struct Plan {
     pub(super) rate: f64,
 }
 
-impl Plan {
+impl ReferencePlan {
     /// The highest order, and with it the finest steps, that two short runs promise to be done in time; the cheapest
     /// there is where none is. Where the error has an expansion in powers of the steps, these are extrapolated.
     ///

@@ -13,7 +13,7 @@ use std::cell::Cell;
 
 use super::deviation::Known;
 use super::grid::{SCAN, Setting, finer};
-use super::plan::Plan;
+use super::plan::ReferencePlan;
 use super::timing::bounds;
 use super::{CostError, CostOptions};
 use crate::model::{Description, Stepping};
@@ -33,7 +33,7 @@ impl Reference {
     /// Where a run fails or ends early.
     pub(super) fn compute(
         model: &Description,
-        plan: &Plan,
+        plan: &ReferencePlan,
         options: &CostOptions,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Self, CostError> {

@@ -4,7 +4,7 @@ use super::Found;
 use super::ensemble::{ReducedEnsemble, Store};
 use super::evaluated::Evaluated;
 use super::keeping::kept_reduced;
-use super::plan::Plan;
+use super::plan::ReductionPlan;
 use super::slopes::OfValues;
 use super::verdicts::verdicts;
 use crate::methods::{
@@ -61,7 +61,7 @@ pub fn plan_reduction(study: &Study, plan: &StepPlan) -> Result<(), SimulationEr
         let widest = (1..samples.len()).map(|sample| of(output, sample)).fold(nominal.clone(), wider);
         if Range::of(&widest).width() > MUCH * Range::of(&nominal).width() { widest } else { nominal }
     };
-    study.store.get_or_init(|| Store::new(Plan::of(description, &times, &course)));
+    study.store.get_or_init(|| Store::new(ReductionPlan::of(description, &times, &course)));
     Ok(())
 }
 

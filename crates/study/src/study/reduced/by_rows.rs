@@ -4,7 +4,7 @@
 //! motion, with a kink over the box wherever it changes its place in time. Over the box first, it is the least of the
 //! lower bounds in the rows, which know no such kink; only what lies between rows is estimated.
 
-use super::part::Part;
+use super::part::MarginPart;
 use crate::model::Requirement;
 use crate::results::Band;
 use crate::study::bounding::{Bounded, bands};
@@ -15,7 +15,7 @@ const SAFETY: f64 = 2.0;
 
 /// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a
 /// margin of `simulated` contradicts them.
-pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64) -> Option<Part> {
+pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64) -> Option<MarginPart> {
     let (from, to) = own.times.filter(|(from, to)| from < to)?;
     let schedule = &rows.plan.schedule;
     let span: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
@@ -33,7 +33,7 @@ pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64)
         let reached = |row: usize| lower[row] - band.error.decisive(first + row).unwrap_or(f64::NAN);
         let least = (0..lower.len()).map(reached).fold(f64::INFINITY, f64::min) - dip;
         let lower = lower.iter().copied().fold(f64::INFINITY, f64::min);
-        Some(Part {
+        Some(MarginPart {
             lower,
             error: lower - least,
             surrogate: band.error.surrogate,
@@ -42,7 +42,7 @@ pub fn by_rows(study: &Study, own: &Requirement, rows: &Bounded, simulated: f64)
             method: band.method.name(),
         })
     };
-    let parts: Vec<Part> = own.outputs.iter().map(of_slack).collect::<Option<_>>()?;
+    let parts: Vec<MarginPart> = own.outputs.iter().map(of_slack).collect::<Option<_>>()?;
     let part = parts.into_iter().min_by(|a, b| a.reached().total_cmp(&b.reached()))?;
     (is_whole && part.reached() <= simulated).then_some(part)
 }

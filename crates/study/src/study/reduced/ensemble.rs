@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::plan::Plan;
+use super::plan::ReductionPlan;
 use super::values::Values;
 use crate::methods::{
     self, EnclosedRow, EnclosureEnd, Ensemble, EnsembleError, FollowedEnds, Observed, Proof, Sampling, Simulated, Until,
@@ -35,7 +35,7 @@ pub fn steps_of(schedule: &Schedule) -> Steps {
 /// What samples were reduced to.
 #[derive(Debug)]
 pub struct Store {
-    pub plan: Arc<Plan>,
+    pub plan: Arc<ReductionPlan>,
     /// By steps and the bits of the parameters.
     kept: Mutex<BTreeMap<Key, Vec<f64>>>,
 }
@@ -46,7 +46,7 @@ fn bits(sample: &Sample) -> Vec<u64> {
 
 impl Store {
     /// Of nothing yet.
-    pub fn new(plan: Plan) -> Self {
+    pub fn new(plan: ReductionPlan) -> Self {
         Self { plan: Arc::new(plan), kept: Mutex::default() }
     }
 
@@ -120,7 +120,7 @@ impl<'a> ReducedEnsemble<'a> {
     }
 
     /// Accumulated reductions.
-    pub fn plan(&self) -> &Plan {
+    pub fn plan(&self) -> &ReductionPlan {
         &self.store.plan
     }
 

@@ -1,7 +1,7 @@
 //! Bounds of a part of a requirement's margin.
 
 /// Bounds of a part of a margin. What decides is the margin beside its error, however little or much it moves.
-pub struct Part {
+pub struct MarginPart {
     pub lower: f64,
     pub error: f64,
     pub surrogate: f64,
@@ -11,7 +11,7 @@ pub struct Part {
     pub method: &'static str,
 }
 
-impl Part {
+impl MarginPart {
     /// What the margin may be with the error.
     pub fn reached(&self) -> f64 {
         self.lower - self.error

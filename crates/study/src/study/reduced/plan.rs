@@ -20,7 +20,7 @@ const DEEP: f64 = 0.02;
 
 /// Accumulated quantities, and the values that follow.
 #[derive(Debug)]
-pub struct Plan {
+pub struct ReductionPlan {
     /// Those that the surrogate expands, then those that are only looked up.
     pub channels: Vec<Channel>,
     /// Number of those that the surrogate expands.
@@ -39,7 +39,7 @@ struct Planner<'a> {
     times: &'a [f64],
 }
 
-impl Plan {
+impl ReductionPlan {
     /// Of a model whose formulas have their places among its outputs, given the nominal course of an output in rows at
     /// `times`.
     pub fn of(description: &Description, times: &[f64], nominal: &dyn Fn(usize) -> Vec<f64>) -> Self {

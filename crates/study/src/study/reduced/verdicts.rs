@@ -3,7 +3,7 @@
 use super::by_rows::by_rows;
 use super::ensemble::ReducedEnsemble;
 use super::evaluated::Evaluated;
-use super::part::Part;
+use super::part::MarginPart;
 use crate::grammar::display_unit::ShownUnit;
 use crate::methods::Method;
 use crate::model::Requirement;
@@ -54,9 +54,9 @@ fn verdict(
     rows: &Bounded,
     ensembles: [&ReducedEnsemble; 2],
 ) -> Result<RequirementSummary, SimulationError> {
-    let mut parts: Vec<Part> =
+    let mut parts: Vec<MarginPart> =
         ensembles[0].plan().values.parts(number).map(|index| part(study, values, index)).collect();
-    let decided = |parts: &[Part]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
+    let decided = |parts: &[MarginPart]| parts.iter().all(|part| part.is_known && part.reached() >= 0.0);
     if rows.functions.is_some() {
         parts = by_rows(study, own, rows, f64::INFINITY).map_or(parts, |part| vec![part]);
     } else if !decided(&parts) && !values.unreliable {
@@ -69,7 +69,7 @@ fn verdict(
         };
     }
     let lower = parts.iter().map(|part| part.lower).fold(f64::INFINITY, smaller);
-    let least = parts.iter().map(Part::reached).fold(f64::INFINITY, smaller);
+    let least = parts.iter().map(MarginPart::reached).fold(f64::INFINITY, smaller);
     let error = lower - least;
     // The part that decides.
     let part = parts.iter().min_by(|a, b| a.reached().total_cmp(&b.reached()));
@@ -114,13 +114,13 @@ fn verdict(
 
 /// Bounds of a part of a margin, by the foremost method: the first that is resolved, or else whose error is to be
 /// believed.
-fn part(study: &Study, values: &Evaluated, index: usize) -> Part {
+fn part(study: &Study, values: &Evaluated, index: usize) -> MarginPart {
     let bands = bands(study, values.bounded, index, 1);
     let is_resolved = |band: &Band| !band.error.unresolved[0];
     let is_known = |band: &Band| band.error.decisive(0).is_some();
     let band = bands.iter().find(|band| is_resolved(band)).or(foremost(&bands, is_known));
     let decisive = band.and_then(|band| band.error.decisive(0));
-    Part {
+    MarginPart {
         lower: band.map_or(f64::NAN, |band| band.lower[0]),
         error: band.map_or(f64::NAN, |band| decisive.unwrap_or(band.error.total[0])),
         surrogate: band.map_or(f64::NAN, |band| band.error.surrogate),

@@ -2,7 +2,7 @@
 
 use super::DoubleDouble;
 use super::functions::{binary, sin_cos, unary};
-use crate::lower::tape::{Op, Operands, Part, Tape};
+use crate::lower::tape::{Op, Operands, Tape, TapePart};
 
 /// Memory of a program for one sample.
 #[derive(Clone, Debug)]
@@ -39,8 +39,8 @@ impl DoubleDoubleMemory {
         let mut index = 0;
         while let Some(part) = tape.part(&mut index) {
             let (op, operands) = match part {
-                Part::Run(op, operands) => (op, operands),
-                Part::Region(region) => {
+                TapePart::Run(op, operands) => (op, operands),
+                TapePart::Region(region) => {
                     region.skip_unless(region.wants(values[region.condition as usize].to_f64()), &mut index);
                     continue;
                 }

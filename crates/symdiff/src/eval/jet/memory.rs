@@ -1,7 +1,7 @@
 //! The evaluator over jets: the same tapes, with a truncated polynomial in every slot.
 
 use crate::eval::jet::{JetScratch, JetSpace};
-use crate::lower::tape::{Op, Operands, Part, Tape};
+use crate::lower::tape::{Op, Operands, Tape, TapePart};
 
 /// Memory of a program for one sample whose values are polynomials in the uncertain parameters.
 #[derive(Clone, Debug)]
@@ -54,8 +54,8 @@ impl<'s> JetMemory<'s> {
         let mut index = 0;
         while let Some(part) = tape.part(&mut index) {
             let (op, operands) = match part {
-                Part::Run(op, operands) => (op, operands),
-                Part::Region(region) => {
+                TapePart::Run(op, operands) => (op, operands),
+                TapePart::Region(region) => {
                     let condition = values[region.condition as usize * length];
                     region.skip_unless(region.wants(condition), &mut index);
                     continue;

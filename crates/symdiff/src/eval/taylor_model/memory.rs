@@ -2,7 +2,7 @@
 
 use crate::eval::interval::Interval;
 use crate::eval::taylor_model::{ModelScratch, ModelSpace};
-use crate::lower::tape::{Op, Operands, Part, Tape};
+use crate::lower::tape::{Op, Operands, Tape, TapePart};
 
 /// Memory of a program whose values are enclosed over a whole box of parameters.
 #[derive(Clone, Debug)]
@@ -49,8 +49,8 @@ impl<'s> ModelMemory<'s> {
         let mut index = 0;
         while let Some(part) = tape.part(&mut index) {
             let (op, operands) = match part {
-                Part::Run(op, operands) => (op, operands),
-                Part::Region(region) => {
+                TapePart::Run(op, operands) => (op, operands),
+                TapePart::Region(region) => {
                     // Undecided is neither.
                     let sign = space.sign(&values[region.condition as usize * size..][..size]);
                     region.skip_unless(sign.is_none_or(|sign| region.wants(sign)), &mut index);

@@ -12,7 +12,7 @@ use crate::eval::functions;
 use crate::eval::sincos;
 use crate::eval::vectorised::{InstructionSet, Vectorise};
 use crate::expr::{Binary, Unary};
-use crate::lower::tape::{Op, Operands, Part, Region, Tape};
+use crate::lower::tape::{Op, Operands, Region, Tape, TapePart};
 
 pub(crate) use record::Record;
 use record::{Keep, Nothing};
@@ -160,11 +160,11 @@ unsafe fn interpret<const W: usize, const C: usize, K: Keep>(tape: &Tape, memory
     let mut index = 0;
     while let Some(part) = tape.part(&mut index) {
         let (op, operands) = match part {
-            Part::Run(op, operands) => {
+            TapePart::Run(op, operands) => {
                 keep.run(index - 1);
                 (op, operands)
             }
-            Part::Region(region) => {
+            TapePart::Region(region) => {
                 // SAFETY: the caller's.
                 region.skip_unless(unsafe { wanted::<W>(region, memory) }, &mut index);
                 continue;

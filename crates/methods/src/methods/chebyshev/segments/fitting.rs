@@ -5,7 +5,7 @@
 //! a part of its own where one polynomial does not do.
 
 use super::basis::{Basis, Fitted, Level, SAMPLES_A_TERM};
-use super::parts::{Part, Samples};
+use super::parts::{Samples, WordPart};
 use super::piece::Piece;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
 use crate::methods::ensemble::{Ensemble, EnsembleError};
@@ -44,7 +44,7 @@ impl Fitting<'_> {
     /// Where a sample cannot be assembled.
     pub fn pieces<'b>(mut self, ensemble: &dyn Ensemble) -> Result<Option<Found<'b>>, EnsembleError> {
         let words = self.samples.motions.words.len();
-        let mut parts: Vec<Part> = (0..words).map(|word| Part::of_word(word, &self.samples.motions)).collect();
+        let mut parts: Vec<WordPart> = (0..words).map(|word| WordPart::of_word(word, &self.samples.motions)).collect();
         let (mut layer, mut covered) = (0, 0);
         loop {
             for _ in 0..ROUNDS {
@@ -92,7 +92,7 @@ impl Fitting<'_> {
     }
 
     /// The polynomials of a part, and by what share of their range they miss samples that are left out.
-    fn fitted<'b>(&self, part: &Part, levels: &[Option<Level>]) -> Option<(f64, Piece<'b>)> {
+    fn fitted<'b>(&self, part: &WordPart, levels: &[Option<Level>]) -> Option<(f64, Piece<'b>)> {
         let places = self.samples.places(part, levels);
         let motions = picked(&self.samples.motions.words[part.word], &places);
         let xi: Vec<Vec<f64>> = motions.samples.iter().map(|&sample| self.samples.xi[sample].clone()).collect();

@@ -11,7 +11,7 @@ pub(super) struct Samples {
 
 /// A part of the box: that of a word, or a layer of it.
 #[derive(Clone)]
-pub(super) struct Part {
+pub(super) struct WordPart {
     pub word: usize,
     limits: Vec<Limit>,
 }
@@ -39,10 +39,10 @@ impl Samples {
     }
 
     /// Places, among the samples of its word, of those in a part.
-    pub fn places(&self, part: &Part, levels: &[Option<Level>]) -> Vec<usize> {
+    pub fn places(&self, part: &WordPart, levels: &[Option<Level>]) -> Vec<usize> {
         // On which side of a boundary a sample is, its word tells.
         let layers =
-            Part { limits: part.limits.iter().filter(|limit| limit.offset != 0.0).copied().collect(), ..*part };
+            WordPart { limits: part.limits.iter().filter(|limit| limit.offset != 0.0).copied().collect(), ..*part };
         let ends = layers.ends(levels);
         let own = self.motions.words[part.word].samples.iter().enumerate();
         own.filter(|(_, sample)| ends.iter().all(|end| end.margin(&self.xi[**sample]) >= 0.0))
@@ -51,7 +51,7 @@ impl Samples {
     }
 }
 
-impl Part {
+impl WordPart {
     /// All of a word's.
     pub fn of_word(word: usize, motions: &CutMotions) -> Self {
         let of = |(boundary, margins): (usize, &crate::numerics::BoundaryMargins)| {

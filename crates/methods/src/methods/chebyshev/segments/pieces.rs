@@ -8,7 +8,7 @@ use symdiff::jet::JetSpace;
 
 use super::basis::Basis;
 use super::fitting::Fitting;
-use super::parts::{Part, Samples};
+use super::parts::{Samples, WordPart};
 use super::piece::Piece;
 use super::sampling::CORNERS;
 use super::surrogate::{SegmentErrors, SegmentSurrogate};
@@ -103,7 +103,7 @@ impl<'a> Pieces<'a> {
             };
             let Some((_, jet)) = jet.filter(|(own, _)| *own == word) else { return Ok(None) };
             let basis = Basis::Taylor { monomials: space.monomials().clone(), centre };
-            let ends = Part::of_word(word, &samples.motions).ends(&levels);
+            let ends = WordPart::of_word(word, &samples.motions).ends(&levels);
             let surrogate = SegmentSurrogate::new(basis, ends, &jet, <[f64]>::to_vec);
             let errors = SegmentErrors::new(&surrogate, &xi, motions);
             all.push(Piece { surrogate, errors, samples: xi });

@@ -3,7 +3,7 @@
 
 use super::basis::{Fitted, SAMPLES_A_TERM};
 use super::fitting::Fitting;
-use super::parts::Part;
+use super::parts::WordPart;
 use super::piece::Piece;
 use crate::numerics::{corners, largest, spread};
 
@@ -25,7 +25,7 @@ const APART: f64 = 0.2;
 
 impl Fitting<'_> {
     /// Points of a part that are far outside of its samples, the farthest first: a fit may have any value there.
-    pub(super) fn uncovered(&self, part: &Part, piece: &Piece) -> Vec<Vec<f64>> {
+    pub(super) fn uncovered(&self, part: &WordPart, piece: &Piece) -> Vec<Vec<f64>> {
         let k = self.samples.xi.first().map_or(0, Vec::len);
         let surrogate = &piece.surrogate;
         let margin = |xi: &Vec<f64>| surrogate.ends.iter().map(|end| end.margin(xi)).fold(f64::INFINITY, f64::min);
@@ -61,7 +61,7 @@ impl Fitting<'_> {
     }
 
     /// Points at which samples are missing.
-    pub(super) fn wanted(&self, parts: &[Part]) -> Vec<Vec<f64>> {
+    pub(super) fn wanted(&self, parts: &[WordPart]) -> Vec<Vec<f64>> {
         let levels = self.samples.levels();
         let xi = &self.samples.xi;
         let k = xi.first().map_or(0, Vec::len);

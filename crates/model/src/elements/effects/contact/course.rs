@@ -62,7 +62,7 @@ fn items<'n, S: SymbolTable>(reader: &mut Reader<'_, S>, node: &'n Node) -> Opti
 
 /// A line through points.
 #[derive(Clone, Debug)]
-pub struct Course(Vec<Stop>);
+pub struct ContactLine(Vec<Stop>);
 
 /// A point of a line, and how it comes there.
 #[derive(Clone, Debug)]
@@ -81,7 +81,7 @@ pub struct Corner<'g> {
     pub radius: Option<Scalar<'g>>,
 }
 
-impl Course {
+impl ContactLine {
     /// Its points as expressions.
     pub fn corners<'g>(&self, forces: &dyn Forces<'g>) -> Result<Vec<Corner<'g>>, BuildError> {
         let corner = |stop: &Stop| {
@@ -141,7 +141,7 @@ impl Course {
     }
 }
 
-impl Value for Course {
+impl Value for ContactLine {
     const IMAGE: Image = Image::Polars;
 
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _: Span, quantity: &Quantity) -> Option<Self> {

@@ -43,7 +43,7 @@ use std::rc::Rc;
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use self::course::{Course, Points, placed};
+use self::course::{ContactLine, Points, placed};
 use self::cylinder::Cylinder;
 use self::felt::{Felt, SENSORS};
 use self::ground::Ground;
@@ -88,10 +88,10 @@ pub struct Contact {
     /// Instead of `plane`: points of a line in x and y of the first point's frame; both of its sides are surfaces.
     /// `{ to: [x, y], radius: R }` is an arc to a point.
     #[quantity(unit = "m", constant)]
-    pub path: Option<Course>,
+    pub path: Option<ContactLine>,
     /// Instead of `plane`: corners of a closed line, in their order, with arcs as in `path`.
     #[quantity(unit = "m", constant)]
-    pub polygon: Option<Course>,
+    pub polygon: Option<ContactLine>,
     /// Instead of `plane`: height of the ground over the first point, a formula of `x` along x of its frame and of t;
     /// up is y, in space z.
     #[quantity(unit = "m", time)]
@@ -292,7 +292,7 @@ impl Contact {
     fn outline<'g>(
         &self,
         forces: &dyn Forces<'g>,
-        course: &Course,
+        course: &ContactLine,
         closed: bool,
     ) -> Result<Outline<'g>, BuildError> {
         let corners = course.corners(forces)?;

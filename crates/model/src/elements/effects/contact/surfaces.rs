@@ -2,7 +2,7 @@
 
 use symdiff::{Binary, Formula};
 
-use crate::elements::effects::{Contact, Course};
+use crate::elements::effects::{Contact, ContactLine};
 use crate::elements::{Form, Shape, Surroundings};
 use crate::grammar::OfPlace;
 
@@ -17,7 +17,7 @@ fn number(value: f64) -> Formula {
 pub fn of_first(contact: &Contact, surroundings: Surroundings) -> Option<Form<Formula>> {
     let radius = contact.rounding.clone();
     let axis = contact.axis.as_ref().filter(|_| surroundings.spatial).map(|axis| axis.0.clone());
-    let outline = |course: &Course, is_closed: bool| Form::Outline {
+    let outline = |course: &ContactLine, is_closed: bool| Form::Outline {
         points: course.bends(),
         is_closed,
         thickness: number(0.0),
