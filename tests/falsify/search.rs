@@ -3,6 +3,7 @@
 //! is mbint's.
 
 use crate::draw::{Parameter, Term};
+use crate::random::Random;
 use crate::truth::Range;
 
 /// Candidates of each end that are refined.
@@ -12,6 +13,9 @@ const CANDIDATES: usize = 6;
 const STAGES: usize = 60;
 const FINEST: f64 = 1e-8;
 
+/// Points that are drawn about a place at once.
+const DRAWN: usize = 300;
+
 /// Samples of a term on a grid over its uncertain parameters.
 struct Grid<'t> {
     term: &'t Term,
@@ -19,6 +23,7 @@ struct Grid<'t> {
     uncertain: Vec<usize>,
     /// Points along each.
     points: usize,
+    level: u32,
     /// Sample by sample, channel by channel, row by row; the first uncertain parameter varies fastest.
     values: Vec<Vec<Vec<f64>>>,
 }
@@ -49,8 +54,8 @@ fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -
 
 /// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method
 /// (Computer Journal 3 (1960) 175): after each stage the first direction is that of its progress, since along a ridge
-/// that no axis follows the axes alone gain next to nothing.
-fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) -> f64 {
+/// that no axis follows the axes alone gain next to nothing. Returns the greatest value, and where it is.
+fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) -> (f64, Vec<f64>) {
     let (n, last) = (start.len(), (points - 1) as f64);
     let (mut best, mut place, mut size) = (known, start.to_vec(), 0.25_f64);
     let mut directions = axes(n);
@@ -80,6 +85,26 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
         }
         size = (0.5 * length).min(0.5);
         directions = turned(&directions, &progress);
+    }
+    (best, place)
+}
+
+/// The greatest value that is found about a place, two cells each way and then ever nearer to the best so far, at points
+/// that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads a climb on.
+fn narrowed((known, place): (f64, Vec<f64>), points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let (mut random, mut best, mut at) = (Random::new(1, 0), known, place);
+    let mut reach = 2.0;
+    while reach > FINEST {
+        let centre = at.clone();
+        for _ in 0..DRAWN {
+            let near = |middle: &f64| (middle + reach * (2.0 * random.unit() - 1.0)).clamp(0.0, (points - 1) as f64);
+            let next: Vec<f64> = centre.iter().map(near).collect();
+            let value = f(&next);
+            if value > best {
+                (best, at) = (value, next);
+            }
+        }
+        reach *= 0.5;
     }
     best
 }
@@ -129,7 +154,7 @@ impl<'t> Grid<'t> {
             (_, true) => 4,
         };
         let points = (few << level) + 1;
-        let mut grid = Self { term, parameters, uncertain, points, values: Vec::new() };
+        let mut grid = Self { term, parameters, uncertain, points, level, values: Vec::new() };
         let samples = points.pow(grid.uncertain.len() as u32);
         grid.values = (0..samples).map(|sample| (term.curves)(&grid.at(&grid.place(sample)), times)).collect();
         grid
@@ -164,17 +189,35 @@ impl<'t> Grid<'t> {
             (0..self.values.len()).filter(|&sample| self.is_local(sample, &value)).collect();
         candidates.sort_by(|&a, &b| value(b).total_cmp(&value(a)));
         candidates.truncate(CANDIDATES);
+        let exact = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[time])[channel][0];
+        // What is integrated begins at the start.
+        let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
         let refined = candidates.iter().map(|&sample| {
             let known = value(sample);
-            if self.uncertain.is_empty() {
-                return known;
-            }
-            let exact = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[time])[channel][0];
             let between = |place: &[f64]| sign * self.interpolated(sample, place, channel, row);
-            let f: &dyn Fn(&[f64]) -> f64 = if self.term.integrated { &between } else { &exact };
-            climb(&self.place(sample), self.points, known, f)
+            match (self.uncertain.is_empty(), self.term.integrated) {
+                (true, _) => (known, None),
+                (_, true) => {
+                    let (found, place) = climb(&self.place(sample), self.points, known, &between);
+                    (found, (found > known).then_some((place, known)))
+                }
+                (_, false) => {
+                    let found = climb(&self.place(sample), self.points, known, &exact);
+                    (if self.level > 0 { narrowed(found, self.points, &exact) } else { found.0 }, None)
+                }
+            }
         });
-        refined.fold(f64::NEG_INFINITY, f64::max)
+        let mut refined: Vec<(f64, Option<(Vec<f64>, f64)>)> = refined.collect();
+        refined.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // A polynomial overshoots beside kinks: what it promises counts as far as the motion there attains it.
+        let mut best = f64::NEG_INFINITY;
+        for (promised, place) in refined {
+            if promised <= best {
+                break;
+            }
+            best = best.max(place.map_or(promised, |(place, known)| moved(&place).max(known)));
+        }
+        best
     }
 
     /// Whether no neighbour along a parameter is greater. Of equals, as along a parameter that does not matter to the
@@ -238,7 +281,7 @@ mod tests {
     fn a_bent_ridge_is_followed_to_its_end() {
         let beside = |p: &[f64]| p[1] - 1.0 - 0.7 * (p[0] - 1.0) - 0.2 * (p[0] - 1.0).powi(2);
         let f = |p: &[f64]| 0.01 * p[0] - 50.0 * beside(p).powi(2) - 3.0 * (p[2] - 1.2).powi(2);
-        let found = climb(&[1.0; 3], 3, f(&[1.0; 3]), &f);
+        let (found, _) = climb(&[1.0; 3], 3, f(&[1.0; 3]), &f);
         // At p₀ = 2 the ridge is at p₁ = 1.9.
         assert!((found - 0.02).abs() < 1e-9, "{found}");
     }
