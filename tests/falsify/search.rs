@@ -6,8 +6,13 @@ use crate::draw::{Parameter, Term};
 use crate::random::Random;
 use crate::truth::Range;
 
-/// Candidates of each end that are refined.
+/// Candidates of each end that are refined, and of closed forms where a band seems to be missed: a ridge has one on each
+/// line of the grid.
 const CANDIDATES: usize = 6;
+const MANY: usize = 128;
+
+/// Of these, those about which more points are drawn.
+const DRAWN_ABOUT: usize = 4;
 
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
@@ -188,34 +193,35 @@ impl<'t> Grid<'t> {
         let mut candidates: Vec<usize> =
             (0..self.values.len()).filter(|&sample| self.is_local(sample, &value)).collect();
         candidates.sort_by(|&a, &b| value(b).total_cmp(&value(a)));
-        candidates.truncate(CANDIDATES);
-        let exact = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[time])[channel][0];
-        // What is integrated begins at the start.
-        let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
-        let refined = candidates.iter().map(|&sample| {
-            let known = value(sample);
-            let between = |place: &[f64]| sign * self.interpolated(sample, place, channel, row);
-            match (self.uncertain.is_empty(), self.term.integrated) {
-                (true, _) => (known, None),
-                (_, true) => {
-                    let (found, place) = climb(&self.place(sample), self.points, known, &between);
-                    (found, (found > known).then_some((place, known)))
-                }
-                (_, false) => {
-                    let found = climb(&self.place(sample), self.points, known, &exact);
-                    (if self.level > 0 { narrowed(found, self.points, &exact) } else { found.0 }, None)
-                }
+        candidates.truncate(if self.level > 0 && !self.term.integrated { MANY } else { CANDIDATES });
+        if self.uncertain.is_empty() {
+            return candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
+        }
+        let climbed = |f: &dyn Fn(&[f64], usize) -> f64| {
+            let from = |&sample: &usize| {
+                climb(&self.place(sample), self.points, value(sample), &|place: &[f64]| f(place, sample))
+            };
+            let mut all: Vec<(f64, Vec<f64>)> = candidates.iter().map(from).collect();
+            all.sort_by(|a, b| b.0.total_cmp(&a.0));
+            all
+        };
+        if !self.term.integrated {
+            let exact = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[time])[channel][0];
+            let mut found = climbed(&|place, _| exact(place));
+            if self.level > 0 {
+                found.truncate(DRAWN_ABOUT);
+                found.iter_mut().for_each(|own| own.0 = narrowed(own.clone(), self.points, &exact));
             }
-        });
-        let mut refined: Vec<(f64, Option<(Vec<f64>, f64)>)> = refined.collect();
-        refined.sort_by(|a, b| b.0.total_cmp(&a.0));
+            return found.into_iter().map(|(value, _)| value).fold(f64::NEG_INFINITY, f64::max);
+        }
         // A polynomial overshoots beside kinks: what it promises counts as far as the motion there attains it.
-        let mut best = f64::NEG_INFINITY;
-        for (promised, place) in refined {
+        let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
+        let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
+        for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {
             if promised <= best {
                 break;
             }
-            best = best.max(place.map_or(promised, |(place, known)| moved(&place).max(known)));
+            best = best.max(moved(&place));
         }
         best
     }
