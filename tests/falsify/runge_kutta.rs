@@ -164,8 +164,8 @@ pub trait Sided: Fn(f64, &[f64], &[bool], &mut [f64]) {}
 impl<F: Fn(f64, &[f64], &[bool], &mut [f64])> Sided for F {}
 
 /// As [`solve`], where f changes at zeros of switches, functions of t and y: within a step f keeps the sides of its
-/// beginning, and a step in which a switch changes its sign is halved down to its zero by bisection to rounding. Zeros
-/// that come and go within a step of `longest` are not seen.
+/// beginning, and a step in which a switch changes its sign, also there and back, ends at its zero by bisection to
+/// rounding.
 pub fn solve_located<const N: usize>(
     f: impl Sided,
     switches: impl Fn(f64, &[f64]) -> [f64; N],
@@ -198,7 +198,12 @@ pub fn solve_located<const N: usize>(
             }
             let sides_at = |step: f64, y: &[f64]| switches(t + step, y).map(|value| value > 0.0);
             let mut taken = step;
-            if sides_at(step, &next) != sides {
+            if sides_at(step, &next) == sides
+                && let Some(touch) = touched(|share| switches(t + share * step, &after(share * step).0))
+            {
+                (taken, next) = (touch * step, after(touch * step).0);
+            }
+            if sides_at(taken, &next) != sides {
                 let mut before = 0.0;
                 while taken - before > 4.0 * f64::EPSILON * ends[1].abs() {
                     let middle = 0.5 * (before + taken);
@@ -221,6 +226,33 @@ pub fn solve_located<const N: usize>(
         solution.push(y.clone());
     }
     solution
+}
+
+/// Share of a step at which a switch, by its values at shares, has another sign than at both ends: about the vertices of
+/// parabolas, which are drawn ever closer.
+fn touched<const N: usize>(mut at: impl FnMut(f64) -> [f64; N]) -> Option<f64> {
+    let [first, last] = [at(0.0), at(1.0)];
+    (0..N).find_map(|i| {
+        let nearest = first[i].abs().min(last[i].abs());
+        let (mut middle, mut reach) = (0.5, 0.5);
+        for _ in 0..6 {
+            let [a, b, c] = [middle - reach, middle, middle + reach].map(|share| at(share)[i]);
+            let vertex = middle + 0.5 * reach * (a - c) / (a - 2.0 * b + c);
+            if !(vertex > 0.0 && vertex < 1.0) {
+                return None;
+            }
+            let value = at(vertex)[i];
+            if (value > 0.0) != (first[i] > 0.0) {
+                return Some(vertex);
+            }
+            if value.abs() > nearest {
+                return None;
+            }
+            reach = 0.2 * reach.min(vertex).min(1.0 - vertex);
+            middle = vertex;
+        }
+        None
+    })
 }
 
 fn weighted(stages: &[Vec<f64>], weights: &[f64; 12], i: usize) -> f64 {
@@ -287,5 +319,14 @@ mod tests {
         for state in &found {
             assert!((state[0] - 1.0).abs() < 1e-10 && state[1].abs() < 1e-9, "{state:?}");
         }
+    }
+
+    /// v = 1 but within 1e-3 of x = 0.5, where it is 2: passed in steps of 0.1.
+    #[test]
+    fn a_touch_within_a_step_is_located() {
+        let f = |_: f64, _: &[f64], sides: &[bool], d: &mut [f64]| d[0] = if sides[0] { 2.0 } else { 1.0 };
+        let near = |_: f64, y: &[f64]| [1e-6 - (y[0] - 0.5) * (y[0] - 0.5)];
+        let found = solve_located(f, near, &[0.03], &[0.0, 0.9], 1e-13, 0.1);
+        assert!((found[1][0] - 0.931).abs() < 1e-12, "{found:?}");
     }
 }

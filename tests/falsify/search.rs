@@ -6,20 +6,17 @@ use crate::draw::{Parameter, Term};
 use crate::random::Random;
 use crate::truth::Range;
 
-/// Candidates of each end that are refined, and of closed forms where a band seems to be missed: a ridge has one on each
-/// line of the grid.
+/// Candidates of each end that are refined.
 const CANDIDATES: usize = 6;
-const MANY: usize = 128;
 
-/// Of these, those about which more points are drawn.
-const DRAWN_ABOUT: usize = 4;
+/// Of those of closed forms, how many more points are drawn about where a band seems to be missed, and how many points
+/// at once.
+const DRAWN_ABOUT: usize = 2;
+const DRAWN: usize = 1500;
 
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
 const FINEST: f64 = 1e-8;
-
-/// Points that are drawn about a place at once.
-const DRAWN: usize = 300;
 
 /// Samples of a term on a grid over its uncertain parameters.
 struct Grid<'t> {
@@ -94,11 +91,12 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
     (best, place)
 }
 
-/// The greatest value that is found about a place, two cells each way and then ever nearer to the best so far, at points
-/// that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads a climb on.
+/// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so far,
+/// at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads a climb
+/// on, and its end is many cells away.
 fn narrowed((known, place): (f64, Vec<f64>), points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
     let (mut random, mut best, mut at) = (Random::new(1, 0), known, place);
-    let mut reach = 2.0;
+    let mut reach = 0.25 * points as f64;
     while reach > FINEST {
         let centre = at.clone();
         for _ in 0..DRAWN {
@@ -109,7 +107,7 @@ fn narrowed((known, place): (f64, Vec<f64>), points: usize, f: &dyn Fn(&[f64]) -
                 (best, at) = (value, next);
             }
         }
-        reach *= 0.5;
+        reach *= 0.7;
     }
     best
 }
@@ -193,7 +191,7 @@ impl<'t> Grid<'t> {
         let mut candidates: Vec<usize> =
             (0..self.values.len()).filter(|&sample| self.is_local(sample, &value)).collect();
         candidates.sort_by(|&a, &b| value(b).total_cmp(&value(a)));
-        candidates.truncate(if self.level > 0 && !self.term.integrated { MANY } else { CANDIDATES });
+        candidates.truncate(CANDIDATES);
         if self.uncertain.is_empty() {
             return candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
         }
