@@ -228,8 +228,8 @@ pub fn solve_located<const N: usize>(
     solution
 }
 
-/// Share of a step at which a switch, by its values at shares, has another sign than at both ends: about the vertices of
-/// parabolas, which are drawn ever closer.
+/// Share of a step at which a switch, by its values at shares, has another sign than at both ends: about the vertices
+/// of parabolas, which are drawn ever closer.
 fn touched<const N: usize>(mut at: impl FnMut(f64) -> [f64; N]) -> Option<f64> {
     let [first, last] = [at(0.0), at(1.0)];
     (0..N).find_map(|i| {

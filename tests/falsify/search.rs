@@ -91,11 +91,11 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
     (best, place)
 }
 
-/// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so far,
-/// at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads a climb
-/// on, and its end is many cells away.
-fn narrowed((known, place): (f64, Vec<f64>), points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
-    let (mut random, mut best, mut at) = (Random::new(1, 0), known, place);
+/// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so
+/// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads a
+/// climb on, and its end is many cells away.
+fn narrowed(known: f64, place: &[f64], points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let (mut random, mut best, mut at) = (Random::new(1, 0), known, place.to_vec());
     let mut reach = 0.25 * points as f64;
     while reach > FINEST {
         let centre = at.clone();
@@ -208,11 +208,11 @@ impl<'t> Grid<'t> {
             let mut found = climbed(&|place, _| exact(place));
             if self.level > 0 {
                 found.truncate(DRAWN_ABOUT);
-                found.iter_mut().for_each(|own| own.0 = narrowed(own.clone(), self.points, &exact));
+                found.iter_mut().for_each(|own| own.0 = narrowed(own.0, &own.1, self.points, &exact));
             }
             return found.into_iter().map(|(value, _)| value).fold(f64::NEG_INFINITY, f64::max);
         }
-        // A polynomial overshoots beside kinks: what it promises counts as far as the motion there attains it.
+        // A polynomial overshoots beside kinks: its promise counts as far as the motion there attains it.
         let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
         let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
         for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {

@@ -123,6 +123,8 @@ pub struct EffectInfo {
     pub room: Option<Expr>,
     /// How deep its surfaces may overlap, where that has a limit.
     pub overlap: Option<Overlap>,
+    /// The gap of its surfaces, m, the gap's rate, m/s, and the force between them, N.
+    pub touch: Option<[Expr; 3]>,
 }
 
 /// Surfaces of which what lies within them has no nearest side.

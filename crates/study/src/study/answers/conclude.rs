@@ -17,7 +17,7 @@ use crate::model::Stepping;
 use crate::numerics::Sample;
 use crate::results::{
     Bounds, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
-    SingularSummary, Summary, Witness,
+    SingularSummary, StartOverlap, Summary, Witness,
 };
 use crate::simulate::{
     EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps,
@@ -187,6 +187,12 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failures: &[Note]) 
         events_followed: events_followed(schedule),
         unmet_switch,
         passed_force,
+        overlaps_at_start: study
+            .simulator
+            .overlapping()
+            .into_iter()
+            .map(|(contact, depth)| StartOverlap { contact, depth })
+            .collect(),
         too_deep: results.bounded.too_deep(),
         beyond_tolerance: results.bounded.beyond_tolerance(),
         integration: schedule.integration.name(),
