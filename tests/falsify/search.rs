@@ -92,8 +92,8 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
 }
 
 /// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so
-/// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads a
-/// climb on, and its end is many cells away.
+/// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads
+/// a climb on, and its end is many cells away.
 fn narrowed(known: f64, place: &[f64], points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
     let (mut random, mut best, mut at) = (Random::new(1, 0), known, place.to_vec());
     let mut reach = 0.25 * points as f64;
