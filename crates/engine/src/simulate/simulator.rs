@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use symdiff::{Expr, Tile, WIDTHS};
 
 use super::derived::Derived;
-use super::diagnostics::{not_finite, outside, over_constrained, overlapping, undetermined_outputs};
+use super::diagnostics::{not_finite, outside, over_constrained, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_equilibrium, no_factors, not_driven};
 use super::features::Features;
 use super::further::further_outputs;
@@ -237,15 +237,6 @@ impl Simulator {
             features: OnceLock::new(),
             free_closure: OnceLock::new(),
         })
-    }
-
-    /// Contacts whose surfaces overlap at the nominal start by more than other forces press them together, and their
-    /// depths, m. In an equilibrium none does.
-    pub fn overlapping(&self) -> Vec<(String, f64)> {
-        match self.equilibrium {
-            Some(_) => Vec::new(),
-            None => overlapping(&self.system, &self.start.layout, &self.nominal),
-        }
     }
 
     /// All outputs in the nominal state.

@@ -2,9 +2,8 @@
 
 use symdiff::Expr;
 
-use crate::assemble::System;
-use crate::compile::Layout;
 use crate::simulate::motion_values::motion_values;
+use crate::simulate::simulator::Simulator;
 
 /// Time over which the change of a gap's rate is taken, s.
 const MOMENT: f64 = 1e-6;
@@ -13,9 +12,13 @@ const MOMENT: f64 = 1e-6;
 /// mass of all bodies.
 const UNBALANCED: f64 = 0.5;
 
-/// The contacts whose surfaces overlap at the start (the layout's registers) by more than other forces press them
-/// together, and by how much, m.
-pub fn overlapping(system: &System, layout: &Layout, state: &[f64]) -> Vec<(String, f64)> {
+/// The contacts whose surfaces overlap at the nominal start by more than other forces press them together, and by how
+/// much, m. In an equilibrium none does.
+pub fn overlapping(simulator: &Simulator) -> Vec<(String, f64)> {
+    let (system, layout, state) = (&simulator.system, &simulator.start.layout, &simulator.nominal);
+    if simulator.equilibrium.is_some() {
+        return Vec::new();
+    }
     let (names, touches): (Vec<&String>, Vec<[Expr; 3]>) =
         system.effects.iter().filter_map(|effect| Some((&effect.name, effect.touch?))).unzip();
     if names.is_empty() {
@@ -26,7 +29,7 @@ pub fn overlapping(system: &System, layout: &Layout, state: &[f64]) -> Vec<(Stri
         let values = motion_values(system, layout, state, 0.0);
         system.graph.evaluate(&all, |symbol| values.get(&symbol).copied().unwrap_or(0.0))
     };
-    let mut later = state.to_vec();
+    let mut later = state.clone();
     for (value, rate) in layout.q.clone().chain(layout.v.clone()).zip(layout.v.clone().chain(layout.w.clone())) {
         later[value] += MOMENT * state[rate];
     }

@@ -20,7 +20,7 @@ use crate::results::{
     SingularSummary, StartOverlap, Summary, Witness,
 };
 use crate::simulate::{
-    EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps,
+    EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps, overlapping,
 };
 use crate::syntax::{Code, Coded};
 
@@ -187,9 +187,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failures: &[Note]) 
         events_followed: events_followed(schedule),
         unmet_switch,
         passed_force,
-        overlaps_at_start: study
-            .simulator
-            .overlapping()
+        overlaps_at_start: overlapping(&study.simulator)
             .into_iter()
             .map(|(contact, depth)| StartOverlap { contact, depth })
             .collect(),
