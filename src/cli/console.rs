@@ -104,7 +104,13 @@ impl Console {
 
     /// Writes a warning in one line to standard error.
     pub fn warning(&self, message: &str) {
-        self.report(&format!("{YELLOW}warning{YELLOW:#}: {message}\n"));
+        self.coded_warning(None, message);
+    }
+
+    /// The same with its code, where it has one.
+    pub fn coded_warning(&self, code: Option<Code>, message: &str) {
+        let shown = code.map_or_else(String::new, |code| format!("[{code}]"));
+        self.report(&format!("{YELLOW}warning{shown}{YELLOW:#}: {message}\n"));
     }
 
     /// Writes a text for people to standard error.

@@ -171,7 +171,7 @@ pub(super) fn report(done: &Done, console: &Console) {
         }
         return;
     }
-    for message in warnings(&done.bounds, &done.summary) {
-        console.warning(&format!("{name}: {message}"));
+    for warning in warnings(&done.bounds, &done.summary) {
+        console.coded_warning(warning.code, &format!("{name}: {}", warning.text));
     }
 }

@@ -65,3 +65,32 @@ fn what_passes_through_within_a_step_is_told() {
     let (bounds, summary) = flight(past, "1e8", 20.0, "step: 0.01");
     assert_eq!((summary.too_deep, first_flagged(&bounds)), (None, None));
 }
+
+/// A ball of 1 kg and radius 5 mm over a floor of 10 kN/m: 4 mm within it, 40 N push it up and 9.81 N down; at
+/// 0.981 mm both balance, and 1 mm within they nearly do.
+#[test]
+fn an_overlap_at_the_start_is_told_where_nothing_presses() {
+    let start = |initial: &str| {
+        let (_, summary) = run_methods(
+            &read(&format!(
+                "
+bodies: {{ ball: {{ mass: 1, inertia: 1e-3 }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  floor: {{ contact: {{ between: [ground, ball], plane: y, radius: 5 mm, impact: {{ stiffness: 1e4, exponent: 1 }} }} }}
+initial: {initial}
+outputs: {{ y: ball.y }}
+simulation: {{ duration: 0.02, output_step: 0.01, step: 1e-4 }}
+"
+            )),
+            None,
+        );
+        summary.overlaps_at_start
+    };
+    let found = start("{ ball.y: 1 mm }");
+    assert_eq!(found.len(), 1);
+    assert!(found[0].contact == "floor" && (found[0].depth - 4e-3).abs() < 1e-12, "{found:?}");
+    for balanced in ["{ ball.y: 4 mm }", "{ ball.y: 4.019 mm }", "{ ball.y: 6 mm }"] {
+        assert_eq!(start(balanced), [], "{balanced}");
+    }
+}

@@ -121,7 +121,6 @@ pub fn solve(f: impl Equation, start: &[f64], times: &[f64], tolerance: f64, lon
     let n = start.len();
     let mut y = start.to_vec();
     let mut stages = vec![vec![0.0; n]; 12];
-    let mut inner = vec![0.0; n];
     let mut solution = vec![y.clone()];
     let mut h = 1e-3 * (times.last().copied().unwrap_or(0.0) - times[0]).min(longest);
     for ends in times.windows(2) {
@@ -129,13 +128,7 @@ pub fn solve(f: impl Equation, start: &[f64], times: &[f64], tolerance: f64, lon
         while t < ends[1] {
             let is_last = t + h >= ends[1];
             let step = if is_last { ends[1] - t } else { h };
-            for stage in 0..12 {
-                inner.copy_from_slice(&y);
-                for (k, weight) in stages.iter().zip(WEIGHTS[stage]).filter(|(_, weight)| **weight != 0.0) {
-                    inner.iter_mut().zip(k).for_each(|(inner, k)| *inner += step * weight * k);
-                }
-                f(t + TIMES[stage] * step, &inner, &mut stages[stage]);
-            }
+            attempt(&f, t, &y, step, &mut stages);
             let error = step * error(&stages, &y, tolerance);
             if error <= 1.0 {
                 for (i, y) in y.iter_mut().enumerate() {
@@ -152,6 +145,114 @@ pub fn solve(f: impl Equation, start: &[f64], times: &[f64], tolerance: f64, lon
         solution.push(y.clone());
     }
     solution
+}
+
+/// The stages of a step from y at t.
+fn attempt(f: &impl Equation, t: f64, y: &[f64], step: f64, stages: &mut [Vec<f64>]) {
+    let mut inner = vec![0.0; y.len()];
+    for stage in 0..12 {
+        inner.copy_from_slice(y);
+        for (k, weight) in stages.iter().zip(WEIGHTS[stage]).filter(|(_, weight)| **weight != 0.0) {
+            inner.iter_mut().zip(k).for_each(|(inner, k)| *inner += step * weight * k);
+        }
+        f(t + TIMES[stage] * step, &inner, &mut stages[stage]);
+    }
+}
+
+/// y' = f(t, y, sides): `sides` tells of each switch whether it is positive.
+pub trait Sided: Fn(f64, &[f64], &[bool], &mut [f64]) {}
+impl<F: Fn(f64, &[f64], &[bool], &mut [f64])> Sided for F {}
+
+/// As [`solve`], where f changes at zeros of switches, functions of t and y: within a step f keeps the sides of its
+/// beginning, and a step in which a switch changes its sign, also there and back, ends at its zero by bisection to
+/// rounding.
+pub fn solve_located<const N: usize>(
+    f: impl Sided,
+    switches: impl Fn(f64, &[f64]) -> [f64; N],
+    start: &[f64],
+    times: &[f64],
+    tolerance: f64,
+    longest: f64,
+) -> Vec<Vec<f64>> {
+    let mut y = start.to_vec();
+    let mut stages = vec![vec![0.0; y.len()]; 12];
+    let mut solution = vec![y.clone()];
+    let mut sides = switches(times[0], &y).map(|value| value > 0.0);
+    let mut h = longest;
+    for ends in times.windows(2) {
+        let mut t = ends[0];
+        while t < ends[1] {
+            let is_last = t + h >= ends[1];
+            let step = if is_last { ends[1] - t } else { h };
+            let held = |t: f64, y: &[f64], d: &mut [f64]| f(t, y, &sides, d);
+            let mut after = |step: f64| {
+                attempt(&held, t, &y, step, &mut stages);
+                let next: Vec<f64> = (0..y.len()).map(|i| y[i] + step * weighted(&stages, &RESULT, i)).collect();
+                (next, step * error(&stages, &y, tolerance))
+            };
+            let (mut next, error) = after(step);
+            if error > 1.0 {
+                h = step * (0.9 * error.powf(-0.125)).clamp(0.2, 0.9);
+                assert!(h > 1e-14 * ends[1].abs(), "the reference solution does not proceed at {t} s");
+                continue;
+            }
+            let sides_at = |step: f64, y: &[f64]| switches(t + step, y).map(|value| value > 0.0);
+            let mut taken = step;
+            if sides_at(step, &next) == sides
+                && let Some(touch) = touched(|share| switches(t + share * step, &after(share * step).0))
+            {
+                (taken, next) = (touch * step, after(touch * step).0);
+            }
+            if sides_at(taken, &next) != sides {
+                let mut before = 0.0;
+                while taken - before > 4.0 * f64::EPSILON * ends[1].abs() {
+                    let middle = 0.5 * (before + taken);
+                    let (at_middle, _) = after(middle);
+                    if sides_at(middle, &at_middle) == sides {
+                        before = middle;
+                    } else {
+                        (taken, next) = (middle, at_middle);
+                    }
+                }
+            }
+            let now = sides_at(taken, &next);
+            let is_cut = taken < step;
+            (y, sides) = (next, now);
+            t = if is_last && !is_cut { ends[1] } else { t + taken };
+            if !is_last || is_cut {
+                h = (step * (0.9 * error.powf(-0.125)).clamp(0.2, 5.0)).min(longest);
+            }
+        }
+        solution.push(y.clone());
+    }
+    solution
+}
+
+/// Share of a step at which a switch, by its values at shares, has another sign than at both ends: about the vertices
+/// of parabolas, which are drawn ever closer.
+fn touched<const N: usize>(mut at: impl FnMut(f64) -> [f64; N]) -> Option<f64> {
+    let [first, last] = [at(0.0), at(1.0)];
+    (0..N).find_map(|i| {
+        let nearest = first[i].abs().min(last[i].abs());
+        let (mut middle, mut reach) = (0.5, 0.5);
+        for _ in 0..6 {
+            let [a, b, c] = [middle - reach, middle, middle + reach].map(|share| at(share)[i]);
+            let vertex = middle + 0.5 * reach * (a - c) / (a - 2.0 * b + c);
+            if !(vertex > 0.0 && vertex < 1.0) {
+                return None;
+            }
+            let value = at(vertex)[i];
+            if (value > 0.0) != (first[i] > 0.0) {
+                return Some(vertex);
+            }
+            if value.abs() > nearest {
+                return None;
+            }
+            reach = 0.2 * reach.min(vertex).min(1.0 - vertex);
+            middle = vertex;
+        }
+        None
+    })
 }
 
 fn weighted(stages: &[Vec<f64>], weights: &[f64; 12], i: usize) -> f64 {
@@ -173,7 +274,7 @@ fn error(stages: &[Vec<f64>], y: &[f64], tolerance: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::solve;
+    use super::{solve, solve_located};
 
     /// A fixed step: with no tolerance, `longest` decides.
     fn error_at(steps: usize) -> f64 {
@@ -203,5 +304,29 @@ mod tests {
         for (end, start) in solution[1].iter().zip(start) {
             assert!((end - start).abs() < 1e-10, "{end} {start}");
         }
+    }
+
+    /// A ball that is dropped from 1 m onto a spring of 1e4 N/m and 1 kg: parabola, sine, parabola, with a period.
+    #[test]
+    fn an_impact_is_located() {
+        let f = |_: f64, y: &[f64], sides: &[bool], d: &mut [f64]| {
+            let push = if sides[0] { 0.0 } else { -1e4 * y[0] };
+            (d[0], d[1]) = (y[1], push - 9.81);
+        };
+        let (fall, speed, omega) = ((2.0 / 9.81_f64).sqrt(), (2.0 * 9.81_f64).sqrt(), 100.0);
+        let period = 2.0 * fall + 2.0 / omega * (std::f64::consts::PI - (speed * omega / 9.81).atan());
+        let found = solve_located(f, |_, y| [y[0]], &[1.0, 0.0], &[0.0, period, 2.0 * period], 1e-13, 0.01);
+        for state in &found {
+            assert!((state[0] - 1.0).abs() < 1e-10 && state[1].abs() < 1e-9, "{state:?}");
+        }
+    }
+
+    /// v = 1 but within 1e-3 of x = 0.5, where it is 2: passed in steps of 0.1.
+    #[test]
+    fn a_touch_within_a_step_is_located() {
+        let f = |_: f64, _: &[f64], sides: &[bool], d: &mut [f64]| d[0] = if sides[0] { 2.0 } else { 1.0 };
+        let near = |_: f64, y: &[f64]| [1e-6 - (y[0] - 0.5) * (y[0] - 0.5)];
+        let found = solve_located(f, near, &[0.03], &[0.0, 0.9], 1e-13, 0.1);
+        assert!((found[1][0] - 0.931).abs() < 1e-12, "{found:?}");
     }
 }

@@ -3,10 +3,16 @@
 //! is mbint's.
 
 use crate::draw::{Parameter, Term};
+use crate::random::Random;
 use crate::truth::Range;
 
 /// Candidates of each end that are refined.
 const CANDIDATES: usize = 6;
+
+/// Of those of closed forms, how many more points are drawn about where a band seems to be missed, and how many points
+/// at once.
+const DRAWN_ABOUT: usize = 2;
+const DRAWN: usize = 1500;
 
 /// Most stages of a local search, and its smallest step, in cells.
 const STAGES: usize = 60;
@@ -19,6 +25,7 @@ struct Grid<'t> {
     uncertain: Vec<usize>,
     /// Points along each.
     points: usize,
+    level: u32,
     /// Sample by sample, channel by channel, row by row; the first uncertain parameter varies fastest.
     values: Vec<Vec<Vec<f64>>>,
 }
@@ -49,8 +56,8 @@ fn matters(term: &Term, parameters: &[Parameter], which: usize, times: &[f64]) -
 
 /// From a point of a grid with so many points along each axis uphill, at most one cell away, by Rosenbrock's method
 /// (Computer Journal 3 (1960) 175): after each stage the first direction is that of its progress, since along a ridge
-/// that no axis follows the axes alone gain next to nothing.
-fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) -> f64 {
+/// that no axis follows the axes alone gain next to nothing. Returns the greatest value, and where it is.
+fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) -> (f64, Vec<f64>) {
     let (n, last) = (start.len(), (points - 1) as f64);
     let (mut best, mut place, mut size) = (known, start.to_vec(), 0.25_f64);
     let mut directions = axes(n);
@@ -80,6 +87,27 @@ fn climb(start: &[f64], points: usize, known: f64, f: &dyn Fn(&[f64]) -> f64) ->
         }
         size = (0.5 * length).min(0.5);
         directions = turned(&directions, &progress);
+    }
+    (best, place)
+}
+
+/// The greatest value that is found about a place, a quarter of the box each way and then ever nearer to the best so
+/// far, at points that are drawn at random: on a ridge with a kink, where a contact begins or ends, no direction leads
+/// a climb on, and its end is many cells away.
+fn narrowed(known: f64, place: &[f64], points: usize, f: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let (mut random, mut best, mut at) = (Random::new(1, 0), known, place.to_vec());
+    let mut reach = 0.25 * points as f64;
+    while reach > FINEST {
+        let centre = at.clone();
+        for _ in 0..DRAWN {
+            let near = |middle: &f64| (middle + reach * (2.0 * random.unit() - 1.0)).clamp(0.0, (points - 1) as f64);
+            let next: Vec<f64> = centre.iter().map(near).collect();
+            let value = f(&next);
+            if value > best {
+                (best, at) = (value, next);
+            }
+        }
+        reach *= 0.7;
     }
     best
 }
@@ -129,7 +157,7 @@ impl<'t> Grid<'t> {
             (_, true) => 4,
         };
         let points = (few << level) + 1;
-        let mut grid = Self { term, parameters, uncertain, points, values: Vec::new() };
+        let mut grid = Self { term, parameters, uncertain, points, level, values: Vec::new() };
         let samples = points.pow(grid.uncertain.len() as u32);
         grid.values = (0..samples).map(|sample| (term.curves)(&grid.at(&grid.place(sample)), times)).collect();
         grid
@@ -164,17 +192,36 @@ impl<'t> Grid<'t> {
             (0..self.values.len()).filter(|&sample| self.is_local(sample, &value)).collect();
         candidates.sort_by(|&a, &b| value(b).total_cmp(&value(a)));
         candidates.truncate(CANDIDATES);
-        let refined = candidates.iter().map(|&sample| {
-            let known = value(sample);
-            if self.uncertain.is_empty() {
-                return known;
-            }
+        if self.uncertain.is_empty() {
+            return candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
+        }
+        let climbed = |f: &dyn Fn(&[f64], usize) -> f64| {
+            let from = |&sample: &usize| {
+                climb(&self.place(sample), self.points, value(sample), &|place: &[f64]| f(place, sample))
+            };
+            let mut all: Vec<(f64, Vec<f64>)> = candidates.iter().map(from).collect();
+            all.sort_by(|a, b| b.0.total_cmp(&a.0));
+            all
+        };
+        if !self.term.integrated {
             let exact = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[time])[channel][0];
-            let between = |place: &[f64]| sign * self.interpolated(sample, place, channel, row);
-            let f: &dyn Fn(&[f64]) -> f64 = if self.term.integrated { &between } else { &exact };
-            climb(&self.place(sample), self.points, known, f)
-        });
-        refined.fold(f64::NEG_INFINITY, f64::max)
+            let mut found = climbed(&|place, _| exact(place));
+            if self.level > 0 {
+                found.truncate(DRAWN_ABOUT);
+                found.iter_mut().for_each(|own| own.0 = narrowed(own.0, &own.1, self.points, &exact));
+            }
+            return found.into_iter().map(|(value, _)| value).fold(f64::NEG_INFINITY, f64::max);
+        }
+        // A polynomial overshoots beside kinks: its promise counts as far as the motion there attains it.
+        let moved = |place: &[f64]| sign * (self.term.curves)(&self.at(place), &[0.0, time])[channel][1];
+        let mut best = candidates.first().map_or(f64::NEG_INFINITY, |&sample| value(sample));
+        for (promised, place) in climbed(&|place, sample| sign * self.interpolated(sample, place, channel, row)) {
+            if promised <= best {
+                break;
+            }
+            best = best.max(moved(&place));
+        }
+        best
     }
 
     /// Whether no neighbour along a parameter is greater. Of equals, as along a parameter that does not matter to the
@@ -238,7 +285,7 @@ mod tests {
     fn a_bent_ridge_is_followed_to_its_end() {
         let beside = |p: &[f64]| p[1] - 1.0 - 0.7 * (p[0] - 1.0) - 0.2 * (p[0] - 1.0).powi(2);
         let f = |p: &[f64]| 0.01 * p[0] - 50.0 * beside(p).powi(2) - 3.0 * (p[2] - 1.2).powi(2);
-        let found = climb(&[1.0; 3], 3, f(&[1.0; 3]), &f);
+        let (found, _) = climb(&[1.0; 3], 3, f(&[1.0; 3]), &f);
         // At p₀ = 2 the ridge is at p₁ = 1.9.
         assert!((found - 0.02).abs() < 1e-9, "{found}");
     }

@@ -418,3 +418,23 @@ fn four_parameters_take_few_simulations() {
     assert_true(&bounds, "v", 1e-3, f64::INFINITY, |t| truths[row(t)][1]);
     assert_true(&bounds, "y", 1e-3, f64::INFINITY, |t| truths[row(t)][0]);
 }
+
+/// Two stops at one position are one of the summed stiffness: their events coincide in all samples.
+#[test]
+fn redundant_stops_are_one() {
+    let one = ELASTIC.replace("  ground:", "  unused: { force: { on: ball, value: [0, 0] } }\n  ground:");
+    let two = ELASTIC
+        .replace("  ground:", "  again: { force: { on: ball, value: [0, \"K/4*max(-ball.y, 0)\"] } }\n  ground:");
+    let two = two.replace("\"K*max(-ball.y, 0)\"", "\"3*K/4*max(-2*ball.y, 0)/2\"");
+    let [(one, _), (two, summary)] = [one, two].map(|text| run_methods(&read(&text), None));
+    assert!(integrated(&summary, "chebyshev").0);
+    for name in ["y", "v"] {
+        let [one, two] = [&one, &two].map(|bounds| band(output(bounds, name), Method::Chebyshev));
+        assert!(!two.error.unresolved.contains(&true), "{name} is flagged");
+        let ends = one.lower.iter().zip(&two.lower).chain(one.upper.iter().zip(&two.upper));
+        for (row, (a, b)) in ends.enumerate() {
+            let error = one.error.total[row % one.lower.len()] + two.error.total[row % one.lower.len()];
+            assert!((a - b).abs() <= error + 1e-12, "{name}: {a} {b}, {error:e} stated");
+        }
+    }
+}

@@ -10,6 +10,7 @@ mod oscillators;
 mod pulses;
 mod shapes;
 mod slides;
+mod stops;
 mod swings;
 mod tops;
 
@@ -107,6 +108,8 @@ pub const FAMILIES: &[Family] = &[
     family("parametric", |random, frame| vec![nonlinear::parametric(random, &frame.scale(0))]),
     family("stick-slip", |random, frame| vec![nonlinear::stick_slip(random, &frame.scale(0))]),
     family("post", |random, frame| vec![nonlinear::post(random, &frame.scale(0))]),
+    family("ratchet", |random, frame| vec![stops::ratchet(random, &frame.scale(0))]),
+    family("clearance", |random, frame| vec![stops::clearance(random, &frame.scale(0))]),
     family("slider crank", |random, frame| vec![linkages::slider_crank(random, &frame.scale(0))]),
     family("four-bar", |random, frame| vec![linkages::four_bar(random, &frame.scale(0))]),
     Family { tolerances: &[1e-3, 1e-4], ..family("top", |random, frame| vec![tops::top(random, &frame.scale(0))]) },

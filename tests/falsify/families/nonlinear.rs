@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::stops::located;
 use super::{Scale, integrated, lines, named, parameter, removable};
 use crate::draw::Term;
 use crate::random::Random;
@@ -154,17 +155,20 @@ pub fn post(random: &mut Random, scale: &Scale) -> Term {
     let contact = random.scale(3.0, 50.0) * scale.step;
     let stiffness = digits((PI / contact).powi(2), 3);
     let speed = right.hypot(up);
-    let curves = integrated(
+    let size = speed * scale.duration;
+    let curves = located(
         (0.25 * radius / speed).min(0.3 * contact),
+        [size, size, speed, speed],
         |p| [0.0, 0.0, p[0], p[1]],
-        |p, _, y, d| {
+        |p, y, sides| {
             let [_, _, x, height, radius, stiffness] = p[..6] else { unreachable!() };
             let [dx, dy] = [y[0] - x, y[1] - height];
             let distance = dx.hypot(dy);
-            let push = stiffness * (radius - distance).max(0.0) / distance;
-            d.copy_from_slice(&[y[2], y[3], push * dx, push * dy - 9.81]);
+            let push = if sides[0] { stiffness * (radius - distance) / distance } else { 0.0 };
+            [y[2], y[3], push * dx, push * dy - 9.81]
         },
-        |_, _, y| [y[0], y[1], y[3]],
+        |p, y| [p[4] - (y[0] - p[2]).hypot(y[1] - p[3])],
+        |y| [y[0], y[1], y[3]],
     );
     let distance = named("sqrt((b#.x - X#)^2 + (b#.y - Y#)^2)", place);
     let push = format!("K{place}*max(R{place} - {distance}, 0)/{distance}");
@@ -188,7 +192,7 @@ pub fn post(random: &mut Random, scale: &Scale) -> Term {
         channels: lines(&["b#.x", "b#.y", "b#.vy"], place),
         curves,
         integrated: true,
-        size: speed * scale.duration,
+        size,
         spatial: false,
         hidden: None,
     }

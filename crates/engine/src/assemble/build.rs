@@ -229,12 +229,16 @@ fn apply_effects<'g>(
             left_out.push(Omission { what: format!("effect {}", effect.name), why });
         }
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
-        let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);
-        let length = measured.map(|&(_, length)| length.expr());
+        let measured = |wanted: Sensor| {
+            applied.measured().iter().find(|(measure, _)| *measure == wanted).map(|&(_, value)| value.expr())
+        };
+        let length = measured(Sensor::LENGTH);
+        let touch =
+            measured(Sensor::GAP).and_then(|gap| Some([gap, measured(Sensor::RATE)?, measured(Sensor::FORCE)?]));
         let room = applied.room.map(Scalar::expr);
         let overlap = applied.overlap.map(|(gap, deepest)| Overlap { gap: gap.expr(), deepest: deepest.expr() });
         let expressions = g.len() - nodes;
-        effects.push(EffectInfo { name, kind, forces, expressions, length, room, overlap });
+        effects.push(EffectInfo { name, kind, forces, expressions, length, room, overlap, touch });
     }
     Ok((applied, effects))
 }

@@ -40,13 +40,11 @@ pub struct System {
     pub coordinates: Vec<CoordinateInfo>,
     /// Names of the constraints, m.
     pub constraints: Vec<ConstraintInfo>,
-    /// M(q)'s nonzero entries (row, column, value), both triangles; none of long trees, where they follow from
-    /// `inertia` ([`System::mass_entries`]).
+    /// M(q)'s nonzero entries (row, column, value), both triangles; none of long trees ([`System::mass_entries`]).
     pub mass: Vec<(usize, usize, Expr)>,
     /// Which coordinates have inertia, n.
     pub massive: Vec<bool>,
-    /// M w, n; in joint coordinates with the velocity-dependent inertial forces and the weights, and with those forces
-    /// of beams.
+    /// M w, n; in joint coordinates with velocity-dependent inertial forces and weights, and with those of beams.
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
     pub force: Vec<Expr>,
@@ -123,6 +121,8 @@ pub struct EffectInfo {
     pub room: Option<Expr>,
     /// How deep its surfaces may overlap, where that has a limit.
     pub overlap: Option<Overlap>,
+    /// The gap of its surfaces, m, the gap's rate, m/s, and the force between them, N.
+    pub touch: Option<[Expr; 3]>,
 }
 
 /// Surfaces of which what lies within them has no nearest side.

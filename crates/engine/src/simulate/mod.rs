@@ -53,7 +53,7 @@ mod visit;
 pub use adjoint::{Functional, Functions, Gradient, NoGradient, Term, Under, Wanted, gradients, gradients_under};
 pub use closure::{Closure, Configuration, Points, choose_independent};
 pub use control::{Controller, Divided, Integration, Schedule, Steps, ToleranceSchedule, schedule_for_tolerance};
-pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep};
+pub use diagnostics::{OpenConstraint, SingularPass, SingularWatch, TooDeep, overlapping};
 pub use enclosure::{Certifier, Enclosure, EnclosureError, MotionEnclosure, MotionSpaces};
 pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetBox, JetRun, Observed, Stop};
 pub(crate) use ensemble::{Needs, weights as level_weights};

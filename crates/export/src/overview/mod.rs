@@ -18,5 +18,5 @@ pub use run::overview;
 pub use statistics::yields;
 pub use table::{Align, Table};
 pub use verdicts::{band, requirements};
-pub use warnings::{unanswered, warnings};
+pub use warnings::{Warning, unanswered, warnings};
 pub use words::{coordinates, count, digits, short, significant};

@@ -3,19 +3,48 @@
 use super::words::{count, digits};
 use crate::export::rounded as rounded_number;
 use crate::grammar::display_unit::ShownUnit;
-use crate::results::{Bounds, ParameterSummary, ReducedSummary, Summary, TooDeep};
+use crate::results::{Bounds, ParameterSummary, ReducedSummary, StartOverlap, Summary, TooDeep};
+use crate::syntax::codes::Code;
 
-/// All warnings of a run, each in a line.
-pub fn warnings(bounds: &Bounds, summary: &Summary) -> Vec<String> {
+/// A warning of a run, in a line, with its code if it has one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Number of its page, for `mbint explain`.
+    pub code: Option<Code>,
+    /// The warning without its name.
+    pub text: String,
+}
+
+impl Warning {
+    /// One that has a page.
+    fn coded(code: Code, text: String) -> Self {
+        Self { code: Some(code), text }
+    }
+}
+
+/// All warnings of a run.
+pub fn warnings(bounds: &Bounds, summary: &Summary) -> Vec<Warning> {
     let beyond = summary.beyond_tolerance.map(|ratio| {
         format!(
             "the local errors of a sample's steps add up to {ratio:.3e} times the tolerance: what needs that sample is unreliable"
         )
     });
     let deep = summary.too_deep.as_ref().map(too_deep);
+    let overlaps = summary.overlaps_at_start.iter().map(overlaps_at_start);
     let all =
         [unreliable(summary), unreliable_numbers(summary), beyond, deep, damped(summary), excluded(bounds, summary)];
-    all.into_iter().flatten().collect()
+    overlaps.chain(all.into_iter().flatten().map(|text| Warning { code: None, text })).collect()
+}
+
+/// Surfaces that a start leaves within one another.
+fn overlaps_at_start(found: &StartOverlap) -> Warning {
+    let text = format!(
+        "the surfaces of `{}` overlap by {} mm at the nominal start and throw each other apart: let the bodies start outside of each \
+         other, or with `initial: equilibrium` where one is to rest on the other",
+        found.contact,
+        digits(1e3 * found.depth)
+    );
+    Warning::coded(Code::OverlapsAtStart, text)
 }
 
 /// Which bounds are unreliable, and from when.

@@ -67,7 +67,7 @@ pub(super) fn run(reading: Reading, scene: Option<&str>, costly: bool, host: &dy
     let text = |(name, bytes): (String, Vec<u8>)| (name, String::from_utf8_lossy(&bytes).into_owned());
     Ok(Run {
         summary: plain(&overview(&summary)),
-        warnings: warnings(&bounds, &summary),
+        warnings: warnings(&bounds, &summary).into_iter().map(|warning| warning.text).collect(),
         failure: summary.failure.clone(),
         files: files.into_iter().map(text).collect(),
     })

@@ -64,6 +64,7 @@ pub fn summary_of_subsystems(subsystems: Vec<Summary>) -> Summary {
         whole.events_followed = followed.min_by(|a, b| a.until.total_cmp(&b.until));
         whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
         whole.passed_force = whole.passed_force.into_iter().chain(other.passed_force).reduce(f64::min);
+        whole.overlaps_at_start.extend(other.overlaps_at_start);
         whole.too_deep = TooDeep::first(whole.too_deep.iter().chain(&other.too_deep));
         whole.beyond_tolerance = whole.beyond_tolerance.into_iter().chain(other.beyond_tolerance).reduce(f64::max);
         add_methods(&mut whole, &other.methods);

@@ -57,7 +57,7 @@ pub use statistics::{
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
     AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, EventSummary, EventsFollowed, MethodSummary,
-    ParameterSummary, PieceSummary, SingularSummary, SubsystemSummary, Summary,
+    ParameterSummary, PieceSummary, SingularSummary, StartOverlap, SubsystemSummary, Summary,
 };
 pub use verification::{
     Convergence, DerivativeCheck, EffectBalance, Exchange, FormulationVerification, PowerBalance, Quantity,

@@ -56,6 +56,9 @@ pub struct Summary {
     /// From when on fixed steps pass over what a force does in time or in space, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub passed_force: Option<f64>,
+    /// Contacts whose surfaces overlap at the start, where other forces do not press them together.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub overlaps_at_start: Vec<StartOverlap>,
     /// The first surfaces that a contact does not hold apart any more, in any sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub too_deep: Option<TooDeep>,
@@ -322,6 +325,15 @@ impl ErrorSummary {
         };
         bounds.outputs.iter().flat_map(|output| output.bands.iter().map(move |band| of_band(output, band))).collect()
     }
+}
+
+/// A contact whose surfaces overlap at the nominal start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StartOverlap {
+    /// Name of the contact.
+    pub contact: String,
+    /// m
+    pub depth: f64,
 }
 
 /// The end of the motions that are cut at their events: rows from there on are ranges of simulated values.

@@ -190,5 +190,6 @@ codes! {
         ContactsIgnored "W0803" "contacts of geoms are ignored",
         NoLimits "W0804" "a stop in a joint without limits",
         MeshIgnored "W0805" "a mesh that is no closed surface",
+        OverlapsAtStart "W0901" "surfaces overlap at the start",
     }
 }

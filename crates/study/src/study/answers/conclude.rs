@@ -18,10 +18,10 @@ use crate::model::Stepping;
 use crate::numerics::Sample;
 use crate::results::{
     Bounds, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds, OutputDerivatives,
-    ParameterSummary, SingularSummary, Summary, Witness,
+    ParameterSummary, SingularSummary, StartOverlap, Summary, Witness,
 };
 use crate::simulate::{
-    EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps,
+    EnsembleRun, ExcitedMode, Integrator, Observed, OpenConstraint, Schedule, SimulationError, Steps, overlapping,
 };
 use crate::syntax::{Code, Coded};
 
@@ -210,6 +210,10 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failures: &[Note]) 
         events_followed: events_followed(schedule),
         unmet_switch,
         passed_force,
+        overlaps_at_start: overlapping(&study.simulator)
+            .into_iter()
+            .map(|(contact, depth)| StartOverlap { contact, depth })
+            .collect(),
         too_deep: results.bounded.too_deep(),
         beyond_tolerance: results.bounded.beyond_tolerance(),
         integration: schedule.integration.name(),

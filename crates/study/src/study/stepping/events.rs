@@ -2,7 +2,6 @@
 
 use super::controlled::controlling_samples;
 use super::validated::may_extrapolate;
-use crate::methods::Method;
 use crate::model::Stepping;
 use crate::numerics::{Sample, spread};
 use crate::results::{EventSummary, EventsFollowed, MethodSummary};
@@ -103,9 +102,6 @@ fn may_be_cut(study: &Study) -> bool {
         0 => study.request.tolerance.is_some() || !problem.has_fixed_steps,
         _ => methods.iter().all(|(_, method)| method.follows_events(&problem)),
     };
-    // Errors of jets between events are larger than across contacts that the steps resolve: beside other methods,
-    // these steps are kept.
-    let within = within && (methods.len() == 1 || methods.iter().all(|(method, _)| *method != Method::Taylor));
     may_extrapolate(study)
         && within
         && !methods.is_empty()

@@ -1,0 +1,44 @@
+//! Contacts whose surfaces overlap where a motion begins: they throw each other apart.
+
+use symdiff::Expr;
+
+use crate::simulate::motion_values::motion_values;
+use crate::simulate::simulator::Simulator;
+
+/// Time over which the change of a gap's rate is taken, s.
+const MOMENT: f64 = 1e-6;
+
+/// A contact is in balance with other forces where its gap accelerates by less than this share of its force over the
+/// mass of all bodies.
+const UNBALANCED: f64 = 0.5;
+
+/// The contacts whose surfaces overlap at the nominal start by more than other forces press them together, and by how
+/// much, m. In an equilibrium none does.
+pub fn overlapping(simulator: &Simulator) -> Vec<(String, f64)> {
+    let (system, layout, state) = (&simulator.system, &simulator.start.layout, &simulator.nominal);
+    if simulator.equilibrium.is_some() {
+        return Vec::new();
+    }
+    let (names, touches): (Vec<&String>, Vec<[Expr; 3]>) =
+        system.effects.iter().filter_map(|effect| Some((&effect.name, effect.touch?))).unzip();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let all: Vec<Expr> = touches.into_iter().flatten().collect();
+    let values = |state: &[f64]| {
+        let values = motion_values(system, layout, state, 0.0);
+        system.graph.evaluate(&all, |symbol| values.get(&symbol).copied().unwrap_or(0.0))
+    };
+    let mut later = state.clone();
+    for (value, rate) in layout.q.clone().chain(layout.v.clone()).zip(layout.v.clone().chain(layout.w.clone())) {
+        later[value] += MOMENT * state[rate];
+    }
+    let (now, later) = (values(state), values(&later));
+    let of_contact = |(name, (now, later)): (&String, (&[f64], &[f64]))| {
+        let [gap, rate, force] = now else { return None };
+        let acceleration = (later[1] - rate) / MOMENT;
+        let is_thrown = acceleration > UNBALANCED * force.abs() / system.mass_of_bodies;
+        (*gap < 0.0 && is_thrown).then(|| (name.clone(), -gap))
+    };
+    names.into_iter().zip(now.chunks_exact(3).zip(later.chunks_exact(3))).filter_map(of_contact).collect()
+}
