@@ -3,6 +3,7 @@
 //! A rule counts its violations in the tracked files and has a limit. Where a limit is above zero, it is the number
 //! that was there when the rule was written: it may fall, never rise.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
@@ -16,15 +17,20 @@ struct Rule {
     violates: fn(path: &str, line: &str) -> usize,
 }
 
-const RULES: [Rule; 4] = [
+const RULES: [Rule; 5] = [
     Rule { name: "comments wider than 120 columns", limit: LIMITS[0], violates: wide_comment },
     Rule { name: "noun clauses of the form \"what is …\"", limit: LIMITS[1], violates: noun_clauses },
     Rule { name: "tuple parameters", limit: LIMITS[2], violates: tuple_parameter },
+    Rule { name: "public types of a name that another one of the crate has", limit: LIMITS[3], violates: |_, _| 0 },
     Rule { name: "stray files", limit: 0, violates: |_, _| 0 },
 ];
 
-/// Limits of the first three rules.
-const LIMITS: [usize; 3] = [0, 60, 21];
+/// Limits of all rules but the last.
+const LIMITS: [usize; 4] = [0, 60, 21, 64];
+
+/// The rules that see more than a line.
+const HOMONYMS: usize = 3;
+const STRAY_FILES: usize = 4;
 
 /// Endings of files that programs leave behind.
 const STRAY: [&str; 6] = [".orig", ".rej", ".log", ".LOG.TXT", "_LOG.TXT", ".snap.new"];
@@ -38,19 +44,24 @@ pub fn run(root: &Path) -> ExitCode {
         eprintln!("error: `git ls-files` failed");
         return ExitCode::FAILURE;
     };
+    let mut types: BTreeMap<(String, String), Vec<String>> = BTreeMap::new();
     let mut found: Vec<Vec<String>> = RULES.iter().map(|_| Vec::new()).collect();
     for path in &files {
         if STRAY.iter().any(|ending| path.ends_with(ending)) {
-            found[RULES.len() - 1].push(path.clone());
+            found[STRAY_FILES].push(path.clone());
         }
         let Ok(text) = std::fs::read_to_string(root.join(path)) else { continue };
         for (number, line) in text.lines().enumerate() {
+            if let Some(name) = public_type(path, line) {
+                types.entry(name).or_default().push(format!("{path}:{}: {}", number + 1, line.trim()));
+            }
             for (rule, found) in RULES.iter().zip(&mut found) {
                 let times = (rule.violates)(path, line);
                 found.extend((0..times).map(|_| format!("{path}:{}: {}", number + 1, line.trim())));
             }
         }
     }
+    found[HOMONYMS].extend(types.into_values().flat_map(|lines| lines.into_iter().skip(1)));
     let mut status = ExitCode::SUCCESS;
     for (rule, found) in RULES.iter().zip(found) {
         println!("{:5} of at most {:5}  {}", found.len(), rule.limit, rule.name);
@@ -97,6 +108,18 @@ fn tuple_parameter(path: &str, line: &str) -> usize {
     usize::from(is_parameter && !line.trim_start().starts_with("let "))
 }
 
+/// The crate and the name of a type that a line of a file's outermost level makes public.
+fn public_type(path: &str, line: &str) -> Option<(String, String)> {
+    let own = if path.starts_with("src/") { "src" } else { path.strip_prefix("crates/")?.split('/').next()? };
+    let (_, rest) = line.split_once(' ').filter(|(first, _)| is_rust(path) && first.starts_with("pub"))?;
+    // `pub(in path)` has a space.
+    let rest = rest.split_once(") ").map_or(rest, |(_, rest)| rest);
+    let (kind, rest) = rest.split_once(' ')?;
+    let is_type = ["struct", "enum", "trait", "type"].contains(&kind);
+    let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    is_type.then(|| (own.to_owned(), name))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +134,12 @@ mod tests {
         assert_eq!(noun_clauses("src/a.rs", "let what = is; // What it is, and what has none."), 2);
         assert_eq!(noun_clauses("tests/a.rs", "// what is"), 0);
         assert_eq!(noun_clauses("docs/a.md", "Whatever is here, what follows"), 0);
+        let named = |path: &str, line: &str| public_type(path, line).map(|(own, name)| format!("{own} {name}"));
+        assert_eq!(named("crates/a/src/b.rs", "pub struct Part<'a> {"), Some("a Part".to_owned()));
+        assert_eq!(named("src/b.rs", "pub(in crate::a) enum Part {"), Some("src Part".to_owned()));
+        for line in ["struct Part;", "    pub struct Part;", "pub fn part() {}", "pub use a::Part;"] {
+            assert_eq!(named("crates/a/src/b.rs", line), None, "{line}");
+        }
         assert_eq!(tuple_parameter("a.rs", "    (low, high): (f64, f64),"), 1);
         assert_eq!(tuple_parameter("a.rs", "    let (low, high): (f64, f64) = ends;"), 0);
     }
