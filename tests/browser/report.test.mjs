@@ -155,7 +155,7 @@ test('derivatives at the cursor are those that mbint gradient writes', async () 
     const holder = document.querySelector('.slopes');
     const plot = plots.find(({ readout }) => readout.nextElementSibling === holder);
     const entries = [...holder.querySelectorAll('.slope')];
-    return { output: plot.data.output, slopes: entries.map((entry) => [entry.querySelector('.name').textContent, entry.querySelector('.value').textContent]) };
+    return { output: plot.data.output, slopes: entries.map((entry) => [entry.querySelector('.name').textContent, entry.querySelector('b').textContent]) };
   });
   for (const row of [20, 63, 150]) {
     await seek(page, table.t[row]);

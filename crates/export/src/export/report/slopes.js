@@ -15,22 +15,20 @@ export function addSlopes(plots, derivatives) {
   for (const { name, unit, parameters } of derivatives.outputs) {
     const plot = plots.find(({ data }) => data.output === name && !data.across);
     if (!plot) continue;
-    const entries = parameters.map((parameter) => {
-      const value = element('span', { class: 'value' });
-      const influence = element('small', { title: 'the derivative times half of the interval' });
-      const entry = element('span', { class: 'slope' }, [element('span', { class: 'name' }, [parameter.name]), value, influence]);
-      return { value, influence, entry, values: floats(parameter.values), unit: parameter.unit, half: parameter.half_width };
+    const holder = element('div', { class: 'slopes' }, ['by parameters']);
+    const entries = parameters.map((own) => {
+      const [value, influence] = [element('b'), element('small', { title: 'times half of the interval' })];
+      holder.append(element('span', { class: 'slope' }, [element('span', { class: 'name' }, [own.name]), value, influence]));
+      return { ...own, value, influence, slopes: floats(own.values) };
     });
-    const title = `change of ${name} where a parameter rises, the others at their nominal values`;
-    const holder = element('div', { class: 'slopes', title }, [element('span', { class: 'name' }, ['by parameters']), ...entries.map(({ entry }) => entry)]);
     plot.readout.after(holder);
     plot.follow((time) => {
       const row = nearestRow(times, time);
-      for (const own of entries) {
-        const slope = own.values[row];
+      entries.forEach((own) => {
+        const slope = own.slopes[row];
         own.value.textContent = quantity(slope, own.unit);
-        own.influence.textContent = Number.isFinite(slope) ? ` ± ${quantity(Math.abs(slope) * own.half, unit)}` : '';
-      }
+        own.influence.textContent = Number.isFinite(slope) ? ` ± ${quantity(Math.abs(slope) * own.half_width, unit)}` : '';
+      });
     });
   }
 }
