@@ -141,6 +141,8 @@ struct AttainedSearch<'s, 'm> {
     allowed: Vec<f64>,
     /// Simulations, and what gradients are worth.
     work: usize,
+    /// Of these for a surrogate that is kept, which do not count against the budget of the ends.
+    work_of_kept: usize,
     begun: Instant,
     simulated: Simulated,
 }
@@ -158,8 +160,8 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         of_samples.for_each(|(row, values)| attained.note(row, &samples, values));
         let tolerance = study.request.tolerance.unwrap_or(BoundsRequest::TOLERANCE);
         let allowed = validation.spans.iter().map(|span| tolerance * span).collect();
-        let (work, begun, simulated) = (0, Instant::now(), Simulated::default());
-        Self { study, motions, slopes, attained, allowed, work, begun, simulated }
+        let (begun, simulated) = (Instant::now(), Simulated::default());
+        Self { study, motions, slopes, attained, allowed, work: 0, work_of_kept: 0, begun, simulated }
     }
 
     /// Ends of all rows and outputs; `None` where gradients do not reach them.
@@ -168,6 +170,9 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
         let every = (2 * rows * outputs).div_ceil(FOLLOWED).max(1);
         let chosen: Vec<usize> = (0..rows).rev().step_by(every).collect();
         let Some((surfaces, followed)) = self.surfaces(&chosen)? else { return Ok(None) };
+        if self.study.request.keep {
+            self.work_of_kept = self.work;
+        }
         let middle = vec![0.0; self.study.domain.dimension()];
         let mut climbs = Vec::new();
         for FollowedRow { row, output, surface } in &followed {
@@ -224,7 +229,7 @@ impl<'s, 'm> AttainedSearch<'s, 'm> {
     fn is_spent(&self) -> bool {
         let Budget { simulations, seconds } = self.study.request.budget;
         self.study.interruption.is_asked()
-            || self.work >= WORK * simulations
+            || self.work >= WORK * simulations + self.work_of_kept
             || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
     }
 
