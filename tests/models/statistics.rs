@@ -296,3 +296,28 @@ fn many_parameters_have_errors_of_products() {
     }
     assert!(found.resolved.iter().all(|resolved| *resolved));
 }
+
+/// Of a sum the surrogate is exact over the whole box: the share is known as well as its samples tell, and not as a
+/// thousand products do.
+#[test]
+fn many_dimensions_have_errors_of_their_exact_surrogate() {
+    const DIMENSIONS: usize = 14;
+    let names: Vec<String> = (0..DIMENSIONS).map(|number| format!("d{number}")).collect();
+    let parameters: String =
+        names.iter().map(|name| format!("  {name}: {{ value: 1 mm, tolerance: 0.1 mm }}\n")).collect();
+    let text = format!(
+        "analysis: dimensions\nparameters:\n{parameters}outputs: {{ gap: {} }}\nrequirements: {{ fits: gap >= 13.4 mm }}\n\
+         statistics: {{ quantiles: [5%, 95%] }}\nbounds: {{ tolerance: 1e-2 }}\n",
+        names.join(" + ")
+    );
+    let summary = summary(&read(&text), 2);
+    let fits = &summary.statistics.unwrap().summary.requirements[0];
+    let mut random = Random(11);
+    let sum = |random: &mut Random| (0..DIMENSIONS).map(|_| 0.9 + 0.2 * random.uniform()).sum::<f64>();
+    let count = 1_000_000;
+    let share = (0..count).filter(|_| sum(&mut random) >= 13.4).count() as f64 / f64::from(count);
+    assert!(fits.interval[1] - fits.interval[0] < 2e-3, "{fits:?}");
+    // Three standard errors of the sums.
+    let off = 3.0 * (share * (1.0 - share) / f64::from(count)).sqrt();
+    assert!(fits.interval[0] - off <= share && share <= fits.interval[1] + off, "{fits:?}, not {share}");
+}

@@ -33,7 +33,7 @@ pub(super) fn all(rows: &Rows) -> Result<Vec<NumberStatistics>, String> {
         if let Some((residuals, values)) = &at_products {
             let residual = residuals.of_reduced(index, &values[index]);
             mean = residual.corrected(mean);
-            errors = residual.errors(&quantiles, kept.time_error(index));
+            errors = residual.errors(&quantiles, kept.error(index), kept.time_error(index));
         }
         let with_error = |own: Estimate, error: f64| Uncertain { value: own.value, sampling: own.sampling, error };
         let asked = quantiles.into_iter().step_by(around).zip(&errors[2..]);

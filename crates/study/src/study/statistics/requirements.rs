@@ -70,13 +70,14 @@ pub(super) fn all(rows: &Rows) -> Result<(Vec<YieldSummary>, Option<YieldSummary
         for ((index, &number), values) in group.iter().enumerate().zip(values) {
             rows.progress(number, requirements.len());
             let requirement = &requirements[number];
+            let (of_box, time) = (kept.error(number), kept.time_error(number));
             let (error, doubt) = match &at_products {
                 Some((residuals, found)) => {
-                    let count = residuals.samples.len();
-                    let (error, doubt) = residuals.of_margin(number, &found[index * count..][..count], &values);
-                    (error + kept.time_error(number), doubt)
+                    let own = &found[index * residuals.samples.len()..][..residuals.samples.len()];
+                    let (error, doubt) = residuals.of_margin(number, own, &values, of_box - time);
+                    (error + time, doubt)
                 }
-                None => (kept.error(number), 0.0),
+                None => (of_box, 0.0),
             };
             let mut alone = Together::new(rows, &requirement.name, &samples);
             alone.add(&values, error, doubt);

@@ -117,10 +117,14 @@ impl Residuals {
     }
 
     /// How far the margins of a requirement differ from these values of its surrogate at the samples, and the share of
-    /// products whose margins differ by more: where `margins`, samples of the surrogate, say the most.
-    pub fn of_margin(&self, requirement: usize, surrogate: &[f64], margins: &[f64]) -> (f64, f64) {
+    /// products whose margins differ by more: where `margins`, samples of the surrogate, say the most. `of_box` is how
+    /// far any may differ.
+    pub fn of_margin(&self, requirement: usize, surrogate: &[f64], margins: &[f64], of_box: f64) -> (f64, f64) {
         let residual = Residual::of(self.of_number(self.reduced + requirement), surrogate);
-        let pairs = residual.largest.into_iter().zip(self.beyond);
+        if residual.mean.is_nan() {
+            return (f64::NAN, 0.0);
+        }
+        let pairs = residual.largest.into_iter().zip(self.beyond).chain(of_box.is_finite().then_some((of_box, 0.0)));
         let open = |(largest, beyond): &(f64, f64)| {
             let near = margins.iter().filter(|margin| margin.abs() <= *largest).count();
             near as f64 / margins.len() as f64 + 2.0 * beyond
@@ -171,10 +175,13 @@ impl Residual {
         Estimate { value: value + self.mean, sampling: sampling + self.sampling }
     }
 
-    /// Errors of the mean, of the deviation and of quantiles, each with those around it; `time`: that of the steps.
-    pub fn errors(&self, quantiles: &[Estimate], time: f64) -> Vec<f64> {
+    /// Errors of the mean, of the deviation and of quantiles, each with those around it, where that of the whole box is
+    /// not less; `time`: that of the steps. A product that cannot be simulated leaves them unknown.
+    pub fn errors(&self, quantiles: &[Estimate], of_box: f64, time: f64) -> Vec<f64> {
         let of_quantiles = quantiles.chunks_exact(AROUND).map(|around| self.of_quantile(around) + time);
-        [time, self.deviation + time].into_iter().chain(of_quantiles).collect()
+        let errors = [time, self.deviation + time].into_iter().chain(of_quantiles);
+        // Written so that NaN stays.
+        errors.map(|error| if of_box < error { of_box } else { error }).collect()
     }
 
     /// How far a quantile may be off, given those of the surrogate at the shares around it.

@@ -197,7 +197,7 @@ impl<'a> Rows<'a> {
         let mut resolved = !stated.unresolved[row] && error.is_finite();
         if let Some(residual) = residual {
             mean = residual.corrected(mean);
-            errors = residual.errors(&quantiles, stated.time);
+            errors = residual.errors(&quantiles, error, stated.time);
             let follows =
                 residual.deviation <= FOLLOWS * deviation.value || residual.largest[0] <= ROUNDING * mean.value.abs();
             resolved = follows && errors.iter().all(|error| error.is_finite());
