@@ -1,4 +1,4 @@
-//! The run of one jet under a schedule, about the middle of the box.
+//! The run of one jet under a schedule.
 
 use std::ops::Range as Rows;
 use std::sync::atomic::Ordering;
@@ -28,7 +28,19 @@ pub fn jet_about_middle(
     if motions.simulator.system.analysis.visits() {
         return visit_jets(motions, space, &center.into(), &half_widths, reduce);
     }
-    let about = JetBox { center: &center, half_width: &half_widths };
+    jet_about(motions, space, JetBox { center: &center, half_width: &half_widths }, reduce)
+}
+
+/// The same of a motion about any sample: coefficients of the outputs, row by row, in blocks.
+///
+/// # Errors
+/// Where the sample cannot be assembled.
+pub fn jet_about(
+    motions: &Motions,
+    space: &JetSpace,
+    about: JetBox,
+    reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+) -> Result<Simulated, SimulationError> {
     let is_controlled = motions.tolerance.is_some();
     let mut jet = jet_integrator(motions.simulator, space, about, motions.schedule, is_controlled)?;
     jet.heed(motions.interruption);
@@ -47,6 +59,6 @@ pub fn jet_about_middle(
         motions.over.fetch_add(1, Ordering::Relaxed);
     }
     let missing = motions.schedule.rows - stop.map_or(next, |stop| stop.row);
-    let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
+    let stop = stop.map(|stop| (stopped_at(&stop), about.center.to_vec().into()));
     Ok(Simulated { effort: effort(jet.counters()), stop, missing, ..Simulated::default() })
 }

@@ -36,6 +36,7 @@ use crate::simulate::{
     choose_independent, integrator,
 };
 
+pub(super) use jet::jet_about;
 pub(super) use nominal::nominal;
 pub(super) use progress::Progress;
 pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};

@@ -5,20 +5,14 @@ use symdiff::jet::JetSpace;
 
 use super::GradientError;
 use crate::numerics::Sample;
-use crate::simulate::{
-    Integration, JetBox, Schedule, SimulationError, Steps, Wanted, gradients, jet_integrator, switched_from,
-};
+use crate::simulate::{Integration, JetBox, Schedule, SimulationError, Steps, Wanted, gradients, switched_from};
+use crate::study::ensemble::{Progress, jet_about};
 use crate::study::problem::Study;
 use crate::study::stepping::{StepPlan, segmented_nominal};
 
-/// Rows of a block of jets.
-const BLOCK: usize = 64;
-
-/// Simulations that a gradient of one output in one row costs in lanes.
+/// Simulations that a gradient of one output in one row costs in lanes. Forwards, the derivatives by one parameter of
+/// all outputs in all rows cost about one.
 const BACKWARDS: f64 = 0.5;
-
-/// Simulations that the derivatives by one parameter cost, of all outputs in all rows.
-const FORWARDS: f64 = 1.0;
 
 /// Gradients with two kinds of steps agree to this share of the largest influence.
 const AGREEMENT: f64 = 0.01;
@@ -65,7 +59,7 @@ fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec
     let parameters = study.domain.dimension() as f64;
     let backwards = BACKWARDS * (schedule.rows * outputs.len()) as f64;
     let is_jet = schedule.integration != Integration::Segments && !study.simulator.system.analysis.visits();
-    if is_jet && FORWARDS * parameters < backwards {
+    if is_jet && parameters < backwards {
         // Where jets stop or are no numbers, adjoints may go on.
         if let Some(found) = forwards(study, schedule, outputs)? {
             return Ok(found);
@@ -76,33 +70,27 @@ fn followed(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Vec
 
 /// By a jet of the first order; `None` where it stops, or is not finite.
 fn forwards(study: &Study, schedule: &Schedule, outputs: &[usize]) -> Result<Option<Vec<AtRow>>, SimulationError> {
-    let simulator = &study.simulator;
     let space = JetSpace::new(study.domain.dimension(), 1);
     let half_width = vec![1.0; study.domain.dimension()];
     let about = JetBox { center: &study.domain.nominal, half_width: &half_width };
-    let mut jet = jet_integrator(simulator, &space, about, schedule, false)?;
-    jet.heed(study.interruption);
-    let (lines, mut values) = (simulator.system.outputs.len() * space.len(), Vec::new());
+    // The bounds' progress is at its end.
+    let progress = Progress::new(usize::MAX, &|_| ());
+    let motions = study.motions(Steps { schedule, controller: None }, &progress);
+    let lines = study.simulator.system.outputs.len() * space.len();
     let mut found = Vec::with_capacity(schedule.rows * outputs.len());
-    for first in (0..schedule.rows).step_by(BLOCK) {
-        let stop = jet.advance(schedule, first..(first + BLOCK).min(schedule.rows), &mut values);
-        if jet.is_cut() {
-            return Err(SimulationError::Interrupted);
-        }
-        if stop.is_some() {
-            return Ok(None);
-        }
+    let simulated = jet_about(&motions, &space, about, &mut |_, values| {
         for row in values.chunks_exact(lines) {
-            for &output in outputs {
+            found.extend(outputs.iter().map(|&output| {
                 let of_output = &row[output * space.len()..][..space.len()];
-                if of_output.iter().any(|value| !value.is_finite()) {
-                    return Ok(None);
-                }
-                found.push(AtRow { value: of_output[0], by_parameters: of_output[1..].to_vec() });
-            }
+                AtRow { value: of_output[0], by_parameters: of_output[1..].to_vec() }
+            }));
         }
+    })?;
+    if study.interruption.is_asked() {
+        return Err(SimulationError::Interrupted);
     }
-    Ok(Some(found))
+    let is_known = |own: &AtRow| own.value.is_finite() && own.by_parameters.iter().all(|by| by.is_finite());
+    Ok(Some(found).filter(|found| simulated.missing == 0 && found.iter().all(is_known)))
 }
 
 /// By adjoints.
