@@ -21,6 +21,10 @@ const VANISHES: f64 = 1e-5;
 /// Divisions of the time between steps by the golden section: to 1e-8 of it.
 const DIVISIONS: usize = 40;
 
+/// An independence does not vanish in a time in which it would have to fall this many times as steeply as it does
+/// anywhere around.
+const STEEPER: f64 = 4.0;
+
 /// Most steps that are examined, so that the search stays short beside the run.
 const MOST: usize = 200;
 
@@ -83,36 +87,41 @@ impl<'s> SingularWatch<'s> {
         let nearest = middle.pivot_loss > first.pivot_loss && middle.pivot_loss >= last.pivot_loss;
         if nearest && middle.pivot_loss > SUSPECT && self.suspects < MOST {
             self.suspects += 1;
-            let pass = self.weakest();
-            self.passes.extend((!pass.constraints.is_empty()).then_some(pass));
+            self.passes.extend(self.weakest());
         }
     }
 
-    /// The moment between the last three steps' ends in which a constraint is least independent, and the constraints
-    /// that depend on others there.
-    fn weakest(&self) -> SingularPass {
+    /// The singular configuration between the last three steps' ends, if there is one: the moment in which a constraint
+    /// is least independent, and the constraints that depend on others there.
+    fn weakest(&self) -> Option<SingularPass> {
         let weakness = |time: f64| {
             let independence = self.independence(time);
-            independence.into_iter().map(|(_, independent)| independent).fold(f64::INFINITY, f64::min)
+            let least = independence.into_iter().map(|(_, independent)| independent).fold(f64::INFINITY, f64::min);
+            (time, least)
         };
+        let slope = |a: (f64, f64), b: (f64, f64)| ((b.1 - a.1) / (b.0 - a.0)).abs();
         let golden = 0.618_033_988_749_895;
-        let (mut from, mut to) = (self.moments[0].time, self.moments[2].time);
-        let mut inner = [to - golden * (to - from), from + golden * (to - from)];
-        let mut values = inner.map(weakness);
+        let [mut from, mut to] = [0, 2].map(|end| weakness(self.moments[end].time));
+        let inner = |from: (f64, f64), to: (f64, f64)| to.0 - golden * (to.0 - from.0);
+        let (mut left, mut right) = (weakness(inner(from, to)), weakness(inner(to, from)));
+        let mut steepest = slope(from, left).max(slope(left, right)).max(slope(right, to));
         for _ in 0..DIVISIONS {
-            if values[0] < values[1] {
-                to = inner[1];
-                inner = [to - golden * (to - from), inner[0]];
-                values = [weakness(inner[0]), values[0]];
-            } else {
-                from = inner[0];
-                inner = [inner[1], from + golden * (to - from)];
-                values = [values[1], weakness(inner[1])];
+            if left.1.min(right.1) > STEEPER * steepest * (to.0 - from.0) {
+                return None;
             }
+            if left.1 < right.1 {
+                (to, right) = (right, left);
+                left = weakness(inner(from, to));
+            } else {
+                (from, left) = (left, right);
+                right = weakness(inner(to, from));
+            }
+            steepest = steepest.max(slope(from, left)).max(slope(right, to));
         }
-        let time = 0.5 * (from + to);
+        let time = 0.5 * (from.0 + to.0);
         let vanished = self.independence(time).into_iter().filter(|(_, independent)| *independent < VANISHES);
-        SingularPass { time, constraints: vanished.map(|(constraint, _)| constraint).collect() }
+        let constraints: Vec<_> = vanished.map(|(constraint, _)| constraint).collect();
+        (!constraints.is_empty()).then_some(SingularPass { time, constraints })
     }
 
     /// Independence of each constraint that is not redundant everywhere from the constraints before it.
