@@ -11,6 +11,7 @@
 mod climb;
 mod ends;
 mod kept;
+mod model;
 mod slopes;
 mod surface;
 
@@ -37,7 +38,7 @@ const MANY: usize = 6;
 const FOLLOWED: usize = 128;
 
 /// Steps of a climb.
-const STEPS: usize = 16;
+const STEPS: usize = 24;
 
 /// How often ends are climbed to from samples that others found.
 const SHARED: usize = 3;

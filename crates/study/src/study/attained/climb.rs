@@ -4,6 +4,7 @@
 //! step follows from the curvature between earlier points (limited-memory BFGS, Nocedal & Wright, Numerical
 //! Optimization, algorithm 7.4); as long as there is none, it goes to the corner that the gradient's signs name.
 
+use super::model::{Bend, Curvature};
 use crate::numerics::dot;
 
 /// A step that promises less than this share of the output's range in the row is left out.
@@ -40,12 +41,6 @@ pub(super) struct Known {
     pub point: Vec<f64>,
     pub value: f64,
     pub slope: Vec<f64>,
-}
-
-/// From one point to another: the move, and by how much the gradient falls.
-struct Curvature {
-    moved: Vec<f64>,
-    fall: Vec<f64>,
 }
 
 /// A climb.
@@ -98,10 +93,11 @@ impl Climb {
         let free: Vec<f64> = (0..point.len()).map(|axis| if is_free(axis) { slope[axis] } else { 0.0 }).collect();
         let moved =
             |way: &[f64]| -> Vec<f64> { point.iter().zip(way).map(|(x, by)| (x + by).clamp(-1.0, 1.0)).collect() };
-        let by_curvature = self.newton(&free).map(|way| moved(&way)).filter(|target| gain(best, target) > 0.0);
+        let is_worth = |target: &Vec<f64>| gain(best, target) > self.worth;
+        let by_curvature = self.newton(&free).map(|way| moved(&way)).filter(is_worth);
         by_curvature.unwrap_or_else(|| {
-            let way: Vec<f64> = free.iter().map(|own| if *own == 0.0 { 0.0 } else { 2.0 * own.signum() }).collect();
-            moved(&way)
+            let falling = self.curvatures.iter().filter(|own| is_falling(&own.moved, &own.fall));
+            Bend::of(falling).largest(point, slope)
         })
     }
 
@@ -115,7 +111,7 @@ impl Climb {
             .curvatures
             .iter()
             .map(|own| (along(&own.moved), along(&own.fall)))
-            .filter(|(moved, fall)| dot(moved, fall) > FLAT * (dot(moved, moved) * dot(fall, fall)).sqrt())
+            .filter(|(moved, fall)| is_falling(moved, fall))
             .collect();
         let (moved, fall) = pairs.last()?;
         let scale = dot(moved, fall) / dot(fall, fall);
@@ -157,6 +153,11 @@ impl Climb {
             self.failures = 0;
         }
     }
+}
+
+/// Whether the gradient falls along a move.
+fn is_falling(moved: &[f64], fall: &[f64]) -> bool {
+    dot(moved, fall) > FLAT * (dot(moved, moved) * dot(fall, fall)).sqrt()
 }
 
 /// What a gradient promises on the way to a target.
@@ -201,5 +202,20 @@ mod tests {
         // Beside the ridge by 0.35/40 of the sum.
         let most = 0.9 + 0.35 * 0.35 / 80.0;
         assert!(best.value > most - 5e-3, "{} of {most} after {steps} steps: {best:?}", best.value);
+    }
+
+    /// The same along a bent ridge: b · x − 20 g(x)². Where g vanishes, b · x is largest in the corner x₀ = x₁ = 1, from
+    /// which x₂ = −0.6 follows.
+    #[test]
+    fn a_bent_ridge_is_followed_to_its_end() {
+        let g = |x: &[f64]| 0.3 * x[0] + 0.2 * x[1] + x[2] + 0.2 * x[0] * x[0] - 0.1;
+        let value = |x: &[f64]| 0.02 * x[0] + 0.01 * x[1] - 20.0 * g(x).powi(2);
+        let slope = |x: &[f64]| {
+            let by = -40.0 * g(x);
+            vec![0.02 + by * (0.3 + 0.4 * x[0]), 0.01 + 0.2 * by, by]
+        };
+        let (steps, climb) = climbed(&[-0.7, -0.7, 0.3], value, slope);
+        let best = climb.best.as_ref().unwrap();
+        assert!(best.value > 0.03 - 1e-3, "{} of 0.03 after {steps} steps: {best:?}", best.value);
     }
 }
