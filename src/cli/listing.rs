@@ -10,8 +10,8 @@ use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 use crate::overview::{Align, Table};
 use crate::study::tuning;
 use crate::syntax::Code;
-use crate::syntax::tuning::Constant;
 use serde::Serialize;
+use symdiff::constants::Constant;
 
 /// A list of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl Listing {
             Self::Units => to_json(&reference::units()),
             Self::Functions => to_json(&reference::functions()),
             Self::Outputs => to_json(&outputs()),
-            Self::Tuning => to_json(&tuning()),
+            Self::Tuning => to_json(&limits()),
             Self::ExitCodes => to_json(&Status::ALL.map(Status::docs)),
             Self::Codes => to_json(&codes()),
         }
@@ -83,6 +83,21 @@ fn outputs() -> Vec<OutputDocs> {
         }));
     }
     outputs
+}
+
+/// A constant, for those who list it.
+#[derive(Serialize)]
+struct Limit {
+    room: &'static str,
+    name: &'static str,
+    value: &'static str,
+    why: &'static str,
+    moves: &'static str,
+}
+
+fn limits() -> Vec<Limit> {
+    let limit = |Constant { room, name, value, why, moves }| Limit { room, name, value, why, moves };
+    tuning().into_iter().map(limit).collect()
 }
 
 /// A code, for those who list it.

@@ -24,6 +24,7 @@
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
+pub mod constants;
 pub mod eval;
 mod expr;
 pub mod formula;

@@ -1,6 +1,6 @@
 //! Constants of the room `compile`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// Programs of a step.

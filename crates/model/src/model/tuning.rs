@@ -1,6 +1,6 @@
 //! Constants of the room `model`, and those of all rooms up to it.
 
-use crate::syntax::tuning::{Constant, tuning};
+use symdiff::constants::{Constant, tuning};
 
 tuning! {
     /// Models.

@@ -5,24 +5,12 @@
 //! independent constraint is therefore sought on positions interpolated between the steps. Its independence vanishes in
 //! a singular configuration, and stays positive where the mechanism only comes near to one.
 
+use super::tuning::TUNING;
 use crate::assemble::ConstraintId;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::start::{DEPENDENT, jacobian_rows, row_independence, usual_row_sizes};
+use crate::simulate::start;
+use crate::simulate::start::{jacobian_rows, row_independence, usual_row_sizes};
 use crate::simulate::step::Stepper;
-
-/// Steps are examined where a pivot has lost this much of the range between its size at the pivot samples (1e-10) and
-/// the smallest that is trusted (1).
-const SUSPECT: f64 = 1e-8;
-
-/// A constraint whose independence (scaled) is less than this depends on the others. Interpolated positions are off by
-/// (hω)⁴/384, 1e-6 for twenty steps a turn.
-const VANISHES: f64 = 1e-5;
-
-/// Divisions of the time between steps by the golden section: to 1e-8 of it.
-const DIVISIONS: usize = 40;
-
-/// Most steps that are examined, so that the search stays short beside the run.
-const MOST: usize = 200;
 
 /// A singular configuration that was passed.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +69,7 @@ impl<'s> SingularWatch<'s> {
         stepper.copy_lane(0, &mut latest.state);
         let [first, middle, last] = &self.moments;
         let nearest = middle.pivot_loss > first.pivot_loss && middle.pivot_loss >= last.pivot_loss;
-        if nearest && middle.pivot_loss > SUSPECT && self.suspects < MOST {
+        if nearest && middle.pivot_loss > TUNING.suspect_pivot && self.suspects < TUNING.most_examined_steps {
             self.suspects += 1;
             let pass = self.weakest();
             self.passes.extend((!pass.constraints.is_empty()).then_some(pass));
@@ -99,7 +87,7 @@ impl<'s> SingularWatch<'s> {
         let (mut from, mut to) = (self.moments[0].time, self.moments[2].time);
         let mut inner = [to - golden * (to - from), from + golden * (to - from)];
         let mut values = inner.map(weakness);
-        for _ in 0..DIVISIONS {
+        for _ in 0..TUNING.golden_sections {
             if values[0] < values[1] {
                 to = inner[1];
                 inner = [to - golden * (to - from), inner[0]];
@@ -111,7 +99,8 @@ impl<'s> SingularWatch<'s> {
             }
         }
         let time = 0.5 * (from + to);
-        let vanished = self.independence(time).into_iter().filter(|(_, independent)| *independent < VANISHES);
+        let vanished =
+            self.independence(time).into_iter().filter(|(_, independent)| *independent < TUNING.vanishing_independence);
         SingularPass { time, constraints: vanished.map(|(constraint, _)| constraint).collect() }
     }
 
@@ -120,7 +109,7 @@ impl<'s> SingularWatch<'s> {
         let rows = jacobian_rows(&self.simulator.system, &self.simulator.start, &self.between(time));
         let redundant = &self.simulator.mobility.redundant;
         let constraints = (0..rows.len()).map(ConstraintId::new);
-        let independence = constraints.zip(row_independence(&rows, &self.usual, DEPENDENT));
+        let independence = constraints.zip(row_independence(&rows, &self.usual, start::tuning::TUNING.dependent_row));
         independence.filter(|(constraint, _)| !redundant.contains(constraint)).collect()
     }
 

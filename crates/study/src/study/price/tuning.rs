@@ -1,6 +1,6 @@
 //! Constants of the room `price`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// The price of a run.

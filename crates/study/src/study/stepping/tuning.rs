@@ -1,6 +1,6 @@
 //! Constants of the room `stepping`.
 
-use crate::syntax::tuning::tuning;
+use symdiff::constants::tuning;
 
 tuning! {
     /// The steps of a study.
