@@ -10,9 +10,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::trouble::Words;
-
-/// Bytes of standard error that are kept.
-const WORDS: usize = 4096;
+use super::tuning::TUNING;
 
 /// Time between two questions whether to go on.
 const GLANCE: Duration = Duration::from_millis(20);
@@ -185,7 +183,7 @@ fn listen(mut stderr: impl Read, words: &Mutex<VecDeque<u8>>) {
     while let Ok(read @ 1..) = stderr.read(&mut buffer) {
         let mut words = words.lock().unwrap_or_else(PoisonError::into_inner);
         words.extend(&buffer[..read]);
-        let beyond = words.len().saturating_sub(WORDS);
+        let beyond = words.len().saturating_sub(TUNING.words_bytes);
         words.drain(..beyond);
     }
 }

@@ -13,8 +13,8 @@ tuning! {
         most_lane_steps: usize = 200_000, moves "which samples are given up";
         /// Widest tile in use: a wider one's memory would leave the first-level cache.
         widest_tile: usize = 32, moves "time only";
-        /// Most memory of a tile, so that a large mechanism's stays in the second-level cache. Tiles are narrower
-        /// then, down to `narrowest`, where dispatch costs more than memory does.
+        /// Most memory of a tile, so that a large mechanism's stays in the second-level cache, bytes. Tiles are
+        /// narrower then, down to `narrowest_tile`.
         tile_memory: usize = 2 << 20, moves "time only";
         /// Narrowest tile: below it, dispatch costs more than memory does.
         narrowest_tile: usize = 8, moves "time only";

@@ -10,7 +10,8 @@ tuning! {
         /// What functions of the positions may change by in a step, as a share of their range: rows of a long step see
         /// some of it.
         most_passed: f64 = 0.75, moves "the steps of explicit runs";
-        /// What moves by less than this share of what moves most of its kind counts by that.
+        /// A position that moves by less than this share of the farthest movement of its kind counts as if it moved by
+        /// that share.
         least_movement: f64 = 1e-3, moves "the steps of explicit runs";
         /// What moves by less than this share of a coordinate's typical size is at rest.
         at_rest: f64 = 1e-9, moves "the steps of explicit runs";

@@ -12,10 +12,10 @@ tuning! {
         /// Error of positions at which the iteration ends, relative to the coordinate's scale: the last correction in
         /// position units times the observed contraction.
         tolerance: f64 = 1e-11, moves "results within the iteration's tolerance, and time";
-        /// The same for a first correction, whose contraction is only estimated. The remaining error is noise in the
-        /// response as a function of the parameters. Against a run that always takes two corrections, the slider
-        /// crank's Chebyshev bounds over 2 s change by 2e-12 m at 1e-15, 3e-11 at 1e-14, 2e-9 at 1e-13; those of
-        /// Taylor by 2e-9 at 1e-14.
+        /// Error of positions at which a first correction ends the iteration: its contraction is only estimated. The
+        /// remaining error is noise in the response as a function of the parameters. Against a run that always takes
+        /// two corrections, the slider crank's Chebyshev bounds over 2 s change by 2e-12 m at 1e-15, 3e-11 at 1e-14,
+        /// 2e-9 at 1e-13; those of Taylor by 2e-9 at 1e-14.
         first_tolerance: f64 = 1e-14, moves "results within the iteration's tolerance, and time";
         /// Contraction that is assumed of a first correction where none was observed.
         first_contraction: f64 = 0.1, moves "results within the iteration's tolerance, and time";

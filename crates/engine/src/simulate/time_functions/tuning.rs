@@ -36,7 +36,7 @@ tuning! {
         most_enclosures: usize = 100_000_000, moves "the steps of runs with functions of time";
         /// Times at which the steps of a whole run are counted.
         counted_times: usize = 61, moves "the steps of runs with functions of time";
-        /// Densest of these times that are left out: a pulse says nothing of the rest.
+        /// Densest of the counted times that are left out: a pulse says nothing of the rest.
         densest_left_out: usize = 4, moves "the steps of runs with functions of time";
         /// Halvings of the share of a run that belongs to a place.
         halvings_of_share: u32 = 40, moves "the steps of runs with functions of time";

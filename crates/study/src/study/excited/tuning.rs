@@ -1,0 +1,34 @@
+//! Constants of the room `study: excited`.
+
+use symdiff::constants::tuning;
+
+tuning! {
+    /// Ends over functions of time.
+    "study: excited" {
+        /// Halvings of a step that is worse.
+        halvings: i32 = 4, moves "ends over functions of time";
+        /// Least gain of a step, as a share of the gain that the first one promised.
+        worth_of_step: f64 = 1e-4, moves "ends over functions of time";
+        /// A simulation that ends this share of the promised change beside the end that its gradient promised is not
+        /// one of a linear output.
+        bent: f64 = 1e-3, moves "ends over functions of time";
+        /// Outputs and rows whose kernels are in memory at once.
+        kernels_at_once: usize = 128, moves "memory of searches over functions of time";
+        /// Rows in which an output's end is followed first; those between learn from them.
+        followed_rows: usize = 8, moves "ends over functions of time";
+        /// Steps of a climb.
+        steps_of_climb: usize = 24, moves "ends over functions of time";
+        /// Steps of a climb from a neighbour's function.
+        steps_of_learnt: usize = 8, moves "ends over functions of time";
+        /// How often ends are climbed to from elsewhere.
+        rounds: usize = 3, moves "ends over functions of time";
+        /// Rows in which the steps' error of ends that are not followed is measured.
+        checked_rows: usize = 16, moves "errors of ends over functions of time";
+        /// Error of steps over the change by halved ones where a function jumps: by the scheme, a jump takes a step.
+        first_order: f64 = 2.0, moves "errors of ends over functions of time";
+        /// Factor by which estimates of the steps' error may be wrong, as with validation samples.
+        safety: f64 = 1.25, moves "errors of ends over functions of time";
+        /// Iterations of Newton's method: each squares the error.
+        newton_rounds: usize = 3, moves "ends over functions of time";
+    }
+}
