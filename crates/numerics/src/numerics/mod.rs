@@ -64,6 +64,7 @@ mod surrogate;
 mod taylor;
 mod tensor;
 mod time_shift;
+pub(crate) mod tuning;
 
 pub use bisection::bisected;
 pub use brink::to_brinks;
@@ -103,3 +104,4 @@ pub use spectrum::{Bin, Spectrum};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
 pub use time_shift::{TimeShift, Turning};
+pub use tuning::tuning;

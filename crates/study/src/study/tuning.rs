@@ -4,7 +4,7 @@ use super::{
     allocate, answers, attained, black_box, bounding, cost, design, drawing, ensemble, excited, explain, fit,
     formulation, gradient, motion, price, reduced, statistics, stepping, verify,
 };
-use crate::{assemble, compile, model, results, simulate};
+use crate::{assemble, compile, methods, model, numerics, results, simulate};
 use symdiff::constants::{Constant, tuning};
 
 tuning! {
@@ -24,7 +24,9 @@ tuning! {
 /// Constants from text to studies, room by room, in the order of the stages.
 pub fn tuning() -> Vec<Constant> {
     [
+        numerics::tuning(),
         model::tuning(),
+        methods::tuning(),
         assemble::tuning::Tuning::constants(),
         compile::tuning::Tuning::constants(),
         simulate::tuning(),
@@ -65,7 +67,7 @@ mod tests {
     fn every_constant_has_a_name_of_its_own_a_reason_and_an_effect() {
         let constants = tuning();
         let names: BTreeSet<_> = constants.iter().map(|constant| (constant.room, constant.name)).collect();
-        assert!(names.len() == constants.len() && constants.len() > 600);
+        assert!(names.len() == constants.len() && constants.len() > 850);
         for constant in constants {
             let Constant { why, moves, value, name, .. } = constant;
             assert!(why.ends_with('.') && !moves.is_empty() && !value.is_empty(), "{name}: {why}");
