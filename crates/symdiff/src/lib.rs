@@ -30,6 +30,7 @@ mod expr;
 pub mod formula;
 mod lower;
 mod slopes;
+pub mod tuning;
 
 pub use eval::double_double::{DoubleDouble, DoubleDoubleMemory};
 pub use eval::interval::Interval;

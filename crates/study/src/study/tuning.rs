@@ -4,7 +4,7 @@ use super::{
     allocate, answers, attained, black_box, bounding, cost, design, drawing, ensemble, excited, explain, fit,
     formulation, gradient, motion, price, reduced, statistics, stepping, verify,
 };
-use crate::{assemble, compile, methods, model, numerics, results, simulate};
+use crate::{assemble, c_code, certificate, compile, methods, model, numerics, results, simulate};
 use symdiff::constants::{Constant, tuning};
 
 tuning! {
@@ -24,12 +24,15 @@ tuning! {
 /// Constants from text to studies, room by room, in the order of the stages.
 pub fn tuning() -> Vec<Constant> {
     [
+        symdiff::tuning::Tuning::constants(),
         numerics::tuning(),
+        certificate::tuning::Tuning::constants(),
         model::tuning(),
         methods::tuning(),
         assemble::tuning::Tuning::constants(),
         compile::tuning::Tuning::constants(),
         simulate::tuning(),
+        c_code::tuning::Tuning::constants(),
         results::tuning::Tuning::constants(),
         crate::black_box::tuning::Tuning::constants(),
         Tuning::constants(),

@@ -4,7 +4,8 @@ use symdiff::Tile;
 
 use super::tuning::TUNING;
 use crate::assemble::System;
-use crate::compile::{Layout, PIVOT_SAMPLES, PivotSample, Tapes, compile_start};
+use crate::compile;
+use crate::compile::{Layout, PivotSample, Tapes, compile_start};
 
 /// Evenly spread numbers in [−1, 1) by an additive recurrence, the same on every machine.
 pub fn spread(series: usize, index: usize) -> f64 {
@@ -29,7 +30,12 @@ pub fn guess_state(system: &System, layout: &Layout, parameters: &[f64]) -> Vec<
 
 /// States that guide the choice of pivots: the nominal start, and states in general position around it, for steps of
 /// `h`.
-pub fn pivot_samples(system: &System, layout: &Layout, nominal: &[f64], h: f64) -> [PivotSample; PIVOT_SAMPLES] {
+pub fn pivot_samples(
+    system: &System,
+    layout: &Layout,
+    nominal: &[f64],
+    h: f64,
+) -> [PivotSample; compile::tuning::TUNING.pivot_samples] {
     std::array::from_fn(|series| {
         let mut values = nominal.to_vec();
         values[layout.step] = h;
@@ -39,7 +45,7 @@ pub fn pivot_samples(system: &System, layout: &Layout, nominal: &[f64], h: f64) 
                 let scale = system.coordinates[index].scale;
                 values[layout.q.start + index] += TUNING.pivot_sample_spread * scale * spread(series, index);
                 values[layout.v.start + index] +=
-                    TUNING.pivot_sample_spread * scale * spread(series + PIVOT_SAMPLES, index);
+                    TUNING.pivot_sample_spread * scale * spread(series + compile::tuning::TUNING.pivot_samples, index);
             }
         }
         PivotSample { values }
