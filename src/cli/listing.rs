@@ -4,11 +4,11 @@
 use super::Failure;
 use super::console::to_json;
 use super::status::{Status, StatusDocs};
+use super::tuning::tuning;
 use crate::elements::effects::EffectKind;
 use crate::grammar::Sensor;
 use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
 use crate::overview::{Align, Table};
-use crate::study::tuning;
 use crate::syntax::Code;
 use serde::Serialize;
 use symdiff::constants::Constant;

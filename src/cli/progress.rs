@@ -9,10 +9,8 @@ use std::time::Duration;
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use super::tuning::TUNING;
 use crate::syntax::harmless;
-
-/// Parts of the bar; finer than a terminal is wide.
-const PARTS: u64 = 10_000;
 
 /// Between two lines where there is no terminal.
 const BETWEEN: Duration = Duration::from_secs(10);
@@ -36,7 +34,7 @@ impl Progress {
         let target =
             if visible && terminal { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
         let name = harmless(name);
-        let bar = ProgressBar::with_draw_target(Some(PARTS), target).with_prefix(name.clone());
+        let bar = ProgressBar::with_draw_target(Some(TUNING.parts_of_bar), target).with_prefix(name.clone());
         let style = ProgressStyle::with_template("{prefix}: {msg}  [{bar:30}] {percent:>3} %{left}");
         if let Ok(style) = style {
             let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
@@ -63,7 +61,7 @@ impl Progress {
         if fraction == 0.0 {
             self.bar.reset();
         }
-        let parts = (fraction.clamp(0.0, 1.0) * PARTS as f64) as u64;
+        let parts = (fraction.clamp(0.0, 1.0) * TUNING.parts_of_bar as f64) as u64;
         if parts > self.bar.position() {
             self.bar.set_position(parts);
         }
@@ -86,7 +84,7 @@ impl Progress {
 fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Receiver<()>) {
     let mut known = None;
     while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
-        let done = bar.position() as f64 / PARTS as f64;
+        let done = bar.position() as f64 / TUNING.parts_of_bar as f64;
         let stage = stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
         // An unchanged state is not repeated.
         if known.as_ref().is_some_and(|known| *known == (stage.clone(), percent(done))) {

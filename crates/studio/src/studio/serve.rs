@@ -18,14 +18,12 @@ use super::guard::Guard;
 use super::language::Language;
 use super::routes::Routes;
 use super::texts::{TextError, Texts};
+use super::tuning::TUNING;
 use super::{bounds, moves, samples, watch};
 use crate::study;
 
 /// Between two questions whether to end.
 const BETWEEN: Duration = Duration::from_millis(100);
-
-/// Connections at a time: a page has six.
-const MOST: usize = 64;
 
 /// A session.
 pub struct Options<'o> {
@@ -117,7 +115,7 @@ fn listen(listener: &TcpListener, guard: &Arc<Guard>, routes: &Arc<Routes>) {
             return;
         }
         // Whoever opens many waits.
-        if open.load(Ordering::Relaxed) >= MOST {
+        if open.load(Ordering::Relaxed) >= TUNING.connections {
             continue;
         }
         open.fetch_add(1, Ordering::Relaxed);

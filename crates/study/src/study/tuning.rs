@@ -59,21 +59,3 @@ pub fn tuning() -> Vec<Constant> {
     ]
     .concat()
 }
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn every_constant_has_a_name_of_its_own_a_reason_and_an_effect() {
-        let constants = tuning();
-        let names: BTreeSet<_> = constants.iter().map(|constant| (constant.room, constant.name)).collect();
-        assert!(names.len() == constants.len() && constants.len() > 850);
-        for constant in constants {
-            let Constant { why, moves, value, name, .. } = constant;
-            assert!(why.ends_with('.') && !moves.is_empty() && !value.is_empty(), "{name}: {why}");
-        }
-    }
-}
